@@ -1,0 +1,113 @@
+//! The land and what its levels of detail need.
+
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+use super::Mesh;
+
+/// Heights on a square grid of (2^k+1)² samples, centred on the origin.
+///
+/// Sample (i, j) lies at x = (i − (side−1)/2)·spacing, z = (j − (side−1)/2)·spacing and is
+/// `heights_m[j·side + i]`: i runs east (+x), j runs south (+z).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Heightfield {
+    /// Samples a side, 2^k+1.
+    pub side: u32,
+    /// Metres between samples.
+    pub spacing_m: f32,
+    /// side² heights in metres.
+    pub heights_m: Vec<f32>,
+}
+
+impl Heightfield {
+    /// Metres from edge to edge.
+    pub fn extent_m(&self) -> f32 {
+        (self.side - 1) as f32 * self.spacing_m
+    }
+
+    /// Lowest and highest sample in metres.
+    pub fn range_m(&self) -> (f32, f32) {
+        self.heights_m.iter().fold((f32::MAX, f32::MIN), |(lo, hi), &h| (lo.min(h), hi.max(h)))
+    }
+
+    /// The sample (i, j); both less than `side`.
+    #[inline]
+    pub fn at(&self, i: u32, j: u32) -> f32 {
+        self.heights_m[(j * self.side + i) as usize]
+    }
+
+    /// Grid coordinates of a point, clamped to the land: whole cell and fraction within it.
+    #[inline]
+    fn cell(&self, along_m: f32) -> (u32, f32) {
+        let last = (self.side - 1) as f32;
+        let g = (along_m / self.spacing_m + 0.5 * last).clamp(0.0, last);
+        let whole = (g as u32).min(self.side - 2);
+        (whole, g - whole as f32)
+    }
+
+    /// Bilinear height in metres at world (x, z); beyond the edge, that of the edge.
+    #[inline]
+    pub fn height_m(&self, x_m: f32, z_m: f32) -> f32 {
+        let ((i, u), (j, v)) = (self.cell(x_m), self.cell(z_m));
+        let near = self.at(i, j) * (1.0 - u) + self.at(i + 1, j) * u;
+        let far = self.at(i, j + 1) * (1.0 - u) + self.at(i + 1, j + 1) * u;
+        near * (1.0 - v) + far * v
+    }
+
+    /// Unit normal at sample (i, j) by central differences (one-sided at the edge).
+    pub fn normal_at(&self, i: u32, j: u32) -> Vec3 {
+        let last = self.side - 1;
+        let (west, east) = (i.saturating_sub(1), (i + 1).min(last));
+        let (north, south) = (j.saturating_sub(1), (j + 1).min(last));
+        let dx = (self.at(east, j) - self.at(west, j)) / ((east - west) as f32 * self.spacing_m);
+        let dz = (self.at(i, south) - self.at(i, north)) / ((south - north) as f32 * self.spacing_m);
+        Vec3::new(-dx, 1.0, -dz).normalize()
+    }
+}
+
+/// The finished land: heights and what the forces that shaped it left behind.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Landform {
+    /// The walkable land, 1024 m from edge to edge.
+    pub field: Heightfield,
+    /// Drained area per sample, log-scaled to [0, 1]: 0 on a ridge, 1 in the greatest river bed.
+    pub flow: Vec<f32>,
+    /// Loose material laid down by erosion, per sample, [0, 1].
+    pub deposit: Vec<f32>,
+    /// Surface of the lake in metres; `None` when the land is dry.
+    pub water_level_m: Option<f32>,
+    /// Altitude in metres above which snow lies; above the highest point when there is none.
+    pub snow_line_m: f32,
+    /// The same land, coarse and several times as wide, to stand at the horizon: only its part outside `field` is
+    /// drawn. Its heights agree with `field` along the border of `field`.
+    pub apron: Heightfield,
+}
+
+/// The land as triangles for any viewer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TerrainMesh {
+    /// The adaptive mesh of `Landform::field`; uv 0..1 over the field (u = east, v = south).
+    pub near: Mesh,
+    /// The ring of `Landform::apron` around it, joined to its border without a crack; uv continues beyond 0..1.
+    pub apron: Mesh,
+    /// The water surface: two triangles or empty.
+    pub water: Mesh,
+    /// Greatest vertical distance in metres between `near` and the heightfield, as verified.
+    pub error_m: f32,
+}
+
+/// What the terrain's levels of detail need at run time (thesis 3.2.1 and 3.2.2), in the layouts that the page on
+/// `GSC_heightfield` specifies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TerrainLod {
+    /// Nested wedgie half-thickness in metres per bintree triangle, indexed by the vertex that splits it: side²
+    /// values. A triangle's value is never less than those of its children.
+    pub wedgies_m: Vec<f32>,
+    /// Height in metres of each sample's place in the next coarser uniform triangulation less its own: side² values.
+    pub displacements_m: Vec<f32>,
+    /// The coarsest level of detail at which a sample is still used (0 = only at full resolution): side² values.
+    pub levels: Vec<u8>,
+    /// Lowest and highest sample of each block, from 1×1 block of the whole field down to blocks of 2×2 cells,
+    /// row by row, coarsest first: Σ 4^l pairs.
+    pub block_ranges_m: Vec<[f32; 2]>,
+}

@@ -1,0 +1,174 @@
+//! Lattice noise: gradient noise after Perlin ("Improving noise", 2002) in two and three dimensions, fractal
+//! sums, and cellular noise after Worley (1996). Pure arithmetic, so the same on every machine.
+//!
+//! Points are in lattice units (one cell = 1); values of gradient noise lie within about [-1, 1].
+//! `period` wraps the lattice so that a texture tiles; 0 never wraps.
+
+/// A lattice hash: 32 well-mixed bits for a cell (lowbias32 by Wellons over a linear combination).
+#[inline]
+pub fn hash(seed: u32, x: i32, y: i32, z: i32) -> u32 {
+    let mut h = seed
+        ^ (x as u32).wrapping_mul(0x9E37_79B1)
+        ^ (y as u32).wrapping_mul(0x85EB_CA77)
+        ^ (z as u32).wrapping_mul(0xC2B2_AE3D);
+    h ^= h >> 16;
+    h = h.wrapping_mul(0x7FEB_352D);
+    h ^= h >> 15;
+    h = h.wrapping_mul(0x846C_A68B);
+    h ^ (h >> 16)
+}
+
+/// A hash as a number in [0, 1).
+#[inline]
+pub fn hash01(seed: u32, x: i32, y: i32, z: i32) -> f32 {
+    (hash(seed, x, y, z) >> 8) as f32 * (1.0 / 16_777_216.0)
+}
+
+#[inline]
+fn fade(t: f32) -> f32 {
+    t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
+}
+
+#[inline]
+fn lerp(a: f32, b: f32, t: f32) -> f32 {
+    a + (b - a) * t
+}
+
+#[inline]
+fn wrap(i: i32, period: i32) -> i32 {
+    if period > 0 { i.rem_euclid(period) } else { i }
+}
+
+/// Sixteen unit vectors, evenly around the circle: cos and sin of k·22.5° + 11.25°.
+const GRADIENTS_2D: [[f32; 2]; 16] = {
+    const A: f32 = 0.980_785_25;
+    const B: f32 = 0.831_469_6;
+    const C: f32 = 0.555_570_24;
+    const D: f32 = 0.195_090_32;
+    [
+        [A, D],
+        [B, C],
+        [C, B],
+        [D, A],
+        [-D, A],
+        [-C, B],
+        [-B, C],
+        [-A, D],
+        [-A, -D],
+        [-B, -C],
+        [-C, -B],
+        [-D, -A],
+        [D, -A],
+        [C, -B],
+        [B, -C],
+        [A, -D],
+    ]
+};
+
+#[inline]
+fn gradient_2d(h: u32, x: f32, y: f32) -> f32 {
+    let g = GRADIENTS_2D[(h >> 28) as usize];
+    g[0] * x + g[1] * y
+}
+
+/// Gradient noise in two dimensions, in about [-1, 1].
+#[inline]
+pub fn gradient2(seed: u32, x: f32, y: f32, period: i32) -> f32 {
+    let (fx, fy) = (x.floor(), y.floor());
+    let (ix, iy) = (fx as i32, fy as i32);
+    let (dx, dy) = (x - fx, y - fy);
+    let (x0, x1, y0, y1) = (wrap(ix, period), wrap(ix + 1, period), wrap(iy, period), wrap(iy + 1, period));
+    let a = gradient_2d(hash(seed, x0, y0, 0), dx, dy);
+    let b = gradient_2d(hash(seed, x1, y0, 0), dx - 1.0, dy);
+    let c = gradient_2d(hash(seed, x0, y1, 0), dx, dy - 1.0);
+    let d = gradient_2d(hash(seed, x1, y1, 0), dx - 1.0, dy - 1.0);
+    let (u, v) = (fade(dx), fade(dy));
+    lerp(lerp(a, b, u), lerp(c, d, u), v) * std::f32::consts::SQRT_2
+}
+
+#[inline]
+fn gradient_3d(h: u32, x: f32, y: f32, z: f32) -> f32 {
+    // Perlin's twelve edge directions; the four repeats fill sixteen so that no modulo is needed.
+    let h = h >> 28;
+    let u = if h < 8 { x } else { y };
+    let v = if h < 4 {
+        y
+    } else if h == 12 || h == 14 {
+        x
+    } else {
+        z
+    };
+    (if h & 1 == 0 { u } else { -u }) + (if h & 2 == 0 { v } else { -v })
+}
+
+/// Gradient noise in three dimensions, in about [-1, 1].
+#[inline]
+pub fn gradient3(seed: u32, x: f32, y: f32, z: f32, period: i32) -> f32 {
+    let (fx, fy, fz) = (x.floor(), y.floor(), z.floor());
+    let (ix, iy, iz) = (fx as i32, fy as i32, fz as i32);
+    let (dx, dy, dz) = (x - fx, y - fy, z - fz);
+    let (x0, x1) = (wrap(ix, period), wrap(ix + 1, period));
+    let (y0, y1) = (wrap(iy, period), wrap(iy + 1, period));
+    let (z0, z1) = (wrap(iz, period), wrap(iz + 1, period));
+    let corner = |x, y, z, dx, dy, dz| gradient_3d(hash(seed, x, y, z), dx, dy, dz);
+    let (u, v, w) = (fade(dx), fade(dy), fade(dz));
+    let near = lerp(
+        lerp(corner(x0, y0, z0, dx, dy, dz), corner(x1, y0, z0, dx - 1.0, dy, dz), u),
+        lerp(corner(x0, y1, z0, dx, dy - 1.0, dz), corner(x1, y1, z0, dx - 1.0, dy - 1.0, dz), u),
+        v,
+    );
+    let far = lerp(
+        lerp(corner(x0, y0, z1, dx, dy, dz - 1.0), corner(x1, y0, z1, dx - 1.0, dy, dz - 1.0), u),
+        lerp(corner(x0, y1, z1, dx, dy - 1.0, dz - 1.0), corner(x1, y1, z1, dx - 1.0, dy - 1.0, dz - 1.0), u),
+        v,
+    );
+    lerp(near, far, w)
+}
+
+/// A fractal sum of `octaves` of [`gradient2`], each twice as fine and `gain` times as high as the one before,
+/// divided by the sum of amplitudes.
+pub fn fbm2(seed: u32, x: f32, y: f32, octaves: u32, gain: f32, period: i32) -> f32 {
+    let (mut sum, mut amplitude, mut total, mut frequency) = (0.0, 1.0, 0.0, 1.0);
+    for octave in 0..octaves {
+        let wrapped = period << octave;
+        sum += amplitude * gradient2(seed.wrapping_add(octave), x * frequency, y * frequency, wrapped);
+        total += amplitude;
+        amplitude *= gain;
+        frequency *= 2.0;
+    }
+    sum / total
+}
+
+/// The same in three dimensions.
+pub fn fbm3(seed: u32, x: f32, y: f32, z: f32, octaves: u32, gain: f32, period: i32) -> f32 {
+    let (mut sum, mut amplitude, mut total, mut frequency) = (0.0, 1.0, 0.0, 1.0);
+    for octave in 0..octaves {
+        let s = seed.wrapping_add(octave);
+        sum += amplitude * gradient3(s, x * frequency, y * frequency, z * frequency, period << octave);
+        total += amplitude;
+        amplitude *= gain;
+        frequency *= 2.0;
+    }
+    sum / total
+}
+
+/// Cellular noise: distance to the nearest and second nearest of one jittered point per cell, and the nearest
+/// cell's hash.
+pub fn cellular2(seed: u32, x: f32, y: f32, period: i32) -> (f32, f32, u32) {
+    let (ix, iy) = (x.floor() as i32, y.floor() as i32);
+    let (mut first, mut second, mut id) = (f32::MAX, f32::MAX, 0);
+    for cy in iy - 1..=iy + 1 {
+        for cx in ix - 1..=ix + 1 {
+            let h = hash(seed, wrap(cx, period), wrap(cy, period), 1);
+            let px = cx as f32 + (h & 0xFFFF) as f32 / 65536.0;
+            let py = cy as f32 + (h >> 16) as f32 / 65536.0;
+            let d = (px - x) * (px - x) + (py - y) * (py - y);
+            if d < first {
+                (second, first, id) = (first, d, h);
+            } else if d < second {
+                second = d;
+            }
+        }
+    }
+    (first.sqrt(), second.sqrt(), id)
+}

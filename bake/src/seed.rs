@@ -1,0 +1,22 @@
+//! Random numbers that depend on what they are for, never on when or on which thread they are drawn.
+
+use rand::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+
+/// A generator for one item of one stage: the same for the same (`seed`, `stage`, `item`) on every machine.
+pub fn rng(seed: u64, stage: &str, item: u64) -> Pcg64Mcg {
+    let mut hasher = blake3::Hasher::new_derive_key("genescape 2026 random stream");
+    hasher.update(&seed.to_le_bytes());
+    hasher.update(&(stage.len() as u64).to_le_bytes());
+    hasher.update(stage.as_bytes());
+    hasher.update(&item.to_le_bytes());
+    let mut bytes = [0; 16];
+    bytes.copy_from_slice(&hasher.finalize().as_bytes()[..16]);
+    Pcg64Mcg::from_seed(bytes)
+}
+
+/// A 32-bit seed for lattice noise, by the same rule.
+pub fn noise_seed(seed: u64, stage: &str, item: u64) -> u32 {
+    use rand::Rng;
+    rng(seed, stage, item).next_u32()
+}

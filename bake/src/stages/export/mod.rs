@@ -1,0 +1,1 @@
+//! Results → the files that other programs open: glTF, PNG, EXR.

@@ -1,0 +1,1 @@
+//! Landform → what the ground looks like.

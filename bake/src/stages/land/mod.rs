@@ -1,0 +1,1 @@
+//! Parameters → the shape of the land.

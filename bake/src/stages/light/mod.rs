@@ -1,0 +1,1 @@
+//! Sun, land and trees → light on the ground.

@@ -1,0 +1,1 @@
+//! Any mesh → progressive mesh, distinguished meshes, geomorphs, strips.

@@ -1,0 +1,1 @@
+//! Landform and templates → where the trees stand.

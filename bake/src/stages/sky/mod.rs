@@ -1,0 +1,1 @@
+//! Parameters → sun, sky and clouds.

@@ -1,0 +1,1 @@
+//! Landform → adaptive mesh, and the data of the terrain's levels of detail.

@@ -1,0 +1,1 @@
+//! Parameters → tree templates and their textures.

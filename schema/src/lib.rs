@@ -1,0 +1,1 @@
+//! The shared contract as plain checked data.
