@@ -1,0 +1,220 @@
+//! The command line: words → one [`Command`] per thing a person can ask for.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+const EXAMPLES: &str = "\
+Examples:
+  bake                                   bake the newest population of ./world (made from the starters if absent)
+  bake world/population/g0003.ron        bake this population
+  bake --watch                           bake again whenever a population file is saved
+  bake random --seed 7                   make a population of four random genomes, and bake it
+  bake next                              breed the next population from the votes, and bake it
+  bake export 2 alps.glb                 one self-contained file of scene 2, to send to somebody
+  bake lod bunny.obj bunny.glb           progressive mesh and distinguished meshes of anyone's model
+  bake explain 0                         why each stage of scene 0 was or was not rebuilt
+
+Exit codes: 0 done, 1 failed, 2 wrong usage or bad input, 130 interrupted (Ctrl-C; what was finished is kept).";
+
+/// Bakes landscapes from genomes: glTF, PNG and EXR files that open in Blender and in any glTF viewer.
+#[derive(Debug, Parser)]
+#[command(name = "bake", version, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
+pub struct Cli {
+    /// What to do other than bake a population.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    /// Bake options.
+    #[command(flatten)]
+    pub bake: BakeArgs,
+}
+
+/// Where the person's work lives.
+#[derive(Debug, Clone, Args)]
+pub struct WorldArgs {
+    /// Folder that holds populations and everything baked; made from the starter landscapes if absent.
+    #[arg(long, value_name = "DIR", default_value = "world")]
+    pub world: PathBuf,
+}
+
+/// How to bake.
+#[derive(Debug, Clone, Args)]
+pub struct RunArgs {
+    /// The world folder.
+    #[command(flatten)]
+    pub world: WorldArgs,
+    /// Threads to compute on [default: one a core]. The result does not depend on it.
+    #[arg(long, value_name = "N")]
+    pub threads: Option<usize>,
+    /// Samples a side of the heightfield: 65, 129, 257, 513, 1025 or 2049.
+    #[arg(long, value_name = "N", default_value_t = 513)]
+    pub size: u32,
+    /// Print events as JSON, one a line, instead of a progress bar.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `bake` without a subcommand.
+#[derive(Debug, Clone, Args)]
+pub struct BakeArgs {
+    /// The population file [default: the world's newest].
+    #[arg(value_name = "POPULATION.ron")]
+    pub population: Option<PathBuf>,
+    /// How to bake.
+    #[command(flatten)]
+    pub run: RunArgs,
+    /// Stay, and bake again whenever a population file or space.ron changes.
+    #[arg(long)]
+    pub watch: bool,
+    /// With --watch: look every half second, for network folders that send no events.
+    #[arg(long, requires = "watch")]
+    pub poll: bool,
+}
+
+/// Everything else.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Make a population of four random genomes and bake it.
+    #[command(after_help = "Example:\n  bake random --seed 7 --world /tmp/seven")]
+    Random {
+        /// The same seed makes the same population.
+        #[arg(long, value_name = "N")]
+        seed: u64,
+        /// How to bake.
+        #[command(flatten)]
+        run: RunArgs,
+    },
+    /// Breed the next population from the newest one's votes and bake it.
+    Next {
+        /// How to bake.
+        #[command(flatten)]
+        run: RunArgs,
+    },
+    /// Print the parameter space as a table.
+    Params {
+        /// Markdown instead of aligned text.
+        #[arg(long)]
+        markdown: bool,
+        /// The world folder, for its own space.ron.
+        #[command(flatten)]
+        world: WorldArgs,
+    },
+    /// Say for each stage whether it was reused and, if not, which field of its key changed.
+    Explain {
+        /// Scene 0 to 3 [default: all].
+        scene: Option<usize>,
+        /// The world folder.
+        #[command(flatten)]
+        world: WorldArgs,
+    },
+    /// Write a scene as one self-contained file.
+    #[command(after_help = "Examples:\n  bake export 0 valley.glb\n  bake export world/baked/g0002/scene-1/scene.gltf alps.glb")]
+    Export {
+        /// Scene 0 to 3 of the current generation, or the path of a scene.gltf.
+        scene: String,
+        /// The file to write.
+        #[arg(value_name = "FILE.glb")]
+        out: PathBuf,
+        /// The world folder.
+        #[command(flatten)]
+        world: WorldArgs,
+    },
+    /// Make a progressive mesh with distinguished meshes and geomorphs of anyone's glTF or OBJ file.
+    #[command(after_help = "Example:\n  bake lod stanford-bunny.obj bunny.glb\n\nRepairs that the input needed are said, line by line.")]
+    Lod {
+        /// A .glb, .gltf or .obj file.
+        #[arg(value_name = "IN")]
+        input: PathBuf,
+        /// The .glb file to write.
+        #[arg(value_name = "OUT")]
+        out: PathBuf,
+        /// Where faces meet at more than this angle and the file brings no normals, a crease is made.
+        #[arg(long, value_name = "DEG", default_value_t = 40.0)]
+        crease_deg: f32,
+    },
+    /// Look after the cache.
+    Cache {
+        /// What to do with it.
+        #[command(subcommand)]
+        action: CacheCommand,
+    },
+    /// Time every stage on the four starters, in the manner of the thesis's tables 1 and 2.
+    Bench {
+        /// Times the whole is repeated.
+        #[arg(long, default_value_t = 3)]
+        runs: u32,
+        /// Threads to compute on [default: one a core].
+        #[arg(long, value_name = "N")]
+        threads: Option<usize>,
+        /// Samples a side of the heightfield.
+        #[arg(long, value_name = "N", default_value_t = 513)]
+        size: u32,
+    },
+}
+
+/// `bake cache …`
+#[derive(Debug, Subcommand)]
+pub enum CacheCommand {
+    /// Blobs, bytes and what each stage's results cost to make.
+    Stats {
+        /// The world folder.
+        #[command(flatten)]
+        world: WorldArgs,
+    },
+    /// Read everything, check every digest, and set damaged blobs aside so that the next bake makes them anew.
+    Verify {
+        /// The world folder.
+        #[command(flatten)]
+        world: WorldArgs,
+    },
+    /// Remove what was used least recently, never anything that a baked scene still in the world uses.
+    Gc {
+        /// Size to shrink to, for example 500MB or 2GiB.
+        #[arg(long, value_name = "SIZE", value_parser = parse_size)]
+        max_size: u64,
+        /// The world folder.
+        #[command(flatten)]
+        world: WorldArgs,
+    },
+}
+
+/// "500MB", "2GiB", "1000000" → bytes.
+fn parse_size(text: &str) -> Result<u64, String> {
+    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic()).trim();
+    let unit = text[text.trim_end_matches(|c: char| c.is_ascii_alphabetic()).len()..].to_ascii_lowercase();
+    let factor: u64 = match unit.as_str() {
+        "" | "b" => 1,
+        "k" | "kb" => 1_000,
+        "kib" => 1 << 10,
+        "m" | "mb" => 1_000_000,
+        "mib" => 1 << 20,
+        "g" | "gb" => 1_000_000_000,
+        "gib" => 1 << 30,
+        _ => return Err(format!("`{unit}` is no unit of size: use B, kB, MB, GB, KiB, MiB or GiB")),
+    };
+    let number: f64 = digits.parse().map_err(|_| format!("`{digits}` is not a number"))?;
+    if !number.is_finite() || number < 0.0 {
+        return Err(format!("`{digits}` is not a size"));
+    }
+    Ok((number * factor as f64) as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes() {
+        assert_eq!(parse_size("500MB"), Ok(500_000_000));
+        assert_eq!(parse_size("1.5 GiB"), Ok(3 << 29));
+        assert_eq!(parse_size("12"), Ok(12));
+        assert!(parse_size("12 parsecs").is_err());
+        assert!(parse_size("-1MB").is_err());
+    }
+}

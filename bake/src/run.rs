@@ -1,0 +1,300 @@
+//! Plan → results, through the cache and in parallel.
+//!
+//! Executor threads look actions up, take their locks and store their results; the computing itself goes to a rayon
+//! pool that never takes a lock. Were both done by the same threads, a stage waiting for its inner loop could steal
+//! another action whose lock another process holds, while that process waits for ours.
+
+use std::collections::BinaryHeap;
+use std::cmp::Reverse;
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+use genescape_cache::{ActionKey, ActionRecord, BlobRef, Bytes, Cache, How, Output};
+
+use crate::events::{Event, Listener};
+use crate::execute::{self, StageError};
+use crate::plan::{Job, Node, NodeId, Plan};
+
+/// What a run needs besides the plan.
+pub struct Runner<'a> {
+    /// Where results are kept.
+    pub cache: &'a Cache,
+    /// The threads that compute.
+    pub pool: &'a rayon::ThreadPool,
+    /// Who hears how it goes.
+    pub listener: &'a dyn Listener,
+    /// Asked before each stage: stop?
+    pub cancelled: &'a (dyn Fn() -> bool + Sync),
+    /// Called once for each scene as soon as all of it is there.
+    pub scene_ready: &'a (dyn Fn(usize, &BlobRef) -> anyhow::Result<()> + Sync),
+}
+
+/// What one node gave.
+#[derive(Clone, Debug)]
+pub struct Done {
+    /// Its action key.
+    pub key: ActionKey,
+    /// Its outputs.
+    pub record: ActionRecord,
+    /// Built or reused.
+    pub how: How,
+    /// The outputs' bytes while someone may still need them.
+    bytes: Option<Vec<Bytes>>,
+}
+
+/// Why a run ended early.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The person asked for it.
+    #[error("interrupted; what was finished is kept, and the next bake goes on from there")]
+    Cancelled,
+    /// A stage could not do its work.
+    #[error("{label}: {source}")]
+    Stage {
+        /// The node's label.
+        label: String,
+        /// Why.
+        source: StageError,
+    },
+    /// The results could not be looked up or stored.
+    #[error(transparent)]
+    Cache(#[from] genescape_cache::Error),
+    /// A scene's files could not be put in place.
+    #[error("{0:#}")]
+    Publish(anyhow::Error),
+}
+
+/// What a stage reads: outputs of earlier nodes by the name the plan gives them.
+pub struct Inputs<'a> {
+    cache: &'a Cache,
+    nodes: Vec<(&'a str, Done)>,
+}
+
+impl Inputs<'_> {
+    /// The blob that holds an output.
+    pub fn blob(&self, input: &str, output: &str) -> Result<&BlobRef, StageError> {
+        let missing = || StageError::NoSuchInput(format!("{input}: {output}"));
+        self.done(input)?.record.output(output).ok_or_else(missing)
+    }
+
+    /// The verified bytes of an output.
+    pub fn bytes(&self, input: &str, output: &str) -> Result<Bytes, StageError> {
+        let done = self.done(input)?;
+        let blob = self.blob(input, output)?;
+        if let Some(all) = &done.bytes
+            && let Some(at) = done.record.outputs.iter().position(|(name, _)| name == output)
+        {
+            return Ok(all[at].clone());
+        }
+        self.cache.get_blob(blob)?.ok_or(StageError::InputLost)
+    }
+
+    fn done(&self, input: &str) -> Result<&Done, StageError> {
+        let found = self.nodes.iter().find(|(name, _)| *name == input);
+        found.map(|(_, done)| done).ok_or_else(|| StageError::NoSuchInput(input.to_owned()))
+    }
+}
+
+impl Runner<'_> {
+    /// Runs `plan`; the results in the order of its nodes.
+    pub fn run(&self, plan: &Plan) -> Result<Vec<Done>, RunError> {
+        // A blob that turns out damaged when a stage reads it is gone from the cache by then: the next attempt finds
+        // its action missing and builds it again.
+        let mut attempts = 3;
+        loop {
+            attempts -= 1;
+            match self.attempt(plan) {
+                Err(RunError::Stage { source: StageError::InputLost, .. }) if attempts > 0 => self.tell_notices(),
+                result => {
+                    self.tell_notices();
+                    return result;
+                }
+            }
+        }
+    }
+
+    fn tell_notices(&self) {
+        for notice in self.cache.take_notices() {
+            self.listener.tell(&Event::Notice { message: notice.to_string() });
+        }
+    }
+
+    fn attempt(&self, plan: &Plan) -> Result<Vec<Done>, RunError> {
+        let board = Board::new(plan);
+        std::thread::scope(|scope| {
+            // One more than compute: while one stores its results, the others keep the pool busy.
+            for _ in 0..=self.pool.current_num_threads() {
+                scope.spawn(|| self.executor(plan, &board));
+            }
+        });
+        let state = board.state.into_inner().unwrap_or_else(PoisonError::into_inner);
+        match state.error {
+            Some(error) => Err(error),
+            None => Ok(state.done.into_iter().map(|d| d.expect("every node ran")).collect()),
+        }
+    }
+
+    fn executor(&self, plan: &Plan, board: &Board) {
+        while let Some((id, inputs)) = board.take(plan) {
+            let node = &plan.nodes[id];
+            let result = if (self.cancelled)() {
+                Err(RunError::Cancelled)
+            } else {
+                let nodes = node.inputs.iter().map(|(name, _)| name.as_str()).zip(inputs).collect();
+                self.perform(plan, id, &Inputs { cache: self.cache, nodes })
+            };
+            board.put(plan, id, result);
+        }
+    }
+
+    fn perform(&self, plan: &Plan, id: NodeId, inputs: &Inputs<'_>) -> Result<Done, RunError> {
+        let node = &plan.nodes[id];
+        let key = action_key(node, inputs)?;
+        let started = Instant::now();
+        let build = || -> Result<Vec<Output>, RunError> {
+            self.listener.tell(&Event::Started { stage: node.label.clone(), scenes: node.scenes.clone() });
+            self.pool
+                .install(|| execute::execute(&node.job, inputs))
+                .map_err(|source| RunError::Stage { label: node.label.clone(), source })
+        };
+        let outcome = self.cache.get_or_build(&key, build)?;
+        let reused = outcome.how == How::Reused;
+        let ms = if reused { 0.0 } else { started.elapsed().as_secs_f64() * 1e3 };
+        let finished = Event::Finished { stage: node.label.clone(), scenes: node.scenes.clone(), reused, ms };
+        self.listener.tell(&finished);
+        let done = Done { key, record: outcome.record, how: outcome.how, bytes: outcome.bytes };
+        for (scene, _) in plan.scenes.iter().enumerate().filter(|&(_, &node)| node == id) {
+            let json = done.record.output(execute::SCENE).expect("the scene stage gives a scene");
+            (self.scene_ready)(scene, json).map_err(RunError::Publish)?;
+        }
+        Ok(done)
+    }
+}
+
+/// The action key of a node whose inputs are known.
+fn action_key(node: &Node, inputs: &Inputs<'_>) -> Result<ActionKey, RunError> {
+    let (stage, version) = node.job.stage();
+    let mut builder = ActionKey::builder(stage, version).parameters(&node.job)?;
+    for (name, value) in named_fields(&node.job) {
+        builder = builder.named(name, value);
+    }
+    for (name, done) in &inputs.nodes {
+        for output in execute::reads(&node.job, name) {
+            if let Some(blob) = done.record.output(output) {
+                builder = builder.input(format!("{name}: {output}"), blob.digest);
+            }
+        }
+    }
+    Ok(builder.build())
+}
+
+/// A job's parameters as names and values, for messages.
+fn named_fields(job: &Job) -> Vec<(String, String)> {
+    fn flatten(name: &str, value: &serde_json::Value, into: &mut Vec<(String, String)>) {
+        match value {
+            serde_json::Value::Object(fields) => fields.iter().for_each(|(n, v)| flatten(n, v, into)),
+            serde_json::Value::Array(pairs) => pairs.iter().for_each(|pair| match pair.as_array().map(Vec::as_slice) {
+                Some([serde_json::Value::String(n), v]) => into.push((n.clone(), v.to_string())),
+                _ => into.push((name.to_owned(), pair.to_string())),
+            }),
+            other => into.push((name.to_owned(), other.to_string())),
+        }
+    }
+    let mut fields = Vec::new();
+    // A job is plain data with string keys, which JSON can always hold.
+    let value = serde_json::to_value(job).unwrap_or_default();
+    if value.is_object() {
+        flatten("", &value, &mut fields);
+    }
+    fields
+}
+
+/// Who has done what, shared by the executors.
+struct Board {
+    state: Mutex<State>,
+    changed: Condvar,
+}
+
+struct State {
+    done: Vec<Option<Done>>,
+    /// Inputs that a node still waits for.
+    waiting: Vec<usize>,
+    /// Nodes that have not yet read a node's outputs.
+    readers: Vec<usize>,
+    /// Nodes whose inputs are all there, first in the plan first: the plan puts what others wait for first.
+    ready: BinaryHeap<Reverse<NodeId>>,
+    running: usize,
+    error: Option<RunError>,
+}
+
+impl Board {
+    fn new(plan: &Plan) -> Self {
+        let mut readers = vec![0; plan.nodes.len()];
+        for (_, input) in plan.nodes.iter().flat_map(|node| &node.inputs) {
+            readers[*input] += 1;
+        }
+        let waiting: Vec<usize> = plan.nodes.iter().map(|node| node.inputs.len()).collect();
+        let ready = (0..plan.nodes.len()).filter(|&id| waiting[id] == 0).map(Reverse).collect();
+        let done = vec![None; plan.nodes.len()];
+        let state = State { done, waiting, readers, ready, running: 0, error: None };
+        Self { state: Mutex::new(state), changed: Condvar::new() }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The next node to do with what its inputs gave; waits for one; `None` when there is nothing left to do.
+    fn take(&self, plan: &Plan) -> Option<(NodeId, Vec<Done>)> {
+        let mut state = self.lock();
+        loop {
+            if state.error.is_some() {
+                return None;
+            }
+            if let Some(Reverse(id)) = state.ready.pop() {
+                state.running += 1;
+                let inputs = plan.nodes[id].inputs.iter();
+                let inputs = inputs.map(|&(_, n)| state.done[n].clone().expect("inputs come first")).collect();
+                return Some((id, inputs));
+            }
+            if state.running == 0 {
+                return None;
+            }
+            state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    fn put(&self, plan: &Plan, id: NodeId, result: Result<Done, RunError>) {
+        let mut state = self.lock();
+        state.running -= 1;
+        match result {
+            Ok(mut done) => {
+                if state.readers[id] == 0 {
+                    done.bytes = None;
+                }
+                state.done[id] = Some(done);
+                for &(_, input) in &plan.nodes[id].inputs {
+                    state.readers[input] -= 1;
+                    // Memory holds only what someone may still read.
+                    if state.readers[input] == 0 && let Some(done) = &mut state.done[input] {
+                        done.bytes = None;
+                    }
+                }
+                for (reader, node) in plan.nodes.iter().enumerate() {
+                    let times = node.inputs.iter().filter(|(_, input)| *input == id).count();
+                    if times > 0 {
+                        state.waiting[reader] -= times;
+                        if state.waiting[reader] == 0 {
+                            state.ready.push(Reverse(reader));
+                        }
+                    }
+                }
+            }
+            Err(error) => {
+                state.error.get_or_insert(error);
+            }
+        }
+        drop(state);
+        self.changed.notify_all();
+    }
+}

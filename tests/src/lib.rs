@@ -1,1 +1,0 @@
-//! What crosses rooms is tested in `tests/`; this library holds what those tests share.
