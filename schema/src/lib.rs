@@ -1,1 +1,25 @@
-//! The shared contract as plain checked data.
+//! The shared contract as plain checked data: text in, checked values out, text out. No disk, no clock.
+//!
+//! [`Space`] says which genes exist; a [`Genome`] holds one landscape's genes as bits; a [`Population`] is four of
+//! them with the votes cast on them, as a RON file that people edit. Whatever is wrong with a file is found at once
+//! and told as one [`Report`], each fault with line and column.
+
+mod check;
+pub mod edit;
+mod genome;
+mod load;
+pub mod names;
+mod parameter;
+mod population;
+mod report;
+mod ron_tree;
+mod space;
+mod table;
+mod write;
+
+pub use genome::{Chromosome, Genome, GenomeError};
+pub use names::Current;
+pub use parameter::{Category, Parameter, Scale};
+pub use population::{INDIVIDUALS, Individual, Loaded, LoadedPreset, Population, Snap, TreePreset, Votes};
+pub use report::{Diagnostic, Report};
+pub use space::Space;

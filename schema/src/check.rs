@@ -1,0 +1,220 @@
+//! Walks a RON tree and collects every fault instead of stopping at the first.
+
+use std::fmt::Display;
+use std::ops::Range;
+
+use ron::error::SpannedError;
+use serde::de::DeserializeOwned;
+
+use crate::report::{Diagnostic, Report, place};
+use crate::ron_tree::{Field, Node, Value, parse};
+
+/// The faults found so far in one file.
+pub(crate) struct Checker<'a> {
+    file: &'a str,
+    text: &'a str,
+    faults: Vec<(usize, Diagnostic)>,
+}
+
+impl<'a> Checker<'a> {
+    /// `text` comes from [`crate::ron_tree::prepare`].
+    pub fn new(file: &'a str, text: &'a str) -> Self {
+        Self { file, text, faults: Vec::new() }
+    }
+
+    /// The file as a tree, or the one place where it stops being RON.
+    pub fn parse(&self) -> Result<Node<'a>, Report> {
+        parse(self.text).map_err(|error| self.syntax(error))
+    }
+
+    pub fn error(&mut self, span: Range<usize>, message: impl Into<String>) {
+        self.faults.push((span.start, Diagnostic::at(self.file, self.text, span, message.into())));
+    }
+
+    /// Line and column of a node.
+    pub fn place(&self, node: &Node<'_>) -> (usize, usize) {
+        place(self.text, node.start)
+    }
+
+    /// The result if there was no fault.
+    pub fn finish<T>(mut self, result: Option<T>) -> Result<T, Report> {
+        match result {
+            Some(result) if self.faults.is_empty() => Ok(result),
+            _ => {
+                self.faults.sort_by_key(|(at, _)| *at);
+                Err(Report { diagnostics: self.faults.into_iter().map(|(_, fault)| fault).collect() })
+            }
+        }
+    }
+
+    /// The fields of a struct; unknown and repeated ones are faults. `None`, and a fault, if it is no struct.
+    pub fn fields<'n, 't>(
+        &mut self,
+        node: &'n Node<'t>,
+        what: &str,
+        known: &[&str],
+        hint: impl Fn(&str) -> Option<String>,
+    ) -> Option<Vec<&'n Field<'t>>> {
+        let Value::Struct(fields) = &node.value else {
+            self.wrong_kind(node, what, &format!("named values in brackets, as ({}: …)", known.first()?));
+            return None;
+        };
+        let mut unique: Vec<&Field<'t>> = Vec::new();
+        for field in fields {
+            let span = field.name_start..field.name_start + field.name.len();
+            if !known.contains(&field.name) {
+                let hint = hint(field.name).unwrap_or_else(|| did_you_mean(field.name, known));
+                self.error(span, format!("{what} has no {}{hint}", field.name));
+            } else if let Some(first) = unique.iter().find(|first| first.name == field.name) {
+                let (line, _) = self.place(&first.node);
+                self.error(span, format!("{} is given twice; first in line {line}", field.name));
+            } else {
+                unique.push(field);
+            }
+        }
+        Some(unique)
+    }
+
+    /// The fields of a struct of fixed shape.
+    pub fn record<'n, 't>(
+        &mut self,
+        node: &'n Node<'t>,
+        what: &str,
+        known: &[&str],
+    ) -> Option<Vec<&'n Field<'t>>> {
+        self.fields(node, what, known, |_| None)
+    }
+
+    /// The struct `name(…)` that is the whole file; the name may be left out.
+    pub fn root<'n, 't>(
+        &mut self,
+        node: &'n Node<'t>,
+        name: &str,
+        known: &[&str],
+    ) -> Option<Vec<&'n Field<'t>>> {
+        let found = node.struct_name();
+        if !found.is_empty() && found != name {
+            self.error(node.start..node.start + found.len(), format!("expected {name}(…), found {found}"));
+            return None;
+        }
+        self.record(node, name, known)
+    }
+
+    /// One field; a fault if it is missing.
+    pub fn need<'n, 't>(
+        &mut self,
+        fields: &[&'n Field<'t>],
+        node: &Node<'_>,
+        what: &str,
+        name: &str,
+    ) -> Option<&'n Node<'t>> {
+        let found = fields.iter().find(|field| field.name == name);
+        if found.is_none() {
+            self.error(node.start..node.start + 1, format!("{what} lacks {name}"));
+        }
+        found.map(|field| &field.node)
+    }
+
+    pub fn number(&mut self, node: &Node<'_>, what: &str) -> Option<f64> {
+        match node.value {
+            Value::Number(number) => return Some(number),
+            _ => self.wrong_kind(node, what, "a number"),
+        }
+        None
+    }
+
+    /// A whole number that fits `T`.
+    pub fn whole<T: DeserializeOwned + Display>(
+        &mut self,
+        node: &Node<'_>,
+        what: &str,
+        most: T,
+    ) -> Option<T> {
+        let whole = matches!(node.value, Value::Number(_)).then(|| ron::from_str(node.text).ok()).flatten();
+        if whole.is_none() {
+            self.wrong_kind(node, what, &format!("a whole number from 0 to {most}"));
+        }
+        whole
+    }
+
+    pub fn text<'n>(&mut self, node: &'n Node<'_>, what: &str) -> Option<&'n str> {
+        match &node.value {
+            Value::Text(text) => return Some(text),
+            _ => self.wrong_kind(node, what, "a text in quotes"),
+        }
+        None
+    }
+
+    pub fn list<'n, 't>(&mut self, node: &'n Node<'t>, what: &str) -> Option<&'n [Node<'t>]> {
+        match &node.value {
+            Value::List(items) => return Some(items),
+            _ => self.wrong_kind(node, what, "a list"),
+        }
+        None
+    }
+
+    /// A word out of a few.
+    pub fn word<T>(
+        &mut self,
+        node: &Node<'_>,
+        what: &str,
+        known: &[&str],
+        find: impl Fn(&str) -> Option<T>,
+    ) -> Option<T> {
+        let found = find(node.text);
+        if found.is_none() {
+            let hint = did_you_mean(node.text, known);
+            self.error(node.span(), format!("{what}: {} is none of {}{hint}", given(node), known.join(", ")));
+        }
+        found
+    }
+
+    pub fn wrong_kind(&mut self, node: &Node<'_>, what: &str, expected: &str) {
+        self.error(
+            node.span(),
+            format!("{what}: expected {expected}, found {}: {}", node.kind(), given(node)),
+        );
+    }
+
+    fn syntax(&self, error: SpannedError) -> Report {
+        // ron's place after the failed step is where the eye should go.
+        let (line, column) = (error.span.end.line, error.span.end.col);
+        let line_start: usize = self.text.split_inclusive('\n').take(line - 1).map(str::len).sum();
+        let in_line = self.text[line_start..].char_indices().nth(column - 1).map_or(usize::MAX, |(at, _)| at);
+        let mut at = line_start.saturating_add(in_line);
+        let message = if self.text[line_start..]
+            .get(in_line.min(self.text.len())..)
+            .is_none_or(|rest| rest.trim().is_empty())
+        {
+            at = self.text.trim_end().len();
+            format!("the file ends too early: {}", lower(&error.code.to_string()))
+        } else {
+            lower(&error.code.to_string())
+        };
+        Report { diagnostics: vec![Diagnostic::at(self.file, self.text, at..at, message)] }
+    }
+}
+
+/// A value as it was written, cut short.
+pub(crate) fn given(node: &Node<'_>) -> String {
+    let first = node.text.lines().next().unwrap_or_default();
+    let mut short: String = first.chars().take(32).collect();
+    if short.len() < node.text.len() {
+        short.push('…');
+    }
+    short
+}
+
+/// `; did you mean height_m?` if a known name is near.
+pub(crate) fn did_you_mean(name: &str, known: &[&str]) -> String {
+    let near = known.iter().map(|&known| (strsim::osa_distance(name, known), known)).min();
+    let limit = 2.max(name.chars().count() / 3);
+    near.filter(|&(distance, _)| distance <= limit)
+        .map_or(String::new(), |(_, known)| format!("; did you mean {known}?"))
+}
+
+/// ron's messages without their capital letter, to stand after a colon.
+fn lower(message: &str) -> String {
+    let mut chars = message.chars();
+    chars.next().map_or(String::new(), |first| first.to_lowercase().chain(chars).collect())
+}

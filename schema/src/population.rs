@@ -1,0 +1,143 @@
+//! Four landscapes, the votes cast on them, and the file types that hold genes.
+
+use std::fmt;
+
+use crate::genome::{Chromosome, Genome};
+use crate::parameter::Category;
+use crate::space::Space;
+
+/// Landscapes in a population: what the four panes of the viewer show.
+pub const INDIVIDUALS: usize = 4;
+
+/// One landscape.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Individual {
+    /// For people.
+    pub name: String,
+    /// Its genes.
+    pub genome: Genome,
+}
+
+/// The best individual (0 … 3) of each category; `None` where none of them pleased.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Votes {
+    /// Who has the best trees.
+    pub tree: Option<usize>,
+    /// Who has the best land.
+    pub terrain: Option<usize>,
+    /// Who has the best sky.
+    pub sky: Option<usize>,
+}
+
+impl Votes {
+    /// The vote on one category.
+    pub fn get(&self, category: Category) -> Option<usize> {
+        match category {
+            Category::Tree => self.tree,
+            Category::Terrain => self.terrain,
+            Category::Sky => self.sky,
+        }
+    }
+
+    /// Changes the vote on one category.
+    pub fn set(&mut self, category: Category, vote: Option<usize>) {
+        match category {
+            Category::Tree => self.tree = vote,
+            Category::Terrain => self.terrain = vote,
+            Category::Sky => self.sky = vote,
+        }
+    }
+}
+
+/// One generation.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Population {
+    /// 0 is the first.
+    pub generation: u32,
+    /// What chance depends on when the next generation is bred.
+    pub seed: u64,
+    /// Four landscapes.
+    pub individuals: [Individual; INDIVIDUALS],
+    /// `None` until they are cast.
+    pub votes: Option<Votes>,
+}
+
+impl Population {
+    /// Four landscapes by chance: every code of every gene equally likely; the same for the same arguments.
+    pub fn random(space: &Space, seed: u64, generation: u32) -> Self {
+        let mut state = seed ^ (u64::from(generation) << 32 | u64::from(generation));
+        let individuals = std::array::from_fn(|index| {
+            let mut genome = Genome::zero(space);
+            for parameter in space.parameters() {
+                genome.set_code(parameter, (split_mix(&mut state) >> (64 - parameter.bits)) as u32);
+            }
+            Individual { name: format!("Random {seed}.{index}"), genome }
+        });
+        Self { generation, seed, individuals, votes: None }
+    }
+}
+
+/// SplitMix64 (Steele, Lea and Flood 2014).
+fn split_mix(state: &mut u64) -> u64 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let z = (*state ^ *state >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ z >> 31
+}
+
+/// A kind of tree to start from (`configs/presets/*.ron`).
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TreePreset {
+    /// For people.
+    pub name: String,
+    /// The genes of category tree.
+    pub tree: Chromosome,
+}
+
+/// A written value that is not a value of its gene; the nearest one is used.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Snap {
+    /// The file's name as it was given.
+    pub file: String,
+    /// From 1.
+    pub line: usize,
+    /// From 1, in characters.
+    pub column: usize,
+    /// Which landscape, 0 … 3; 0 in a preset.
+    pub individual: usize,
+    /// Which gene.
+    pub parameter: String,
+    /// What was written.
+    pub given: String,
+    /// What is used, in the unit, as it will be written when saved.
+    pub used: String,
+    /// The gene's unit; may be empty.
+    pub unit: String,
+}
+
+impl fmt::Display for Snap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { file, line, column, parameter, given, used, unit, .. } = self;
+        let text =
+            format!("{file}:{line}:{column}: {parameter}: for {given} the nearest value {used} {unit}");
+        write!(f, "{} is used", text.trim_end())
+    }
+}
+
+/// A population as read, and what had to be rounded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Loaded {
+    /// The population.
+    pub population: Population,
+    /// Values that are not used exactly as they were written.
+    pub snaps: Vec<Snap>,
+}
+
+/// A tree preset as read, and what had to be rounded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LoadedPreset {
+    /// The preset.
+    pub preset: TreePreset,
+    /// Values that are not used exactly as they were written.
+    pub snaps: Vec<Snap>,
+}

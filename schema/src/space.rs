@@ -1,0 +1,171 @@
+//! The parameter space: `space.ron` read and checked. Mutation, decoding, sliders and tables derive from it.
+
+use crate::check::Checker;
+use crate::parameter::{Category, Parameter, Scale};
+use crate::report::Report;
+use crate::ron_tree::{Node, Value, prepare};
+
+/// Every gene, in the order of the file, which is their order in a chromosome.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Space {
+    parameters: Vec<Parameter>,
+}
+
+impl Space {
+    /// The text of the space that Genescape brings along (`configs/space.ron`).
+    pub const BUILTIN: &str = include_str!("../../configs/space.ron");
+
+    /// The space that Genescape brings along.
+    pub fn builtin() -> Self {
+        Self::parse("space.ron", Self::BUILTIN).expect("a test proves configs/space.ron valid")
+    }
+
+    /// Reads the text of a `space.ron`; `file` is its name for messages.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn parse(file: &str, text: &str) -> Result<Self, Report> {
+        let text = prepare(text);
+        let mut checker = Checker::new(file, &text);
+        let root = checker.parse()?;
+        let parameters = read_space(&mut checker, &root);
+        checker.finish(parameters.map(|parameters| Self { parameters }))
+    }
+
+    /// All genes.
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    /// The genes of one category, in order.
+    pub fn category(&self, category: Category) -> impl Iterator<Item = &Parameter> {
+        self.parameters.iter().filter(move |parameter| parameter.category == category)
+    }
+
+    /// A gene by name.
+    pub fn find(&self, name: &str) -> Option<&Parameter> {
+        self.parameters.iter().find(|parameter| parameter.name == name)
+    }
+
+    /// Bits of one category's chromosome.
+    pub fn bits(&self, category: Category) -> u32 {
+        self.category(category).map(|parameter| parameter.bits).sum()
+    }
+}
+
+fn read_space(checker: &mut Checker<'_>, root: &Node<'_>) -> Option<Vec<Parameter>> {
+    let fields = checker.root(root, "Space", &["version", "parameters"])?;
+    if let Some(node) = checker.need(&fields, root, "Space", "version")
+        && let Some(version) = checker.whole(node, "version", u32::MAX)
+        && version != 1
+    {
+        checker.error(node.span(), format!("version: {version} is unknown; this program reads version 1"));
+    }
+    let list = checker.need(&fields, root, "Space", "parameters")?;
+    let nodes = checker.list(list, "parameters")?;
+    let mut parameters: Vec<Parameter> = Vec::new();
+    for node in nodes {
+        let Some(mut parameter) = read_parameter(checker, node) else { continue };
+        if parameters.iter().any(|known| known.name == parameter.name) {
+            checker.error(node.span(), format!("{} is declared twice", parameter.name));
+            continue;
+        }
+        let same = parameters.iter().filter(|known| known.category == parameter.category);
+        parameter.offset = same.map(|known| known.bits).sum();
+        parameters.push(parameter);
+    }
+    for category in Category::ALL {
+        if parameters.len() == nodes.len()
+            && !parameters.iter().any(|parameter| parameter.category == category)
+        {
+            checker.error(list.start..list.start + 1, format!("no parameter has category {category}"));
+        }
+    }
+    Some(parameters)
+}
+
+const FIELDS: [&str; 7] = ["name", "category", "bits", "range", "scale", "unit", "help"];
+
+fn read_parameter(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<Parameter> {
+    let fields = checker.record(node, "a parameter", &FIELDS)?;
+    let nodes = FIELDS.map(|name| checker.need(&fields, node, "the parameter", name));
+    let [name, category, bits, range, scale, unit, help] = nodes;
+    let name = name.and_then(|node| read_name(checker, node));
+    let category = category.and_then(|node| {
+        checker.word(node, "category", &Category::ALL.map(Category::name), Category::from_name)
+    });
+    let bits = bits.and_then(|node| read_bits(checker, node));
+    let scale =
+        scale.and_then(|node| checker.word(node, "scale", &Scale::ALL.map(Scale::name), Scale::from_name));
+    let ends = range.and_then(|node| read_range(checker, node));
+    let unit = unit.and_then(|node| checker.text(node, "unit"))?.to_owned();
+    let help = help.and_then(|node| checker.text(node, "help"))?.to_owned();
+    let (name, category, bits, scale) = (name?, category?, bits?, scale?);
+    let parameter = Parameter { name, category, bits, range: ends?, scale, unit, help, offset: 0 };
+    match range_fault(&parameter) {
+        Some(fault) => checker.error(range?.span(), format!("{}: {fault}", parameter.name)),
+        None => return Some(parameter),
+    }
+    None
+}
+
+fn read_name(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<String> {
+    let name = checker.text(node, "name")?;
+    let letters = name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
+    if letters && name.starts_with(|c: char| c.is_ascii_lowercase()) {
+        return Some(name.to_owned());
+    }
+    checker.error(node.span(), format!("name: {name:?} must be lower_case letters, digits and underscores"));
+    None
+}
+
+fn read_bits(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<u32> {
+    let bits = checker.whole(node, "bits", 16)?;
+    if (1..=16).contains(&bits) {
+        return Some(bits as u32);
+    }
+    checker.error(node.span(), format!("bits: {bits} is outside 1 … 16"));
+    None
+}
+
+fn read_range(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<(f64, f64)> {
+    if let Value::List(ends) = &node.value
+        && let [low, high] = &ends[..]
+    {
+        let (low, high) = (checker.number(low, "range"), checker.number(high, "range"));
+        return low.zip(high);
+    }
+    checker.wrong_kind(node, "range", "two numbers, as (0.0, 1.0)");
+    None
+}
+
+/// What is wrong with a range, if anything.
+fn range_fault(parameter: &Parameter) -> Option<String> {
+    let (low, high) = parameter.range;
+    let codes = parameter.last_code();
+    if !low.is_finite() || !high.is_finite() {
+        return Some("the range must be finite".into());
+    }
+    if low >= high {
+        return Some(format!("the range must rise, but {low} is not below {high}"));
+    }
+    match parameter.scale {
+        Scale::Logarithmic if low <= 0.0 => {
+            return Some(format!("a logarithmic range must be above 0, but begins at {low}"));
+        }
+        Scale::Integer if low.fract() != 0.0 || high.fract() != 0.0 => {
+            return Some("an integer range must have whole ends".into());
+        }
+        Scale::Integer if high - low != f64::from(codes) => {
+            let (bits, count, fit) = (parameter.bits, high - low + 1.0, low + f64::from(codes));
+            let all = u64::from(codes) + 1;
+            return Some(format!(
+                "{low} … {high} are {count} whole numbers, but {bits} bits hold {all}: {low} … {fit}"
+            ));
+        }
+        _ => {}
+    }
+    // The bake computes with f32: two codes that look the same there would be a gene without effect.
+    let same = (0..codes).any(|code| parameter.value(code) as f32 == parameter.value(code + 1) as f32);
+    same.then(|| format!("{} bits are finer than single precision in this range", parameter.bits))
+}

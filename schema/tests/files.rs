@@ -1,0 +1,329 @@
+//! Files as people write them: nothing is lost, every fault is told with its place, nothing panics.
+
+use genescape_schema::edit::{set_gene, set_votes};
+use genescape_schema::{Category, Current, Individual, Population, Report, Space, TreePreset, Votes, names};
+use proptest::prelude::*;
+
+const STARTER: &str = include_str!("../../configs/starter.ron");
+
+fn faults(text: &str) -> Report {
+    Population::load(&Space::builtin(), "p.ron", text).expect_err("a faulty file was accepted")
+}
+
+/// The one fault of a file, without the picture of its line.
+fn fault(text: &str) -> String {
+    let report = faults(text);
+    assert_eq!(report.diagnostics.len(), 1, "{report}");
+    report.to_string().lines().next().unwrap_or_default().to_owned()
+}
+
+/// A file with `old` in it, once or more, replaced by `new` the first time.
+fn with(old: &str, new: &str) -> String {
+    let text = Population::random(&Space::builtin(), 1, 0).to_ron(&Space::builtin());
+    assert!(text.contains(old), "{old} is not in the file");
+    text.replacen(old, new, 1)
+}
+
+/// The file with the value of the first gene of that name replaced, and where it now stands.
+fn with_gene(name: &str, value: &str) -> (String, usize, usize) {
+    let text = Population::random(&Space::builtin(), 1, 0).to_ron(&Space::builtin());
+    let at = text.find(&format!(" {name}: ")).expect("the gene is in the file") + name.len() + 3;
+    let end = at + text[at..].find(',').expect("a comma follows");
+    let line = text[..at].matches('\n').count() + 1;
+    let column = at - text[..at].rfind('\n').expect("not the first line");
+    (format!("{}{value}{}", &text[..at], &text[end..]), line, column)
+}
+
+#[test]
+fn the_space_that_comes_along_is_valid() {
+    let space = Space::builtin();
+    assert_eq!(space.parameters().len(), 61);
+    for category in Category::ALL {
+        let bits: u32 = space.category(category).map(|gene| gene.bits).sum();
+        assert_eq!(bits, space.bits(category));
+    }
+}
+
+#[test]
+fn every_fault_is_told_at_once_with_its_place() {
+    let text =
+        "Population(\n  generation: -1,\n  sed: 4,\n  individuals: [],\n  votes: Some((tree: Some(4))),\n)\n";
+    let report = faults(text);
+    let told = report.to_string();
+    for line in [
+        "p.ron:1:1: Population lacks seed",
+        "p.ron:2:15: generation: expected a whole number from 0 to 4294967295, found a number: -1",
+        "p.ron:3:3: Population has no sed; did you mean seed?",
+        "p.ron:4:16: individuals: the population is empty; there must be 4",
+        "p.ron:5:28: votes: tree: 4 is none of the individuals 0 … 3",
+    ] {
+        assert!(told.contains(line), "{line}\nis not in\n{told}");
+    }
+    assert_eq!(report.diagnostics.len(), 5, "{told}");
+    let lines: Vec<_> = report.diagnostics.iter().map(|fault| fault.line).collect();
+    assert!(lines.is_sorted());
+}
+
+#[test]
+fn a_fault_is_shown_under_its_line() {
+    let (text, line, column) = with_gene("height_m", "74");
+    let told = faults(&text).to_string();
+    assert!(
+        told.starts_with(&format!("p.ron:{line}:{column}: height_m: 74 is outside 3 … 30 m\n")),
+        "{told}"
+    );
+    let lines: Vec<&str> = told.lines().collect();
+    assert!(lines[1].contains("| ") && lines[1].contains("height_m: 74,"), "{told}");
+    assert_eq!(lines[1].find("74"), lines[2].find("^^"), "{told}");
+}
+
+#[test]
+fn wrong_genes_say_what_would_be_right() {
+    let cases = [
+        (
+            with_gene("height_m", "\"tall\"").0,
+            "height_m: expected a number, 3 … 30 m, found a text: \"tall\"",
+        ),
+        (with_gene("height_m", "NaN").0, "height_m: NaN is outside 3 … 30 m"),
+        (with_gene("height_m", "-inf").0, "height_m: -inf is outside 3 … 30 m"),
+        (with_gene("levels", "5").0, "levels: 5 is outside 1 … 4"),
+        (with_gene("taper", "None").0, "taper: expected a number, 0.7 … 1.2, found None: None"),
+        (with("seed: 1", "seed: 1.5"), "seed: expected a whole number from 0 to"),
+        (with("votes: None", "votes: Some(true)"), "votes: expected named values in brackets"),
+        (
+            with("votes: None", "votes: Some((sky: Some(1.5)))"),
+            "votes: sky: 1.5 is none of the individuals 0 … 3",
+        ),
+        (with("votes: None", "votes: Some((sun: Some(1)))"), "votes has no sun"),
+        (with("Population(", "Populatoin("), "expected Population(…), found Populatoin"),
+        (with("generation: 0", "generation: 0, generation: 0"), "generation is given twice; first in line"),
+    ];
+    for (text, message) in cases {
+        let told = fault(&text);
+        assert!(told.contains(message), "{told}\nshould say\n{message}");
+    }
+}
+
+#[test]
+fn a_misspelt_gene_is_recognised_and_the_missing_one_named() {
+    let told = faults(&with("height_m:", "heigth_m:")).to_string();
+    assert!(told.contains("tree has no heigth_m; did you mean height_m?"), "{told}");
+    assert!(told.contains("tree: 1 gene is missing: height_m (3 … 30 m)"), "{told}");
+    let told = faults(&with("terrain: (", "terrain: (height_m: 4, ")).to_string();
+    assert!(told.contains("terrain has no height_m; it belongs into tree"), "{told}");
+    let told = faults("Population(generation: 0, seed: 0, individuals: [(tree: (), terrain: (), sky: ())])")
+        .to_string();
+    assert!(
+        told.contains("found 1; there must be 4") && told.contains("sky: 12 genes are missing"),
+        "{told}"
+    );
+}
+
+#[test]
+fn values_between_two_codes_are_reported() {
+    let space = Space::builtin();
+    let (text, line, column) = with_gene("height_m", "7.4");
+    let loaded = Population::load(&space, "p.ron", &text).expect("valid");
+    let told: Vec<String> = loaded.snaps.iter().map(ToString::to_string).collect();
+    assert_eq!(told, [format!("p.ron:{line}:{column}: height_m: for 7.4 the nearest value 7.3 m is used")]);
+    assert_eq!((loaded.snaps[0].individual, &loaded.snaps[0].parameter[..]), (0, "height_m"));
+    let same = |value| Population::load(&space, "p.ron", &with_gene("height_m", value).0).expect("valid");
+    assert_eq!(same("7.3"), same("7.29"));
+    assert!(same("7.29").snaps.is_empty());
+    assert_eq!(same("7.3").population, loaded.population);
+}
+
+#[test]
+fn unusual_but_valid_ron_is_read() {
+    let space = Space::builtin();
+    let text = with("votes: None", "/* yes, /* really */ */ votes: (tree: 1, sky: None) // short")
+        .replace('\n', "\r\n");
+    let text = format!("\u{feff}{}// the end", text.replace("Population(", "#![enable(implicit_some)]\r\n("));
+    let loaded = Population::load(&space, "p.ron", &text).expect("valid");
+    assert_eq!(loaded.population.votes, Some(Votes { tree: Some(1), terrain: None, sky: None }));
+    let voted = set_votes("p.ron", &text, None).expect("a population");
+    assert_eq!(voted, text.replace("(tree: 1, sky: None)", "None"));
+}
+
+#[test]
+fn configs_load_without_rounding() {
+    let space = Space::builtin();
+    let loaded = Population::load(&space, "starter.ron", STARTER).unwrap_or_else(|report| panic!("{report}"));
+    assert_eq!(loaded.snaps, []);
+    let genomes = loaded.population.individuals.map(|individual| individual.genome);
+    for (index, genome) in genomes.iter().enumerate() {
+        for other in &genomes[index + 1..] {
+            assert!(
+                Category::ALL
+                    .iter()
+                    .all(|&category| genome.chromosome(category) != other.chromosome(category))
+            );
+        }
+    }
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/presets");
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder).expect("presets") {
+        let text = std::fs::read_to_string(entry.expect("an entry").path()).expect("a file");
+        let loaded = TreePreset::load(&space, "preset", &text).unwrap_or_else(|report| panic!("{report}"));
+        assert_eq!(loaded.snaps, []);
+        let again = TreePreset::load(&space, "preset", &loaded.preset.to_ron(&space)).expect("valid");
+        assert_eq!(again, loaded);
+        count += 1;
+    }
+    assert!(count >= 6);
+}
+
+#[test]
+fn no_truncation_is_accepted_or_panics() {
+    let space = Space::builtin();
+    let text = Population::random(&space, 3, 0).to_ron(&space);
+    let end = text.rfind(')').expect("a bracket");
+    // Each cut costs a parse: take one in five, and all near the end.
+    for cut in (0..=end).filter(|cut| cut % 5 == 0 || end - cut < 200) {
+        let Some(part) = text.get(..cut) else { continue };
+        let report = Population::load(&space, "p.ron", part).expect_err("a part was accepted");
+        let (lines, fault) = (part.lines().count().max(1), &report.diagnostics[0]);
+        assert_eq!(report.diagnostics.len(), 1);
+        assert!(fault.line <= lines, "line {} of {lines}", fault.line);
+        assert!(set_votes("p.ron", part, None).is_err());
+    }
+}
+
+#[test]
+fn a_missing_votes_line_is_added_on_its_own() {
+    let space = Space::builtin();
+    let text = with("    votes: None,\n", "");
+    let votes = Votes { tree: Some(0), terrain: None, sky: Some(3) };
+    let voted = set_votes("p.ron", &text, Some(votes)).expect("a population");
+    assert_eq!(voted.lines().count(), text.lines().count() + 1);
+    let loaded = Population::load(&space, "p.ron", &voted).unwrap_or_else(|report| panic!("{report}"));
+    assert_eq!(loaded.population.votes, Some(votes));
+}
+
+#[test]
+fn current_survives_its_file() {
+    let current = Current {
+        generation: 3,
+        population: "abc".into(),
+        scenes: std::array::from_fn(|scene| names::scene(3, scene)),
+    };
+    let text = current.to_ron();
+    assert_eq!(Current::load("current.ron", &text), Ok(current));
+    let told =
+        Current::load("current.ron", "Current(generation: 3, scenes: [1])").expect_err("faulty").to_string();
+    assert!(told.contains("Current lacks population") && told.contains("scenes: expected a text"), "{told}");
+}
+
+fn population() -> impl Strategy<Value = Population> {
+    let votes = (prop::option::of(0..4usize), prop::option::of(0..4usize), prop::option::of(0..4usize))
+        .prop_map(|(tree, terrain, sky)| Votes { tree, terrain, sky });
+    (any::<u64>(), any::<u32>(), any::<[String; 4]>(), prop::option::of(votes)).prop_map(
+        |(seed, generation, names, votes)| {
+            let random = Population::random(&Space::builtin(), seed, generation);
+            let mut named = names.into_iter().zip(random.individuals);
+            let individuals = std::array::from_fn(|_| {
+                let (name, individual) = named.next().expect("four");
+                Individual { name, ..individual }
+            });
+            Population { individuals, votes, ..random }
+        },
+    )
+}
+
+fn votes() -> impl Strategy<Value = Option<Votes>> {
+    population().prop_map(|population| population.votes)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+
+    #[test]
+    fn saving_and_loading_change_nothing(population in population()) {
+        let space = Space::builtin();
+        let text = population.to_ron(&space);
+        let loaded = Population::load(&space, "p.ron", &text).map_err(|report| TestCaseError::fail(report.to_string()))?;
+        prop_assert!(loaded.snaps.is_empty());
+        prop_assert_eq!(&loaded.population, &population);
+        prop_assert_eq!(loaded.population.to_ron(&space), text);
+    }
+
+    #[test]
+    fn votes_change_nothing_else(population in population(), votes in votes()) {
+        let space = Space::builtin();
+        // A person's file: comments in and around the value that is replaced.
+        let text = population.to_ron(&space).replacen("votes: ", "votes: /* mine */ ", 1);
+        let voted = set_votes("p.ron", &text, votes).expect("a population");
+        let old = text.find("votes: /* mine */ ").expect("votes") + 18;
+        let tail = &text[old + text[old..].find(",\n").expect("a line")..];
+        prop_assert_eq!(&voted[..old], &text[..old]);
+        prop_assert!(voted.ends_with(tail));
+        let loaded = Population::load(&space, "p.ron", &voted).expect("valid");
+        prop_assert_eq!(loaded.population, Population { votes, ..population });
+        prop_assert_eq!(set_votes("p.ron", &voted, votes).expect("a population"), voted);
+    }
+
+    #[test]
+    fn a_gene_changes_nothing_else(population in population(), who in 0..4usize, gene in 0..61usize, part in 0.0..=1.0) {
+        let space = Space::builtin();
+        let gene = &space.parameters()[gene];
+        let value = gene.range.0 + (gene.range.1 - gene.range.0) * part;
+        let text = population.to_ron(&space);
+        let edited = set_gene(&space, "p.ron", &text, who, &gene.name, value).expect("a gene");
+        let differing = text.lines().zip(edited.lines()).filter(|(old, new)| old != new).count();
+        prop_assert!(differing <= 1 && text.lines().count() == edited.lines().count());
+        let mut expected = population;
+        expected.individuals[who].genome.set_code(gene, gene.snap(value));
+        prop_assert_eq!(Population::load(&space, "p.ron", &edited).expect("valid").population, expected);
+        prop_assert!(set_gene(&space, "p.ron", &text, who, &gene.name, gene.range.1 + 1.0).is_err());
+        prop_assert!(set_gene(&space, "p.ron", &text, 4, &gene.name, value).is_err());
+    }
+
+    #[test]
+    fn garbage_in_a_gene_is_told_with_its_place(gene in 0..61usize, garbage in "[^,\\s/][^,/]{0,20}") {
+        let space = Space::builtin();
+        let (text, line, column) = with_gene(&space.parameters()[gene].name, &garbage);
+        match Population::load(&space, "p.ron", &text) {
+            // By chance a number.
+            Ok(_) => prop_assert!(garbage.trim().chars().next().is_some_and(|c| !c.is_alphabetic())),
+            Err(report) => {
+                let fault = &report.diagnostics[0];
+                prop_assert!(fault.line >= line, "{}", report);
+                prop_assert!(fault.line > line || fault.column >= column || fault.message.contains("missing"), "{}", report);
+            }
+        }
+    }
+
+    #[test]
+    fn no_text_panics(text in "\\PC{0,80}", cut in any::<prop::sample::Index>(), insert in "[\\[(){}\\]\"#/*:,a-z0-9.-]{1,4}") {
+        let space = Space::builtin();
+        prop_assert!(Population::load(&space, "p.ron", &text).is_err());
+        let mut broken = STARTER.to_owned();
+        let at = broken.floor_char_boundary(cut.index(broken.len()));
+        broken.insert_str(at, &insert);
+        if let Err(report) = Population::load(&space, "p.ron", &broken) {
+            prop_assert!(!report.diagnostics.is_empty() && !report.to_string().is_empty());
+        }
+        let _ = set_votes("p.ron", &broken, None);
+        let _ = Space::parse("space.ron", &text);
+    }
+
+    #[test]
+    fn population_names_are_read_back(generation in any::<u32>()) {
+        prop_assert_eq!(names::generation(&names::population(generation)), Some(generation));
+        prop_assert_eq!(names::generation(&format!("g{generation}x.ron")), None);
+    }
+}
+
+#[test]
+fn names_are_those_of_the_design() {
+    assert_eq!(names::population(12), "population/g0012.ron");
+    assert_eq!(names::generation("g0012.ron"), Some(12));
+    assert_eq!(names::generation("C:\\w\\population\\g0012.ron"), Some(12));
+    for stranger in ["g12.ron", "g0012.ron~", "g0012.RON", "notes.ron", "g-012.ron", "g+012.ron", "g.ron", ""]
+    {
+        assert_eq!(names::generation(stranger), None, "{stranger}");
+    }
+    assert_eq!(names::blob("abcdef", "png"), "baked/blobs/ab/abcdef.png");
+    assert_eq!(names::scene(3, 0), "baked/g0003/scene-0/scene.gltf");
+    assert_eq!(names::blob_from_scene("abcdef", "bin"), "../../blobs/ab/abcdef.bin");
+}
