@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use anyhow::{Context, Result, anyhow, bail};
-use genescape_cache::{Cache, How};
+use genescape_cache::{Cache, GcOptions, How};
 use genescape_schema::{Population, Report, Space, names};
 
 use crate::cli::{BakeArgs, CacheCommand, Cli, Command, RunArgs, WorldArgs};
@@ -274,11 +274,8 @@ fn export(args: &WorldArgs, scene: &str, out: &Path) -> Result<()> {
     };
     let json = std::fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
     let folder = path.parent().unwrap_or(Path::new("."));
-    let read = |uri: &str| {
-        let file = folder.join(uri);
-        std::fs::read(&file).map_err(|error| std::io::Error::new(error.kind(), format!("{}: {error}", file.display())))
-    };
-    let glb = crate::stages::export::single_glb(&json, &read)
+    let read = |uri: &str| std::fs::read(folder.join(uri)).map_err(|error| error.to_string());
+    let glb = crate::stages::export::single_glb(&json, read)
         .with_context(|| format!("{}: cannot be made one file; bake again if blobs are missing", path.display()))?;
     world::write_synced(out, &glb)?;
     println!("wrote {} ({:.1} MB)", out.display(), glb.len() as f64 / 1e6);
@@ -289,4 +286,119 @@ fn open_cache(args: &WorldArgs) -> Result<(World, Cache)> {
     let world = World::open(&args.world)?;
     let cache = Cache::open(world.root().join(names::BAKED))?;
     Ok((world, cache))
+}
+
+/// What `explain` calls a scene.
+fn scope(generation: u32, scene: usize) -> String {
+    format!("g{generation:04}-scene-{scene}")
+}
+
+impl Session {
+    /// Notes for `explain` what became of each stage of each scene.
+    fn remember(&self, plan: &Plan, done: &[Done], generation: u32) -> Result<()> {
+        for scene in 0..plan.scenes.len() {
+            let mut history = self.cache.history(&scope(generation, scene))?;
+            if let Some(parent) = generation.checked_sub(1) {
+                history.inherit(&self.cache.history(&scope(parent, scene))?);
+            }
+            let nodes = || plan.nodes.iter().zip(done).filter(|(node, _)| node.scenes.contains(&scene));
+            for (node, done) in nodes() {
+                history.note(&node.label, &done.key, done.how);
+            }
+            history.retain(|item| nodes().any(|(node, _)| node.label == item));
+            self.cache.save_history(&history)?;
+        }
+        Ok(())
+    }
+}
+
+fn explain(args: &WorldArgs, scene: Option<usize>) -> Result<()> {
+    let (world, cache) = open_cache(args)?;
+    let current = world.current()?;
+    if scene.is_some_and(|scene| scene >= current.scenes.len()) {
+        return Err(BadInput("there are scenes 0 to 3".into()).into());
+    }
+    for index in (0..current.scenes.len()).filter(|index| scene.is_none_or(|scene| scene == *index)) {
+        println!("{} in the last bake:", current.scenes[index]);
+        let history = cache.history(&scope(current.generation, index))?;
+        for (stage, explanation) in history.last() {
+            println!("  {stage:<16} {explanation}");
+        }
+    }
+    Ok(())
+}
+
+fn look_after_cache(action: &CacheCommand) -> Result<()> {
+    match action {
+        CacheCommand::Stats { world } => stats(&open_cache(world)?.1),
+        CacheCommand::Verify { world } => verify(&open_cache(world)?.1),
+        CacheCommand::Gc { max_size, world } => {
+            let (world, cache) = open_cache(world)?;
+            gc(&world, &cache, *max_size)
+        }
+    }
+}
+
+fn megabytes(bytes: u64) -> String {
+    format!("{:.1} MB", bytes as f64 / 1e6)
+}
+
+fn stats(cache: &Cache) -> Result<()> {
+    let stats = cache.stats()?;
+    println!("{} blobs, {}; {} actions", stats.blobs, megabytes(stats.blob_bytes), stats.actions);
+    println!("{:<18} {:>8} {:>12} {:>12}", "stage", "actions", "size", "cost");
+    for (name, stage) in &stats.stages {
+        let cost = format!("{:.0} ms", stage.cost_ms);
+        println!("{name:<18} {:>8} {:>12} {cost:>12}", stage.actions, megabytes(stage.bytes));
+    }
+    Ok(())
+}
+
+fn verify(cache: &Cache) -> Result<()> {
+    let report = cache.verify()?;
+    println!("read {} blobs ({}) and {} actions", report.blobs, megabytes(report.bytes), report.actions);
+    for fault in &report.faults {
+        println!("  {fault}");
+    }
+    for foreign in &report.foreign {
+        println!("  {foreign}: none of ours, left alone");
+    }
+    match report.faults.len() {
+        0 => {
+            println!("all is well");
+            Ok(())
+        }
+        n => bail!("{n} damaged or missing; `bake` makes them again"),
+    }
+}
+
+fn gc(world: &World, cache: &Cache, max_size: u64) -> Result<()> {
+    let current = world.current().ok();
+    let mut roots = std::collections::BTreeSet::new();
+    for (scene, generation) in current.iter().flat_map(|c| (0..c.scenes.len()).map(|s| (s, c.generation))) {
+        roots.extend(cache.roots_of(&scope(generation, scene))?);
+    }
+    let options = GcOptions::to(max_size);
+    let grace_min = options.grace.as_secs() / 60;
+    let report = cache.gc(options, &roots)?;
+    println!(
+        "removed {} blobs and {} actions; {} → {} ({} of it in use by the current scenes)",
+        report.blobs_removed,
+        report.actions_removed,
+        megabytes(report.bytes_before),
+        megabytes(report.bytes_left),
+        megabytes(report.bytes_of_roots),
+    );
+    if report.bytes_left > max_size {
+        println!("more is left than asked for: what current scenes use stays, and what was used within {grace_min} min");
+    }
+    let kept: Vec<PathBuf> = current.iter().flat_map(|c| &c.scenes).map(|s| world.root().join(s)).collect();
+    for file in world.scene_files()?.into_iter().filter(|file| !kept.contains(file)) {
+        if !world::is_whole(&file)? {
+            // A scene with holes is worse than none; its population file makes it again.
+            std::fs::remove_file(&file).with_context(|| format!("cannot remove {}", file.display()))?;
+            println!("removed {}: parts of it are gone; bake its population to have it again", file.display());
+        }
+    }
+    Ok(())
 }

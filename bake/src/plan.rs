@@ -13,7 +13,7 @@
 //! Nodes that do the same job on the same inputs are one node: children that share a chromosome with a parent, or
 //! scenes that share one with each other, share the work.
 
-use genescape_schema::{Genome, Population, Space};
+use genescape_schema::{Genome, GenomeError, Population, Space};
 use serde::Serialize;
 
 use crate::stages::ground::GroundParams;
@@ -172,7 +172,7 @@ pub struct Plan {
 impl Plan {
     /// The graph for all individuals of `population`. An error means that a stage reads a gene which `space` does not
     /// declare.
-    pub fn new(space: &Space, population: &Population, resolution: Resolution) -> Result<Self, String> {
+    pub fn new(space: &Space, population: &Population, resolution: Resolution) -> Result<Self, GenomeError> {
         let mut plan = Self::default();
         for (scene, individual) in population.individuals.iter().enumerate() {
             let node = plan.add_scene(space, scene, &individual.name, &individual.genome, resolution)?;
@@ -188,7 +188,7 @@ impl Plan {
         name: &str,
         genome: &Genome,
         resolution: Resolution,
-    ) -> Result<NodeId, String> {
+    ) -> Result<NodeId, GenomeError> {
         let Resolution { side, map_px, face_px, equirect_px } = resolution;
         let ground: GroundParams = genome.read(space)?;
 
@@ -224,11 +224,13 @@ impl Plan {
                 ("terrain", terrain),
                 ("ground maps", ground_maps),
                 ("ground textures", ground_textures),
+                ("tree textures", tree_textures),
                 ("sky pictures", sky_pictures),
             ]
             .map(|(name, node)| (name.to_owned(), node)),
         );
-        let genes = space.parameters().map(|p| (p.name.clone(), genome.value(space, &p.name))).collect();
+        let genes = space.parameters().iter();
+        let genes = genes.filter_map(|p| Some((p.name.clone(), genome.value(space, &p.name)?))).collect();
         Ok(self.insert(scene, Job::Scene { name: name.to_owned(), genes }, inputs))
     }
 

@@ -179,8 +179,8 @@ fn action_key(node: &Node, inputs: &Inputs<'_>) -> Result<ActionKey, RunError> {
         builder = builder.named(name, value);
     }
     for (name, done) in &inputs.nodes {
-        for output in execute::reads(&node.job, name) {
-            if let Some(blob) = done.record.output(output) {
+        for (output, blob) in &done.record.outputs {
+            if execute::reads(&node.job, name, output) {
                 builder = builder.input(format!("{name}: {output}"), blob.digest);
             }
         }

@@ -13,7 +13,7 @@ use genescape_schema::{Current, Loaded, Population, Space, names};
 /// The parameter space that new worlds get a copy of.
 const SPACE_RON: &str = include_str!("../../configs/space.ron");
 /// The landscapes that new worlds begin with.
-const STARTER_RON: &str = include_str!("../../configs/starter.ron");
+pub const STARTER_RON: &str = include_str!("../../configs/starter.ron");
 
 /// An open world folder.
 #[derive(Debug)]
@@ -170,6 +170,29 @@ impl World {
         }
         files.retain(|file| file.is_file());
         Ok(files)
+    }
+}
+
+/// Whether all files that a scene names exist.
+pub fn is_whole(scene: &Path) -> Result<bool> {
+    let text = fs::read_to_string(scene).with_context(|| format!("cannot read {}", scene.display()))?;
+    let Ok(json) = serde_json::from_str::<serde_json::Value>(&text) else { return Ok(false) };
+    let folder = scene.parent().unwrap_or(Path::new("."));
+    Ok(uris(&json).iter().all(|uri| folder.join(uri).is_file()))
+}
+
+/// Every "uri" in a JSON document.
+fn uris(json: &serde_json::Value) -> Vec<&str> {
+    match json {
+        serde_json::Value::Object(fields) => fields
+            .iter()
+            .flat_map(|(name, value)| match value {
+                serde_json::Value::String(uri) if name == "uri" => vec![uri.as_str()],
+                other => uris(other),
+            })
+            .collect(),
+        serde_json::Value::Array(items) => items.iter().flat_map(uris).collect(),
+        _ => Vec::new(),
     }
 }
 

@@ -1,0 +1,181 @@
+//! How long the parts of a bake take, on the machine it runs on: `bake bench`.
+
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+use std::time::Instant;
+
+use anyhow::Result;
+use genescape_cache::{BlobRef, Cache, How};
+use genescape_schema::{Category, Population, Space};
+
+use crate::events::{Event, Listener};
+use crate::plan::{Plan, Resolution, TEMPLATES};
+use crate::run::Runner;
+use crate::stages::export::{self, Picture, TreeImages};
+use crate::stages::{lod, tree};
+
+/// Bakes the starters `runs` times into folders of their own and prints what each stage took, in the manner of the
+/// thesis's tables 1 and 2; then what it takes when nothing, or one category, has changed.
+pub fn bench(runs: u32, pool: &rayon::ThreadPool, resolution: Resolution) -> Result<()> {
+    let space = Space::builtin();
+    let starter = Population::load(&space, "configs/starter.ron", crate::world::STARTER_RON)?.population;
+    println!(
+        "{} cores, computing on {}; heightfield {}², {} templates a scene; {runs} runs\n",
+        std::thread::available_parallelism().map_or(0, usize::from),
+        pool.current_num_threads(),
+        resolution.side,
+        TEMPLATES,
+    );
+    let mut stages = Samples::default();
+    let mut whole = Samples::default();
+    for _ in 0..runs.max(1) {
+        let folder = tempfile::tempdir()?;
+        let cache = Cache::open(folder.path())?;
+        let bench = Bench { space: &space, cache: &cache, pool, resolution };
+        let clock = Stages::default();
+        let (ms, built) = bench.bake(&starter, &clock)?;
+        whole.add("four fresh scenes", ms, built);
+        for (stage, ms) in clock.0.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner) {
+            stages.add(&stage, ms, 1);
+        }
+        let (ms, built) = bench.bake(&starter, &Stages::default())?;
+        whole.add("unchanged", ms, built);
+        for category in [Category::Tree, Category::Terrain, Category::Sky] {
+            let mut changed = starter.clone();
+            *changed.individuals[0].genome.chromosome_mut(category) = Population::random(&space, u64::from(runs), 0)
+                .individuals[0]
+                .genome
+                .chromosome(category)
+                .clone();
+            let (ms, built) = bench.bake(&changed, &Stages::default())?;
+            whole.add(&format!("one {} chromosome changed", category.name()), ms, built);
+        }
+    }
+    whole.print("The whole", "stages built");
+    stages.print("Each stage, wall-clock while others run beside it", "times");
+    tree_costs(&space, &starter, runs)?;
+    if let Some(bytes) = peak_memory() {
+        println!("peak memory of this process: {:.0} MiB", bytes as f64 / f64::from(1 << 20));
+    }
+    Ok(())
+}
+
+struct Bench<'a> {
+    space: &'a Space,
+    cache: &'a Cache,
+    pool: &'a rayon::ThreadPool,
+    resolution: Resolution,
+}
+
+impl Bench<'_> {
+    /// Milliseconds and the number of stages that were built.
+    fn bake(&self, population: &Population, listener: &dyn Listener) -> Result<(f64, usize)> {
+        let start = Instant::now();
+        let plan = Plan::new(self.space, population, self.resolution)?;
+        let runner = Runner {
+            cache: self.cache,
+            pool: self.pool,
+            listener,
+            cancelled: &|| false,
+            scene_ready: &|_, _: &BlobRef| Ok(()),
+        };
+        let done = runner.run(&plan)?;
+        let built = done.iter().filter(|d| d.how == How::Built).count();
+        Ok((start.elapsed().as_secs_f64() * 1e3, built))
+    }
+}
+
+/// Collects stage times; templates of trees count as one stage.
+#[derive(Default)]
+struct Stages(Mutex<Vec<(String, f64)>>);
+
+impl Listener for Stages {
+    fn tell(&self, event: &Event) {
+        if let Event::Finished { stage, reused: false, ms, .. } = event {
+            let name = if stage.starts_with("tree ") && stage.ends_with(|c: char| c.is_ascii_digit()) {
+                "tree (one template)".to_owned()
+            } else {
+                stage.clone()
+            };
+            self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((name, *ms));
+        }
+    }
+}
+
+/// What becomes of one template, step by step, on one core (the thesis's table 1).
+fn tree_costs(space: &Space, starter: &Population, runs: u32) -> Result<()> {
+    let one_core = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let mut samples = Samples::default();
+    let (mut triangles, mut trees) = (0, 0);
+    for individual in &starter.individuals {
+        let params: tree::TreeParams = individual.genome.read(space)?;
+        for index in (0..TEMPLATES).flat_map(|index| std::iter::repeat_n(index, runs.max(1) as usize)) {
+            one_core.install(|| -> Result<()> {
+                let template = samples.time("generating it", || tree::template(&params, index));
+                let options = lod::LodOptions::default();
+                let levels = samples.time("progressive mesh, levels, strips", || lod::levels(&template.mesh, &options));
+                samples.time("writing the file", || export::tree_glb("tree", &levels, &NO_PICTURES))?;
+                triangles += template.mesh.triangle_count();
+                trees += 1;
+                Ok(())
+            })?;
+        }
+    }
+    println!("templates have {} triangles on average", triangles / trees.max(1));
+    samples.print("One tree template, on one core", "times");
+    Ok(())
+}
+
+/// The textures of a tree are made once a scene, and timed there.
+const NO_PICTURES: TreeImages<'_> = TreeImages {
+    bark_color: Picture::Embedded { bytes: &[], mime_type: "image/png" },
+    bark_normal: Picture::Embedded { bytes: &[], mime_type: "image/png" },
+    leaf: Some(Picture::Embedded { bytes: &[], mime_type: "image/png" }),
+    blossom: Some(Picture::Embedded { bytes: &[], mime_type: "image/png" }),
+    alpha_cutoff: 0.5,
+};
+
+/// Figures by name, in the order of their first appearance.
+#[derive(Default)]
+struct Samples {
+    order: Vec<String>,
+    values: BTreeMap<String, (Vec<f64>, usize)>,
+}
+
+impl Samples {
+    fn time<T>(&mut self, name: &str, work: impl FnOnce() -> T) -> T {
+        let start = Instant::now();
+        let result = work();
+        self.add(name, start.elapsed().as_secs_f64() * 1e3, 1);
+        result
+    }
+
+    fn add(&mut self, name: &str, ms: f64, count: usize) {
+        if !self.values.contains_key(name) {
+            self.order.push(name.to_owned());
+        }
+        let entry = self.values.entry(name.to_owned()).or_default();
+        entry.0.push(ms);
+        entry.1 = if count == 1 { entry.0.len() } else { count };
+    }
+
+    fn print(&self, title: &str, count: &str) {
+        println!("{title:<36} {:>9} {:>9} {:>9} {count:>13}", "min ms", "mean ms", "std dev");
+        for name in &self.order {
+            let (ms, n) = &self.values[name];
+            let mean = ms.iter().sum::<f64>() / ms.len() as f64;
+            let variance = ms.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / ms.len() as f64;
+            let min = ms.iter().copied().fold(f64::MAX, f64::min);
+            println!("  {name:<34} {min:>9.2} {mean:>9.2} {:>9.2} {n:>13}", variance.sqrt());
+        }
+        println!();
+    }
+}
+
+/// The most memory this process has held, in bytes, where the system tells.
+fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    let kib: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kib * 1024)
+}
