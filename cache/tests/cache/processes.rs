@@ -1,0 +1,132 @@
+//! Single flight between threads and between processes, and builders that die.
+
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::sync::Barrier;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+use genescape_cache::{Cache, How};
+
+use crate::{build, is_right, key, outputs};
+
+/// Waits until `ready`, or fails after a generous while.
+fn until(what: &str, mut ready: impl FnMut() -> bool) {
+    let start = Instant::now();
+    while !ready() {
+        assert!(start.elapsed() < Duration::from_secs(30), "{what}");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// This test program again, to build action 5: slowly if `slow`, and leaving a file `started-PID` first.
+fn child(folder: &Path, slow: bool) -> Child {
+    Command::new(std::env::current_exe().expect("this test"))
+        .args(["--exact", "processes::child_builds", "--ignored", "--nocapture"])
+        .env("GENESCAPE_TEST_FOLDER", folder)
+        .env("GENESCAPE_TEST_SLOW", if slow { "1" } else { "0" })
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("starts")
+}
+
+fn started(folder: &Path) -> usize {
+    let names = std::fs::read_dir(folder).expect("a folder").flatten();
+    names.filter(|entry| entry.file_name().to_string_lossy().starts_with("started-")).count()
+}
+
+#[test]
+#[ignore = "run by other tests, in a process of its own"]
+fn child_builds() {
+    let Ok(folder) = std::env::var("GENESCAPE_TEST_FOLDER") else { return };
+    let folder = Path::new(&folder);
+    let pause = if std::env::var("GENESCAPE_TEST_SLOW").as_deref() == Ok("1") { 60_000 } else { 300 };
+    let cache = Cache::open(folder.join("baked")).expect("opens");
+    let outcome = cache
+        .get_or_build_bytes::<genescape_cache::Error>(&key(5), || {
+            std::fs::write(folder.join(format!("started-{}", std::process::id())), "").expect("written");
+            std::thread::sleep(Duration::from_millis(pause));
+            Ok(outputs(5, 3000))
+        })
+        .expect("builds");
+    assert!(is_right(&outcome, 5, 3000));
+}
+
+#[test]
+fn of_several_processes_one_builds() {
+    let world = tempfile::tempdir().expect("a temporary folder");
+    let children: Vec<Child> = (0..3).map(|_| child(world.path(), false)).collect();
+    for child in children {
+        let output = child.wait_with_output().expect("ends");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+    }
+    assert_eq!(started(world.path()), 1);
+}
+
+#[test]
+fn a_killed_builder_is_replaced() {
+    let world = tempfile::tempdir().expect("a temporary folder");
+    let mut victim = child(world.path(), true);
+    until("the first child builds", || started(world.path()) == 1);
+    let cache = Cache::open(world.path().join("baked")).expect("opens");
+    std::thread::scope(|scope| {
+        let waiter = scope.spawn(|| build(&cache, 5, 3000, &AtomicUsize::new(0)).expect("builds"));
+        std::thread::sleep(Duration::from_millis(30));
+        assert!(!waiter.is_finished(), "it waits for the child");
+        victim.kill().expect("killed");
+        victim.wait().expect("ends");
+        let outcome = waiter.join().expect("no panic");
+        assert!(outcome.how == How::Built && is_right(&outcome, 5, 3000));
+    });
+}
+
+#[test]
+fn of_several_threads_one_builds() {
+    let world = tempfile::tempdir().expect("a temporary folder");
+    let (builds, reused, gate) = (AtomicUsize::new(0), AtomicUsize::new(0), Barrier::new(8));
+    std::thread::scope(|scope| {
+        for thread in 0..8 {
+            let (builds, reused, gate, path) = (&builds, &reused, &gate, world.path());
+            scope.spawn(move || {
+                // A cache of its own, as another process would have.
+                let cache = Cache::open(path).expect("opens");
+                gate.wait();
+                for n in 0..20 {
+                    let outcome = build(&cache, (n + thread) % 20, 200, builds).expect("builds");
+                    assert!(is_right(&outcome, (n + thread) % 20, 200));
+                    reused.fetch_add(usize::from(outcome.how == How::Reused), Ordering::SeqCst);
+                }
+            });
+        }
+    });
+    assert_eq!((builds.into_inner(), reused.into_inner()), (20, 8 * 20 - 20));
+}
+
+#[test]
+fn nobody_waits_longer_than_their_patience() {
+    let world = tempfile::tempdir().expect("a temporary folder");
+    let mut sleeper = child(world.path(), true);
+    until("the child builds", || started(world.path()) == 1);
+    let cache =
+        Cache::open(world.path().join("baked")).expect("opens").with_patience(Duration::from_millis(20));
+    let outcome = build(&cache, 5, 3000, &AtomicUsize::new(0)).expect("builds");
+    assert_eq!(outcome.how, How::Built);
+    sleeper.kill().expect("killed");
+    sleeper.wait().expect("ends");
+}
+
+/// A thread pool may give a builder that waits for its parts another task: even one for the same key.
+#[test]
+fn a_builder_that_asks_for_its_own_key_does_not_wait_for_itself() {
+    let world = tempfile::tempdir().expect("a temporary folder");
+    let cache = Cache::open(world.path()).expect("opens");
+    let builds = AtomicUsize::new(0);
+    let outer = cache
+        .get_or_build_bytes::<genescape_cache::Error>(&key(9), || {
+            let inner = build(&cache, 9, 64, &builds)?;
+            assert_eq!(inner.how, How::Built);
+            Ok(outputs(9, 64))
+        })
+        .expect("builds");
+    assert!(is_right(&outer, 9, 64));
+}
