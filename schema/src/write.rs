@@ -11,8 +11,8 @@ impl Population {
     /// The file's text. Reading it gives this population again; writing that gives this text again.
     pub fn to_ron(&self, space: &Space) -> String {
         let mut out = String::from(
-            "// Four landscapes. Edit any value; `bake` reads the file again. A value that its gene does not have is\n\
-             // taken to the nearest one.\n\
+            "// Four landscapes. Edit any value within its range; the nearest value that its gene has is used.\n\
+             // `bake params` says what each gene does.\n\
              Population(\n",
         );
         let Self { generation, seed, .. } = self;

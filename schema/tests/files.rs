@@ -55,7 +55,7 @@ fn every_fault_is_told_at_once_with_its_place() {
         "p.ron:2:15: generation: expected a whole number from 0 to 4294967295, found a number: -1",
         "p.ron:3:3: Population has no sed; did you mean seed?",
         "p.ron:4:16: individuals: the population is empty; there must be 4",
-        "p.ron:5:28: votes: tree: 4 is none of the individuals 0 … 3",
+        "p.ron:5:27: votes: tree: 4 is none of the individuals 0 … 3",
     ] {
         assert!(told.contains(line), "{line}\nis not in\n{told}");
     }
@@ -136,7 +136,7 @@ fn values_between_two_codes_are_reported() {
 #[test]
 fn unusual_but_valid_ron_is_read() {
     let space = Space::builtin();
-    let text = with("votes: None", "/* yes, /* really */ */ votes: (tree: 1, sky: None) // short")
+    let text = with("votes: None,", "/* yes, /* really */ */ votes: (tree: 1, sky: None), // short")
         .replace('\n', "\r\n");
     let text = format!("\u{feff}{}// the end", text.replace("Population(", "#![enable(implicit_some)]\r\n("));
     let loaded = Population::load(&space, "p.ron", &text).expect("valid");

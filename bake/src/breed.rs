@@ -1,0 +1,231 @@
+//! Votes → the next generation: a genetic algorithm on chromosomes as codes, each category for itself (thesis,
+//! section 1: the person says which scene has the best trees, the best terrain, the best sky).
+//!
+//! Child 0 unites the favourites. Children 1, 2 and 3 keep the favourite trees, terrain and sky respectively and
+//! vary the other two categories, so each shows what a change does beside something known, and the cache has it.
+
+use genescape_schema::{Category, Chromosome, Genome, INDIVIDUALS, Individual, Population, Space};
+use rand::Rng;
+use rand_pcg::Pcg64Mcg;
+
+use crate::seed;
+
+/// Chance that a gene changes when a favourite is varied a little.
+const GENTLE: f32 = 0.15;
+/// Chance that a gene changes when nothing pleased.
+const STRONG: f32 = 0.3;
+/// Chance that a changed gene gets any value instead of one nearby.
+const LEAP: f32 = 0.12;
+/// Chance that a crossover goes on with the other parent at a gene: neighbours in the space often belong together.
+const SWITCH: f32 = 0.3;
+
+/// Why there is no next generation.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum BreedError {
+    /// Nobody voted.
+    #[error(
+        "nobody has voted on generation {generation} yet: in its file, say which of 0 … 3 has the best of each, \
+         as votes: Some((tree: Some(0), terrain: Some(2), sky: None)), where None means none of them"
+    )]
+    NoVotes {
+        /// Which generation.
+        generation: u32,
+    },
+    /// There is no number for the next generation.
+    #[error("generation {generation} is the last that can be numbered")]
+    LastGeneration {
+        /// Which generation.
+        generation: u32,
+    },
+}
+
+/// The next generation: the same for the same seed, generation, genes and votes.
+///
+/// # Errors
+/// When votes are `None`.
+pub fn breed(space: &Space, parents: &Population) -> Result<Population, BreedError> {
+    let generation = parents.generation;
+    let votes = parents.votes.ok_or(BreedError::NoVotes { generation })?;
+    let next = generation.checked_add(1).ok_or(BreedError::LastGeneration { generation })?;
+    let mut rng = seed::rng(parents.seed, "breed", u64::from(generation));
+    let litters = Category::ALL.map(|category| {
+        // A vote for nobody (the loader lets none pass) counts as none.
+        let favourite = votes.get(category).filter(|&vote| vote < INDIVIDUALS);
+        let mut litter = Litter { space, category, parents, rng: &mut rng };
+        std::array::from_fn::<_, INDIVIDUALS, _>(|child| match favourite {
+            Some(favourite) => litter.descendant(favourite, child),
+            None => litter.stranger(),
+        })
+    });
+    let individuals = std::array::from_fn(|child| {
+        let chromosomes = [0, 1, 2].map(|category| litters[category][child].0.clone());
+        let origins: Vec<String> = Category::ALL
+            .iter()
+            .zip(&litters)
+            .map(|(category, litter)| format!("{category} {}", litter[child].1))
+            .collect();
+        let name = format!("{next}.{child}: {}", origins.join(", "));
+        Individual { name, genome: Genome { chromosomes } }
+    });
+    Ok(Population { generation: next, seed: parents.seed, individuals, votes: None })
+}
+
+/// One category's chromosomes in the making, each with a word on where it comes from.
+struct Litter<'a> {
+    space: &'a Space,
+    category: Category,
+    parents: &'a Population,
+    rng: &'a mut Pcg64Mcg,
+}
+
+impl Litter<'_> {
+    /// From the favourite: itself for child 0 and for the child that keeps this category; of the other two, the
+    /// first is a variation and the second a crossover with another parent.
+    fn descendant(&mut self, favourite: usize, child: usize) -> (Chromosome, String) {
+        let keeper = self.category as usize + 1;
+        let best = self.parent(favourite);
+        if child == 0 || child == keeper {
+            return (best, format!("of {}.{favourite}", self.parents.generation));
+        }
+        let first = if keeper == 1 { 2 } else { 1 };
+        if child == first {
+            return (self.mutated(best, GENTLE), format!("like {}.{favourite}", self.parents.generation));
+        }
+        let other = (favourite + 1 + self.below(INDIVIDUALS as u32 - 1) as usize) % INDIVIDUALS;
+        let crossed = self.crossed(&best, &self.parent(other));
+        (
+            self.mutated(crossed, 0.5 * GENTLE),
+            format!("of {}.{favourite} and {other}", self.parents.generation),
+        )
+    }
+
+    /// From any two parents, much changed.
+    fn stranger(&mut self) -> (Chromosome, String) {
+        let mother = self.below(INDIVIDUALS as u32) as usize;
+        let father = (mother + 1 + self.below(INDIVIDUALS as u32 - 1) as usize) % INDIVIDUALS;
+        let crossed = self.crossed(&self.parent(mother), &self.parent(father));
+        (self.mutated(crossed, STRONG), "new".into())
+    }
+
+    fn parent(&self, index: usize) -> Chromosome {
+        self.parents.individuals[index].genome.chromosome(self.category).clone()
+    }
+
+    /// Runs of genes from one and the other.
+    fn crossed(&mut self, a: &Chromosome, b: &Chromosome) -> Chromosome {
+        let mut child = a.clone();
+        let mut from_b = self.chance(0.5);
+        for gene in self.space.category(self.category) {
+            from_b ^= self.chance(SWITCH);
+            if from_b {
+                child.set_code(gene, b.code(gene));
+            }
+        }
+        child
+    }
+
+    /// With each gene changed by `chance`; at least one is.
+    fn mutated(&mut self, mut chromosome: Chromosome, chance: f32) -> Chromosome {
+        let genes: Vec<_> = self.space.category(self.category).collect();
+        let Some(last) = genes.len().checked_sub(1) else { return chromosome };
+        let certain = self.below(last as u32 + 1) as usize;
+        for (index, gene) in genes.into_iter().enumerate() {
+            if self.chance(chance) || index == certain {
+                let code = self.changed(chromosome.code(gene), gene.last_code());
+                chromosome.set_code(gene, code);
+            }
+        }
+        chromosome
+    }
+
+    /// Another code in 0 ..= last: mostly within an eighth of the range, near ones likelier, reflected at its ends.
+    fn changed(&mut self, code: u32, last: u32) -> u32 {
+        if self.chance(LEAP) {
+            return (code + 1 + self.below(last)) % (last + 1);
+        }
+        let most = (last / 8).max(1);
+        let step = 1 + self.below(most).min(self.below(most));
+        let up = self.chance(0.5) && code + step <= last || code < step;
+        if up { code + step } else { code - step }
+    }
+
+    fn below(&mut self, count: u32) -> u32 {
+        (u64::from(self.rng.next_u32()) * u64::from(count) >> 32) as u32
+    }
+
+    fn chance(&mut self, chance: f32) -> bool {
+        (self.rng.next_u32() as f32) < chance * 4_294_967_296.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use genescape_schema::Votes;
+    use proptest::prelude::*;
+
+    fn voted(
+        seed: u64,
+        generation: u32,
+        tree: Option<usize>,
+        terrain: Option<usize>,
+        sky: Option<usize>,
+    ) -> Population {
+        let votes = Some(Votes { tree, terrain, sky });
+        Population { votes, ..Population::random(&Space::builtin(), seed, generation) }
+    }
+
+    #[test]
+    fn without_votes_there_is_a_helpful_error() {
+        let space = Space::builtin();
+        let error = breed(&space, &Population::random(&space, 1, 3)).expect_err("nobody voted");
+        assert_eq!(error, BreedError::NoVotes { generation: 3 });
+        assert!(error.to_string().contains("votes: Some((tree: Some(0)"));
+        assert!(breed(&space, &voted(1, u32::MAX, None, None, None)).is_err());
+    }
+
+    #[test]
+    fn small_steps_are_likelier_than_leaps() {
+        let space = Space::builtin();
+        let gene = space.find("height_m").expect("a gene");
+        let mut distances = [0; 64];
+        for seed in 0..400 {
+            let parents = voted(seed, 0, Some(0), Some(0), Some(0));
+            let code = parents.individuals[0].genome.code(gene);
+            let child = breed(&space, &parents).expect("votes").individuals[2].genome.code(gene);
+            distances[code.abs_diff(child) as usize] += 1;
+        }
+        let (near, far): (u32, u32) = (distances[1..=7].iter().sum(), distances[8..].iter().sum());
+        assert!(distances[0] > 250 && near > 3 * far && far > 0, "{distances:?}");
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 32, ..ProptestConfig::default() })]
+
+        #[test]
+        fn favourites_live_on_and_everything_else_is_new(
+            seed: u64, generation in 0..99u32, tree in 0..4usize, terrain in prop::option::of(0..4usize), sky in 0..4usize,
+        ) {
+            let space = Space::builtin();
+            let parents = voted(seed, generation, Some(tree), terrain, Some(sky));
+            let children = breed(&space, &parents).expect("votes");
+            prop_assert_eq!(&breed(&space, &parents).expect("votes"), &children);
+            prop_assert_eq!((children.generation, children.votes, children.seed), (generation + 1, None, seed));
+            for (category, vote) in Category::ALL.into_iter().zip([Some(tree), terrain, Some(sky)]) {
+                let kept: Vec<bool> = children.individuals.iter().map(|child| {
+                    let genes = child.genome.chromosome(category);
+                    vote.is_some_and(|vote| genes == parents.individuals[vote].genome.chromosome(category))
+                }).collect();
+                let expected = [0, 1, 2, 3].map(|child| vote.is_some() && (child == 0 || child == category as usize + 1));
+                prop_assert_eq!(kept, expected);
+                for (index, child) in children.individuals.iter().enumerate() {
+                    let same = |other: &Individual| other.genome.chromosome(category) == child.genome.chromosome(category);
+                    prop_assert!(expected[index] || !parents.individuals.iter().any(same));
+                }
+            }
+            // What it wrote, it can read.
+            let text = children.to_ron(&space);
+            prop_assert_eq!(Population::load(&space, "p.ron", &text).expect("valid").population, children);
+        }
+    }
+}
