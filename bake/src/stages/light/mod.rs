@@ -1,1 +1,133 @@
-//! Sun, land and trees → light on the ground.
+//! Sun, sky, land and trees → light on the ground: one 8-bit picture over the field (thesis 3.3 and 4.4.2). Linear
+//! fractions of what open level ground receives; metres; row 0 is north. What R, G and B mean: [`LightMap`].
+//!
+//! - [`horizon`]: how high the land stands towards an azimuth, for each sample (Timonen & Westerholm 2010);
+//! - [`sun`]: from there, which part of the sun's disc is above the land: a soft edge without sampling;
+//! - [`sky`]: from a fan of azimuths, which part of the sky's irradiance arrives;
+//! - [`caster`]: a tree's shadow as a filtered picture in the plane across the light;
+//! - [`trees`]: those pictures laid onto the ground, where it really is, for each tree.
+
+mod caster;
+mod horizon;
+mod sky;
+mod sun;
+mod trees;
+
+#[cfg(test)]
+mod pictures;
+#[cfg(test)]
+mod tests;
+
+use rayon::prelude::*;
+
+use crate::model::{Image8, Landform, LightMap, Mesh, Placement, SkyLight};
+use sun::Sun;
+
+/// Texels a side of the light map by default: one per metre.
+pub const DEFAULT_SIDE_PX: u32 = 1024;
+
+/// The light on the field of `land`, `side_px`² texels (at least one).
+///
+/// `casters[i]` stands for template i in shadows: some hundred to two thousand triangles are enough, bark solid and
+/// leaf cards half transparent. Instances of templates without a caster, or flattened to nothing, cast no shadow.
+/// Visibility of the sun is relative to open level ground: a sun that a flat horizon cuts still gives 255 there.
+pub fn light_map(
+    light: &SkyLight,
+    land: &Landform,
+    placement: &Placement,
+    casters: &[Mesh],
+    side_px: u32,
+) -> LightMap {
+    let side = side_px.max(1) as usize;
+    let sun = Sun::of(light);
+    let samples = land.field.side as usize;
+    let to_samples = Resampling::from_samples(side, samples);
+    let ground_m = to_samples.whole(side, &land.field.heights_m);
+    let sun_on_land = sun::on_land(&sun, land);
+    let sky_side = sky::side(land);
+    let sky_on_land = sky::on_land(light, land, sky_side);
+    let to_sky = Resampling::from_samples(side, sky_side);
+    let shade = trees::shade(&sun, land, placement, casters, &ground_m, side);
+    let to_crowns = Resampling::from_texels(side, shade.crown_side);
+    let mut image = Image8::new(side as u32, side as u32, 3);
+    image.data.par_chunks_mut(3 * side).enumerate().for_each(|(j, row)| {
+        let margin = to_samples.row(j, &sun_on_land.margin);
+        let edge = to_samples.row(j, &sun_on_land.edge);
+        let cosine = to_samples.row(j, &sun_on_land.cosine);
+        let sky = to_sky.row(j, &sky_on_land);
+        let crowns = to_crowns.row(j, &shade.crowns);
+        let leaves = &shade.sun[j * side..(j + 1) * side];
+        for (i, texel) in row.chunks_exact_mut(3).enumerate() {
+            let visible = sun.visibility(margin[i], edge[i]) * leaves[i];
+            let noise = dither(i, j);
+            texel[0] = quantise((sky[i] * crowns[i]).min(1.0), noise);
+            texel[1] = quantise(cosine[i].max(0.0) * visible, noise);
+            texel[2] = quantise(visible, noise);
+        }
+    });
+    LightMap { image }
+}
+
+/// Interleaved gradient noise (Jimenez 2014) in [0, 1): even over any 3×3 texels, so that it cannot be seen.
+fn dither(i: usize, j: usize) -> f32 {
+    let inner = 0.067_110_56 * i as f32 + 0.005_837_15 * j as f32;
+    let outer = 52.982_918 * (inner - inner.floor());
+    outer - outer.floor()
+}
+
+/// A value in [0, 1] as a byte, rounded up or down by the noise; 0 and 1 stay exact.
+fn quantise(value: f32, noise: f32) -> u8 {
+    (value * 255.0 + noise * 0.999) as u8
+}
+
+/// Bilinear interpolation from a square grid to the light map's texels: along each axis, where each texel's centre
+/// lies.
+struct Resampling {
+    side: usize,
+    places: Vec<(usize, f32)>,
+}
+
+impl Resampling {
+    /// From samples on the field's edges and in between.
+    fn from_samples(texels: usize, side: usize) -> Self {
+        Self::new(texels, side, |at| at * (side - 1) as f32)
+    }
+
+    /// From another picture's texels.
+    fn from_texels(texels: usize, side: usize) -> Self {
+        Self::new(texels, side, |at| at * side as f32 - 0.5)
+    }
+
+    fn new(texels: usize, side: usize, place: impl Fn(f32) -> f32) -> Self {
+        let last = side.saturating_sub(2);
+        let places = (0..texels).map(|texel| {
+            let at = place((texel as f32 + 0.5) / texels as f32).clamp(0.0, (side - 1) as f32);
+            let whole = (at as usize).min(last);
+            (whole, at - whole as f32)
+        });
+        Self { side, places: places.collect() }
+    }
+
+    /// One row of texels.
+    fn row(&self, texel_row: usize, grid: &[f32]) -> Vec<f32> {
+        let (j, v) = self.places[texel_row];
+        let north = &grid[j * self.side..(j + 1) * self.side];
+        let below = (j + 1).min(self.side - 1);
+        let south = &grid[below * self.side..(below + 1) * self.side];
+        let blended: Vec<f32> = north.iter().zip(south).map(|(n, s)| n + (s - n) * v).collect();
+        let last = self.side - 1;
+        let texel = |&(i, u): &(usize, f32)| {
+            let (west, east) = (blended[i], blended[(i + 1).min(last)]);
+            west + (east - west) * u
+        };
+        self.places.iter().map(texel).collect()
+    }
+
+    /// All texels.
+    fn whole(&self, texels: usize, grid: &[f32]) -> Vec<f32> {
+        let mut whole = vec![0.0; texels * texels];
+        let rows = whole.par_chunks_mut(texels).enumerate();
+        rows.for_each(|(j, row)| row.copy_from_slice(&self.row(j, grid)));
+        whole
+    }
+}

@@ -1,1 +1,25 @@
 //! Landform → adaptive mesh, and the data of the terrain's levels of detail.
+//!
+//! Everything here follows one hierarchy, the bintree of right triangles (4–8 mesh) of Lindstrom et al. 1996 and
+//! ROAM (Duchaineau et al. 1997): see [`bintree`]. Metres throughout; samples are indexed as in
+//! [`crate::model::Heightfield`].
+//!
+//! - [`lod`]: wedgies, displacements, level numbers and block height ranges (thesis 3.2.1 and 3.2.2);
+//! - [`encode`] and [`decode`]: the same as the payload of `GSC_heightfield`;
+//! - [`mesh`]: the land as triangles for any viewer, within a verified error bound.
+
+mod apron;
+mod bintree;
+mod data;
+mod near;
+mod payload;
+mod verify;
+
+#[cfg(test)]
+mod tests;
+
+pub use apron::WATER_TILE_M;
+pub use data::lod;
+pub use near::{default_error_m, mesh};
+pub use payload::{DecodeError, decode, encode};
+pub use verify::max_error_m;

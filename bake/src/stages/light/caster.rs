@@ -1,0 +1,243 @@
+//! A tree's coarse mesh and the sun → its shadow as a small picture of transmittance (0–1), in the plane across the
+//! light, in metres of the tree's own space.
+//!
+//! Coordinates in that plane, from the tree's foot: `a` to the right as the sun sees it, `c` up. Front faces count
+//! like back faces, so that the ground under the trunk is shadowed and no gap opens at its base (thesis 4.4.2).
+//! The picture is drawn finely and then filtered: by a texel of the light map as the sun sees it, so that edges are
+//! smooth; and by the sun's disc, more the higher a part stands, so that the trunk's shadow is sharp and the
+//! crown's is soft.
+
+use glam::Vec3;
+
+use super::sun::Sun;
+use crate::model::{Material, Mesh};
+
+/// Part of the light that a leaf card holds back: cards are about half empty.
+const LEAF_OPACITY: f32 = 0.55;
+/// Cells of a picture, at most, across and up.
+const MOST_CELLS: [usize; 2] = [112, 224];
+/// Cells per texel of the light map.
+const CELLS_PER_TEXEL: f32 = 4.0;
+/// Slabs of height that are filtered separately.
+const SLABS: usize = 4;
+
+/// What a crown hides of the sky, as a sphere squashed to its height.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Crown {
+    /// Height of its middle and horizontal radius in metres.
+    pub height_m: f32,
+    pub radius_m: f32,
+    /// Part of the light that it holds back.
+    pub opacity: f32,
+}
+
+impl Crown {
+    /// From the spread of leaves and wood, weighted by area.
+    pub fn of(mesh: &Mesh) -> Self {
+        let (mut area, mut height, mut spread, mut plan) = (0.0_f32, 0.0, 0.0, 0.0);
+        for part in &mesh.parts {
+            let opacity = opacity(part.material);
+            for triangle in &part.triangles {
+                let [a, b, c] = triangle.map(|v| Vec3::from_array(mesh.positions[v as usize]));
+                let (middle, normal) = ((a + b + c) / 3.0, (b - a).cross(c - a) * 0.5);
+                let weight = normal.length() * opacity;
+                area += weight;
+                height += weight * middle.y;
+                spread += weight * (middle.x * middle.x + middle.z * middle.z);
+                plan += normal.y.abs() * opacity;
+            }
+        }
+        if area <= 0.0 {
+            return Self { height_m: 1.0, radius_m: 0.0, opacity: 0.0 };
+        }
+        // An even disc's mean square radius is half its radius squared.
+        let radius_m = (2.0 * spread / area).sqrt();
+        let depth = plan / (std::f32::consts::PI * radius_m * radius_m).max(1.0e-3);
+        Self { height_m: (height / area).max(0.3), radius_m, opacity: 1.0 - libm::expf(-depth) }
+    }
+}
+
+fn opacity(material: Material) -> f32 {
+    if matches!(material, Material::Leaf | Material::Blossom) { LEAF_OPACITY } else { 1.0 }
+}
+
+/// The picture.
+pub(super) struct Shadow {
+    /// Rows from low `c` to high.
+    pub transmittance: Vec<f32>,
+    pub columns: usize,
+    pub rows: usize,
+    /// Plane coordinates of the first cell's middle, and cells per metre.
+    pub origin: [f32; 2],
+    pub cells_per_m: [f32; 2],
+    /// Least and greatest (a, c) that it covers.
+    pub low: [f32; 2],
+    pub high: [f32; 2],
+    /// Greatest distance of the tree's parts from its axis in metres.
+    pub reach_m: f32,
+}
+
+impl Shadow {
+    /// Of a mesh seen from the sun if it stood in plan direction `front` (x, z; unit), with texels of `texel_m`.
+    pub fn draw(mesh: &Mesh, sun: &Sun, front: [f32; 2], texel_m: f32) -> Option<Self> {
+        let project = |p: &[f32; 3]| {
+            let (away, right) = (p[0] * front[0] + p[2] * front[1], p[2] * front[0] - p[0] * front[1]);
+            [right, p[1] * sun.cos_elevation - away * sun.sin_elevation]
+        };
+        let points: Vec<[f32; 2]> = mesh.positions.iter().map(project).collect();
+        let first = points.first()?;
+        let fold = |f: fn(f32, f32) -> f32| points.iter().fold(*first, |m, p| [f(m[0], p[0]), f(m[1], p[1])]);
+        let (low, high) = (fold(f32::min), fold(f32::max));
+        let squares = mesh.positions.iter().map(|p| p[0] * p[0] + p[2] * p[2]);
+        let reach_m = squares.fold(0.0, f32::max).sqrt();
+        let top_m = mesh.positions.iter().fold(0.0_f32, |top, p| top.max(p[1]));
+        let filter = Filter::new(sun, texel_m, top_m);
+        let border = filter.widths(top_m).map(|width| width + texel_m * 0.25);
+        let low = [low[0] - border[0], low[1] - border[1]];
+        let high = [high[0] + border[0], high[1] + border[1]];
+        let cells = |axis: usize, texel_m: f32| {
+            let wanted = ((high[axis] - low[axis]) * CELLS_PER_TEXEL / texel_m) as usize + 1;
+            wanted.clamp(4, MOST_CELLS[axis])
+        };
+        let (columns, rows) = (cells(0, texel_m), cells(1, texel_m * sun.sin_elevation.max(0.02)));
+        let cells_per_m = [columns as f32 / (high[0] - low[0]), rows as f32 / (high[1] - low[1])];
+        let origin = [low[0] + 0.5 / cells_per_m[0], low[1] + 0.5 / cells_per_m[1]];
+        let transmittance = vec![1.0; columns * rows];
+        let mut shadow = Self { transmittance, columns, rows, origin, cells_per_m, low, high, reach_m };
+        let grid: Vec<[f32; 2]> = points.iter().map(|&p| shadow.cell(p)).collect();
+        let slabs = filter.slabs();
+        for slab in 0..slabs {
+            let range = [top_m * slab as f32 / slabs as f32, top_m * (slab + 1) as f32 / slabs as f32];
+            let mut layer = vec![1.0; columns * rows];
+            if shadow.draw_slab(mesh, &grid, range, slab + 1 == slabs, &mut layer) {
+                let widths = filter.widths(0.5 * (range[0] + range[1]));
+                shadow.blur(&mut layer, widths);
+                shadow.transmittance.iter_mut().zip(&layer).for_each(|(whole, slab)| *whole *= slab);
+            }
+        }
+        Some(shadow)
+    }
+
+    /// Plane coordinates → cells; whole numbers are middles.
+    fn cell(&self, [a, c]: [f32; 2]) -> [f32; 2] {
+        [(a - self.origin[0]) * self.cells_per_m[0], (c - self.origin[1]) * self.cells_per_m[1]]
+    }
+
+    /// Draws the triangles whose middle lies in a range of heights; whether there were any.
+    fn draw_slab(
+        &self,
+        mesh: &Mesh,
+        grid: &[[f32; 2]],
+        range: [f32; 2],
+        top: bool,
+        layer: &mut [f32],
+    ) -> bool {
+        let mut any = false;
+        for part in &mesh.parts {
+            let left = 1.0 - opacity(part.material);
+            for triangle in &part.triangles {
+                let heights = triangle.map(|v| mesh.positions[v as usize][1]);
+                let middle = (heights[0] + heights[1] + heights[2]) / 3.0;
+                let own = (middle >= range[0] || range[0] == 0.0) && (middle < range[1] || top);
+                if own && heights.iter().any(|&height| height > -0.25) {
+                    self.fill(triangle.map(|v| grid[v as usize]), left, layer);
+                    any = true;
+                }
+            }
+        }
+        any
+    }
+
+    /// Multiplies the cells whose middle lies in a triangle; edges belong to one of the triangles that share them.
+    fn fill(&self, [a, b, c]: [[f32; 2]; 3], left: f32, layer: &mut [f32]) {
+        let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        if area == 0.0 {
+            return;
+        }
+        let corners = if area > 0.0 { [a, b, c] } else { [a, c, b] };
+        let low = a[1].min(b[1]).min(c[1]).max(0.0);
+        let high = a[1].max(b[1]).max(c[1]).min(self.rows as f32);
+        let mut row = low.ceil();
+        while row < high {
+            let (mut from, mut to) = (0.0_f32, self.columns as f32);
+            for k in 0..3 {
+                let (p, q) = (corners[k], corners[(k + 1) % 3]);
+                let rise = q[1] - p[1];
+                let cross = p[0] + (q[0] - p[0]) * (row - p[1]) / rise;
+                if rise > 0.0 {
+                    to = to.min(cross);
+                } else if rise < 0.0 {
+                    from = from.max(cross);
+                }
+            }
+            let start = row as usize * self.columns;
+            let (first, end) = (from.ceil() as usize, (to.ceil() as usize).min(self.columns));
+            if first < end {
+                layer[start + first..start + end].iter_mut().for_each(|cell| *cell *= left);
+            }
+            row += 1.0;
+        }
+    }
+
+    /// A tent, as two boxes after each other, along both axes.
+    fn blur(&self, layer: &mut [f32], widths_m: [f32; 2]) {
+        let radius = |axis: usize| (widths_m[axis] * self.cells_per_m[axis] * 0.5) as usize;
+        let (across, up) = (radius(0), radius(1));
+        let mut line = vec![0.0; self.columns.max(self.rows)];
+        for _ in 0..if across > 0 { 2 } else { 0 } {
+            for row in layer.chunks_exact_mut(self.columns) {
+                box_filter(&mut line, row, 0, 1, self.columns, across);
+            }
+        }
+        for _ in 0..if up > 0 { 2 } else { 0 } {
+            for column in 0..self.columns {
+                box_filter(&mut line, layer, column, self.columns, self.rows, up);
+            }
+        }
+    }
+}
+
+/// Mean over 2·radius+1 values; beyond the ends everything is lit.
+fn box_filter(line: &mut [f32], data: &mut [f32], first: usize, stride: usize, count: usize, radius: usize) {
+    for (k, value) in line[..count].iter_mut().enumerate() {
+        *value = 1.0 - data[first + k * stride];
+    }
+    let mut sum: f32 = line[..radius.min(count)].iter().sum();
+    let scale = 1.0 / (2 * radius + 1) as f32;
+    for k in 0..count {
+        if k + radius < count {
+            sum += line[k + radius];
+        }
+        if k > radius {
+            sum -= line[k - radius - 1];
+        }
+        data[first + k * stride] = (1.0 - sum * scale).clamp(0.0, 1.0);
+    }
+}
+
+/// How wide the shadow's filter is.
+struct Filter {
+    texel_m: [f32; 2],
+    /// Radius of the sun's disc on the ground's side, per metre of height.
+    spread: f32,
+    most_m: f32,
+}
+
+impl Filter {
+    fn new(sun: &Sun, texel_m: f32, top_m: f32) -> Self {
+        let sin_elevation = sun.sin_elevation.max(0.02);
+        let texel_m = [texel_m, texel_m * sin_elevation];
+        Self { texel_m, spread: sun.sin_radius / sin_elevation, most_m: 0.6 * top_m }
+    }
+
+    /// Widths across and up of a box that, applied twice, spreads as much as a texel and the disc together, for
+    /// parts at a height (the variance of a box is width²/12, of a disc radius²/4).
+    fn widths(&self, height_m: f32) -> [f32; 2] {
+        let disc = (height_m * self.spread).min(self.most_m);
+        self.texel_m.map(|texel| (6.0 * (disc * disc / 4.0 + texel * texel / 12.0)).sqrt())
+    }
+
+    fn slabs(&self) -> usize {
+        if self.most_m / 0.6 * self.spread < 0.5 * self.texel_m[1] { 1 } else { SLABS }
+    }
+}

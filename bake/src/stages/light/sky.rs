@@ -1,0 +1,132 @@
+//! Land and the sky's radiance by elevation → the part of the sky's irradiance that reaches the ground, relative to
+//! open level ground: the visible sky weighted by radiance and by the angle to the normal, trees not counted.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::horizon::{Beyond, slopes};
+use crate::model::{Heightfield, Landform, SkyLight};
+
+/// Azimuths in which the horizon is looked for.
+const AZIMUTHS: usize = 8;
+/// Steps of the tables over the sine of the horizon's elevation, and of their integration over elevation.
+const TABLE_STEPS: usize = 128;
+const ELEVATION_STEPS: usize = 1024;
+/// Samples a side at which the sky is computed, at most: it changes slowly.
+const MOST_SAMPLES: u32 = 257;
+/// How far hills beyond the field count, in metres.
+const REACH_M: f32 = 2500.0;
+
+/// Samples a side of what [`on_land`] gives.
+pub(super) fn side(land: &Landform) -> usize {
+    ((land.field.side - 1) / stride(land) + 1) as usize
+}
+
+fn stride(land: &Landform) -> u32 {
+    (land.field.side - 1).div_ceil(MOST_SAMPLES - 1).next_power_of_two()
+}
+
+/// The sky's part for `side`² samples over the field.
+pub(super) fn on_land(light: &SkyLight, land: &Landform, side: usize) -> Vec<f32> {
+    let field = smoothed(&land.field, stride(land), side);
+    let beyond = Beyond { apron: &land.apron, reach_m: REACH_M };
+    let table = Table::of(light);
+    let mut sums = vec![0.0_f32; side * side];
+    for azimuth in 0..AZIMUTHS {
+        let angle = azimuth as f32 * (std::f32::consts::TAU / AZIMUTHS as f32);
+        let towards = [libm::cosf(angle), libm::sinf(angle)];
+        let slopes = slopes(&field, &beyond, towards);
+        sums.par_chunks_mut(side).enumerate().for_each(|(j, row)| {
+            for (i, sum) in row.iter_mut().enumerate() {
+                let normal = field.normal_at(i as u32, j as u32);
+                *sum += table.arriving(normal, towards, slopes[j * side + i]);
+            }
+        });
+    }
+    let whole = AZIMUTHS as f32 * table.upright[0];
+    sums.iter_mut().for_each(|sum| *sum = (*sum / whole).min(1.0));
+    sums
+}
+
+/// Every `stride`-th sample, each the mean of its neighbourhood by weights 1-2-1.
+fn smoothed(field: &Heightfield, stride: u32, side: usize) -> Heightfield {
+    if stride == 1 {
+        return field.clone();
+    }
+    let last = field.side - 1;
+    let mut heights_m = vec![0.0; side * side];
+    heights_m.par_chunks_mut(side).enumerate().for_each(|(j, row)| {
+        let j = j as u32 * stride;
+        let rows = [j.saturating_sub(stride / 2), j, (j + stride / 2).min(last)];
+        for (i, height) in row.iter_mut().enumerate() {
+            let i = i as u32 * stride;
+            let columns = [i.saturating_sub(stride / 2), i, (i + stride / 2).min(last)];
+            let [north, middle, south] = rows.map(|j| {
+                let [west, here, east] = columns.map(|i| field.at(i, j));
+                0.25 * west + 0.5 * here + 0.25 * east
+            });
+            *height = 0.25 * north + 0.5 * middle + 0.25 * south;
+        }
+    });
+    Heightfield { side: side as u32, spacing_m: field.spacing_m * stride as f32, heights_m }
+}
+
+/// Irradiance per azimuth from above a horizon, by the sine of its elevation: what falls on level ground, and what
+/// falls on a wall that faces the azimuth.
+struct Table {
+    upright: Vec<f32>,
+    sideways: Vec<f32>,
+}
+
+impl Table {
+    fn of(light: &SkyLight) -> Self {
+        let mut upright = vec![0.0; TABLE_STEPS + 1];
+        let mut sideways = vec![0.0; TABLE_STEPS + 1];
+        let step = std::f32::consts::FRAC_PI_2 / ELEVATION_STEPS as f32;
+        let (mut level, mut wall) = (0.0, 0.0);
+        let mut entry = TABLE_STEPS;
+        // From the zenith down; the table's entry is filled when its horizon is reached.
+        for k in (0..ELEVATION_STEPS).rev() {
+            let elevation = (k as f32 + 0.5) * step;
+            let (sin, cos) = libm::sincosf(elevation);
+            while entry > 0 && sin * TABLE_STEPS as f32 <= entry as f32 - 1.0e-3 {
+                (upright[entry], sideways[entry]) = (level, wall);
+                entry -= 1;
+            }
+            let radiance = radiance(light, elevation);
+            level += radiance * sin * cos * step;
+            wall += radiance * cos * cos * step;
+        }
+        for rest in 0..=entry {
+            (upright[rest], sideways[rest]) = (level, wall);
+        }
+        Self { upright, sideways }
+    }
+
+    #[inline]
+    fn arriving(&self, normal: Vec3, towards: [f32; 2], slope: f32) -> f32 {
+        let slope = slope.max(0.0);
+        let at = slope / (1.0 + slope * slope).sqrt() * TABLE_STEPS as f32;
+        let whole = (at as usize).min(TABLE_STEPS - 1);
+        let part = at - whole as f32;
+        let read = |table: &[f32]| table[whole] + (table[whole + 1] - table[whole]) * part;
+        let facing = normal.x * towards[0] + normal.z * towards[1];
+        (normal.y * read(&self.upright) + facing * read(&self.sideways)).max(0.0)
+    }
+}
+
+/// Luminance of the sky at an elevation; a sky that says nothing (or is black) is taken as even.
+fn radiance(light: &SkyLight, elevation_rad: f32) -> f32 {
+    let zones = &light.zonal_radiance_linear;
+    let luminance = |zone: usize| {
+        let [r, g, b] = zones[zone];
+        (0.2126 * r + 0.7152 * g + 0.0722 * b).max(0.0)
+    };
+    if zones.iter().flatten().all(|&radiance| radiance <= 0.0) {
+        return 1.0;
+    }
+    let at = elevation_rad / std::f32::consts::FRAC_PI_2 * (zones.len() - 1) as f32;
+    let whole = (at as usize).min(zones.len().saturating_sub(2));
+    let next = (whole + 1).min(zones.len() - 1);
+    luminance(whole) + (luminance(next) - luminance(whole)) * (at - whole as f32)
+}

@@ -1,0 +1,224 @@
+//! Landform → the ring of coarse land around the field, joined to it without a crack, and the water, in metres.
+
+use glam::Vec3;
+
+use super::bintree::Sample;
+use super::near::vertex;
+use crate::model::{Heightfield, Landform, Material, Mesh, Part, PartKind};
+
+/// Metres of water that one unit of its texture coordinates covers.
+pub const WATER_TILE_M: f32 = 16.0;
+
+/// The samples on the field's border that coincide with the apron's: vertices there let the apron's colour and
+/// shape continue at its own resolution.
+pub(super) fn border_samples(land: &Landform) -> Vec<Sample> {
+    let field = &land.field;
+    let last = field.side - 1;
+    let Some(hole) = Hole::of(land) else { return Vec::new() };
+    let mut samples = Vec::new();
+    for column in hole.first + 1..hole.last {
+        let along = (place(&land.apron, column) / field.spacing_m + 0.5 * last as f32 + 0.5).floor();
+        if along > 0.0 && along < last as f32 {
+            let along = along as u32;
+            samples.extend([[along, 0], [along, last], [0, along], [last, along]]);
+        }
+    }
+    samples
+}
+
+/// The apron outside the field. Between the field's border and the apron's first line of samples outside it lies
+/// a strip whose inner vertices are just those of the near mesh. Empty if the apron is no wider than the field.
+pub(super) fn ring(land: &Landform, used: impl Fn(Sample) -> bool, colors: &[[u8; 4]]) -> Mesh {
+    let Some(hole) = Hole::of(land) else { return Mesh::default() };
+    let mut ring = Ring::new(land, colors);
+    let mut inner = [const { Vec::new() }; 4];
+    let last = land.field.side - 1;
+    for along in 0..=last {
+        // Sides in the order north, east, south, west; each from its lower to its higher coordinate.
+        for (side, sample) in [[along, 0], [last, along], [along, last], [0, along]].into_iter().enumerate() {
+            if used(sample) {
+                inner[side].push(ring.inner_vertex(sample));
+            }
+        }
+    }
+    let outer_side =
+        |at: &dyn Fn(u32) -> Sample| -> Vec<Sample> { (hole.first..=hole.last).map(at).collect() };
+    let outer = [
+        outer_side(&|along| [along, hole.first]),
+        outer_side(&|along| [hole.last, along]),
+        outer_side(&|along| [along, hole.last]),
+        outer_side(&|along| [hole.first, along]),
+    ];
+    for (side, (inner, outer)) in inner.iter().zip(&outer).enumerate() {
+        let outer: Vec<u32> = outer.iter().map(|&sample| ring.outer_vertex(sample)).collect();
+        ring.zip(inner, &outer, if side % 2 == 0 { 0 } else { 2 });
+    }
+    ring.cells(&hole);
+    ring.finish()
+}
+
+/// Two triangles as wide as the apron at the water's level; empty if the land is dry.
+pub(super) fn water(land: &Landform) -> Mesh {
+    let Some(level) = land.water_level_m else { return Mesh::default() };
+    let half = 0.5 * land.apron.extent_m().max(land.field.extent_m());
+    let corners = [[-half, -half], [-half, half], [half, half], [half, -half]];
+    Mesh {
+        positions: corners.map(|[x, z]| [x, level, z]).to_vec(),
+        normals: vec![[0.0, 1.0, 0.0]; 4],
+        uvs: corners.map(|[x, z]| [x / WATER_TILE_M, z / WATER_TILE_M]).to_vec(),
+        colors: Vec::new(),
+        parts: vec![Part {
+            material: Material::Water,
+            kind: PartKind::Surface,
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+        }],
+    }
+}
+
+/// Lines of the apron's samples (the same for rows and columns) next to the field on its outside.
+struct Hole {
+    first: u32,
+    last: u32,
+}
+
+impl Hole {
+    fn of(land: &Landform) -> Option<Self> {
+        let half = 0.5 * land.field.extent_m();
+        let side = land.apron.side;
+        // A line that differs from the border by rounding only counts as on it.
+        let outside = half + 1.0e-3 * land.apron.spacing_m;
+        let first = (0..side).rev().find(|&line| place(&land.apron, line) < -outside)?;
+        let last = (0..side).find(|&line| place(&land.apron, line) > outside)?;
+        Some(Self { first, last })
+    }
+}
+
+/// World coordinate of a line of samples.
+fn place(field: &Heightfield, line: u32) -> f32 {
+    (line as f32 - 0.5 * (field.side - 1) as f32) * field.spacing_m
+}
+
+/// The ring while it grows.
+struct Ring<'a> {
+    land: &'a Landform,
+    colors: &'a [[u8; 4]],
+    mesh: Mesh,
+    numbers: Vec<u32>,
+    inner: std::collections::BTreeMap<Sample, u32>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl<'a> Ring<'a> {
+    fn new(land: &'a Landform, colors: &'a [[u8; 4]]) -> Self {
+        let numbers = vec![u32::MAX; land.apron.heights_m.len()];
+        Self {
+            land,
+            colors,
+            mesh: Mesh::default(),
+            numbers,
+            inner: Default::default(),
+            triangles: Vec::new(),
+        }
+    }
+
+    fn push(&mut self, position: [f32; 3], normal: [f32; 3], color: [u8; 4]) -> u32 {
+        let extent_m = self.land.field.extent_m();
+        self.mesh.positions.push(position);
+        self.mesh.normals.push(normal);
+        self.mesh.uvs.push([position[0] / extent_m + 0.5, position[2] / extent_m + 0.5]);
+        self.mesh.colors.push(color);
+        self.mesh.positions.len() as u32 - 1
+    }
+
+    /// A vertex of the near mesh on the field's border; corners belong to two sides.
+    fn inner_vertex(&mut self, sample: Sample) -> u32 {
+        if let Some(&number) = self.inner.get(&sample) {
+            return number;
+        }
+        let vertex = vertex(&self.land.field, sample);
+        let color = self.color_between(vertex.position[0], vertex.position[2]);
+        let number = self.push(vertex.position, vertex.normal, color);
+        self.inner.insert(sample, number);
+        number
+    }
+
+    fn outer_vertex(&mut self, [i, j]: Sample) -> u32 {
+        let apron = &self.land.apron;
+        let index = (j * apron.side + i) as usize;
+        if self.numbers[index] == u32::MAX {
+            let position = [place(apron, i), apron.at(i, j), place(apron, j)];
+            let color = self.colors.get(index).copied().unwrap_or([255; 4]);
+            self.numbers[index] = self.push(position, apron.normal_at(i, j).to_array(), color);
+        }
+        self.numbers[index]
+    }
+
+    /// The colours of the apron's four samples around a point, blended.
+    fn color_between(&self, x_m: f32, z_m: f32) -> [u8; 4] {
+        let apron = &self.land.apron;
+        let last = (apron.side - 1) as f32;
+        let grid = |along: f32| (along / apron.spacing_m + 0.5 * last).clamp(0.0, last);
+        let (gx, gz) = (grid(x_m), grid(z_m));
+        let (i, j) = ((gx as u32).min(apron.side - 2), (gz as u32).min(apron.side - 2));
+        let (u, v) = (gx - i as f32, gz - j as f32);
+        let at = |i: u32, j: u32| {
+            self.colors.get((j * apron.side + i) as usize).copied().unwrap_or([255; 4]).map(f32::from)
+        };
+        let (nw, ne, sw, se) = (at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1));
+        std::array::from_fn(|c| {
+            let (north, south) = (nw[c] + (ne[c] - nw[c]) * u, sw[c] + (se[c] - sw[c]) * u);
+            (north + (south - north) * v + 0.5) as u8
+        })
+    }
+
+    /// Fills the strip between two rows of vertices that both ascend along `axis` (0 = x, 2 = z).
+    fn zip(&mut self, inner: &[u32], outer: &[u32], axis: usize) {
+        let (mut i, mut o) = (0, 0);
+        while i + 1 < inner.len() || o + 1 < outer.len() {
+            let along = |row: &[u32], at: usize| {
+                row.get(at).map_or(f32::INFINITY, |&vertex| self.mesh.positions[vertex as usize][axis])
+            };
+            if along(outer, o + 1) <= along(inner, i + 1) {
+                self.face_up([inner[i], outer[o], outer[o + 1]]);
+                o += 1;
+            } else {
+                self.face_up([inner[i], outer[o], inner[i + 1]]);
+                i += 1;
+            }
+        }
+    }
+
+    /// All whole cells outside the hole, cut along the diagonal that bends less.
+    fn cells(&mut self, hole: &Hole) {
+        let within = hole.first..hole.last;
+        let apron = &self.land.apron;
+        for j in 0..apron.side - 1 {
+            for i in 0..apron.side - 1 {
+                if within.contains(&i) && within.contains(&j) {
+                    continue;
+                }
+                let [nw, ne, sw, se] =
+                    [[i, j], [i + 1, j], [i, j + 1], [i + 1, j + 1]].map(|sample| self.outer_vertex(sample));
+                let falls = (apron.at(i, j) - apron.at(i + 1, j + 1)).abs();
+                let rises = (apron.at(i + 1, j) - apron.at(i, j + 1)).abs();
+                if falls <= rises {
+                    self.triangles.extend([[nw, sw, se], [nw, se, ne]]);
+                } else {
+                    self.triangles.extend([[nw, sw, ne], [ne, sw, se]]);
+                }
+            }
+        }
+    }
+
+    fn face_up(&mut self, [a, b, c]: [u32; 3]) {
+        let [pa, pb, pc] = [a, b, c].map(|vertex| Vec3::from_array(self.mesh.positions[vertex as usize]));
+        let up = (pb - pa).cross(pc - pa).y > 0.0;
+        self.triangles.push(if up { [a, b, c] } else { [a, c, b] });
+    }
+
+    fn finish(mut self) -> Mesh {
+        let triangles = std::mem::take(&mut self.triangles);
+        self.mesh.parts = vec![Part { material: Material::Ground, kind: PartKind::Surface, triangles }];
+        self.mesh
+    }
+}

@@ -1,0 +1,134 @@
+//! Heightfield → wedgies, displacements, level numbers and block height ranges (thesis 3.2.1 and 3.2.2), in metres.
+//!
+//! Wedgies after Duchaineau et al., "ROAMing terrain" (1997), equation 1; displacements after Vlietinck,
+//! "Trilinear displacement mapping of a flat surface with a v1.1 vertex shader" (2003).
+
+use rayon::prelude::*;
+
+use super::bintree::{Sample, hypotenuse, step};
+use crate::model::{Heightfield, TerrainLod};
+
+/// What the run-time levels of detail of a heightfield of (2^k+1)² samples, k ≥ 1, need. See [`TerrainLod`].
+pub fn lod(field: &Heightfield) -> TerrainLod {
+    let side = field.side as usize;
+    let mut displacements_m = vec![0.0; side * side];
+    let mut levels = vec![0; side * side];
+    displacements_m.par_chunks_mut(side).zip(levels.par_chunks_mut(side)).enumerate().for_each(
+        |(j, (displacements, levels))| {
+            for (i, (displacement, level)) in displacements.iter_mut().zip(levels).enumerate() {
+                (*displacement, *level) = morph(field, [i as u32, j as u32]);
+            }
+        },
+    );
+    let wedgies_m = wedgies(field.side, &displacements_m);
+    let block_ranges_m = block_ranges(field, &displacements_m);
+    TerrainLod { wedgies_m, displacements_m, levels, block_ranges_m }
+}
+
+/// Way to the middle of the hypotenuse that the sample splits, and the last level that uses it.
+fn morph(field: &Heightfield, sample: Sample) -> (f32, u8) {
+    let last = field.side - 1;
+    let [i, j] = sample;
+    if i % last == 0 && j % last == 0 {
+        return (0.0, last.trailing_zeros() as u8);
+    }
+    let [a, b] = hypotenuse(sample);
+    let middle = 0.5 * (field.at(a[0], a[1]) + field.at(b[0], b[1]));
+    (middle - field.at(i, j), step(sample).trailing_zeros() as u8)
+}
+
+/// Half thicknesses, finest first: a triangle's is its own deviation and the greatest among its children's.
+pub(super) fn wedgies(side: u32, displacements_m: &[f32]) -> Vec<f32> {
+    nested(side, displacements_m, |deviation, below| deviation + below)
+}
+
+/// Per splitting sample, `combine(|displacement|, greatest value among the samples that split the halves)`. The
+/// corners, which split nothing, hold the value of the whole field.
+pub(super) fn nested(side: u32, displacements_m: &[f32], combine: impl Fn(f32, f32) -> f32) -> Vec<f32> {
+    let (n, last) = (side as usize, side as usize - 1);
+    let mut values: Vec<f32> = displacements_m.iter().map(|d| d.abs()).collect();
+    let mut step = 1;
+    while step < last {
+        for j in (0..n).step_by(step) {
+            // The middles of edges: j an odd multiple of step and i an even one, or the other way round.
+            let first = if (j / step) % 2 == 0 { step } else { 0 };
+            for i in (first..n).step_by(2 * step) {
+                let below = if step > 1 { greatest_around(&values, n, i, j, step / 2, true) } else { 0.0 };
+                values[j * n + i] = combine(values[j * n + i], below);
+            }
+        }
+        for j in (step..n).step_by(2 * step) {
+            for i in (step..n).step_by(2 * step) {
+                let below = greatest_around(&values, n, i, j, step, false);
+                values[j * n + i] = combine(values[j * n + i], below);
+            }
+        }
+        step *= 2;
+    }
+    let whole = values[last / 2 * n + last / 2];
+    for corner in [0, last, last * n, last * n + last] {
+        values[corner] = whole;
+    }
+    values
+}
+
+/// The greatest of the four values at distance `by`, diagonally or along the axes, that lie in the field.
+#[inline]
+fn greatest_around(values: &[f32], n: usize, i: usize, j: usize, by: usize, diagonal: bool) -> f32 {
+    let (west, east) = (i.checked_sub(by), (i + by < n).then_some(i + by));
+    let (north, south) = (j.checked_sub(by), (j + by < n).then_some(j + by));
+    let at = |i: Option<usize>, j: Option<usize>| i.zip(j).map_or(0.0, |(i, j)| values[j * n + i]);
+    let four = if diagonal {
+        [at(west, north), at(east, north), at(west, south), at(east, south)]
+    } else {
+        [at(west, Some(j)), at(east, Some(j)), at(Some(i), north), at(Some(i), south)]
+    };
+    four[0].max(four[1]).max(four[2].max(four[3]))
+}
+
+/// Ranges of all blocks, coarsest first; each block counts its border, and its corners also as morphed.
+fn block_ranges(field: &Heightfield, displacements_m: &[f32]) -> Vec<[f32; 2]> {
+    let side = field.side as usize;
+    let levels = (side - 1).trailing_zeros();
+    let mut finest = vec![[0.0; 2]; ((side - 1) / 2) * ((side - 1) / 2)];
+    finest.par_chunks_mut((side - 1) / 2).enumerate().for_each(|(row, blocks)| {
+        for (column, block) in blocks.iter_mut().enumerate() {
+            *block = cells_range(field, displacements_m, 2 * column, 2 * row);
+        }
+    });
+    let mut pyramid = vec![finest];
+    for level in (0..levels.saturating_sub(1)).rev() {
+        let across = 1 << level;
+        let fine = &pyramid[pyramid.len() - 1];
+        let at = |i: usize, j: usize| fine[j * 2 * across + i];
+        let coarse = (0..across * across).map(|block| {
+            let (i, j) = (block % across * 2, block / across * 2);
+            union(union(at(i, j), at(i + 1, j)), union(at(i, j + 1), at(i + 1, j + 1)))
+        });
+        let coarse = coarse.collect();
+        pyramid.push(coarse);
+    }
+    pyramid.into_iter().rev().flatten().collect()
+}
+
+/// The range of 2×2 cells from sample (i, j): nine samples, and the four corners fully displaced. The other five
+/// move between these when displaced.
+fn cells_range(field: &Heightfield, displacements_m: &[f32], i: usize, j: usize) -> [f32; 2] {
+    let side = field.side as usize;
+    let mut range = [f32::MAX, f32::MIN];
+    for z in j..=j + 2 {
+        for x in i..=i + 2 {
+            let height = field.heights_m[z * side + x];
+            range = union(range, [height, height]);
+            if (x | z) & 1 == 0 {
+                let moved = height + displacements_m[z * side + x];
+                range = union(range, [moved, moved]);
+            }
+        }
+    }
+    range
+}
+
+fn union(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
+    [a[0].min(b[0]), a[1].max(b[1])]
+}
