@@ -1,0 +1,204 @@
+//! Position in metres → raw height in metres, for any place on the field or beyond it: a multifractal of rotated
+//! octaves, folded by domain warping, on a broad massif where the relief is too great for the landforms' size.
+
+use super::grid::{Grid, mix, smoothstep};
+use super::{FIELD_M, LandParams};
+use crate::noise::gradient2;
+use crate::seed::noise_seed;
+
+/// Wavelength in metres of the finest octave.
+const FINEST_M: f32 = 6.0;
+/// Greatest part of its wavelength that a landform may rise before a massif carries the rest of the relief.
+const STEEPNESS: f32 = 0.42;
+
+/// The raw land as a function of position.
+pub(super) struct Shape {
+    octaves: Vec<Octave>,
+    massif: [Octave; 2],
+    fold: [Octave; 4],
+    fold_m: f32,
+    /// Part of the relief that the landforms have; the massif has the rest.
+    share: f32,
+    ridged: f32,
+    offset: f32,
+    terraces: Terraces,
+    relief_m: f32,
+    water_level: f32,
+    /// Raw values that become the lowest and highest point of the field.
+    range: (f32, f32),
+    /// How far, as part of the relief, the middle is lifted so that one does not start under water.
+    lift: f32,
+}
+
+/// One octave of noise: its own seed, direction and place, so that no lattice shows.
+struct Octave {
+    seed: u32,
+    wavelength_m: f32,
+    amplitude: f32,
+    /// Lattice units per metre along the octave's own axes, as cosine and sine.
+    turn: [f32; 2],
+    shift: [f32; 2],
+}
+
+impl Octave {
+    fn new(seed: u32, index: u32, wavelength_m: f32, amplitude: f32) -> Self {
+        let seed = seed.wrapping_add(index.wrapping_mul(0x9E37_79B9));
+        let angle = 0.4 + 2.399_963 * index as f32;
+        // A lattice cell is about half a wave.
+        let frequency = 2.0 / wavelength_m;
+        let shift = [(seed >> 20) as f32 * 0.037, (seed >> 8 & 0xFFF) as f32 * 0.037];
+        let turn = [libm::cosf(angle) * frequency, libm::sinf(angle) * frequency];
+        Self { seed, wavelength_m, amplitude, turn, shift }
+    }
+
+    #[inline]
+    fn at(&self, x: f32, z: f32) -> f32 {
+        let u = x * self.turn[0] - z * self.turn[1] + self.shift[0];
+        let v = x * self.turn[1] + z * self.turn[0] + self.shift[1];
+        gradient2(self.seed, u, v, 0)
+    }
+}
+
+/// Soft steps in the slopes.
+struct Terraces {
+    strength: f32,
+    steps: f32,
+    bend: Octave,
+    patches: Octave,
+}
+
+impl Shape {
+    /// The land of these genes, not yet fitted to its relief.
+    pub fn new(p: &LandParams) -> Self {
+        let seed = |item| noise_seed(p.terrain_seed.into(), "land", item);
+        let gain = libm::powf(p.lacunarity, -p.hurst);
+        let mut octaves = Vec::new();
+        let (mut wavelength_m, mut amplitude) = (p.wavelength_m, 1.0);
+        while wavelength_m >= FINEST_M && amplitude > 4e-4 {
+            octaves.push(Octave::new(seed(0), octaves.len() as u32, wavelength_m, amplitude));
+            wavelength_m /= p.lacunarity;
+            amplitude *= gain;
+        }
+        let broad_m = p.wavelength_m.max(1500.0);
+        let fold = |i, scale, amplitude| Octave::new(seed(2), i, p.wavelength_m * scale, amplitude);
+        Self {
+            octaves,
+            massif: [Octave::new(seed(1), 0, broad_m, 1.0), Octave::new(seed(1), 1, broad_m * 0.45, 0.4)],
+            fold: [fold(0, 0.9, 1.0), fold(1, 0.9, 1.0), fold(2, 0.4, 0.4), fold(3, 0.4, 0.4)],
+            fold_m: 0.32 * p.domain_warp * p.wavelength_m,
+            share: (STEEPNESS * p.wavelength_m / p.relief_m).min(1.0),
+            ridged: p.ridged,
+            offset: p.offset,
+            terraces: Terraces {
+                strength: p.terraces,
+                steps: (p.relief_m / 13.0).clamp(4.0, 14.0),
+                bend: Octave::new(seed(3), 0, 420.0, 0.5),
+                patches: Octave::new(seed(3), 1, 300.0, 1.0),
+            },
+            relief_m: p.relief_m,
+            water_level: p.water_level,
+            range: (0.0, 1.0),
+            lift: 0.0,
+        }
+    }
+
+    /// Fits the land to its relief over the field and lifts a middle that would drown; the raw heights in metres.
+    pub fn fit(&mut self, side: u32) -> Grid {
+        let mut grid = Grid::from_field(side, |x, z| self.multifractal(x, z, 0.0));
+        self.range = grid.range();
+        self.lift = self.needed_lift();
+        let spacing_m = grid.spacing_m;
+        let place = |i: usize| (i as f32 - 0.5 * (side - 1) as f32) * spacing_m;
+        for (k, h) in grid.values.iter_mut().enumerate() {
+            *h = self.finish(*h, place(k % side as usize), place(k / side as usize));
+        }
+        grid
+    }
+
+    /// The fitted land on a grid of the field.
+    pub fn sample(&self, side: u32) -> Grid {
+        Grid::from_field(side, |x, z| self.height_m(x, z, 0.0))
+    }
+
+    /// Raw height in metres at a place; waves shorter than twice `spacing_m` are left out.
+    pub fn height_m(&self, x: f32, z: f32, spacing_m: f32) -> f32 {
+        self.finish(self.multifractal(x, z, spacing_m), x, z)
+    }
+
+    /// A sum of octaves, each weaker where the land so far is low (Musgrave's hybrid multifractal).
+    fn multifractal(&self, x: f32, z: f32, spacing_m: f32) -> f32 {
+        let [a, b, c, d] = &self.fold;
+        let (mut u, mut v) = (x, z);
+        if self.fold_m > 0.0 {
+            u += self.fold_m * (a.at(x, z) + 0.4 * c.at(x, z));
+            v += self.fold_m * (b.at(x, z) + 0.4 * d.at(x, z));
+        }
+        let (mut sum, mut weight, mut ridged) = (0.0, 1.0, self.ridged);
+        for octave in &self.octaves {
+            let kept = if spacing_m > 0.0 { (octave.wavelength_m / spacing_m - 1.0).clamp(0.0, 1.0) } else { 1.0 };
+            if kept == 0.0 {
+                break;
+            }
+            let round = octave.at(u, v) * 1.25;
+            // A ridge where the noise crosses zero, rounded just enough to be walked over.
+            let ridge = 1.0 - 2.4 * (round * round + 0.0009).sqrt();
+            sum += octave.amplitude * weight * kept * mix(round, ridge, ridged);
+            weight = mix(1.0, smoothstep(-0.7, 0.6, sum), 0.35 + 0.6 * self.offset);
+            ridged *= 0.88;
+        }
+        let massif = if self.share < 1.0 { self.massif[0].at(x, z) + 0.4 * self.massif[1].at(x, z) } else { 0.0 };
+        mix(massif * 1.4, sum, self.share)
+    }
+
+    /// From a raw value to metres: fitted, flattened where low, stepped, lifted in the middle.
+    fn finish(&self, value: f32, x: f32, z: f32) -> f32 {
+        let (lo, hi) = self.range;
+        let part = soften((value - lo) / (hi - lo).max(1e-6));
+        let flattened = if part > 0.0 { mix(part, part * part, 0.75 * self.offset) } else { part * (1.0 - 0.75 * self.offset) };
+        let stepped = self.terraces.step(flattened, x, z);
+        let r = (x * x + z * z) / (300.0 * 300.0);
+        let bump = (1.0 - r.min(1.0)) * (1.0 - r.min(1.0));
+        (stepped + self.lift * bump) * self.relief_m
+    }
+
+    /// How far the middle lies below a height that is dry by a margin.
+    fn needed_lift(&self) -> f32 {
+        if self.water_level <= 0.0 {
+            return 0.0;
+        }
+        let samples = 7 * 7;
+        let sum: f32 = (0..samples)
+            .map(|k| ((k % 7 - 3) as f32 * 24.0, (k / 7 - 3) as f32 * 24.0))
+            .map(|(x, z)| self.height_m(x, z, 30.0) / self.relief_m)
+            .sum();
+        (self.water_level + 0.07 - sum / samples as f32).max(0.0).min(0.5)
+    }
+}
+
+impl Terraces {
+    /// Flat treads and steep risers, bent and broken by noise so that they never follow one contour for long.
+    fn step(&self, part: f32, x: f32, z: f32) -> f32 {
+        if self.strength <= 0.0 {
+            return part;
+        }
+        let bend = 0.8 * self.bend.at(x, z);
+        let strength = self.strength * smoothstep(-0.45, 0.35, self.patches.at(x, z));
+        let t = part * self.steps + bend;
+        let tread = t.floor();
+        let stepped = tread + smoothstep(0.3, 1.0, t - tread);
+        (mix(t, stepped, 0.8 * strength) - bend) / self.steps
+    }
+}
+
+/// Leaves 0 to 1 as it is and draws what lies beyond (as it may outside the field) slowly towards −0.4 and 1.6.
+fn soften(part: f32) -> f32 {
+    let over = (part - 1.0).max(0.0);
+    let under = (-part).max(0.0);
+    part.clamp(0.0, 1.0) + 0.6 * over / (over + 0.6) - 0.4 * under / (under + 0.4)
+}
+
+/// Metres from a place to the field, 0 inside it.
+pub(super) fn distance_to_field_m(x: f32, z: f32) -> f32 {
+    let (dx, dz) = ((x.abs() - 0.5 * FIELD_M).max(0.0), (z.abs() - 0.5 * FIELD_M).max(0.0));
+    (dx * dx + dz * dz).sqrt()
+}
