@@ -40,11 +40,14 @@ pub(super) fn rain(land: &mut Grid, loose: &mut Grid, guard: &Grid, params: &Lan
         let last = (ground.n - 1) as f32;
         ground.run(u * last, v * last);
     }
-    // What one drop does at one sample is noise; what many do along a gully is not.
-    let mut change = before.clone();
-    change.values.iter_mut().zip(&land.values).for_each(|(b, a)| *b = a - *b);
-    let change = change.smoothed();
-    land.values.iter_mut().zip(&before.values).zip(&change.values).for_each(|((h, b), c)| *h = b + c);
+    // What one drop does at one sample is noise; what many do along a gully is not. Fans are smoother than gullies.
+    let mut cut = before.clone();
+    cut.values.iter_mut().zip(&land.values).for_each(|(b, a)| *b = (a - *b).min(0.0));
+    let mut laid = before.clone();
+    laid.values.iter_mut().zip(&land.values).for_each(|(b, a)| *b = (a - *b).max(0.0));
+    let (cut, laid) = (cut.smoothed(), laid.smoothed().smoothed().smoothed());
+    let changes = cut.values.iter().zip(&laid.values);
+    land.values.iter_mut().zip(&before.values).zip(changes).for_each(|((h, b), (c, l))| *h = b + c + l);
     settle(loose, &before, land);
 }
 

@@ -84,17 +84,19 @@ impl Grid {
         Self { side: m as u32, spacing_m: 0.5 * self.spacing_m, values }
     }
 
-    /// Smoothed once by the binomial kernel 1-2-1 both ways; the outermost samples stay.
+    /// Smoothed once by the binomial kernel 1-2-1 both ways; beyond the edge lies what lies on it.
     pub fn smoothed(&self) -> Self {
         let n = self.side as usize;
         let mut out = self.clone();
-        out.values.par_chunks_mut(n).enumerate().skip(1).take(n - 2).for_each(|(j, out)| {
+        out.values.par_chunks_mut(n).enumerate().for_each(|(j, out)| {
             let row = |r: usize| &self.values[r * n..][..n];
-            let (a, b, c) = (row(j - 1), row(j), row(j + 1));
+            let (a, b, c) = (row(j.saturating_sub(1)), row(j), row((j + 1).min(n - 1)));
+            let column = |k: usize| a[k] + 2.0 * b[k] + c[k];
             for i in 1..n - 1 {
-                let column = |k: usize| a[k] + 2.0 * b[k] + c[k];
                 out[i] = (column(i - 1) + 2.0 * column(i) + column(i + 1)) * 0.0625;
             }
+            out[0] = (3.0 * column(0) + column(1)) * 0.0625;
+            out[n - 1] = (column(n - 2) + 3.0 * column(n - 1)) * 0.0625;
         });
         out
     }
@@ -114,11 +116,11 @@ pub(super) fn add_change(field: &mut Grid, before: &Grid, after: &Grid) {
     field.values.iter_mut().zip(&change.values).for_each(|(h, c)| *h += c);
 }
 
-/// How freely erosion acts: 0 on the border and 6 m inside it, 1 from 64 m inside.
+/// How freely rain acts: not at all at the border, where drops from outside are missing, fully from 40 m inside.
 pub(super) fn border_guard(side: u32) -> Grid {
     Grid::from_field(side, |x, z| {
         let inside_m = 0.5 * FIELD_M - x.abs().max(z.abs());
-        smoothstep(6.0, 64.0, inside_m)
+        smoothstep(4.0, 40.0, inside_m)
     })
 }
 

@@ -4,8 +4,8 @@
 //! A warped multifractal (Musgrave, "Texturing and Modeling", 2003) gives the raw land; rivers cut it by the stream
 //! power law (Braun & Willett 2013), raindrops carve gullies and lay down fans (Beyer 2015), and slopes slide to
 //! their angle of repose (Musgrave, Kolb & Mace 1989). All erosion works on fixed grids, whatever the size asked
-//! for, so that a valley keeps its place; finer sizes add finer noise. Erosion fades out towards the border, where
-//! field and apron both follow the raw noise.
+//! for, so that a valley keeps its place; finer sizes add finer noise. What erosion did along the border the apron
+//! follows, less and less with distance, so that valleys lead out of the field.
 
 mod apron;
 mod droplets;
@@ -74,9 +74,10 @@ pub fn landform(params: &LandParams, size: u32) -> Landform {
     let (worn, loose) = erode(params, &raw);
     let level = water::Level::new(params, &worn);
 
-    let mut field = shape.sample(size);
+    let mut field = shape.sample(size, &raw);
     grid::add_change(&mut field, &raw, &worn);
     let mut apron = apron::heights(&shape, params);
+    apron::follow(&mut apron, &raw, &worn);
     level.settle(&mut field.values);
     level.settle(&mut apron.values);
     apron::join(&mut apron, &field);
@@ -104,18 +105,14 @@ fn erode(params: &LandParams, raw: &Grid) -> (Grid, Grid) {
     let guard = grid::border_guard(FINE);
     streams::carve_valleys(&mut land, &mut loose, params, COARSE);
     droplets::rain(&mut land, &mut loose, &guard, params);
-    thermal::slide(&mut land, &mut loose, &guard, params);
-    rescale(&mut land, raw, &guard, params.relief_m);
+    thermal::slide(&mut land, &mut loose, params);
+    rescale(&mut land, params.relief_m);
     (land, loose)
 }
 
-/// Gives the worn land its full relief back: stretches it between its lowest and highest point where erosion was
-/// free to act, and not at all at the border, which must keep the raw heights.
-fn rescale(land: &mut Grid, raw: &Grid, guard: &Grid, relief_m: f32) {
+/// Gives the worn land its full relief back.
+fn rescale(land: &mut Grid, relief_m: f32) {
     let (lo, hi) = land.range();
     let gain = relief_m / (hi - lo).max(1e-3);
-    for ((h, r), g) in land.values.iter_mut().zip(&raw.values).zip(&guard.values) {
-        let stretched = (*h - lo) * gain;
-        *h = (r + (stretched - r) * g.min(1.0)).clamp(0.0, relief_m);
-    }
+    land.values.iter_mut().for_each(|h| *h = (*h - lo) * gain);
 }

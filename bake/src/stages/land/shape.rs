@@ -9,7 +9,7 @@ use crate::seed::noise_seed;
 /// Wavelength in metres of the finest octave.
 const FINEST_M: f32 = 6.0;
 /// Greatest part of its wavelength that a landform may rise before a massif carries the rest of the relief.
-const STEEPNESS: f32 = 0.42;
+const STEEPNESS: f32 = 0.3;
 
 /// The raw land as a function of position.
 pub(super) struct Shape {
@@ -72,10 +72,13 @@ impl Shape {
     pub fn new(p: &LandParams) -> Self {
         let seed = |item| noise_seed(p.terrain_seed.into(), "land", item);
         let gain = libm::powf(p.lacunarity, -p.hurst);
+        let share = (STEEPNESS * p.wavelength_m / p.relief_m).min(1.0);
         let mut octaves = Vec::new();
-        let (mut wavelength_m, mut amplitude) = (p.wavelength_m, 1.0);
-        while wavelength_m >= FINEST_M && amplitude > 4e-4 {
-            octaves.push(Octave::new(seed(0), octaves.len() as u32, wavelength_m, amplitude));
+        let (mut wavelength_m, mut amplitude) = (p.wavelength_m, 1.0f32);
+        // An octave lower than 2 cm is not worth its time.
+        while wavelength_m >= FINEST_M && amplitude * p.relief_m > 0.04 {
+            let walkable = amplitude.min(1.6 * walkable_amplitude_m(wavelength_m) / (share * p.relief_m));
+            octaves.push(Octave::new(seed(0), octaves.len() as u32, wavelength_m, walkable));
             wavelength_m /= p.lacunarity;
             amplitude *= gain;
         }
@@ -86,7 +89,7 @@ impl Shape {
             massif: [Octave::new(seed(1), 0, broad_m, 1.0), Octave::new(seed(1), 1, broad_m * 0.45, 0.4)],
             fold: [fold(0, 0.9, 1.0), fold(1, 0.9, 1.0), fold(2, 0.4, 0.4), fold(3, 0.4, 0.4)],
             fold_m: 0.32 * p.domain_warp * p.wavelength_m,
-            share: (STEEPNESS * p.wavelength_m / p.relief_m).min(1.0),
+            share,
             ridged: p.ridged,
             offset: p.offset,
             terraces: Terraces {
@@ -115,9 +118,9 @@ impl Shape {
         grid
     }
 
-    /// The fitted land on a grid of the field.
-    pub fn sample(&self, side: u32) -> Grid {
-        Grid::from_field(side, |x, z| self.height_m(x, z, 0.0))
+    /// The fitted land on a grid of the field, of which `known` is a part or that is part of `known`.
+    pub fn sample(&self, side: u32, known: &Grid) -> Grid {
+        if side <= known.side { known.resized(side) } else { Grid::from_field(side, |x, z| self.height_m(x, z, 0.0)) }
     }
 
     /// Raw height in metres at a place; waves shorter than twice `spacing_m` are left out.
@@ -135,7 +138,7 @@ impl Shape {
         }
         let (mut sum, mut weight, mut ridged) = (0.0, 1.0, self.ridged);
         for octave in &self.octaves {
-            let kept = if spacing_m > 0.0 { (octave.wavelength_m / spacing_m - 1.0).clamp(0.0, 1.0) } else { 1.0 };
+            let kept = if spacing_m > 0.0 { (octave.wavelength_m / spacing_m - 2.0).clamp(0.0, 1.0) } else { 1.0 };
             if kept == 0.0 {
                 break;
             }
@@ -173,6 +176,11 @@ impl Shape {
             .sum();
         (self.water_level + 0.07 - sum / samples as f32).max(0.0).min(0.5)
     }
+}
+
+/// Greatest amplitude in metres of an octave: landforms may be steep, what one steps over may not.
+fn walkable_amplitude_m(wavelength_m: f32) -> f32 {
+    0.34 * wavelength_m * libm::powf((wavelength_m / 400.0).min(1.0), 0.75)
 }
 
 impl Terraces {

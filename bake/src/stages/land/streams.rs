@@ -8,8 +8,10 @@ use super::thermal::settle;
 use crate::noise::hash01;
 use crate::seed::noise_seed;
 
-/// Erodibility times time of one step, in units where stream power is √(m²): 1/1.
-const POWER: f32 = 0.012;
+/// Erodibility times the time of one step.
+const STEP: f32 = 0.16;
+/// Metres from the border to the plain that all rivers run to.
+const OUTSIDE_M: f32 = 400.0;
 /// Part of a hollow's depth that sediment fills in one step.
 const FILLING: f32 = 0.25;
 /// Buckets of the flood's queue: heights within one are drained in order of arrival.
@@ -25,11 +27,11 @@ pub(super) fn carve_valleys(land: &mut Grid, loose: &mut Grid, params: &LandPara
     for (side, steps) in sides.into_iter().zip(steps) {
         let before = land.resized(side);
         let mut after = before.clone();
-        let guard = grid::border_guard(side);
+        let base_m = before.range().0;
         for step in 0..steps {
             let drainage = Drainage::new(&after, seed.wrapping_add(step));
-            drainage.cut(&mut after, &guard);
-            creep(&mut after, &guard, params.talus_angle_deg + 10.0);
+            drainage.cut(&mut after, base_m);
+            creep(&mut after, params.talus_angle_deg + 10.0);
         }
         let mut gained = before.map(|_| 0.0);
         settle(&mut gained, &before, &after);
@@ -174,43 +176,53 @@ impl Drainage {
         areas
     }
 
-    /// One implicit step of dh/dt = −K √A |∇h|, and sediment in the hollows.
-    fn cut(&self, land: &mut Grid, guard: &Grid) {
+    /// One implicit step of dh/dt = −K √A |∇h|, and sediment in the hollows. Rivers that leave the field run on for
+    /// `OUTSIDE_M` to a plain at `base_m`.
+    fn cut(&self, land: &mut Grid, base_m: f32) {
         let areas = self.areas();
         let h = &mut land.values;
         for &k in &self.order {
             let k = k as usize;
             let to = self.receiver[k] as usize;
             if to == k {
+                let power = STEP * areas[k].sqrt() / OUTSIDE_M;
+                h[k] = (h[k] + power * base_m) / (1.0 + power);
                 continue;
             }
             if h[k] <= h[to] {
-                h[k] += FILLING * guard.values[k] * (self.filled[k] - h[k]).max(0.0);
+                h[k] += FILLING * (self.filled[k] - h[k]).max(0.0);
                 continue;
             }
             let diagonal = to % self.side != k % self.side && to / self.side != k / self.side;
             let reach_m = self.spacing_m * if diagonal { std::f32::consts::SQRT_2 } else { 1.0 };
-            let power = POWER * guard.values[k] * areas[k].sqrt() / reach_m * 8.0;
+            let power = STEP * areas[k].sqrt() / reach_m;
             h[k] = (h[k] + power * h[to]) / (1.0 + power);
         }
     }
 }
 
 /// Valley sides follow their river: slopes steeper than `steepest_deg` give way, and all creep a little.
-fn creep(land: &mut Grid, guard: &Grid, steepest_deg: f32) {
+fn creep(land: &mut Grid, steepest_deg: f32) {
     let n = land.side as usize;
     let holds_m = libm::tanf(steepest_deg.to_radians()) * land.spacing_m;
     for _ in 0..2 {
         let old = land.values.clone();
-        for j in 1..n - 1 {
-            for i in 1..n - 1 {
-                let k = j * n + i;
-                let moved = |m: usize| {
-                    let rise = old[m] - old[k];
-                    0.2 * (rise - rise.clamp(-holds_m, holds_m)) + 0.03 * rise
+        for j in 0..n {
+            let row = |r: usize| &old[r * n..][..n];
+            let (north, here, south) = (row(j.saturating_sub(1)), row(j), row((j + 1).min(n - 1)));
+            let out = &mut land.values[j * n..][..n];
+            let at = |west: usize, i: usize, east: usize| {
+                let moved = |other: f32| {
+                    let rise = other - here[i];
+                    0.2 * (rise - rise.max(-holds_m).min(holds_m)) + 0.03 * rise
                 };
-                land.values[k] += guard.values[k] * (moved(k - 1) + moved(k + 1) + moved(k - n) + moved(k + n));
+                here[i] + moved(here[west]) + moved(here[east]) + moved(north[i]) + moved(south[i])
+            };
+            for i in 1..n - 1 {
+                out[i] = at(i - 1, i, i + 1);
             }
+            out[0] = at(0, 0, 1);
+            out[n - 1] = at(n - 2, n - 1, n - 1);
         }
     }
 }

@@ -9,13 +9,13 @@ use crate::noise::fbm2;
 use crate::seed::noise_seed;
 
 /// Slides the land and adds what came to rest to the `loose` layer.
-pub(super) fn slide(land: &mut Grid, loose: &mut Grid, guard: &Grid, params: &LandParams) {
+pub(super) fn slide(land: &mut Grid, loose: &mut Grid, params: &LandParams) {
     let hardness = hardness(land.side, params);
-    for sweeps in [8, 8, 10] {
+    for sweeps in [6, 6, 8] {
         let steepest = steepest_drops(&hardness, loose, land.spacing_m, params.talus_angle_deg);
         let before = land.clone();
         for sweep in 0..sweeps {
-            relax(land, &steepest, guard, sweep % 2 == 1);
+            relax(land, &steepest, sweep % 2 == 1);
         }
         settle(loose, &before, land);
     }
@@ -38,7 +38,7 @@ fn hardness(side: u32, params: &LandParams) -> Grid {
 /// The greatest drop in metres from a sample to its neighbour that holds.
 fn steepest_drops(hardness: &Grid, loose: &Grid, spacing_m: f32, talus_deg: f32) -> Vec<f32> {
     let drop_m = |deg: f32| libm::tanf(deg.to_radians()) * spacing_m;
-    let (talus, soft, hard) = (drop_m(talus_deg), drop_m(talus_deg + 6.0), drop_m((talus_deg + 26.0).min(66.0)));
+    let (talus, soft, hard) = (drop_m(talus_deg), drop_m(talus_deg + 5.0), drop_m((talus_deg + 18.0).min(57.0)));
     let pairs = hardness.values.iter().zip(&loose.values);
     pairs
         .map(|(h, l)| {
@@ -49,32 +49,51 @@ fn steepest_drops(hardness: &Grid, loose: &Grid, spacing_m: f32, talus_deg: f32)
 }
 
 /// One Jacobi sweep over four neighbours, the straight or the diagonal ones: what is steeper than it holds moves.
-fn relax(land: &mut Grid, steepest: &[f32], guard: &Grid, diagonal: bool) {
+/// Beyond the edge lies what lies on it.
+fn relax(land: &mut Grid, steepest: &[f32], diagonal: bool) {
     let n = land.side as usize;
     let old = land.values.clone();
     let reach = if diagonal { std::f32::consts::SQRT_2 } else { 1.0 };
-    land.values.par_chunks_mut(n).enumerate().skip(1).take(n - 2).for_each(|(j, out)| {
-        let row = |r: usize| (&old[r * n..][..n], &steepest[r * n..][..n]);
-        let ((north, t_north), (here, t_here), (south, t_south)) = (row(j - 1), row(j), row(j + 1));
-        let guard = &guard.values[j * n..][..n];
-        for i in 1..n - 1 {
-            let moved = |other: f32, t: f32| {
-                let holds = 0.5 * reach * (t + t_here[i]);
-                let rise = other - here[i];
-                rise - rise.max(-holds).min(holds)
-            };
-            let sum = if diagonal {
-                moved(north[i - 1], t_north[i - 1])
-                    + moved(north[i + 1], t_north[i + 1])
-                    + moved(south[i - 1], t_south[i - 1])
-                    + moved(south[i + 1], t_south[i + 1])
-            } else {
-                moved(north[i], t_north[i])
-                    + moved(south[i], t_south[i])
-                    + moved(here[i - 1], t_here[i - 1])
-                    + moved(here[i + 1], t_here[i + 1])
-            };
-            out[i] = here[i] + 0.22 * guard[i] * sum;
+    land.values.par_chunks_mut(n).enumerate().for_each(|(j, out)| {
+        let row = |r: usize| Row { heights: &old[r * n..][..n], holds: &steepest[r * n..][..n] };
+        let (north, here, south) = (row(j.saturating_sub(1)), row(j), row((j + 1).min(n - 1)));
+        let straight = [(&north, 1), (&here, 0), (&here, 2), (&south, 1)];
+        let across = [(&north, 0), (&north, 2), (&south, 0), (&south, 2)];
+        for (other, shift) in if diagonal { across } else { straight } {
+            here.take_from(other, shift, reach, out);
         }
     });
+}
+
+/// One row of heights and of the drops that hold there.
+struct Row<'a> {
+    heights: &'a [f32],
+    holds: &'a [f32],
+}
+
+impl Row<'_> {
+    /// Moves the surplus between this row and `other`, shifted by `shift` − 1 samples, into `out`.
+    fn take_from(&self, other: &Row, shift: usize, reach: f32, out: &mut [f32]) {
+        let inner = self.heights.len() - 2;
+        let (h, t) = (&self.heights[1..][..inner], &self.holds[1..][..inner]);
+        let (g, s) = (&other.heights[shift..][..inner], &other.holds[shift..][..inner]);
+        let half = 0.5 * reach;
+        for (i, out) in out[1..][..inner].iter_mut().enumerate() {
+            *out += 0.22 * surplus(g[i] - h[i], half * (t[i] + s[i]));
+        }
+        for (i, neighbour) in [(0, 0usize), (inner + 1, inner + 1)] {
+            let k = (neighbour + shift).saturating_sub(1).min(inner + 1);
+            out[i] += 0.22 * surplus(other.heights[k] - self.heights[i], half * (self.holds[i] + other.holds[k]));
+        }
+    }
+}
+
+/// How much of a rise is more than what holds, with its sign.
+#[inline]
+fn surplus(rise: f32, holds: f32) -> f32 {
+    let above = rise - holds;
+    let below = rise + holds;
+    let above = if above > 0.0 { above } else { 0.0 };
+    let below = if below < 0.0 { below } else { 0.0 };
+    above + below
 }
