@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use super::tests::random_params;
 use super::*;
 use crate::model::Landform;
+use crate::stages::ground::{self, GroundParams};
 
 /// The four lands that a new world might start with.
 fn starters() -> [(&'static str, LandParams); 4] {
@@ -94,7 +95,7 @@ fn pictures() {
     let lands = starters().into_iter().map(|(n, p)| (n.to_string(), p)).chain(lands);
     for (name, params) in lands {
         let land = landform(&params, 513);
-        let colors = grey(&land);
+        let colors = paint(&params, &land);
         let (plan, view) = (plan(&land, &colors), view(&land, &colors));
         let both: Vec<u8> = (0..400)
             .flat_map(|j| [&plan[j * 400 * 3..][..400 * 3], &view[j * 720 * 3..][..720 * 3]].concat())
@@ -107,7 +108,7 @@ fn pictures() {
 #[test]
 #[ignore = "measures"]
 fn speed() {
-    for k in 0..6 {
+    for k in 0..4 {
         let params = match k {
             0 => LandParams { stream_power_steps: 15, droplets: 60000.0, hurst: 0.5, lacunarity: 1.8, wavelength_m: 2000.0, ..random_params(3) },
             k => random_params(k),
@@ -115,6 +116,15 @@ fn speed() {
         let begin = cpu_s();
         let land = landform(&params, 513);
         let end = cpu_s();
+        let ground = GroundParams {
+            terrain_seed: params.terrain_seed,
+            talus_angle_deg: params.talus_angle_deg,
+            snow_line: params.snow_line,
+        };
+        let maps = ground::maps(&ground, &land, 1024);
+        let painted = cpu_s();
+        let apron = ground::apron_colors(&ground, &land);
+        eprintln!("ground {:.0} apron {:.0} ms {}", (painted - end) * 1e3, (cpu_s() - painted) * 1e3, maps.weights.data.len() + apron.len());
         eprintln!("{k}: {:.0} ms, {:?}, droplets {} steps {}", (end - begin) * 1e3, land.field.range_m(), params.droplets, params.stream_power_steps);
     }
 }
@@ -131,12 +141,26 @@ pub(crate) fn cpu_s() -> f64 {
     total
 }
 
-fn grey(land: &Landform) -> Vec<[f32; 3]> {
-    vec![[0.35; 3]; land.field.heights_m.len()]
+/// Linear colours of the field (1024²) and of the apron.
+struct Paint {
+    field: Vec<[f32; 3]>,
+    apron: Vec<[u8; 4]>,
+}
+
+fn paint(params: &LandParams, land: &Landform) -> Paint {
+    let ground = GroundParams {
+        terrain_seed: params.terrain_seed,
+        talus_angle_deg: params.talus_angle_deg,
+        snow_line: params.snow_line,
+    };
+    let maps = ground::maps(&ground, land, 1024);
+    let linear = |c: u8| libm::powf(f32::from(c) / 255.0, 2.2);
+    let field = maps.color_srgb.data.chunks_exact(3).map(|c| [linear(c[0]), linear(c[1]), linear(c[2])]).collect();
+    Paint { field, apron: ground::apron_colors(&ground, land) }
 }
 
 /// North at the top, hillshaded from the north-west, 400×400.
-fn plan(land: &Landform, colors: &[[f32; 3]]) -> Vec<u8> {
+fn plan(land: &Landform, colors: &Paint) -> Vec<u8> {
     let mut out = Vec::new();
     for j in 0..400 {
         for i in 0..400 {
@@ -148,7 +172,7 @@ fn plan(land: &Landform, colors: &[[f32; 3]]) -> Vec<u8> {
 }
 
 /// From the south, 160 m above the highest land, or standing in the middle, 720×400.
-fn view(land: &Landform, colors: &[[f32; 3]]) -> Vec<u8> {
+fn view(land: &Landform, colors: &Paint) -> Vec<u8> {
     let (_, hi) = land.field.range_m();
     let eye = [0.0, hi * 0.8 + 120.0, 820.0];
     let mut out = Vec::new();
@@ -161,7 +185,7 @@ fn view(land: &Landform, colors: &[[f32; 3]]) -> Vec<u8> {
     out
 }
 
-fn cast(land: &Landform, colors: &[[f32; 3]], eye: [f32; 3], way: [f32; 3]) -> [u8; 3] {
+fn cast(land: &Landform, colors: &Paint, eye: [f32; 3], way: [f32; 3]) -> [u8; 3] {
     let mut t = 30.0;
     while t < 5000.0 {
         let p = [eye[0] + way[0] * t, eye[1] + way[1] * t, eye[2] + way[2] * t];
@@ -181,15 +205,20 @@ fn height(land: &Landform, x: f32, z: f32) -> f32 {
     if x.abs() < 512.0 && z.abs() < 512.0 { land.field.height_m(x, z) } else { land.apron.height_m(x, z) }
 }
 
-fn shade(land: &Landform, colors: &[[f32; 3]], x: f32, z: f32) -> [u8; 3] {
+fn shade(land: &Landform, colors: &Paint, x: f32, z: f32) -> [u8; 3] {
     let inside = x.abs() < 512.0 && z.abs() < 512.0;
     let e = if inside { 2.0 } else { 40.0 };
     let (dx, dz) = (height(land, x + e, z) - height(land, x - e, z), height(land, x, z + e) - height(land, x, z - e));
     let normal = glam::Vec3::new(-dx, 2.0 * e, -dz).normalize();
-    let light = normal.dot(glam::Vec3::new(-0.6, 0.6, -0.45).normalize()).max(0.0) * 2.2 + 0.35 * normal.y;
-    let side = (colors.len() as f32).sqrt() as usize;
-    let at = |v: f32| (((v + 512.0) / 1024.0 * side as f32) as usize).min(side - 1);
-    let mut c = if inside { colors[at(z) * side + at(x)] } else { [0.2, 0.24, 0.14] };
+    let light = normal.dot(glam::Vec3::new(-0.6, 0.6, -0.45).normalize()).max(0.0) * 2.6 + 0.55 * normal.y;
+    let at = |v: f32| ((v + 512.0) as usize).min(1023);
+    let far = |v: f32| ((v / 64.0 + 64.5) as usize).min(128);
+    let mut c = if inside {
+        colors.field[at(z) * 1024 + at(x)]
+    } else {
+        let [r, g, b, _] = colors.apron[far(z) * 129 + far(x)];
+        [r, g, b].map(|c| f32::from(c) / 255.0)
+    };
     let depth = land.water_level_m.unwrap_or(-1e9) - height(land, x, z);
     if depth > 0.0 {
         c = [0.04, 0.09, 0.12].map(|v| v + 0.1 / (1.0 + depth));
