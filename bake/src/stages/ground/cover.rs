@@ -48,13 +48,14 @@ const SNOW: Rgb = [0.80, 0.83, 0.87];
 const WET_MUD: Rgb = [0.070, 0.055, 0.038];
 const SAND: Rgb = [0.37, 0.30, 0.20];
 const GRAVEL: Rgb = [0.19, 0.175, 0.155];
-/// Grass from lush to dry; climate and moisture choose between neighbours.
-const GRASS: [Rgb; 5] = [
-    [0.026, 0.062, 0.014],
-    [0.046, 0.088, 0.020],
-    [0.082, 0.108, 0.028],
-    [0.140, 0.128, 0.046],
-    [0.215, 0.172, 0.075],
+/// Grass from lush to dry and at last to bare sand; climate and moisture choose between neighbours.
+const GRASS: [Rgb; 6] = [
+    [0.030, 0.056, 0.016],
+    [0.048, 0.076, 0.023],
+    [0.078, 0.094, 0.033],
+    [0.130, 0.120, 0.052],
+    [0.205, 0.168, 0.080],
+    [0.290, 0.230, 0.135],
 ];
 /// Heath and moss, which grow in patches of their own.
 const HEATH: Rgb = [0.082, 0.060, 0.034];
@@ -74,6 +75,8 @@ pub(super) struct Climate {
     relief_m: f32,
     lowest_m: f32,
     talus: f32,
+    /// Tangent of the slope from which on grass finds no hold.
+    bare_slope: f32,
     /// 0 lush, 1 arid.
     dryness: f32,
     rock: Rgb,
@@ -91,12 +94,14 @@ impl Climate {
         let kind = (chance(2) * ROCKS.len() as f32) as usize;
         let other = (kind + 1 + (chance(3) * 4.0) as usize) % ROCKS.len();
         let rock = ROCKS[kind.min(ROCKS.len() - 1)];
+        let talus = libm::tanf(params.talus_angle_deg.to_radians());
         Self {
             water_m: land.water_level_m.unwrap_or(lo - 1e4),
             snow_line_m: land.snow_line_m,
             relief_m: (hi - lo).max(1.0),
             lowest_m: lo,
-            talus: libm::tanf(params.talus_angle_deg.to_radians()),
+            talus,
+            bare_slope: 0.42 + 0.5 * talus,
             dryness,
             rock,
             rock_band: lerp(rock, ROCKS[other], 0.45),
@@ -110,7 +115,7 @@ impl Climate {
         let broken = 0.55 * n.broad + 0.35 * n.fine;
         // Grass holds on to about 37°, less on crests and outcrops, more where soil has gathered.
         let bare = t.slope + 0.10 * broken + 0.09 * t.outcrop - 0.10 * t.hollow - 0.06 * t.deposit;
-        let rock = step(0.68, 0.84, bare);
+        let rock = step(self.bare_slope, self.bare_slope + 0.18, bare);
         let loose = t.deposit + 0.22 * broken + 0.1 * t.outcrop;
         let scree = step(0.46, 0.62, loose) * step(0.52, 0.74, (t.slope + 0.10 * broken) * 0.62 / self.talus.max(0.3));
         let above_water = t.height_m - self.water_m;
@@ -130,11 +135,11 @@ impl Climate {
     #[inline]
     fn snow(&self, t: &Traits, broken: f32) -> f32 {
         let spread_m = 0.05 * self.relief_m + 2.0;
-        let wander = 1.1 * t.patch + 0.8 * t.tuft + 0.9 * broken + 1.2 * t.hollow - 1.4 * (t.slope - 0.5);
+        let wander = 1.1 * t.patch + 0.8 * t.tuft + 0.9 * broken + 1.2 * t.hollow - 1.0 * (t.slope - 0.6);
         let depth = (t.height_m - self.snow_line_m) / spread_m + wander;
         let high = ((t.height_m - self.snow_line_m) / (6.0 * spread_m)).clamp(0.0, 1.0);
         // Higher up, snow clings to steeper rock.
-        let holds = 0.85 + 0.35 * high + 0.16 * broken + 0.15 * t.hollow;
+        let holds = 0.8 + 0.45 * high + 0.16 * broken + 0.15 * t.hollow;
         step(-0.1, 0.25, depth) * (1.0 - step(holds, holds + 0.16, t.slope)) * step(0.0, 0.4, t.height_m - self.water_m)
     }
 
@@ -165,16 +170,16 @@ impl Climate {
     fn grass(&self, t: &Traits, n: &Noise) -> Rgb {
         let altitude = (t.height_m - self.lowest_m) / self.relief_m;
         let moist = 0.75 * t.flow + 0.35 * t.hollow + 0.12 * t.deposit;
-        let dry = 0.9 + 1.9 * self.dryness + 0.85 * t.patch + 0.45 * t.tuft + 0.5 * altitude - 1.5 * (moist - 0.25)
+        let dry = 0.7 + 2.9 * self.dryness + 1.0 * t.patch + 0.45 * t.tuft + 0.5 * altitude - 1.5 * (moist - 0.25)
             + 0.35 * t.slope
-            + 0.40 * n.broad
-            + 0.45 * n.fine
-            + 0.5 * n.grain;
-        let dry = dry.max(0.0).min(3.999);
+            + 0.42 * n.broad
+            + 0.34 * n.fine
+            + 0.25 * n.grain;
+        let dry = dry.max(0.0).min(4.999);
         let k = dry as usize;
         let grass = lerp(GRASS[k], GRASS[k + 1], dry - k as f32);
         let heath = step(0.45, 0.85, t.outcrop - 0.5 * t.patch + 0.3 * n.broad) * 0.6;
-        scale(lerp(grass, HEATH, heath), 1.0 + 0.22 * n.fine + 0.30 * n.grain)
+        scale(lerp(grass, HEATH, heath), 1.0 + 0.16 * n.fine + 0.10 * n.broad + 0.18 * n.grain)
     }
 
     /// Shores and beds: wet and dark at the water, paler above and in deeper water.

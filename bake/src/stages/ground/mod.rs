@@ -21,7 +21,7 @@ use crate::model::{GroundMaps, Image8, Landform};
 use cover::{Climate, Noise};
 use grain::Grain;
 pub use textures::textures;
-use traits::{Traits, TraitsMap};
+use traits::{Patches, Traits, TraitsMap};
 
 /// The genes that colour the ground; names, ranges and meanings as in the parameter space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,7 +38,7 @@ pub struct GroundParams {
 pub fn maps(params: &GroundParams, land: &Landform, side_px: u32) -> GroundMaps {
     let side_px = side_px.max(1);
     let climate = Climate::new(params, land);
-    let traits = TraitsMap::new(params, land);
+    let traits = TraitsMap::new(&Patches::new(params.terrain_seed, land.field.extent_m()), land);
     let grain = Grain::new(params.terrain_seed, side_px);
     let encode = SrgbTable::new();
     let mut color_srgb = Image8::new(side_px, side_px, 3);
@@ -63,7 +63,7 @@ pub fn maps(params: &GroundParams, land: &Landform, side_px: u32) -> GroundMaps 
 /// the field's border they are the mean of the map around.
 pub fn apron_colors(params: &GroundParams, land: &Landform) -> Vec<[u8; 4]> {
     let climate = Climate::new(params, land);
-    let traits = TraitsMap::new(params, land);
+    let patches = Patches::new(params.terrain_seed, land.field.extent_m());
     let apron = &land.apron;
     let half_m = 0.5 * land.field.extent_m();
     let place = |k: u32| (k as f32 - 0.5 * (apron.side - 1) as f32) * apron.spacing_m;
@@ -73,12 +73,15 @@ pub fn apron_colors(params: &GroundParams, land: &Landform) -> Vec<[u8; 4]> {
         let (x, z) = (place(i), place(j));
         let (inner_x, inner_z) = (x.clamp(-half_m, half_m), z.clamp(-half_m, half_m));
         let away_m = (x - inner_x).abs().max((z - inner_z).abs());
-        let own = || mean_color(&climate, |_| traits::far(params, land, i, j));
+        let own = || {
+            let here = traits::far(params, land, i, j);
+            mean_color(&climate, |_| here)
+        };
         let border = || {
             mean_color(&climate, |s| {
                 let (dx, dz) = ((s % 4) as f32 - 1.5, (s / 4) as f32 - 1.5);
                 let at = |v: f32, d: f32| ((v + d * 14.0) / (2.0 * half_m) + 0.5).clamp(0.0, 1.0);
-                traits.at(at(inner_x, dx), at(inner_z, dz))
+                traits::near(&patches, land, at(inner_x, dx), at(inner_z, dz))
             })
         };
         let t = (away_m / 300.0).min(1.0);

@@ -47,39 +47,29 @@ pub(super) struct TraitsMap {
     values: Vec<[f32; COUNT]>,
 }
 
+/// Samples of the field between those that traits are kept for.
+fn stride(land: &Landform) -> u32 {
+    ((land.field.side - 1) / (MOST - 1)).max(1)
+}
+
 impl TraitsMap {
-    pub fn new(params: &GroundParams, land: &Landform) -> Self {
-        let step = ((land.field.side - 1) / (MOST - 1)).max(1);
+    pub fn new(patches: &Patches, land: &Landform) -> Self {
+        let step = stride(land);
         let side = (land.field.side - 1) / step + 1;
-        let patches = Patches::new(params.terrain_seed, land.field.extent_m());
         let mut values = vec![[0.0; COUNT]; (side * side) as usize];
         values.par_chunks_mut(side as usize).enumerate().for_each(|(j, row)| {
             for (i, v) in row.iter_mut().enumerate() {
-                let (i, j) = (i as u32 * step, j as u32 * step);
-                let at = (j * land.field.side + i) as usize;
-                let (slope, hollow) = shape_at(&land.field, i, j, step);
-                let last = (land.field.side - 1) as f32;
-                let [patch, tuft, outcrop] = patches.at(i as f32 / last, j as f32 / last);
-                *v = [land.field.heights_m[at], slope, land.flow[at], land.deposit[at], hollow, patch, tuft, outcrop];
+                *v = sample(patches, land, i as u32 * step, j as u32 * step, step);
             }
         });
         Self { side: side as usize, values }
     }
 
-    /// The traits at (u, v) in 0..1 over the field.
-    pub fn at(&self, u: f32, v: f32) -> Traits {
-        self.row(v).at(u)
-    }
-
     /// The traits along a row of constant v.
     pub fn row(&self, v: f32) -> TraitsRow<'_> {
-        let (j, f) = self.cell(v);
+        let (j, f) = cell(v, self.side);
         let row = |j: usize| &self.values[j * self.side..][..self.side];
         TraitsRow { north: row(j), south: row(j + 1), f }
-    }
-
-    fn cell(&self, u: f32) -> (usize, f32) {
-        cell(u, self.side)
     }
 }
 
@@ -112,6 +102,21 @@ impl TraitsRow<'_> {
     }
 }
 
+/// Traits of the sample of the field nearest to (u, v) in 0..1.
+pub(super) fn near(patches: &Patches, land: &Landform, u: f32, v: f32) -> Traits {
+    let at = |u: f32| (u * (land.field.side - 1) as f32 + 0.5) as u32;
+    Traits::from_array(sample(patches, land, at(u), at(v), stride(land)))
+}
+
+/// Traits of sample (i, j) of the field, as an array.
+fn sample(patches: &Patches, land: &Landform, i: u32, j: u32, step: u32) -> [f32; COUNT] {
+    let at = (j * land.field.side + i) as usize;
+    let (slope, hollow) = shape_at(&land.field, i, j, step);
+    let last = (land.field.side - 1) as f32;
+    let [patch, tuft, outcrop] = patches.at(i as f32 / last, j as f32 / last);
+    [land.field.heights_m[at], slope, land.flow[at], land.deposit[at], hollow, patch, tuft, outcrop]
+}
+
 /// Traits of a sample of the apron, whose spacing hides much of the slope.
 pub(super) fn far(params: &GroundParams, land: &Landform, i: u32, j: u32) -> Traits {
     let (slope, hollow) = shape_at(&land.apron, i, j, 1);
@@ -142,14 +147,14 @@ fn shape_at(field: &Heightfield, i: u32, j: u32, step: u32) -> (f32, f32) {
 }
 
 /// Three layers of noise on a coarse grid.
-struct Patches {
+pub(super) struct Patches {
     values: Vec<[f32; 3]>,
 }
 
 impl Patches {
     const SIDE: usize = 129;
 
-    fn new(terrain_seed: u32, extent_m: f32) -> Self {
+    pub fn new(terrain_seed: u32, extent_m: f32) -> Self {
         let seed = |item| noise_seed(terrain_seed.into(), "ground", item);
         let seeds = [seed(0), seed(1), seed(2)];
         let spacing_m = extent_m / (Self::SIDE - 1) as f32;

@@ -11,7 +11,7 @@ use crate::noise::hash;
 use crate::seed::noise_seed;
 
 /// Longest way of a drop in steps of one sample.
-const LIFE: u32 = 40;
+const LIFE: u32 = 32;
 /// Part of its direction that a drop keeps from step to step.
 const INERTIA: f32 = 0.25;
 /// Sediment that a drop of unit water holds per metre of descent and unit speed.

@@ -1,6 +1,10 @@
 //! Position in metres → raw height in metres, for any place on the field or beyond it: a multifractal of rotated
 //! octaves, folded by domain warping, on a broad massif where the relief is too great for the landforms' size.
 
+use std::ops::Range;
+
+use rayon::prelude::*;
+
 use super::grid::{Grid, mix, smoothstep};
 use super::{FIELD_M, LandParams};
 use crate::noise::gradient2;
@@ -8,8 +12,10 @@ use crate::seed::noise_seed;
 
 /// Wavelength in metres of the finest octave.
 const FINEST_M: f32 = 6.0;
+/// Wavelength in metres from which on octaves are computed on every second sample only.
+const BROAD_M: f32 = 40.0;
 /// Greatest part of its wavelength that a landform may rise before a massif carries the rest of the relief.
-const STEEPNESS: f32 = 0.3;
+const STEEPNESS: f32 = 0.21;
 
 /// The raw land as a function of position.
 pub(super) struct Shape {
@@ -19,7 +25,6 @@ pub(super) struct Shape {
     fold_m: f32,
     /// Part of the relief that the landforms have; the massif has the rest.
     share: f32,
-    ridged: f32,
     offset: f32,
     terraces: Terraces,
     relief_m: f32,
@@ -30,11 +35,25 @@ pub(super) struct Shape {
     lift: f32,
 }
 
+/// The sum so far at a place.
+#[derive(Clone, Copy, Default)]
+struct Sum {
+    /// The place in metres after folding.
+    u: f32,
+    v: f32,
+    height: f32,
+    /// How much the next octave counts.
+    weight: f32,
+    massif: f32,
+}
+
 /// One octave of noise: its own seed, direction and place, so that no lattice shows.
 struct Octave {
     seed: u32,
     wavelength_m: f32,
     amplitude: f32,
+    /// 0 rounded, 1 ridged.
+    ridged: f32,
     /// Lattice units per metre along the octave's own axes, as cosine and sine.
     turn: [f32; 2],
     shift: [f32; 2],
@@ -48,7 +67,7 @@ impl Octave {
         let frequency = 2.0 / wavelength_m;
         let shift = [(seed >> 20) as f32 * 0.037, (seed >> 8 & 0xFFF) as f32 * 0.037];
         let turn = [libm::cosf(angle) * frequency, libm::sinf(angle) * frequency];
-        Self { seed, wavelength_m, amplitude, turn, shift }
+        Self { seed, wavelength_m, amplitude, ridged: 0.0, turn, shift }
     }
 
     #[inline]
@@ -74,11 +93,13 @@ impl Shape {
         let gain = libm::powf(p.lacunarity, -p.hurst);
         let share = (STEEPNESS * p.wavelength_m / p.relief_m).min(1.0);
         let mut octaves = Vec::new();
-        let (mut wavelength_m, mut amplitude) = (p.wavelength_m, 1.0f32);
+        let (mut wavelength_m, mut amplitude, mut ridged) = (p.wavelength_m, 1.0f32, p.ridged);
         // An octave lower than 2 cm is not worth its time.
         while wavelength_m >= FINEST_M && amplitude * p.relief_m > 0.04 {
             let walkable = amplitude.min(1.6 * walkable_amplitude_m(wavelength_m) / (share * p.relief_m));
-            octaves.push(Octave::new(seed(0), octaves.len() as u32, wavelength_m, walkable));
+            let octave = Octave::new(seed(0), octaves.len() as u32, wavelength_m, walkable);
+            octaves.push(Octave { ridged, ..octave });
+            ridged *= 0.88;
             wavelength_m /= p.lacunarity;
             amplitude *= gain;
         }
@@ -90,7 +111,6 @@ impl Shape {
             fold: [fold(0, 0.9, 1.0), fold(1, 0.9, 1.0), fold(2, 0.4, 0.4), fold(3, 0.4, 0.4)],
             fold_m: 0.32 * p.domain_warp * p.wavelength_m,
             share,
-            ridged: p.ridged,
             offset: p.offset,
             terraces: Terraces {
                 strength: p.terraces,
@@ -107,14 +127,16 @@ impl Shape {
 
     /// Fits the land to its relief over the field and lifts a middle that would drown; the raw heights in metres.
     pub fn fit(&mut self, side: u32) -> Grid {
-        let mut grid = Grid::from_field(side, |x, z| self.multifractal(x, z, 0.0));
+        let mut grid = self.multifractal_grid(side);
         self.range = grid.range();
         self.lift = self.needed_lift();
-        let spacing_m = grid.spacing_m;
+        let (n, spacing_m) = (side as usize, grid.spacing_m);
         let place = |i: usize| (i as f32 - 0.5 * (side - 1) as f32) * spacing_m;
-        for (k, h) in grid.values.iter_mut().enumerate() {
-            *h = self.finish(*h, place(k % side as usize), place(k / side as usize));
-        }
+        grid.values.par_chunks_mut(n).enumerate().for_each(|(j, row)| {
+            for (i, h) in row.iter_mut().enumerate() {
+                *h = self.finish(*h, place(i), place(j));
+            }
+        });
         grid
     }
 
@@ -128,29 +150,69 @@ impl Shape {
         self.finish(self.multifractal(x, z, spacing_m), x, z)
     }
 
+    /// The multifractal over the field: its broad octaves at half the resolution, cubic between.
+    fn multifractal_grid(&self, side: u32) -> Grid {
+        let fine = self.octaves.iter().take_while(|o| o.wavelength_m >= BROAD_M).count();
+        let half = side / 2 + 1;
+        let spacing_m = FIELD_M / (half - 1) as f32;
+        let place = |k: usize| (k as f32 - 0.5 * (half - 1) as f32) * spacing_m;
+        let mut sums: Vec<Sum> = vec![Sum::default(); (half * half) as usize];
+        sums.par_chunks_mut(half as usize).enumerate().for_each(|(j, row)| {
+            for (i, sum) in row.iter_mut().enumerate() {
+                *sum = self.start(place(i), place(j));
+                self.add(sum, 0..fine, 0.0);
+            }
+        });
+        let layer = |f: fn(&Sum) -> f32| {
+            Grid { side: half, spacing_m, values: sums.iter().map(f).collect() }.resized(side).values
+        };
+        let (u, v) = (layer(|s| s.u), layer(|s| s.v));
+        let (height, weight, massif) = (layer(|s| s.height), layer(|s| s.weight), layer(|s| s.massif));
+        let mut values = vec![0.0; height.len()];
+        values.par_iter_mut().enumerate().for_each(|(k, out)| {
+            let mut sum = Sum { u: u[k], v: v[k], height: height[k], weight: weight[k], massif: massif[k] };
+            self.add(&mut sum, fine..self.octaves.len(), 0.0);
+            *out = self.total(&sum);
+        });
+        Grid { side, spacing_m: 0.5 * spacing_m, values }
+    }
+
     /// A sum of octaves, each weaker where the land so far is low (Musgrave's hybrid multifractal).
     fn multifractal(&self, x: f32, z: f32, spacing_m: f32) -> f32 {
+        let mut sum = self.start(x, z);
+        self.add(&mut sum, 0..self.octaves.len(), spacing_m);
+        self.total(&sum)
+    }
+
+    /// Folds the plane: where the octaves are read for a place.
+    fn start(&self, x: f32, z: f32) -> Sum {
         let [a, b, c, d] = &self.fold;
         let (mut u, mut v) = (x, z);
         if self.fold_m > 0.0 {
             u += self.fold_m * (a.at(x, z) + 0.4 * c.at(x, z));
             v += self.fold_m * (b.at(x, z) + 0.4 * d.at(x, z));
         }
-        let (mut sum, mut weight, mut ridged) = (0.0, 1.0, self.ridged);
-        for octave in &self.octaves {
+        let massif = if self.share < 1.0 { self.massif[0].at(x, z) + 0.4 * self.massif[1].at(x, z) } else { 0.0 };
+        Sum { u, v, height: 0.0, weight: 1.0, massif }
+    }
+
+    /// Adds some of the octaves.
+    fn add(&self, sum: &mut Sum, octaves: Range<usize>, spacing_m: f32) {
+        for octave in &self.octaves[octaves] {
             let kept = if spacing_m > 0.0 { (octave.wavelength_m / spacing_m - 2.0).clamp(0.0, 1.0) } else { 1.0 };
             if kept == 0.0 {
                 break;
             }
-            let round = octave.at(u, v) * 1.25;
+            let round = octave.at(sum.u, sum.v) * 1.25;
             // A ridge where the noise crosses zero, rounded just enough to be walked over.
             let ridge = 1.0 - 2.4 * (round * round + 0.0009).sqrt();
-            sum += octave.amplitude * weight * kept * mix(round, ridge, ridged);
-            weight = mix(1.0, smoothstep(-0.7, 0.6, sum), 0.35 + 0.6 * self.offset);
-            ridged *= 0.88;
+            sum.height += octave.amplitude * sum.weight * kept * mix(round, ridge, octave.ridged);
+            sum.weight = mix(1.0, smoothstep(-0.7, 0.6, sum.height), 0.35 + 0.6 * self.offset);
         }
-        let massif = if self.share < 1.0 { self.massif[0].at(x, z) + 0.4 * self.massif[1].at(x, z) } else { 0.0 };
-        mix(massif * 1.4, sum, self.share)
+    }
+
+    fn total(&self, sum: &Sum) -> f32 {
+        mix(sum.massif * 1.4, sum.height, self.share)
     }
 
     /// From a raw value to metres: fitted, flattened where low, stepped, lifted in the middle.

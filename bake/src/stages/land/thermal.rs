@@ -5,8 +5,11 @@ use rayon::prelude::*;
 
 use super::LandParams;
 use super::grid::{Grid, smoothstep};
-use crate::noise::fbm2;
+use crate::noise::{fbm2, gradient2};
 use crate::seed::noise_seed;
+
+/// Height in metres of ledges and ribs in bare rock.
+const RIBS_M: f32 = 2.2;
 
 /// Slides the land and adds what came to rest to the `loose` layer.
 pub(super) fn slide(land: &mut Grid, loose: &mut Grid, params: &LandParams) {
@@ -19,6 +22,7 @@ pub(super) fn slide(land: &mut Grid, loose: &mut Grid, params: &LandParams) {
         }
         settle(loose, &before, land);
     }
+    roughen(land, loose, params);
 }
 
 /// Adds to the loose layer what `after` has gained over `before`; what has gone is gone.
@@ -26,6 +30,28 @@ pub(super) fn settle(loose: &mut Grid, before: &Grid, after: &Grid) {
     for ((l, b), a) in loose.values.iter_mut().zip(&before.values).zip(&after.values) {
         *l = (*l + a - b).max(0.0);
     }
+}
+
+/// Gives bare rock on steep slopes its ledges and ribs, which stand up to `RIBS_M`.
+fn roughen(land: &mut Grid, loose: &Grid, params: &LandParams) {
+    let n = land.side as usize;
+    let seed = noise_seed(params.terrain_seed.into(), "land", 6);
+    let old = land.values.clone();
+    let (spacing_m, talus) = (land.spacing_m, libm::tanf(params.talus_angle_deg.to_radians()));
+    land.values.par_chunks_mut(n).enumerate().skip(1).take(n - 2).for_each(|(j, row)| {
+        for i in 1..n - 1 {
+            let k = j * n + i;
+            let (dx, dz) = (old[k + 1] - old[k - 1], old[k + n] - old[k - n]);
+            let slope = (dx * dx + dz * dz).sqrt() / (2.0 * spacing_m);
+            let bare = smoothstep(0.85 * talus, 1.4 * talus, slope) * (1.0 - smoothstep(0.1, 0.5, loose.values[k]));
+            if bare > 0.0 {
+                let (x, z) = (i as f32 * spacing_m, j as f32 * spacing_m);
+                let broad = gradient2(seed, x / 19.0 + old[k] / 40.0, z / 19.0, 0);
+                let fine = gradient2(seed ^ 1, x / 7.5, z / 7.5 + old[k] / 15.0, 0);
+                row[i] += RIBS_M * bare * ((0.5 - broad.abs() * 1.6) + 0.4 * (0.5 - fine.abs() * 1.6));
+            }
+        }
+    });
 }
 
 /// How much steeper than loose stone the rock stands here, 0 to 1.

@@ -4,7 +4,7 @@ use super::LandParams;
 use super::grid::{Grid, mix};
 
 /// Part of the field that stays dry at least.
-const DRY: f32 = 0.45;
+const DRY: f32 = 0.5;
 /// Part of the land around the middle that stays dry.
 const DRY_MIDDLE: f32 = 0.62;
 /// Radius in metres of what counts as the middle, where one begins to walk.
