@@ -1,1 +1,131 @@
-//! Landform → what the ground looks like.
+//! Turns the landform into what the ground looks like: an albedo map and blend weights over the field (one texel a
+//! metre at 1024²), colours for the apron, and five tiling detail textures. Albedo holds no light: linear
+//! reflectances of grass, rock, scree, snow, mud and sand as measured outdoors, written as sRGB where 8-bit.
+//!
+//! What grows or lies where follows slope, drained area, deposits, altitude and distance to water, as in
+//! Hammes, "Modeling of ecosystems as a data source for real-time terrain rendering" (2001), with borders broken
+//! up by noise of several sizes.
+
+mod cover;
+mod grain;
+mod patterns;
+#[cfg(test)]
+mod tests;
+mod textures;
+mod traits;
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::model::{GroundMaps, Image8, Landform};
+use cover::{Climate, Noise};
+use grain::Grain;
+pub use textures::textures;
+use traits::{Patches, Traits, TraitsMap};
+
+/// The genes that colour the ground; names, ranges and meanings as in the parameter space.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GroundParams {
+    /// Which land of its kind: the kind of rock, how dry the climate is, where patches lie.
+    pub terrain_seed: u32,
+    /// Steepest slope in degrees that loose stone holds: scree lies up to it.
+    pub talus_angle_deg: f32,
+    /// Altitude of the snow as part of the relief: a low snow line means a cold land.
+    pub snow_line: f32,
+}
+
+/// Paints the field on `side_px`² texels: albedo and blend weights.
+pub fn maps(params: &GroundParams, land: &Landform, side_px: u32) -> GroundMaps {
+    let side_px = side_px.max(1);
+    let climate = Climate::new(params, land);
+    let traits = TraitsMap::new(&Patches::new(params.terrain_seed, land.field.extent_m()), land);
+    let grain = Grain::new(params.terrain_seed, side_px);
+    let encode = SrgbTable::new();
+    let mut color_srgb = Image8::new(side_px, side_px, 3);
+    let mut weights = Image8::new(side_px, side_px, 4);
+    let n = side_px as usize;
+    let rows = color_srgb.data.par_chunks_mut(n * 3).zip(weights.data.par_chunks_mut(n * 4));
+    rows.enumerate().for_each(|(j, (colors, weights))| {
+        let row = traits.row((j as f32 + 0.5) / side_px as f32);
+        for i in 0..n {
+            let here = row.at((i as f32 + 0.5) / side_px as f32);
+            let noise = grain.at(i, j);
+            let cover = climate.cover(&here, &noise);
+            let color = climate.color(&here, &cover, &noise);
+            colors[3 * i..][..3].copy_from_slice(&color.map(|c| encode.byte(c)));
+            weights[4 * i..][..4].copy_from_slice(&cover.bytes());
+        }
+    });
+    GroundMaps { color_srgb, weights }
+}
+
+/// Colours the apron: linear red, green, blue and 255 for each of its samples, row by row, 0 to 255 for 0 to 1. On
+/// the field's border they are the mean of the map around.
+pub fn apron_colors(params: &GroundParams, land: &Landform) -> Vec<[u8; 4]> {
+    let climate = Climate::new(params, land);
+    let patches = Patches::new(params.terrain_seed, land.field.extent_m());
+    let apron = &land.apron;
+    let half_m = 0.5 * land.field.extent_m();
+    let place = |k: u32| (k as f32 - 0.5 * (apron.side - 1) as f32) * apron.spacing_m;
+    let mut colors = vec![[0; 4]; (apron.side * apron.side) as usize];
+    colors.par_iter_mut().enumerate().for_each(|(k, color)| {
+        let (i, j) = (k as u32 % apron.side, k as u32 / apron.side);
+        let (x, z) = (place(i), place(j));
+        let (inner_x, inner_z) = (x.clamp(-half_m, half_m), z.clamp(-half_m, half_m));
+        let away_m = (x - inner_x).abs().max((z - inner_z).abs());
+        let own = || {
+            let here = traits::far(params, land, i, j);
+            mean_color(&climate, |_| here)
+        };
+        let border = || {
+            mean_color(&climate, |s| {
+                let (dx, dz) = ((s % 4) as f32 - 1.5, (s / 4) as f32 - 1.5);
+                let at = |v: f32, d: f32| ((v + d * 14.0) / (2.0 * half_m) + 0.5).clamp(0.0, 1.0);
+                traits::near(&patches, land, at(inner_x, dx), at(inner_z, dz))
+            })
+        };
+        let t = (away_m / 300.0).min(1.0);
+        let linear = match t {
+            0.0 => border(),
+            1.0 => own(),
+            t => {
+                let (a, b) = (border(), own());
+                [0, 1, 2].map(|c| a[c] + (b[c] - a[c]) * t)
+            }
+        };
+        let [r, g, b] = linear.map(|c| (c * 255.0 + 0.5) as u8);
+        *color = [r, g, b, 255];
+    });
+    colors
+}
+
+/// The mean of what sixteen texels with different grain would show.
+fn mean_color(climate: &Climate, traits: impl Fn(u32) -> Traits) -> [f32; 3] {
+    let mut sum = [0.0; 3];
+    for s in 0..16 {
+        let here = traits(s);
+        let noise = Noise::sample(s);
+        let color = climate.color(&here, &climate.cover(&here, &noise), &noise);
+        sum = [0, 1, 2].map(|c| sum[c] + color[c] * 0.0625);
+    }
+    sum
+}
+
+/// Linear reflectance to sRGB bytes by table: 4096 steps, finer than a byte everywhere above 0.001.
+struct SrgbTable(Vec<u8>);
+
+impl SrgbTable {
+    fn new() -> Self {
+        Self((0..4096).map(|k| (255.0 * srgb_from_linear((k as f32 + 0.5) / 4096.0) + 0.5) as u8).collect())
+    }
+
+    #[inline]
+    fn byte(&self, linear: f32) -> u8 {
+        self.0[((linear * 4096.0) as usize).min(4095)]
+    }
+}
+
+/// The sRGB transfer function (IEC 61966-2-1).
+fn srgb_from_linear(c: f32) -> f32 {
+    if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * libm::powf(c, 1.0 / 2.4) - 0.055 }
+}

@@ -1,1 +1,118 @@
-//! Parameters → the shape of the land.
+//! Turns terrain genes into the shape of the land: heights in metres over 1024 m × 1024 m, where water gathers and
+//! loose stone lies, a lake, a snow line, and a coarse apron that carries the land to the horizon.
+//!
+//! A warped multifractal (Musgrave, "Texturing and Modeling", 2003) gives the raw land; rivers cut it by the stream
+//! power law (Braun & Willett 2013), raindrops carve gullies and lay down fans (Beyer 2015), and slopes slide to
+//! their angle of repose (Musgrave, Kolb & Mace 1989). All erosion works on fixed grids, whatever the size asked
+//! for, so that a valley keeps its place; finer sizes add finer noise. What erosion did along the border the apron
+//! follows, less and less with distance, so that valleys lead out of the field.
+
+mod apron;
+mod droplets;
+mod grid;
+#[cfg(test)]
+mod pictures;
+mod shape;
+mod streams;
+#[cfg(test)]
+mod tests;
+mod thermal;
+mod water;
+
+use serde::{Deserialize, Serialize};
+
+use crate::model::{Heightfield, Landform};
+use grid::Grid;
+use shape::Shape;
+
+/// Metres from edge to edge of the walkable field.
+pub const FIELD_M: f32 = 1024.0;
+/// Samples a side of the grid that droplets and sliding stone work on (2 m spacing).
+const FINE: u32 = 513;
+/// Samples a side of the grids that rivers work on, coarse to fine (8 m and 4 m spacing).
+const COARSE: [u32; 2] = [129, 257];
+
+/// The genes that shape the land; names, ranges and meanings as in the parameter space.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LandParams {
+    /// Which land of its kind.
+    pub terrain_seed: u32,
+    /// Height in metres from the lowest to the highest point of the field.
+    pub relief_m: f32,
+    /// Size in metres of the largest landforms.
+    pub wavelength_m: f32,
+    /// Smoothness H: amplitude falls by lacunarity^−H from octave to octave.
+    pub hurst: f32,
+    /// Frequency ratio from octave to octave.
+    pub lacunarity: f32,
+    /// 0 rounded hills, 1 sharp ridges.
+    pub ridged: f32,
+    /// Folding of the landforms, 0 to 1.
+    pub domain_warp: f32,
+    /// How flat lowlands stay compared with heights, 0 to 1.
+    pub offset: f32,
+    /// Steps in the slopes, 0 to 1.
+    pub terraces: f32,
+    /// Time that rivers had to cut valleys, in steps.
+    pub stream_power_steps: u32,
+    /// Raindrops over the whole field.
+    pub droplets: f32,
+    /// Steepest slope in degrees that loose stone holds.
+    pub talus_angle_deg: f32,
+    /// Level of the lake as part of the relief; 0 is dry.
+    pub water_level: f32,
+    /// Altitude of the snow as part of the relief; 1 is none.
+    pub snow_line: f32,
+}
+
+/// Shapes the land on a grid of `size`² samples; `size` is 2^k+1 and at least 3 (513, 1025 and 2049 are in use).
+/// The lowest point of the field lies at about 0 m, the highest at about `relief_m`.
+pub fn landform(params: &LandParams, size: u32) -> Landform {
+    let size = size.max(3);
+    let mut shape = Shape::new(params);
+    let raw = shape.fit(FINE);
+    let (worn, loose) = erode(params, &raw);
+    let level = water::Level::new(params, &worn);
+
+    let mut field = shape.sample(size, &raw);
+    grid::add_change(&mut field, &raw, &worn);
+    let mut apron = apron::heights(&shape, params);
+    apron::follow(&mut apron, &raw, &worn);
+    level.settle(&mut field.values);
+    level.settle(&mut apron.values);
+    apron::join(&mut apron, &field);
+
+    let flow = streams::flow(&worn, COARSE[1]);
+    let peak = apron.values.iter().chain(&field.values).fold(f32::MIN, |a, &b| a.max(b));
+    Landform {
+        flow: flow.resized(size).values,
+        deposit: loose.map(|m| m / (m + 0.4)).resized(size).values,
+        water_level_m: level.water_m,
+        snow_line_m: if params.snow_line >= 0.999 { peak + 1.0 } else { params.snow_line * params.relief_m },
+        field: into_field(field),
+        apron: into_field(apron),
+    }
+}
+
+fn into_field(grid: Grid) -> Heightfield {
+    Heightfield { side: grid.side, spacing_m: grid.spacing_m, heights_m: grid.values }
+}
+
+/// The raw land after rivers, rain and gravity, and the thickness in metres of the loose material that they left.
+fn erode(params: &LandParams, raw: &Grid) -> (Grid, Grid) {
+    let mut land = raw.clone();
+    let mut loose = raw.map(|_| 0.0);
+    let guard = grid::border_guard(FINE);
+    streams::carve_valleys(&mut land, &mut loose, params, COARSE);
+    droplets::rain(&mut land, &mut loose, &guard, params);
+    thermal::slide(&mut land, &mut loose, params);
+    rescale(&mut land, params.relief_m);
+    (land, loose)
+}
+
+/// Gives the worn land its full relief back.
+fn rescale(land: &mut Grid, relief_m: f32) {
+    let (lo, hi) = land.range();
+    let gain = relief_m / (hi - lo).max(1e-3);
+    land.values.iter_mut().for_each(|h| *h = (*h - lo) * gain);
+}

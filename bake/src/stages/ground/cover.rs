@@ -1,0 +1,229 @@
+//! Traits of a place and noise → how much grass, rock, scree, snow and mud cover it, and its colour as linear
+//! reflectance.
+
+use super::GroundParams;
+use super::traits::Traits;
+use crate::model::Landform;
+use crate::noise::hash01;
+use crate::seed::noise_seed;
+
+/// Noise at one texel, each about [-1, 1] but `grain`, which is even over [-0.5, 0.5].
+pub(super) struct Noise {
+    /// Features of 2 to 8 texels.
+    pub fine: f32,
+    /// Features of 8 to 40 texels.
+    pub broad: f32,
+    /// One value a texel.
+    pub grain: f32,
+}
+
+impl Noise {
+    /// One of sixteen samples that stand for all texels of an area.
+    pub fn sample(k: u32) -> Self {
+        let even = |salt: i32| hash01(91, k as i32, salt, 0) - 0.5;
+        Self { fine: even(1) * 1.2, broad: even(2) * 1.2, grain: 0.0 }
+    }
+}
+
+/// Parts of the ground, which sum to 1 with grass.
+pub(super) struct Cover {
+    rock: f32,
+    scree: f32,
+    snow: f32,
+    mud: f32,
+}
+
+impl Cover {
+    /// Blend weights as bytes: rock, scree, snow, mud; their sum is at most 255.
+    #[inline]
+    pub fn bytes(&self) -> [u8; 4] {
+        // Rounded down, so that four of them cannot pass 255.
+        [self.rock, self.scree, self.snow, self.mud].map(|w| (w * 255.0) as u8)
+    }
+}
+
+type Rgb = [f32; 3];
+
+const SNOW: Rgb = [0.80, 0.83, 0.87];
+const WET_MUD: Rgb = [0.070, 0.055, 0.038];
+const SAND: Rgb = [0.37, 0.30, 0.20];
+const GRAVEL: Rgb = [0.19, 0.175, 0.155];
+/// Grass from lush to dry and at last to bare sand; climate and moisture choose between neighbours.
+const GRASS: [Rgb; 6] = [
+    [0.030, 0.056, 0.016],
+    [0.048, 0.076, 0.023],
+    [0.078, 0.094, 0.033],
+    [0.130, 0.120, 0.052],
+    [0.205, 0.168, 0.080],
+    [0.290, 0.230, 0.135],
+];
+/// Heath and moss, which grow in patches of their own.
+const HEATH: Rgb = [0.082, 0.060, 0.034];
+/// Kinds of rock: granite, limestone, basalt, sandstone, slate.
+const ROCKS: [Rgb; 5] = [
+    [0.205, 0.195, 0.185],
+    [0.290, 0.275, 0.240],
+    [0.120, 0.115, 0.112],
+    [0.290, 0.205, 0.135],
+    [0.150, 0.158, 0.165],
+];
+
+/// What holds for the whole land.
+pub(super) struct Climate {
+    water_m: f32,
+    snow_line_m: f32,
+    relief_m: f32,
+    lowest_m: f32,
+    talus: f32,
+    /// Tangent of the slope from which on grass finds no hold.
+    bare_slope: f32,
+    /// 0 lush, 1 arid.
+    dryness: f32,
+    rock: Rgb,
+    rock_band: Rgb,
+    shore: Rgb,
+}
+
+impl Climate {
+    pub fn new(params: &GroundParams, land: &Landform) -> Self {
+        let seed = noise_seed(params.terrain_seed.into(), "ground climate", 0);
+        let (lo, hi) = land.field.range_m();
+        let chance = |salt| hash01(seed, salt, 0, 0);
+        // Where snow lies low it is cold and moist.
+        let dryness = (chance(1) * 0.95 - 0.35 * (0.8 - params.snow_line).max(0.0)).clamp(0.0, 1.0);
+        let kind = (chance(2) * ROCKS.len() as f32) as usize;
+        let other = (kind + 1 + (chance(3) * 4.0) as usize) % ROCKS.len();
+        let rock = ROCKS[kind.min(ROCKS.len() - 1)];
+        let talus = libm::tanf(params.talus_angle_deg.to_radians());
+        Self {
+            water_m: land.water_level_m.unwrap_or(lo - 1e4),
+            snow_line_m: land.snow_line_m,
+            relief_m: (hi - lo).max(1.0),
+            lowest_m: lo,
+            talus,
+            bare_slope: 0.42 + 0.5 * talus,
+            dryness,
+            rock,
+            rock_band: lerp(rock, ROCKS[other], 0.45),
+            shore: lerp(lerp(WET_MUD, GRAVEL, 0.5), SAND, step(0.25, 0.6, dryness)),
+        }
+    }
+
+    /// What covers a place.
+    #[inline]
+    pub fn cover(&self, t: &Traits, n: &Noise) -> Cover {
+        let broken = 0.55 * n.broad + 0.35 * n.fine;
+        // Grass holds on to about 37°, less on crests and outcrops, more where soil has gathered.
+        let bare = t.slope + 0.10 * broken + 0.09 * t.outcrop - 0.10 * t.hollow - 0.06 * t.deposit;
+        let rock = step(self.bare_slope, self.bare_slope + 0.18, bare);
+        let loose = t.deposit + 0.22 * broken + 0.1 * t.outcrop;
+        let scree = step(0.46, 0.62, loose) * step(0.52, 0.74, (t.slope + 0.10 * broken) * 0.62 / self.talus.max(0.3));
+        let above_water = t.height_m - self.water_m;
+        let shore = 1.0 - step(0.35, 0.75, above_water - 0.5 * broken - 0.3 * t.tuft - 0.35 * self.dryness);
+        let bed = step(0.74, 0.84, t.flow + 0.05 * broken) * (1.0 - step(0.25, 0.6, t.slope));
+        let mud = shore.max(bed);
+        let snow = self.snow(t, broken);
+        // Each lies over the ones before it.
+        let mut cover = Cover { rock: 0.0, scree: 0.0, snow: 0.0, mud };
+        cover.over(scree).scree += scree;
+        cover.over(rock).rock += rock;
+        cover.over(snow).snow += snow;
+        cover
+    }
+
+    /// Snow fills hollows below its line and slides off what is steep above it.
+    #[inline]
+    fn snow(&self, t: &Traits, broken: f32) -> f32 {
+        let spread_m = 0.05 * self.relief_m + 2.0;
+        let wander = 1.1 * t.patch + 0.8 * t.tuft + 0.9 * broken + 1.2 * t.hollow - 1.0 * (t.slope - 0.6);
+        let depth = (t.height_m - self.snow_line_m) / spread_m + wander;
+        let high = ((t.height_m - self.snow_line_m) / (6.0 * spread_m)).clamp(0.0, 1.0);
+        // Higher up, snow clings to steeper rock.
+        let holds = 0.8 + 0.45 * high + 0.16 * broken + 0.15 * t.hollow;
+        step(-0.1, 0.25, depth) * (1.0 - step(holds, holds + 0.16, t.slope)) * step(0.0, 0.4, t.height_m - self.water_m)
+    }
+
+    /// Its colour.
+    #[inline]
+    pub fn color(&self, t: &Traits, cover: &Cover, n: &Noise) -> Rgb {
+        let grass = 1.0 - cover.rock - cover.scree - cover.snow - cover.mud;
+        let mut color = [0.0; 3];
+        add(&mut color, self.grass(t, n), grass);
+        if cover.rock + cover.scree > 0.0 {
+            // Beds of another stone, tilted and bent, and stains that run down.
+            let bed = (t.height_m * 0.16 + 1.6 * t.outcrop + 0.7 * n.broad) * 0.5;
+            let bed = (bed - bed.floor() - 0.5).abs() * 2.0;
+            let stone = lerp(self.rock, self.rock_band, step(0.3, 0.7, bed));
+            let stone = scale(stone, 1.0 + 0.22 * n.broad + 0.20 * n.fine + 0.25 * n.grain);
+            add(&mut color, stone, cover.rock);
+            add(&mut color, scale(lerp(stone, GRAVEL, 0.35), 1.12 + 0.35 * n.grain), cover.scree);
+        }
+        if cover.mud > 0.0 {
+            add(&mut color, self.mud(t, n), cover.mud);
+        }
+        add(&mut color, scale(SNOW, 1.0 + 0.03 * n.broad + 0.05 * n.grain), cover.snow);
+        color.map(|c| if c > 0.0 { c } else { 0.0 })
+    }
+
+    /// Grass: lusher where water gathers, drier on crests and high up, in large patches of its own.
+    #[inline]
+    fn grass(&self, t: &Traits, n: &Noise) -> Rgb {
+        let altitude = (t.height_m - self.lowest_m) / self.relief_m;
+        let moist = 0.75 * t.flow + 0.35 * t.hollow + 0.12 * t.deposit;
+        let dry = 0.7 + 2.9 * self.dryness + 1.0 * t.patch + 0.45 * t.tuft + 0.5 * altitude - 1.5 * (moist - 0.25)
+            + 0.35 * t.slope
+            + 0.42 * n.broad
+            + 0.34 * n.fine
+            + 0.25 * n.grain;
+        let dry = dry.max(0.0).min(4.999);
+        let k = dry as usize;
+        let grass = lerp(GRASS[k], GRASS[k + 1], dry - k as f32);
+        let heath = step(0.45, 0.85, t.outcrop - 0.5 * t.patch + 0.3 * n.broad) * 0.6;
+        scale(lerp(grass, HEATH, heath), 1.0 + 0.16 * n.fine + 0.10 * n.broad + 0.18 * n.grain)
+    }
+
+    /// Shores and beds: wet and dark at the water, paler above and in deeper water.
+    #[inline]
+    fn mud(&self, t: &Traits, n: &Noise) -> Rgb {
+        let above = t.height_m - self.water_m;
+        let wet = 1.0 - step(0.05, 0.55, above + 0.15 * n.broad);
+        let dry_shore = lerp(self.shore, GRAVEL, step(0.3, 0.9, n.broad + 0.5 * t.tuft) * 0.6);
+        let mud = lerp(dry_shore, lerp(self.shore, WET_MUD, 0.6), wet.min(1.0));
+        let mud = lerp(mud, lerp(WET_MUD, self.shore, 0.35), step(0.5, 4.0, -above));
+        scale(mud, 1.0 + 0.12 * n.fine + 0.22 * n.grain)
+    }
+}
+
+impl Cover {
+    /// Makes room for a layer of `part` on top.
+    #[inline]
+    fn over(&mut self, part: f32) -> &mut Self {
+        let left = 1.0 - part;
+        *self = Self { rock: self.rock * left, scree: self.scree * left, snow: self.snow * left, mud: self.mud * left };
+        self
+    }
+}
+
+#[inline]
+fn lerp(a: Rgb, b: Rgb, t: f32) -> Rgb {
+    [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t, a[2] + (b[2] - a[2]) * t]
+}
+
+#[inline]
+fn scale(a: Rgb, s: f32) -> Rgb {
+    [a[0] * s, a[1] * s, a[2] * s]
+}
+
+#[inline]
+fn add(sum: &mut Rgb, a: Rgb, weight: f32) {
+    for k in 0..3 {
+        sum[k] += a[k] * weight;
+    }
+}
+
+/// 0 below `lo`, 1 above `hi`, smooth between.
+#[inline]
+fn step(lo: f32, hi: f32, x: f32) -> f32 {
+    let t = ((x - lo) / (hi - lo)).max(0.0).min(1.0);
+    t * t * (3.0 - 2.0 * t)
+}

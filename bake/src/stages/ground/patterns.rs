@@ -1,0 +1,259 @@
+//! The five patterns of ground: a height of about 0 to 1 and a tone for each texel, both wrapping around.
+//!
+//! Grass and scree are laid blade by blade and stone by stone, the higher over the lower; rock and mud are cracked
+//! along the borders of cellular noise (Worley 1996); snow is drifts and grain.
+
+use rayon::prelude::*;
+
+use super::textures::SIDE;
+use crate::noise::{cellular2, fbm2, gradient2, hash01};
+
+/// Height and tone of each texel, row by row.
+pub(super) struct Pattern {
+    pub height: Vec<f32>,
+    pub tone: Vec<[f32; 3]>,
+}
+
+/// Blades of grass that lean in tufts over moss.
+pub(super) fn grass() -> Pattern {
+    let mut pattern = from_texels(|u, v| {
+        let moss = 0.5 + 0.5 * fbm2(11, u * 24.0, v * 24.0, 3, 0.6, 24);
+        let tone = 30.0 + 34.0 * moss;
+        (0.16 * moss, [tone * 1.05, tone, tone * 0.9])
+    });
+    for k in 0..7500 {
+        let dice = |salt: i32| hash01(12, k, salt, 0);
+        let (u, v) = (dice(0), dice(1));
+        // Tufts: more blades, leaning apart from their middle; nothing so large that the eye finds it again.
+        let lean = gradient2(13, u * 9.0, v * 9.0, 9) * 4.0 + dice(2) * 3.2;
+        let lush = 0.5 + 0.5 * gradient2(14, u * 7.0, v * 7.0, 7);
+        let shade = 62.0 + 95.0 * dice(3) + 40.0 * lush;
+        let dry = if dice(4) < 0.16 { 0.34 } else { 0.10 * dice(5) };
+        let blade = Blade {
+            x: u * SIDE as f32,
+            y: v * SIDE as f32,
+            angle: lean,
+            bend: (dice(6) - 0.5) * 1.6,
+            length: 16.0 + 34.0 * dice(7) * (0.5 + lush),
+            width: 1.1 + 1.3 * dice(8),
+            rise: 0.35 + 0.65 * dice(9),
+            tone: [shade * (1.0 + dry), shade * (1.0 + 0.35 * dry), shade * (1.0 - 0.5 * dry)],
+        };
+        blade.lay(&mut pattern);
+    }
+    pattern
+}
+
+/// One blade, in texels.
+struct Blade {
+    x: f32,
+    y: f32,
+    angle: f32,
+    bend: f32,
+    length: f32,
+    width: f32,
+    rise: f32,
+    tone: [f32; 3],
+}
+
+impl Blade {
+    /// Lays it over what is lower.
+    fn lay(&self, pattern: &mut Pattern) {
+        let steps = (self.length / 1.2) as i32;
+        let (mut x, mut y) = (self.x, self.y);
+        for s in 0..steps {
+            let t = s as f32 / steps as f32;
+            let angle = self.angle + self.bend * t;
+            let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
+            x += 1.2 * cos;
+            y += 1.2 * sin;
+            let half = self.width * (1.0 - t * t);
+            let rise = self.rise * (0.25 + 1.5 * t * (1.0 - 0.5 * t)).min(1.0);
+            // Darker at the root, where others shade it.
+            let light = 0.45 + 0.55 * (t * 2.0).min(1.0);
+            let reach = half as i32 + 1;
+            for across in -reach..=reach {
+                let off = across as f32;
+                if off.abs() > half + 0.3 {
+                    continue;
+                }
+                let at = texel((x - sin * off) as i32, (y + cos * off) as i32);
+                let fold = 1.0 - 0.35 * (off / (half + 0.3)).abs();
+                if rise * fold > pattern.height[at] {
+                    pattern.height[at] = rise * fold;
+                    pattern.tone[at] = self.tone.map(|c| c * light * (0.8 + 0.2 * fold));
+                }
+            }
+        }
+    }
+}
+
+/// Fractured rock: blocks at several heights, cracks between them, rough faces.
+pub(super) fn rock() -> Pattern {
+    from_texels(|u, v| {
+        let (a, b) = (fbm2(21, u * 7.0, v * 7.0, 3, 0.55, 7), fbm2(22, u * 7.0, v * 7.0, 3, 0.55, 7));
+        let large = blocks(23, u + 0.05 * a, v + 0.05 * b, 6);
+        let small = blocks(24, u + 0.03 * b, v - 0.03 * a, 17);
+        let rough = fbm2(25, u * 48.0, v * 48.0, 3, 0.6, 48);
+        let crack = large.crack.min(0.35 + 0.65 * small.crack);
+        let face = 0.55 * large.face + 0.25 * small.face + 0.16 * rough;
+        let height = crack * (0.25 + 0.75 * face);
+        let tone = (96.0 + 60.0 * large.shade * 0.6 + 34.0 * small.shade + 44.0 * rough) * (0.3 + 0.7 * crack);
+        let rust = 0.06 * a;
+        (height, [tone * (1.0 + rust), tone, tone * (1.0 - rust)])
+    })
+}
+
+/// A cell as a block with a tilted face.
+struct Block {
+    /// 0 in the crack around it, 1 inside.
+    crack: f32,
+    /// Height of its face, about 0 to 1.
+    face: f32,
+    /// Its own shade, 0 to 1.
+    shade: f32,
+}
+
+/// The block at (u, v) of `cells` cells a side.
+fn blocks(seed: u32, u: f32, v: f32, cells: i32) -> Block {
+    let scale = cells as f32;
+    let (first, second, id) = cellular2(seed, u * scale, v * scale, cells);
+    let unit = |shift: u32| (id >> shift & 0xFF) as f32 / 255.0;
+    let crack = ((second - first) * 9.0).min(1.0);
+    Block { crack: crack * (2.0 - crack), face: 0.3 + 0.5 * unit(3) + 0.35 * (0.5 - first), shade: unit(13) }
+}
+
+/// Stones of all sizes, the larger on top.
+pub(super) fn scree() -> Pattern {
+    let mut pattern = from_texels(|u, v| {
+        let grit = 0.5 + 0.5 * fbm2(31, u * 64.0, v * 64.0, 2, 0.7, 64);
+        let tone = 34.0 + 40.0 * grit;
+        (0.10 * grit, [tone * 1.04, tone, tone * 0.95])
+    });
+    let count = 2300;
+    for k in 0..count {
+        let dice = |salt: i32| hash01(32, k, salt, 0);
+        // From small to large; few are large.
+        let size = k as f32 / count as f32;
+        let radius = 4.5 + 6.0 * size + 15.0 * size * size * size * size * (0.4 + 0.6 * dice(3));
+        Stone::new(dice(0) * SIDE as f32, dice(1) * SIDE as f32, radius, 0.15 + 0.4 * size + 0.2 * dice(2), k).lay(&mut pattern);
+    }
+    pattern
+}
+
+/// One stone, in texels: a polygon of seven sides with bevelled edges and a tilted top.
+struct Stone {
+    x: f32,
+    y: f32,
+    radius: f32,
+    base: f32,
+    sides: [[f32; 3]; 7],
+    tilt: [f32; 2],
+    tone: [f32; 3],
+}
+
+impl Stone {
+    fn new(x: f32, y: f32, radius: f32, base: f32, k: i32) -> Self {
+        let dice = |salt: i32| hash01(33, k, salt, 0);
+        let turn = dice(0) * 6.283;
+        let stretch = 0.62 + 0.38 * dice(1);
+        let mut sides = [[0.0; 3]; 7];
+        for (s, side) in sides.iter_mut().enumerate() {
+            let angle = turn + (s as f32 + 0.7 * (dice(10 + s as i32) - 0.5)) * 0.8976;
+            let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
+            let long = libm::cosf(angle - turn * 1.7).abs();
+            *side = [cos, sin, radius * (0.8 + 0.2 * dice(20 + s as i32)) * (stretch + (1.0 - stretch) * long)];
+        }
+        let shade = 105.0 + 80.0 * dice(2);
+        let warm = 0.10 * (dice(3) - 0.5);
+        Self {
+            x,
+            y,
+            radius,
+            base,
+            sides,
+            tilt: [(dice(4) - 0.5) * 0.5, (dice(5) - 0.5) * 0.5],
+            tone: [shade * (1.0 + warm), shade, shade * (1.0 - warm)],
+        }
+    }
+
+    /// Lays it over what is lower; what it just fails to cover lies in its shade.
+    fn lay(&self, pattern: &mut Pattern) {
+        let reach = self.radius as i32 + 2;
+        for dy in -reach..=reach {
+            for dx in -reach..=reach {
+                let (fx, fy) = (dx as f32, dy as f32);
+                let inside = self.sides.iter().fold(f32::MAX, |least, [c, s, r]| least.min(r - fx * c - fy * s));
+                if inside < -1.5 {
+                    continue;
+                }
+                let at = texel(self.x as i32 + dx, self.y as i32 + dy);
+                if inside < 0.0 {
+                    pattern.tone[at] = pattern.tone[at].map(|c| c * 0.72);
+                    continue;
+                }
+                let bevel = (inside / (0.35 * self.radius)).min(1.0);
+                let round = bevel * (2.0 - bevel);
+                let top = 1.0 + (fx * self.tilt[0] + fy * self.tilt[1]) / self.radius;
+                let height = self.base + 0.025 * self.radius * round * top;
+                if height > pattern.height[at] {
+                    let grit = 0.88 + 0.24 * hash01(34, self.x as i32 + dx, self.y as i32 + dy, 0);
+                    pattern.height[at] = height;
+                    pattern.tone[at] = self.tone.map(|c| c * (0.68 + 0.32 * round) * grit);
+                }
+            }
+        }
+    }
+}
+
+/// Soft drifts, ripples that the wind left, and grain.
+pub(super) fn snow() -> Pattern {
+    from_texels(|u, v| {
+        let bend = fbm2(41, u * 6.0, v * 6.0, 2, 0.5, 6);
+        let drift = fbm2(42, u * 8.0, v * 8.0, 3, 0.5, 8);
+        // Ripples: the same noise drawn out across the wind, bent by it.
+        let ripple = gradient2(43, u * 12.0 + 0.6 * bend, v * 48.0 + 3.0 * bend, 48);
+        let ripple = ripple * (0.5 + 0.5 * gradient2(44, u * 5.0, v * 5.0, 5));
+        let grain = fbm2(45, u * 128.0, v * 128.0, 2, 0.8, 128);
+        let height = 0.5 + 0.55 * drift + 0.10 * ripple + 0.05 * grain;
+        let tone = 128.0 * (1.0 + 0.06 * drift + 0.035 * ripple + 0.05 * grain);
+        (height, [tone * (1.0 - 0.02 * drift), tone, tone * (1.0 + 0.03 * drift)])
+    })
+}
+
+/// Mud that dried and cracked, with finer cracks inside its plates.
+pub(super) fn mud() -> Pattern {
+    from_texels(|u, v| {
+        let (a, b) = (fbm2(51, u * 9.0, v * 9.0, 3, 0.55, 9), fbm2(52, u * 9.0, v * 9.0, 3, 0.55, 9));
+        let plate = blocks(53, u + 0.03 * a, v + 0.03 * b, 13);
+        let hair = blocks(54, u - 0.016 * b, v + 0.016 * a, 31);
+        // Only some plates split again, and cracks close here and there.
+        let split = 1.0 - (1.0 - hair.crack) * 0.55 * f32::from(u8::from(plate.shade > 0.45));
+        let open = 0.55 + 0.45 * (2.5 * a).clamp(-1.0, 1.0);
+        let crack = (1.0 - (1.0 - plate.crack) * open).min(split);
+        let silt = fbm2(55, u * 60.0, v * 60.0, 3, 0.65, 60);
+        let height = crack * (0.62 + 0.16 * plate.shade + 0.10 * silt + 0.12 * a);
+        let tone = (112.0 + 26.0 * plate.shade + 24.0 * a + 30.0 * silt) * (0.32 + 0.68 * crack);
+        let warm = 0.03 * b;
+        (height, [tone * (1.0 + warm), tone, tone * (1.0 - warm)])
+    })
+}
+
+/// A pattern from each texel's (u, v) in 0..1.
+fn from_texels(texel: impl Fn(f32, f32) -> (f32, [f32; 3]) + Sync) -> Pattern {
+    let mut both = vec![(0.0, [0.0; 3]); SIDE * SIDE];
+    both.par_chunks_mut(SIDE).enumerate().for_each(|(j, row)| {
+        for (i, out) in row.iter_mut().enumerate() {
+            *out = texel(i as f32 / SIDE as f32, j as f32 / SIDE as f32);
+        }
+    });
+    let (height, tone) = both.into_iter().unzip();
+    Pattern { height, tone }
+}
+
+/// The index of a texel, wrapped around.
+#[inline]
+fn texel(x: i32, y: i32) -> usize {
+    let side = SIDE as i32;
+    (y.rem_euclid(side) * side + x.rem_euclid(side)) as usize
+}

@@ -1,0 +1,77 @@
+//! Nothing → five tiling detail textures of 512² with tangent-space normals: grass, rock, scree, snow and mud.
+//!
+//! Detail multiplies the ground's colour: its bytes have the mean 128 in every channel, so that bytes / 128 is the
+//! factor. Normals are those of OpenGL and glTF: red to the right, green to the top of the picture, blue outwards.
+
+use rayon::prelude::*;
+
+use super::patterns::{self, Pattern};
+use crate::model::{GroundTexture, GroundTextures, Image8};
+
+/// Texels a side.
+pub(super) const SIDE: usize = 512;
+
+/// Makes the five textures; they are the same for every scene.
+pub fn textures() -> GroundTextures {
+    type Make = fn() -> Pattern;
+    let kinds: [(&str, f32, f32, Make); 5] = [
+        ("grass", 3.0, 2.2, patterns::grass),
+        ("rock", 6.0, 4.5, patterns::rock),
+        ("scree", 4.0, 3.0, patterns::scree),
+        ("snow", 5.0, 2.0, patterns::snow),
+        ("mud", 4.0, 2.4, patterns::mud),
+    ];
+    let textures = kinds
+        .into_par_iter()
+        .map(|(name, tile_m, depth_px, make)| {
+            let pattern = make();
+            let (detail_srgb, normal) = (detail(&pattern), normals(&pattern.height, depth_px));
+            GroundTexture { name: name.into(), detail_srgb, normal, tile_m }
+        })
+        .collect();
+    GroundTextures { textures }
+}
+
+/// Tones as bytes of mean 128.
+fn detail(pattern: &Pattern) -> Image8 {
+    let mut image = Image8::new(SIDE as u32, SIDE as u32, 3);
+    for channel in 0..3 {
+        let scale = scale_to_mean(&pattern.tone, channel);
+        for (pixel, tone) in image.data.chunks_exact_mut(3).zip(&pattern.tone) {
+            pixel[channel] = (tone[channel] * scale).clamp(0.0, 255.0) as u8;
+        }
+    }
+    image
+}
+
+/// The factor that gives one channel the mean 128 after clamping to bytes, by the secant of its clamped mean.
+fn scale_to_mean(tone: &[[f32; 3]], channel: usize) -> f32 {
+    let mut scale = 1.0;
+    for _ in 0..4 {
+        // Truncation to bytes takes half a step off.
+        let sum: f64 = tone.iter().map(|t| f64::from((t[channel] * scale).clamp(0.0, 255.0))).sum();
+        scale *= 128.5 / (sum / tone.len() as f64).max(1e-3) as f32;
+    }
+    scale
+}
+
+/// Normals of a height that is 0 to 1 for `depth_px` texels.
+fn normals(height: &[f32], depth_px: f32) -> Image8 {
+    let mut image = Image8::new(SIDE as u32, SIDE as u32, 3);
+    image.data.par_chunks_mut(SIDE * 3).enumerate().for_each(|(j, row)| {
+        let line = |j: usize| &height[(j % SIDE) * SIDE..][..SIDE];
+        let (above, here, below) = (line(j + SIDE - 1), line(j), line(j + 1));
+        for (i, pixel) in row.chunks_exact_mut(3).enumerate() {
+            let (west, east) = ((i + SIDE - 1) % SIDE, (i + 1) % SIDE);
+            // Sobel, so that single texels do not glitter.
+            let dx = above[east] + 2.0 * here[east] + below[east] - above[west] - 2.0 * here[west] - below[west];
+            let dy = below[west] + 2.0 * below[i] + below[east] - above[west] - 2.0 * above[i] - above[east];
+            let (nx, ny) = (-dx * 0.125 * depth_px, dy * 0.125 * depth_px);
+            let length = (nx * nx + ny * ny + 1.0).sqrt();
+            for (byte, n) in pixel.iter_mut().zip([nx, ny, 1.0]) {
+                *byte = (127.5 + 127.0 * n / length + 0.5) as u8;
+            }
+        }
+    });
+    image
+}

@@ -1,0 +1,183 @@
+//! What about a place decides its cover: height, slope, water, deposits and the patch it belongs to. Precomputed on
+//! the grid of the field (at most 513², 2 m apart) and read between samples.
+
+use rayon::prelude::*;
+
+use super::GroundParams;
+use crate::model::{Heightfield, Landform};
+use crate::noise::fbm2;
+use crate::seed::noise_seed;
+
+/// Most samples a side that traits are kept for.
+const MOST: u32 = 513;
+
+/// The traits of one place.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Traits {
+    /// Height in metres.
+    pub height_m: f32,
+    /// Tangent of the slope.
+    pub slope: f32,
+    /// Drained area, log-scaled to [0, 1].
+    pub flow: f32,
+    /// Loose material, [0, 1].
+    pub deposit: f32,
+    /// Above 0 in hollows, below 0 on crests, about [-1, 1].
+    pub hollow: f32,
+    /// Large patches of one kind of growth, about [-1, 1].
+    pub patch: f32,
+    /// Smaller patches, about [-1, 1].
+    pub tuft: f32,
+    /// Where rock shows more readily, about [-1, 1].
+    pub outcrop: f32,
+}
+
+const COUNT: usize = 8;
+
+impl Traits {
+    fn from_array(a: [f32; COUNT]) -> Self {
+        let [height_m, slope, flow, deposit, hollow, patch, tuft, outcrop] = a;
+        Self { height_m, slope, flow, deposit, hollow, patch, tuft, outcrop }
+    }
+}
+
+/// The traits of the whole field.
+pub(super) struct TraitsMap {
+    side: usize,
+    values: Vec<[f32; COUNT]>,
+}
+
+/// Samples of the field between those that traits are kept for.
+fn stride(land: &Landform) -> u32 {
+    ((land.field.side - 1) / (MOST - 1)).max(1)
+}
+
+impl TraitsMap {
+    pub fn new(patches: &Patches, land: &Landform) -> Self {
+        let step = stride(land);
+        let side = (land.field.side - 1) / step + 1;
+        let mut values = vec![[0.0; COUNT]; (side * side) as usize];
+        values.par_chunks_mut(side as usize).enumerate().for_each(|(j, row)| {
+            for (i, v) in row.iter_mut().enumerate() {
+                *v = sample(patches, land, i as u32 * step, j as u32 * step, step);
+            }
+        });
+        Self { side: side as usize, values }
+    }
+
+    /// The traits along a row of constant v.
+    pub fn row(&self, v: f32) -> TraitsRow<'_> {
+        let (j, f) = cell(v, self.side);
+        let row = |j: usize| &self.values[j * self.side..][..self.side];
+        TraitsRow { north: row(j), south: row(j + 1), f }
+    }
+}
+
+fn cell(u: f32, side: usize) -> (usize, f32) {
+    let g = u * (side - 1) as f32;
+    let k = (g as usize).min(side - 2);
+    (k, g - k as f32)
+}
+
+/// The traits between two rows of samples.
+pub(super) struct TraitsRow<'a> {
+    north: &'a [[f32; COUNT]],
+    south: &'a [[f32; COUNT]],
+    f: f32,
+}
+
+impl TraitsRow<'_> {
+    /// Bilinear between the four samples around.
+    #[inline]
+    pub fn at(&self, u: f32) -> Traits {
+        let (i, g) = cell(u, self.north.len());
+        let (a, b, c, d) = (&self.north[i], &self.north[i + 1], &self.south[i], &self.south[i + 1]);
+        let (wa, wb) = ((1.0 - g) * (1.0 - self.f), g * (1.0 - self.f));
+        let (wc, wd) = ((1.0 - g) * self.f, g * self.f);
+        let mut out = [0.0; COUNT];
+        for k in 0..COUNT {
+            out[k] = a[k] * wa + b[k] * wb + c[k] * wc + d[k] * wd;
+        }
+        Traits::from_array(out)
+    }
+}
+
+/// Traits of the sample of the field nearest to (u, v) in 0..1.
+pub(super) fn near(patches: &Patches, land: &Landform, u: f32, v: f32) -> Traits {
+    let at = |u: f32| (u * (land.field.side - 1) as f32 + 0.5) as u32;
+    Traits::from_array(sample(patches, land, at(u), at(v), stride(land)))
+}
+
+/// Traits of sample (i, j) of the field, as an array.
+fn sample(patches: &Patches, land: &Landform, i: u32, j: u32, step: u32) -> [f32; COUNT] {
+    let at = (j * land.field.side + i) as usize;
+    let (slope, hollow) = shape_at(&land.field, i, j, step);
+    let last = (land.field.side - 1) as f32;
+    let [patch, tuft, outcrop] = patches.at(i as f32 / last, j as f32 / last);
+    [land.field.heights_m[at], slope, land.flow[at], land.deposit[at], hollow, patch, tuft, outcrop]
+}
+
+/// Traits of a sample of the apron, whose spacing hides much of the slope.
+pub(super) fn far(params: &GroundParams, land: &Landform, i: u32, j: u32) -> Traits {
+    let (slope, hollow) = shape_at(&land.apron, i, j, 1);
+    let seed = |item| noise_seed(params.terrain_seed.into(), "ground", item);
+    let (x, z) = (i as f32 * land.apron.spacing_m, j as f32 * land.apron.spacing_m);
+    Traits {
+        height_m: land.apron.at(i, j),
+        slope: slope * 1.25 + 0.05,
+        flow: 0.3 + 0.2 * hollow.clamp(-1.0, 1.0),
+        deposit: 0.3,
+        hollow,
+        patch: fbm2(seed(0), x / 700.0, z / 700.0, 3, 0.5, 0) * 1.6,
+        tuft: fbm2(seed(1), x / 150.0, z / 150.0, 2, 0.5, 0),
+        outcrop: fbm2(seed(2), x / 300.0, z / 300.0, 2, 0.5, 0),
+    }
+}
+
+/// Tangent of the slope and hollowness at a sample, from neighbours `step` samples away.
+fn shape_at(field: &Heightfield, i: u32, j: u32, step: u32) -> (f32, f32) {
+    let last = field.side - 1;
+    let (w, e) = (i.saturating_sub(step), (i + step).min(last));
+    let (n, s) = (j.saturating_sub(step), (j + step).min(last));
+    let (west, east, north, south) = (field.at(w, j), field.at(e, j), field.at(i, n), field.at(i, s));
+    let dx = (east - west) / ((e - w) as f32 * field.spacing_m);
+    let dz = (south - north) / ((s - n) as f32 * field.spacing_m);
+    let rise = 0.25 * (west + east + north + south) - field.at(i, j);
+    ((dx * dx + dz * dz).sqrt(), (rise * 6.0 / (step as f32 * field.spacing_m)).clamp(-1.0, 1.0))
+}
+
+/// Three layers of noise on a coarse grid.
+pub(super) struct Patches {
+    values: Vec<[f32; 3]>,
+}
+
+impl Patches {
+    const SIDE: usize = 129;
+
+    pub fn new(terrain_seed: u32, extent_m: f32) -> Self {
+        let seed = |item| noise_seed(terrain_seed.into(), "ground", item);
+        let seeds = [seed(0), seed(1), seed(2)];
+        let spacing_m = extent_m / (Self::SIDE - 1) as f32;
+        let mut values = vec![[0.0; 3]; Self::SIDE * Self::SIDE];
+        values.par_iter_mut().enumerate().for_each(|(k, v)| {
+            let (x, z) = ((k % Self::SIDE) as f32 * spacing_m, (k / Self::SIDE) as f32 * spacing_m);
+            *v = [
+                1.8 * fbm2(seeds[0], x / 170.0, z / 170.0, 4, 0.55, 0),
+                1.6 * fbm2(seeds[1], x / 46.0, z / 46.0, 3, 0.6, 0),
+                1.6 * fbm2(seeds[2], x / 80.0, z / 80.0, 3, 0.6, 0),
+            ];
+        });
+        Self { values }
+    }
+
+    fn at(&self, u: f32, v: f32) -> [f32; 3] {
+        let ((i, f), (j, g)) = (cell(u, Self::SIDE), cell(v, Self::SIDE));
+        let k = j * Self::SIDE + i;
+        let (a, b) = (self.values[k], self.values[k + 1]);
+        let (c, d) = (self.values[k + Self::SIDE], self.values[k + Self::SIDE + 1]);
+        [0, 1, 2].map(|l| {
+            let (north, south) = (a[l] + (b[l] - a[l]) * f, c[l] + (d[l] - c[l]) * f);
+            north + (south - north) * g
+        })
+    }
+}

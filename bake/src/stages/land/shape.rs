@@ -1,0 +1,274 @@
+//! Position in metres → raw height in metres, for any place on the field or beyond it: a multifractal of rotated
+//! octaves, folded by domain warping, on a broad massif where the relief is too great for the landforms' size.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::grid::{Grid, mix, smoothstep};
+use super::{FIELD_M, LandParams};
+use crate::noise::gradient2;
+use crate::seed::noise_seed;
+
+/// Wavelength in metres of the finest octave.
+const FINEST_M: f32 = 6.0;
+/// Wavelength in metres from which on octaves are computed on every second sample only.
+const BROAD_M: f32 = 40.0;
+/// Greatest part of its wavelength that a landform may rise before a massif carries the rest of the relief.
+const STEEPNESS: f32 = 0.21;
+
+/// The raw land as a function of position.
+pub(super) struct Shape {
+    octaves: Vec<Octave>,
+    massif: [Octave; 2],
+    fold: [Octave; 4],
+    fold_m: f32,
+    /// Part of the relief that the landforms have; the massif has the rest.
+    share: f32,
+    offset: f32,
+    terraces: Terraces,
+    relief_m: f32,
+    water_level: f32,
+    /// Raw values that become the lowest and highest point of the field.
+    range: (f32, f32),
+    /// How far, as part of the relief, the middle is lifted so that one does not start under water.
+    lift: f32,
+}
+
+/// The sum so far at a place.
+#[derive(Clone, Copy, Default)]
+struct Sum {
+    /// The place in metres after folding.
+    u: f32,
+    v: f32,
+    height: f32,
+    /// How much the next octave counts.
+    weight: f32,
+    massif: f32,
+}
+
+/// One octave of noise: its own seed, direction and place, so that no lattice shows.
+struct Octave {
+    seed: u32,
+    wavelength_m: f32,
+    amplitude: f32,
+    /// 0 rounded, 1 ridged.
+    ridged: f32,
+    /// Lattice units per metre along the octave's own axes, as cosine and sine.
+    turn: [f32; 2],
+    shift: [f32; 2],
+}
+
+impl Octave {
+    fn new(seed: u32, index: u32, wavelength_m: f32, amplitude: f32) -> Self {
+        let seed = seed.wrapping_add(index.wrapping_mul(0x9E37_79B9));
+        let angle = 0.4 + 2.399_963 * index as f32;
+        // A lattice cell is about half a wave.
+        let frequency = 2.0 / wavelength_m;
+        let shift = [(seed >> 20) as f32 * 0.037, (seed >> 8 & 0xFFF) as f32 * 0.037];
+        let turn = [libm::cosf(angle) * frequency, libm::sinf(angle) * frequency];
+        Self { seed, wavelength_m, amplitude, ridged: 0.0, turn, shift }
+    }
+
+    #[inline]
+    fn at(&self, x: f32, z: f32) -> f32 {
+        let u = x * self.turn[0] - z * self.turn[1] + self.shift[0];
+        let v = x * self.turn[1] + z * self.turn[0] + self.shift[1];
+        gradient2(self.seed, u, v, 0)
+    }
+}
+
+/// Soft steps in the slopes.
+struct Terraces {
+    strength: f32,
+    steps: f32,
+    bend: Octave,
+    patches: Octave,
+}
+
+impl Shape {
+    /// The land of these genes, not yet fitted to its relief.
+    pub fn new(p: &LandParams) -> Self {
+        let seed = |item| noise_seed(p.terrain_seed.into(), "land", item);
+        let gain = libm::powf(p.lacunarity, -p.hurst);
+        let share = (STEEPNESS * p.wavelength_m / p.relief_m).min(1.0);
+        let mut octaves = Vec::new();
+        let (mut wavelength_m, mut amplitude, mut ridged) = (p.wavelength_m, 1.0f32, p.ridged);
+        // An octave lower than 2 cm is not worth its time.
+        while wavelength_m >= FINEST_M && amplitude * p.relief_m > 0.04 {
+            let walkable = amplitude.min(1.6 * walkable_amplitude_m(wavelength_m) / (share * p.relief_m));
+            let octave = Octave::new(seed(0), octaves.len() as u32, wavelength_m, walkable);
+            octaves.push(Octave { ridged, ..octave });
+            ridged *= 0.88;
+            wavelength_m /= p.lacunarity;
+            amplitude *= gain;
+        }
+        let broad_m = p.wavelength_m.max(1500.0);
+        let fold = |i, scale, amplitude| Octave::new(seed(2), i, p.wavelength_m * scale, amplitude);
+        Self {
+            octaves,
+            massif: [Octave::new(seed(1), 0, broad_m, 1.0), Octave::new(seed(1), 1, broad_m * 0.45, 0.4)],
+            fold: [fold(0, 0.9, 1.0), fold(1, 0.9, 1.0), fold(2, 0.4, 0.4), fold(3, 0.4, 0.4)],
+            fold_m: 0.32 * p.domain_warp * p.wavelength_m,
+            share,
+            offset: p.offset,
+            terraces: Terraces {
+                strength: p.terraces,
+                steps: (p.relief_m / 13.0).clamp(4.0, 14.0),
+                bend: Octave::new(seed(3), 0, 420.0, 0.5),
+                patches: Octave::new(seed(3), 1, 300.0, 1.0),
+            },
+            relief_m: p.relief_m,
+            water_level: p.water_level,
+            range: (0.0, 1.0),
+            lift: 0.0,
+        }
+    }
+
+    /// Fits the land to its relief over the field and lifts a middle that would drown; the raw heights in metres.
+    pub fn fit(&mut self, side: u32) -> Grid {
+        let mut grid = self.multifractal_grid(side);
+        self.range = grid.range();
+        self.lift = self.needed_lift();
+        let (n, spacing_m) = (side as usize, grid.spacing_m);
+        let place = |i: usize| (i as f32 - 0.5 * (side - 1) as f32) * spacing_m;
+        grid.values.par_chunks_mut(n).enumerate().for_each(|(j, row)| {
+            for (i, h) in row.iter_mut().enumerate() {
+                *h = self.finish(*h, place(i), place(j));
+            }
+        });
+        grid
+    }
+
+    /// The fitted land on a grid of the field, of which `known` is a part or that is part of `known`.
+    pub fn sample(&self, side: u32, known: &Grid) -> Grid {
+        if side <= known.side { known.resized(side) } else { Grid::from_field(side, |x, z| self.height_m(x, z, 0.0)) }
+    }
+
+    /// Raw height in metres at a place; waves shorter than twice `spacing_m` are left out.
+    pub fn height_m(&self, x: f32, z: f32, spacing_m: f32) -> f32 {
+        self.finish(self.multifractal(x, z, spacing_m), x, z)
+    }
+
+    /// The multifractal over the field: its broad octaves at half the resolution, cubic between.
+    fn multifractal_grid(&self, side: u32) -> Grid {
+        let fine = self.octaves.iter().take_while(|o| o.wavelength_m >= BROAD_M).count();
+        let half = side / 2 + 1;
+        let spacing_m = FIELD_M / (half - 1) as f32;
+        let place = |k: usize| (k as f32 - 0.5 * (half - 1) as f32) * spacing_m;
+        let mut sums: Vec<Sum> = vec![Sum::default(); (half * half) as usize];
+        sums.par_chunks_mut(half as usize).enumerate().for_each(|(j, row)| {
+            for (i, sum) in row.iter_mut().enumerate() {
+                *sum = self.start(place(i), place(j));
+                self.add(sum, 0..fine, 0.0);
+            }
+        });
+        let layer = |f: fn(&Sum) -> f32| {
+            Grid { side: half, spacing_m, values: sums.iter().map(f).collect() }.resized(side).values
+        };
+        let (u, v) = (layer(|s| s.u), layer(|s| s.v));
+        let (height, weight, massif) = (layer(|s| s.height), layer(|s| s.weight), layer(|s| s.massif));
+        let mut values = vec![0.0; height.len()];
+        values.par_iter_mut().enumerate().for_each(|(k, out)| {
+            let mut sum = Sum { u: u[k], v: v[k], height: height[k], weight: weight[k], massif: massif[k] };
+            self.add(&mut sum, fine..self.octaves.len(), 0.0);
+            *out = self.total(&sum);
+        });
+        Grid { side, spacing_m: 0.5 * spacing_m, values }
+    }
+
+    /// A sum of octaves, each weaker where the land so far is low (Musgrave's hybrid multifractal).
+    fn multifractal(&self, x: f32, z: f32, spacing_m: f32) -> f32 {
+        let mut sum = self.start(x, z);
+        self.add(&mut sum, 0..self.octaves.len(), spacing_m);
+        self.total(&sum)
+    }
+
+    /// Folds the plane: where the octaves are read for a place.
+    fn start(&self, x: f32, z: f32) -> Sum {
+        let [a, b, c, d] = &self.fold;
+        let (mut u, mut v) = (x, z);
+        if self.fold_m > 0.0 {
+            u += self.fold_m * (a.at(x, z) + 0.4 * c.at(x, z));
+            v += self.fold_m * (b.at(x, z) + 0.4 * d.at(x, z));
+        }
+        let massif = if self.share < 1.0 { self.massif[0].at(x, z) + 0.4 * self.massif[1].at(x, z) } else { 0.0 };
+        Sum { u, v, height: 0.0, weight: 1.0, massif }
+    }
+
+    /// Adds some of the octaves.
+    fn add(&self, sum: &mut Sum, octaves: Range<usize>, spacing_m: f32) {
+        for octave in &self.octaves[octaves] {
+            let kept = if spacing_m > 0.0 { (octave.wavelength_m / spacing_m - 2.0).clamp(0.0, 1.0) } else { 1.0 };
+            if kept == 0.0 {
+                break;
+            }
+            let round = octave.at(sum.u, sum.v) * 1.25;
+            // A ridge where the noise crosses zero, rounded just enough to be walked over.
+            let ridge = 1.0 - 2.4 * (round * round + 0.0009).sqrt();
+            sum.height += octave.amplitude * sum.weight * kept * mix(round, ridge, octave.ridged);
+            sum.weight = mix(1.0, smoothstep(-0.7, 0.6, sum.height), 0.35 + 0.6 * self.offset);
+        }
+    }
+
+    fn total(&self, sum: &Sum) -> f32 {
+        mix(sum.massif * 1.4, sum.height, self.share)
+    }
+
+    /// From a raw value to metres: fitted, flattened where low, stepped, lifted in the middle.
+    fn finish(&self, value: f32, x: f32, z: f32) -> f32 {
+        let (lo, hi) = self.range;
+        let part = soften((value - lo) / (hi - lo).max(1e-6));
+        let flattened = if part > 0.0 { mix(part, part * part, 0.75 * self.offset) } else { part * (1.0 - 0.75 * self.offset) };
+        let stepped = self.terraces.step(flattened, x, z);
+        let r = (x * x + z * z) / (300.0 * 300.0);
+        let bump = (1.0 - r.min(1.0)) * (1.0 - r.min(1.0));
+        (stepped + self.lift * bump) * self.relief_m
+    }
+
+    /// How far the middle lies below a height that is dry by a margin.
+    fn needed_lift(&self) -> f32 {
+        if self.water_level <= 0.0 {
+            return 0.0;
+        }
+        let samples = 7 * 7;
+        let sum: f32 = (0..samples)
+            .map(|k| ((k % 7 - 3) as f32 * 24.0, (k / 7 - 3) as f32 * 24.0))
+            .map(|(x, z)| self.height_m(x, z, 30.0) / self.relief_m)
+            .sum();
+        (self.water_level + 0.07 - sum / samples as f32).max(0.0).min(0.5)
+    }
+}
+
+/// Greatest amplitude in metres of an octave: landforms may be steep, what one steps over may not.
+fn walkable_amplitude_m(wavelength_m: f32) -> f32 {
+    0.34 * wavelength_m * libm::powf((wavelength_m / 400.0).min(1.0), 0.75)
+}
+
+impl Terraces {
+    /// Flat treads and steep risers, bent and broken by noise so that they never follow one contour for long.
+    fn step(&self, part: f32, x: f32, z: f32) -> f32 {
+        if self.strength <= 0.0 {
+            return part;
+        }
+        let bend = 0.8 * self.bend.at(x, z);
+        let strength = self.strength * smoothstep(-0.45, 0.35, self.patches.at(x, z));
+        let t = part * self.steps + bend;
+        let tread = t.floor();
+        let stepped = tread + smoothstep(0.3, 1.0, t - tread);
+        (mix(t, stepped, 0.8 * strength) - bend) / self.steps
+    }
+}
+
+/// Leaves 0 to 1 as it is and draws what lies beyond (as it may outside the field) slowly towards −0.4 and 1.6.
+fn soften(part: f32) -> f32 {
+    let over = (part - 1.0).max(0.0);
+    let under = (-part).max(0.0);
+    part.clamp(0.0, 1.0) + 0.6 * over / (over + 0.6) - 0.4 * under / (under + 0.4)
+}
+
+/// Metres from a place to the field, 0 inside it.
+pub(super) fn distance_to_field_m(x: f32, z: f32) -> f32 {
+    let (dx, dz) = ((x.abs() - 0.5 * FIELD_M).max(0.0), (z.abs() - 0.5 * FIELD_M).max(0.0));
+    (dx * dx + dz * dz).sqrt()
+}
