@@ -4,7 +4,6 @@
 use genescape_bake::model::{Image8, ImageF16, SkyLight};
 use genescape_bake::stages::export::{exr, png};
 use genescape_bake::stages::sky::{SkyParams, images, light};
-use std::time::Instant;
 
 fn aces(x: f32) -> f32 {
     let x = x * 0.6;
@@ -62,7 +61,16 @@ fn paste(sheet: &mut Image8, image: &Image8, x: u32, y: u32) {
     }
 }
 
+fn cpu_ms() -> f64 {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap();
+    text.split(' ').next().unwrap().parse::<f64>().unwrap() / 1e6
+}
+
 fn main() {
+    rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(run);
+}
+
+fn run() {
     let args: Vec<String> = std::env::args().collect();
     let dir = args.get(1).cloned().unwrap_or("/tmp/sky".into());
     let (vw, vh) = (480u32, 270u32);
@@ -93,17 +101,17 @@ fn main() {
                 cirrus: k.4,
                 haze_m: k.6,
             };
-            let t0 = Instant::now();
+            let t0 = cpu_ms();
             let l: SkyLight = light(&p);
-            let t1 = Instant::now();
+            let t1 = cpu_ms();
             let s = images(&p, &l, 512, 2048);
-            let t2 = Instant::now();
+            let t2 = cpu_ms();
             let bytes = exr::encode(&s.equirect);
-            let t3 = Instant::now();
+            let t3 = cpu_ms();
             let n: usize = s.layers.iter().map(|l| png::encode(&l.image_srgb).len()).sum();
-            let t4 = Instant::now();
+            let t4 = cpu_ms();
             eprintln!(
-                "el {elevation} kind {i}: light {:?} images {:?} exr {:?} ({} MB) layers png {:?} ({} kB)  sun {:?} sky {:?} haze {:?}",
+                "el {elevation} kind {i}: light {:.0} images {:.0} exr {:.0} ({} MB) layers png {:.0} ({} kB)  sun {:.2?} sky {:.2?} haze {:.2?}",
                 t1 - t0, t2 - t1, t3 - t2, bytes.len() / 1_000_000, t4 - t3, n / 1000,
                 l.sun_irradiance_linear, l.sky_irradiance_linear, l.haze_linear
             );

@@ -2,7 +2,13 @@
 //! as in Schneider, "The Real-time Volumetric Cloudscapes of Horizon Zero Dawn" (2015). Values lie in [0, 1]: 1 in
 //! the middle of a billow, 0 in the creases between.
 
+use std::sync::LazyLock;
+
+use super::math::split;
 use crate::noise::hash;
+
+/// The one volume there is: a constant, but one that is computed rather than stored.
+pub static BILLOWS: LazyLock<Billows> = LazyLock::new(Billows::new);
 
 /// Voxels a side; a power of two.
 pub const SIDE: usize = 64;
@@ -14,8 +20,7 @@ pub struct Billows {
 }
 
 impl Billows {
-    /// The volume; depends on nothing.
-    pub fn new() -> Self {
+    fn new() -> Self {
         let mut sum = vec![0.0f32; SIDE * SIDE * SIDE];
         for (octave, (cells, weight)) in [(4, 0.6), (8, 0.27), (16, 0.13)].into_iter().enumerate() {
             add_cells(&mut sum, 0x51AB + octave as u32, cells, weight);
@@ -30,9 +35,7 @@ impl Billows {
     #[inline]
     pub fn sample(&self, x: f32, y: f32, z: f32) -> f32 {
         let (x, y, z) = (x * SIDE as f32, y * SIDE as f32, z * SIDE as f32);
-        let (fx, fy, fz) = (x.floor(), y.floor(), z.floor());
-        let (dx, dy, dz) = (x - fx, y - fy, z - fz);
-        let (ix, iy, iz) = (fx as i32, fy as i32, fz as i32);
+        let ((ix, dx), (iy, dy), (iz, dz)) = (split(x), split(y), split(z));
         let (x0, x1) = ((ix & MASK) as usize, ((ix + 1) & MASK) as usize);
         let (y0, y1) = ((iy & MASK) as usize * SIDE, ((iy + 1) & MASK) as usize * SIDE);
         let (z0, z1) = ((iz & MASK) as usize * SIDE * SIDE, ((iz + 1) & MASK) as usize * SIDE * SIDE);

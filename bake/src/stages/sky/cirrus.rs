@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::SkyParams;
 use super::clear::ClearSky;
 use super::clouds::{Marched, distance_to_height, through_air};
-use super::math::{exp, henyey_greenstein, lerp, smoothstep};
+use super::math::{exp, henyey_greenstein, lerp, smoothstep, split};
 use crate::noise;
 use crate::seed::noise_seed;
 
@@ -73,9 +73,8 @@ impl Cirrus {
 }
 
 fn bilinear(texels: &[f32], side: usize, u: f32, v: f32) -> f32 {
-    let (fu, fv) = (u.floor(), v.floor());
-    let (du, dv) = (u - fu, v - fv);
-    let (iu, iv) = (fu as i32 as usize, fv as i32 as usize);
+    let ((iu, du), (iv, dv)) = (split(u), split(v));
+    let (iu, iv) = (iu as usize, iv as usize);
     let (x0, x1) = (iu & (side - 1), iu.wrapping_add(1) & (side - 1));
     let (y0, y1) = ((iv & (side - 1)) * side, (iv.wrapping_add(1) & (side - 1)) * side);
     lerp(lerp(texels[y0 + x0], texels[y0 + x1], du), lerp(texels[y1 + x0], texels[y1 + x1], du), dv)
@@ -127,8 +126,8 @@ fn drawn_out(texels: &[f32], wind: &(impl Fn(usize, usize) -> (f32, f32) + Sync)
         let mut sum = 0.0;
         for k in -4..=4 {
             let along = k as f32 * step;
-            let x = (i as f32 + dx * along + 0.5).floor() as i32 as usize & MASK;
-            let y = (j as f32 + dy * along + 0.5).floor() as i32 as usize & MASK;
+            let x = ((i as f32 + dx * along + 64.5) as usize).wrapping_sub(64) & MASK;
+            let y = ((j as f32 + dy * along + 64.5) as usize).wrapping_sub(64) & MASK;
             sum += texels[y * SIDE + x];
         }
         sum / 9.0

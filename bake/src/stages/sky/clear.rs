@@ -16,6 +16,8 @@ const ROWS: usize = 64;
 const COLUMNS: usize = 32;
 /// The sun's irradiance above the atmosphere when the eye is adapted to high noon.
 const NOON_SUN: f32 = 7.5;
+/// `key` in `adapt` at noon, for a sun of irradiance 1.
+const NOON_KEY: f32 = 0.115;
 
 /// The cloudless sky.
 pub struct ClearSky {
@@ -29,6 +31,8 @@ pub struct ClearSky {
     pub ground: Vec3A,
     /// Colour that distant land fades to: the mean around the horizon.
     pub haze: Vec3A,
+    /// Part of the air's light that is left under a closed deck of clouds.
+    shade: f32,
     haze_per_km: f32,
     sun_flat: (f32, f32),
     table: Vec<(Vec3A, Vec3A)>,
@@ -61,6 +65,7 @@ impl ClearSky {
             sun_ground: air.sun_transmittance(EYE_KM, sun.y, 64),
             ground: Vec3A::ZERO,
             haze: Vec3A::ZERO,
+            shade: 1.0 - 0.6 * smoothstep(0.5, 1.0, params.cloud_cover) * smoothstep(1.0, 0.5, dimming),
             haze_per_km,
             sun_flat: (sun.x / flat, sun.z / flat),
             table: Vec::new(),
@@ -94,18 +99,18 @@ impl ClearSky {
     /// of the way.
     fn adapt(&mut self, dimming: f32) {
         self.fill_horizon();
-        let open = self.sun_ground * self.sun.y + self.irradiance(|sky, direction| sky.radiance(direction));
-        let key = luminance(open).max(1e-5) * dimming;
-        let noon = 0.9;
-        let lift = libm::powf(noon / key, 0.8).max(0.7);
-        let scale = NOON_SUN * lift;
+        let sky = self.irradiance(|sky, direction| sky.radiance(direction));
+        let open = self.sun_ground * self.sun.y + sky;
+        // What the eye rests on: mostly the sky itself.
+        let key = luminance(sky).max(1e-6) + 0.03 * luminance(self.sun_ground) * self.sun.y;
+        let scale = NOON_SUN * libm::powf(NOON_KEY / key, 0.85) * libm::powf(dimming, -0.3);
         self.sun_above = scale;
         self.sun_ground *= scale;
         for entry in &mut self.table {
             *entry = (entry.0 * scale, entry.1 * scale);
         }
         let albedo = Vec3A::new(0.17, 0.16, 0.12);
-        self.ground = open * scale * albedo * std::f32::consts::FRAC_1_PI;
+        self.ground = open * self.shade * scale * albedo * std::f32::consts::FRAC_1_PI;
         self.fill_horizon();
     }
 
@@ -121,7 +126,10 @@ impl ClearSky {
                 let entry = self.table[row * COLUMNS + column];
                 sum = (sum.0 + entry.0, sum.1 + entry.1);
             }
-            self.horizon[column] = (pale(sum.0 / rows, 0.25), pale(sum.1 / rows, 0.25));
+            let grey = 0.25 + 0.8 * (1.0 - self.shade);
+            let glow = self.shade * self.shade * self.shade;
+            self.horizon[column] =
+                (pale(sum.0 / rows, grey) * self.shade, pale(sum.1 / rows, grey) * glow);
             // Columns are even in cos φ; the measure of an azimuth is dφ.
             let weight = column_weight(column);
             mean = (mean.0 + self.horizon[column].0 * weight, mean.1 + self.horizon[column].1 * weight);
@@ -185,6 +193,13 @@ impl ClearSky {
         haze + (above - haze) * through
     }
 
+    /// Light of the air in front of clouds: under a deck, dimmer and without the sun's glow.
+    #[inline]
+    pub fn air(&self, direction: Vec3A) -> Vec3A {
+        let lit = self.radiance(direction);
+        if self.shade == 1.0 { lit } else { (self.haze + (lit * self.shade - self.haze) * glow_left(self.shade)) }
+    }
+
     /// The lower half: hazy ground, the paler the nearer to the horizon.
     fn below(&self, direction: Vec3A) -> Vec3A {
         let haze = self.haze_towards(direction);
@@ -244,6 +259,10 @@ impl ClearSky {
     }
 }
 
+fn glow_left(shade: f32) -> f32 {
+    ((shade - 0.4) / 0.6).clamp(0.0, 1.0)
+}
+
 /// A colour drawn towards white of the same luminance.
 fn pale(color: Vec3A, amount: f32) -> Vec3A {
     color.lerp(Vec3A::splat(luminance(color)), amount)
@@ -278,11 +297,6 @@ impl SunDisc {
         let bright = luminance(real).max(1e-6);
         let middle = real * (cap.min(bright) / bright);
         Self { sun: sky.sun, radius_rad, middle }
-    }
-
-    /// Cosine of the angle from the sun beyond which there is no disc, given a pixel's size.
-    pub fn edge_cosine(&self, pixel_rad: f32) -> f32 {
-        libm::cosf(self.radius_rad + pixel_rad)
     }
 
     /// Radiance of the disc in a direction, its edge as soft as a pixel.

@@ -101,7 +101,7 @@ impl Clouds {
                 distance += t * gathered;
                 weight += gathered;
                 through *= passed;
-                if through < 0.015 {
+                if through < 0.02 {
                     through = 0.0;
                     break;
                 }
@@ -134,7 +134,10 @@ impl Clouds {
     #[inline]
     fn source(&self, shape: Shape, point: Vec3A, soft: f32, phases: &Phases) -> Vec3A {
         let field = &self.field;
-        let sun_depth = self.depth_to_sun(point, soft);
+        let near_depth = self.depth_to_sun(point, soft);
+        // In a deck all that lies above counts; a single cloud is lit from its sides as well.
+        let above = (shape.top_m - point.y).max(0.0) * EXTINCTION_PER_M / self.sun.y.max(0.3);
+        let sun_depth = near_depth.max(above * (0.35 + 0.65 * field.deck));
         let inside = smoothstep(-0.5 * field.billow_m, 0.6 * field.billow_m, shape.depth_m);
         let up = (point.y / field.height_m.max(1.0)).clamp(0.0, 1.0);
         let first = phases.narrow * exp(-sun_depth);
@@ -192,6 +195,6 @@ pub fn through_air(marched: &Marched, direction: Vec3A, height_m: f32, sky: &Cle
         return Vec4::new(0.0, 0.0, 0.0, 1.0);
     }
     let clearness = sky.clearness(direction.y, 0.001 * marched.distance_m, 0.001 * height_m);
-    let air = sky.radiance(direction) * (Vec3A::ONE - clearness) * (1.0 - marched.through);
+    let air = sky.air(direction) * (Vec3A::ONE - clearness) * (1.0 - marched.through);
     (marched.light * clearness + air).extend(marched.through)
 }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::cirrus::Cirrus;
 use super::clear::ClearSky;
 use super::clouds::{Clouds, through_air};
-use super::math::turn;
+use super::math::{split, turn};
 
 /// Elevation grows with this power of the row.
 const CROWDING: f32 = 1.4;
@@ -100,8 +100,7 @@ impl Dome {
     /// Clouds at a column and row, interpolated.
     #[inline]
     pub fn at(&self, column: f32, row: f32) -> Vec4 {
-        let left = column.floor();
-        let (fx, i) = (column - left, left as i32);
+        let (i, fx) = split(column);
         let row = row.clamp(0.0, (self.height - 1) as f32);
         let j = (row as usize).min(self.height - 2);
         let fy = row - j as f32;

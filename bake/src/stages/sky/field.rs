@@ -3,8 +3,8 @@
 //! clouds' base. The density of a cloud's inside is 1.
 
 use super::SkyParams;
-use super::billow::Billows;
-use super::math::{lerp, smoothstep};
+use super::billow::{BILLOWS, Billows};
+use super::math::{lerp, smoothstep, split};
 use crate::noise;
 use crate::seed::noise_seed;
 
@@ -32,7 +32,7 @@ pub struct CloudField {
     fine_factor: f32,
     offset: [f32; 2],
     map: Vec<f32>,
-    billows: Billows,
+    billows: &'static Billows,
 }
 
 /// A place in the field.
@@ -69,7 +69,7 @@ impl CloudField {
             fine_factor: 3.37,
             offset: [0, 1].map(|i| noise::hash01(seed, i, 7, 7) * scale_m * CELLS as f32),
             map: cover_map(seed),
-            billows: Billows::new(),
+            billows: &BILLOWS,
         };
         field.set_threshold();
         Some(field)
@@ -102,9 +102,8 @@ impl CloudField {
 
     #[inline]
     fn map_at(&self, x: f32, z: f32) -> f32 {
-        let (fx, fz) = (x.floor(), z.floor());
-        let (dx, dz) = (x - fx, z - fz);
-        let (ix, iz) = (fx as i32 as usize, fz as i32 as usize);
+        let ((ix, dx), (iz, dz)) = (split(x), split(z));
+        let (ix, iz) = (ix as usize, iz as usize);
         let (x0, x1) = (ix & MASK, ix.wrapping_add(1) & MASK);
         let (z0, z1) = ((iz & MASK) * MAP, (iz.wrapping_add(1) & MASK) * MAP);
         let map = &self.map[..MAP * MAP];
@@ -127,10 +126,17 @@ impl CloudField {
     /// The undisplaced cloud at a point.
     #[inline]
     pub fn shape(&self, x: f32, y: f32, z: f32) -> Shape {
-        let edge = (self.cover_at(x, z) - self.threshold) * 0.55 * self.scale_m;
+        let cover = self.cover_at(x, z);
+        let edge = (cover - self.threshold) * 0.55 * self.scale_m;
         let u = (edge / (0.3 * self.scale_m)).clamp(0.0, 1.0);
-        let top_m = self.height_m * (u * (2.0 - u)).sqrt();
-        let depth_m = edge.min(y).min(top_m - y);
+        let (mut top_m, mut base_m) = (self.height_m * (u * (2.0 - u)).sqrt(), 0.0);
+        if self.deck > 0.0 {
+            // A deck has lumps and thin places instead of gaps.
+            let lump = smoothstep(0.1, 0.85, cover);
+            top_m = top_m.min(self.height_m * lerp(1.0, 0.3 + 0.7 * lump, self.deck));
+            base_m = self.deck * 0.22 * self.height_m * (1.0 - lump);
+        }
+        let depth_m = edge.min(y - base_m).min(top_m - y);
         Shape { depth_m, top_m }
     }
 

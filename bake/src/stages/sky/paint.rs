@@ -66,7 +66,8 @@ impl Grid {
     fn row(&self, row: usize, pixels: &mut [Vec3A]) {
         let step = self.step as f32;
         let y = (row as f32 + 0.5) / step;
-        let (j, fy) = (y as usize, y - y.floor());
+        let j = y as usize;
+        let fy = y - j as f32;
         let near = &self.nodes[j * self.columns..(j + 1) * self.columns];
         let far = &self.nodes[(j + 1) * self.columns..(j + 2) * self.columns];
         for (i, run) in pixels.chunks_mut(self.step).enumerate() {
