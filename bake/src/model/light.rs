@@ -45,6 +45,8 @@ pub struct CloudLayer {
 pub struct SkyImages {
     /// +X, −X, +Y, −Y, +Z, −Z, each as seen from the middle, oriented as cube maps of Vulkan and WebGPU are.
     pub faces: Vec<ImageF16>,
+    /// The same cube without clouds, 128 px a side, for viewers that draw `layers` themselves.
+    pub clear_faces: Vec<ImageF16>,
     /// Equirectangular: the middle column looks along −z (north), columns run towards east (+x), row 0 is the zenith.
     pub equirect: ImageF16,
     /// Cloud sheets, lowest first.

@@ -1,0 +1,258 @@
+//! Turbidity and sun → light scattered by clear air, after Hillaire, "A Scalable and Production Ready Sky and
+//! Atmosphere Rendering Technique" (EGSR 2020): Rayleigh, Mie and ozone, one order of scattering exactly, all
+//! higher orders as isotropic. Lengths are kilometres; the colour channels stand for 680, 550 and 440 nm.
+//!
+//! Radiances are for a sun of irradiance 1 above the atmosphere.
+
+use glam::Vec3A;
+
+use super::math::{exp, exp3, henyey_greenstein};
+
+/// Radius of the Earth in km.
+pub const GROUND_KM: f32 = 6360.0;
+const TOP_KM: f32 = 6440.0;
+const RAYLEIGH_PER_KM: Vec3A = Vec3A::new(5.802e-3, 13.558e-3, 33.1e-3);
+const RAYLEIGH_SCALE_KM: f32 = 8.0;
+const OZONE_PER_KM: Vec3A = Vec3A::new(0.650e-3, 1.881e-3, 0.085e-3);
+const MIE_SCALE_KM: f32 = 1.2;
+const MIE_ALBEDO: f32 = 0.9;
+const GROUND_ALBEDO: f32 = 0.2;
+
+const HEIGHTS: usize = 24;
+const COSINES: usize = 96;
+const MULTI_HEIGHTS: usize = 8;
+const MULTI_COSINES: usize = 20;
+
+/// Clear air, and what the sun's light suffers in it.
+pub struct Atmosphere {
+    mie_scattering: Vec3A,
+    mie_extinction: Vec3A,
+    transmittance: Vec<Vec3A>,
+    multiple: Vec<Vec3A>,
+}
+
+/// What a view ray gathers: light whose angular shape is already in it, and Mie light still to be multiplied by
+/// [`mie_phase`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Gathered {
+    /// Rayleigh scattering and all higher orders.
+    pub smooth: Vec3A,
+    /// First-order Mie scattering without its phase function.
+    pub mie: Vec3A,
+}
+
+/// The phase function of haze droplets per steradian: a broad lobe and a narrow one, the sun's aureole.
+#[inline]
+pub fn mie_phase(cos_angle: f32) -> f32 {
+    0.93 * henyey_greenstein(0.72, cos_angle) + 0.07 * henyey_greenstein(0.955, cos_angle)
+}
+
+fn rayleigh_phase(cos_angle: f32) -> f32 {
+    3.0 / (16.0 * std::f32::consts::PI) * (1.0 + cos_angle * cos_angle)
+}
+
+/// Density of air, haze and ozone at a height, relative to their coefficients.
+fn densities(height_km: f32) -> (f32, f32, f32) {
+    let ozone = (1.0 - (height_km - 25.0).abs() / 15.0).max(0.0);
+    (exp(-height_km / RAYLEIGH_SCALE_KM), exp(-height_km / MIE_SCALE_KM), ozone)
+}
+
+/// Distance along a ray of direction cosine `mu` from radius `r` to the sphere of radius `to`, outwards.
+fn distance_up(r: f32, mu: f32, to: f32) -> f32 {
+    -r * mu + (r * r * (mu * mu - 1.0) + to * to).max(0.0).sqrt()
+}
+
+/// Distance to the ground, if the ray meets it.
+fn distance_down(r: f32, mu: f32) -> Option<f32> {
+    let root = r * r * (mu * mu - 1.0) + GROUND_KM * GROUND_KM;
+    (mu < 0.0 && root >= 0.0).then(|| -r * mu - root.sqrt()).filter(|&t| t > 0.0)
+}
+
+/// Direction cosines crowd around the horizon in the tables.
+fn cosine_to_unit(mu: f32) -> f32 {
+    ((mu / (mu.abs() + 0.1) + 0.667) / 1.577).clamp(0.0, 1.0)
+}
+
+fn unit_to_cosine(unit: f32) -> f32 {
+    let m = unit * 1.577 - 0.667;
+    0.1 * m / (1.0 - m.abs())
+}
+
+fn height_to_unit(height_km: f32) -> f32 {
+    (height_km / (TOP_KM - GROUND_KM)).clamp(0.0, 1.0).sqrt()
+}
+
+fn bilinear(table: &[Vec3A], columns: usize, rows: usize, u: f32, v: f32) -> Vec3A {
+    let (x, y) = (u * (columns - 1) as f32, v * (rows - 1) as f32);
+    let (i, j) = ((x as usize).min(columns - 2), (y as usize).min(rows - 2));
+    let (fx, fy) = (x - i as f32, y - j as f32);
+    let at = j * columns + i;
+    let low = table[at] + (table[at + 1] - table[at]) * fx;
+    let high = table[at + columns] + (table[at + columns + 1] - table[at + columns]) * fx;
+    low + (high - low) * fy
+}
+
+impl Atmosphere {
+    /// Air of a turbidity (Linke's and Preetham's: optical thickness of haze and molecules over that of molecules).
+    ///
+    /// Haze scatters so much forward that most of what it scatters may count as not scattered (the delta scaling of
+    /// Joseph, Wiscombe and Weinman 1976); what remains is 0.42 of its thickness.
+    pub fn new(turbidity: f32) -> Self {
+        let thickness = 0.108 * (turbidity - 1.0).max(0.05) * 0.42;
+        let spectrum = Vec3A::new(0.84, 1.0, 1.18);
+        let mie_extinction = spectrum * (thickness / MIE_SCALE_KM);
+        let mut air = Self {
+            mie_scattering: mie_extinction * MIE_ALBEDO,
+            mie_extinction,
+            transmittance: Vec::new(),
+            multiple: Vec::new(),
+        };
+        air.transmittance = air.transmittance_table();
+        air.multiple = air.multiple_table();
+        air
+    }
+
+    /// Extinction of clear air at the ground per km.
+    pub fn extinction_per_km(&self) -> (Vec3A, Vec3A) {
+        (RAYLEIGH_PER_KM, self.mie_extinction)
+    }
+
+    fn extinction(&self, air: f32, haze: f32, ozone: f32) -> Vec3A {
+        RAYLEIGH_PER_KM * air + self.mie_extinction * haze + OZONE_PER_KM * ozone
+    }
+
+    /// Part of the sun's light that arrives at a height (km) when the sun stands at direction cosine `mu`.
+    pub fn sun_transmittance(&self, height_km: f32, mu: f32, steps: usize) -> Vec3A {
+        let r = GROUND_KM + height_km.max(0.0);
+        if distance_down(r, mu).is_some() {
+            return Vec3A::ZERO;
+        }
+        let length = distance_up(r, mu, TOP_KM);
+        let mut depth = Vec3A::ZERO;
+        let mut before = 0.0;
+        for step in 0..steps {
+            let share = (step + 1) as f32 / steps as f32;
+            let after = length * share * share;
+            let t = 0.5 * (before + after);
+            let h = (r * r + t * t + 2.0 * r * mu * t).sqrt() - GROUND_KM;
+            let (air, haze, ozone) = densities(h);
+            depth += self.extinction(air, haze, ozone) * (after - before);
+            before = after;
+        }
+        exp3(-depth)
+    }
+
+    fn transmittance_table(&self) -> Vec<Vec3A> {
+        let mut table = Vec::with_capacity(HEIGHTS * COSINES);
+        for row in 0..HEIGHTS {
+            let unit = row as f32 / (HEIGHTS - 1) as f32;
+            let height = unit * unit * (TOP_KM - GROUND_KM);
+            for column in 0..COSINES {
+                let mu = unit_to_cosine(column as f32 / (COSINES - 1) as f32);
+                table.push(self.sun_transmittance(height, mu, 20));
+            }
+        }
+        table
+    }
+
+    fn sun_at(&self, height_km: f32, mu: f32) -> Vec3A {
+        bilinear(&self.transmittance, COSINES, HEIGHTS, cosine_to_unit(mu), height_to_unit(height_km))
+    }
+
+    fn multiple_at(&self, height_km: f32, mu: f32) -> Vec3A {
+        bilinear(&self.multiple, MULTI_COSINES, MULTI_HEIGHTS, cosine_to_unit(mu), height_to_unit(height_km))
+    }
+
+    fn multiple_table(&self) -> Vec<Vec3A> {
+        let mut table = Vec::with_capacity(MULTI_HEIGHTS * MULTI_COSINES);
+        for row in 0..MULTI_HEIGHTS {
+            let unit = row as f32 / (MULTI_HEIGHTS - 1) as f32;
+            let height = (unit * unit * (TOP_KM - GROUND_KM)).max(0.02);
+            for column in 0..MULTI_COSINES {
+                let mu = unit_to_cosine(column as f32 / (MULTI_COSINES - 1) as f32);
+                table.push(self.multiple_scattering(height, mu));
+            }
+        }
+        table
+    }
+
+    /// Radiance of all orders above the first, per unit of scattering: second order over 1 − its own feedback.
+    fn multiple_scattering(&self, height_km: f32, sun_mu: f32) -> Vec3A {
+        const DIRECTIONS: usize = 24;
+        let sun_sine = (1.0 - sun_mu * sun_mu).max(0.0).sqrt();
+        let (mut light, mut feedback) = (Vec3A::ZERO, Vec3A::ZERO);
+        for i in 0..DIRECTIONS {
+            // A Fibonacci spiral over the sphere.
+            let mu = 1.0 - (2 * i + 1) as f32 / DIRECTIONS as f32;
+            let azimuth = i as f32 * 2.399_963_2;
+            let cos_angle = mu * sun_mu + (1.0 - mu * mu).max(0.0).sqrt() * sun_sine * libm::cosf(azimuth);
+            let (l, f) = self.second_order(height_km, mu, sun_mu, cos_angle);
+            light += l;
+            feedback += f;
+        }
+        let n = 1.0 / DIRECTIONS as f32;
+        light * n / (Vec3A::ONE - feedback * n)
+    }
+
+    fn second_order(&self, height_km: f32, mu: f32, sun_mu: f32, cos_angle: f32) -> (Vec3A, Vec3A) {
+        const STEPS: usize = 12;
+        let r = GROUND_KM + height_km;
+        let ground = distance_down(r, mu);
+        let length = ground.unwrap_or_else(|| distance_up(r, mu, TOP_KM));
+        let (mut light, mut feedback, mut through) = (Vec3A::ZERO, Vec3A::ZERO, Vec3A::ONE);
+        let mut before = 0.0;
+        for step in 0..STEPS {
+            let share = (step + 1) as f32 / STEPS as f32;
+            let after = length * share * share;
+            let (t, dt) = (0.5 * (before + after), after - before);
+            before = after;
+            let radius = (r * r + t * t + 2.0 * r * mu * t).sqrt();
+            let (air, haze, ozone) = densities(radius - GROUND_KM);
+            let scattering = RAYLEIGH_PER_KM * air + self.mie_scattering * haze;
+            let extinction = self.extinction(air, haze, ozone);
+            let passed = exp3(-extinction * dt);
+            let gathered = scattering * through * (Vec3A::ONE - passed) / extinction.max(Vec3A::splat(1e-9));
+            let mu_here = (r * sun_mu + t * cos_angle) / radius;
+            light += gathered * self.sun_at(radius - GROUND_KM, mu_here) * (0.25 * std::f32::consts::FRAC_1_PI);
+            feedback += gathered;
+            through *= passed;
+        }
+        if let Some(t) = ground {
+            let mu_ground = (r * sun_mu + t * cos_angle) / GROUND_KM;
+            let bounce = GROUND_ALBEDO * std::f32::consts::FRAC_1_PI * mu_ground.max(0.0);
+            light += through * self.sun_at(0.0, mu_ground) * bounce;
+        }
+        (light, feedback)
+    }
+
+    /// Light that reaches an eye at `height_km` along a ray upwards of direction cosine `mu`, at an angle to the sun
+    /// of cosine `cos_angle`.
+    pub fn gather(&self, height_km: f32, mu: f32, sun_mu: f32, cos_angle: f32) -> Gathered {
+        const STEPS: usize = 26;
+        let r = GROUND_KM + height_km;
+        let length = distance_up(r, mu, TOP_KM);
+        let phase = rayleigh_phase(cos_angle);
+        let mut sum = Gathered::default();
+        let (mut through, mut before) = (Vec3A::ONE, 0.0);
+        for step in 0..STEPS {
+            let share = (step + 1) as f32 / STEPS as f32;
+            let after = length * share * share;
+            let (t, dt) = (0.5 * (before + after), after - before);
+            before = after;
+            let radius = (r * r + t * t + 2.0 * r * mu * t).sqrt();
+            let height = radius - GROUND_KM;
+            let (air, haze, ozone) = densities(height);
+            let extinction = self.extinction(air, haze, ozone);
+            let passed = exp3(-extinction * dt);
+            let weight = through * (Vec3A::ONE - passed) / extinction.max(Vec3A::splat(1e-9));
+            let mu_here = (r * sun_mu + t * cos_angle) / radius;
+            let sun = self.sun_at(height, mu_here);
+            let rayleigh = RAYLEIGH_PER_KM * air;
+            let mie = self.mie_scattering * haze;
+            sum.smooth += weight * (rayleigh * sun * phase + (rayleigh + mie) * self.multiple_at(height, mu_here));
+            sum.mie += weight * mie * sun;
+            through *= passed;
+        }
+        sum
+    }
+}

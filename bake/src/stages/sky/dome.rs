@@ -1,0 +1,137 @@
+//! Clouds and clear sky → a map of what clouds add to the upper half of the sky: light (RGB) and transparency, over
+//! azimuth and elevation, with rows crowded towards the horizon where a person looks.
+
+use glam::{Vec3A, Vec4};
+use rayon::prelude::*;
+
+use super::cirrus::Cirrus;
+use super::clear::ClearSky;
+use super::clouds::{Clouds, through_air};
+use super::math::{split, turn};
+
+/// Elevation grows with this power of the row.
+const CROWDING: f32 = 1.4;
+const LOOKUP: usize = 2048;
+
+/// What clouds add: per texel their light in RGB and, in w, the part of the clear sky that shines through.
+pub struct Dome {
+    width: usize,
+    height: usize,
+    texels: Vec<Vec4>,
+    row_of_sine: Vec<f32>,
+}
+
+/// The clouds of a sky: either may be missing.
+pub struct Layers {
+    /// Cumulus or stratus.
+    pub clouds: Option<Clouds>,
+    /// The high sheet.
+    pub cirrus: Option<Cirrus>,
+}
+
+impl Layers {
+    /// Nothing at all to draw.
+    pub fn is_empty(&self) -> bool {
+        self.clouds.is_none() && self.cirrus.is_none()
+    }
+
+    /// Light and transparency of all clouds in a unit direction with y > 0.
+    pub fn seen(&self, direction: Vec3A, sky: &ClearSky) -> Vec4 {
+        let mut seen = Vec4::new(0.0, 0.0, 0.0, 1.0);
+        if let Some(clouds) = &self.clouds {
+            let height = clouds.field.base_m + 0.4 * clouds.field.height_m;
+            seen = through_air(&clouds.march(direction), direction, height, sky);
+        }
+        if let Some(cirrus) = &self.cirrus
+            && seen.w > 0.0
+        {
+            let behind = cirrus.seen(direction, sky);
+            let light = seen.truncate() + behind.truncate() * seen.w;
+            seen = light.extend(seen.w * behind.w);
+        }
+        seen
+    }
+}
+
+impl Dome {
+    /// Draws the clouds; `width` directions around, `height` from horizon to zenith. Rows near the zenith are
+    /// drawn with fewer directions.
+    pub fn new(layers: &Layers, sky: &ClearSky, width: usize, height: usize) -> Self {
+        let mut texels = vec![Vec4::new(0.0, 0.0, 0.0, 1.0); width * height];
+        let row_of_sine = (0..=LOOKUP).map(|i| row_at(i as f32 / LOOKUP as f32, height)).collect();
+        if layers.is_empty() {
+            return Self { width, height, texels, row_of_sine };
+        }
+        let around: Vec<(f32, f32)> = (0..width)
+            .map(|column| {
+                let azimuth = (column as f32 + 0.5) / width as f32 * std::f32::consts::TAU;
+                (libm::sinf(azimuth), -libm::cosf(azimuth))
+            })
+            .collect();
+        texels.par_chunks_exact_mut(width).enumerate().for_each(|(row, texels)| {
+            let unit = (row as f32 + 0.5) / height as f32;
+            let elevation = libm::powf(unit, CROWDING) * std::f32::consts::FRAC_PI_2;
+            let (sine, flat) = (libm::sinf(elevation), libm::cosf(elevation));
+            let stride = stride_at(flat, width);
+            for column in (0..width).step_by(stride) {
+                let (x, z) = around[column];
+                texels[column] = layers.seen(Vec3A::new(flat * x, sine, flat * z), sky);
+            }
+            fill_between(texels, stride);
+        });
+        Self { width, height, texels, row_of_sine }
+    }
+
+    /// Row coordinate of a sine of elevation.
+    #[inline]
+    pub fn row(&self, sine: f32) -> f32 {
+        let at = sine.clamp(0.0, 1.0).sqrt() * LOOKUP as f32;
+        let i = (at as usize).min(LOOKUP - 1);
+        let (a, b) = (self.row_of_sine[i], self.row_of_sine[i + 1]);
+        a + (b - a) * (at - i as f32)
+    }
+
+    /// Column coordinate of a flat direction.
+    #[inline]
+    pub fn column(&self, x: f32, z: f32) -> f32 {
+        turn(x, -z) * self.width as f32 - 0.5
+    }
+
+    /// Clouds at a column and row, interpolated.
+    #[inline]
+    pub fn at(&self, column: f32, row: f32) -> Vec4 {
+        let (i, fx) = split(column);
+        let row = row.clamp(0.0, (self.height - 1) as f32);
+        let j = (row as usize).min(self.height - 2);
+        let fy = row - j as f32;
+        let width = self.width as i32;
+        let x0 = if i < 0 { i + width } else { i } as usize;
+        let x1 = if i + 1 >= width { i + 1 - width } else { i + 1 } as usize;
+        let (low, high) = (&self.texels[j * self.width..], &self.texels[(j + 1) * self.width..]);
+        low[x0].lerp(low[x1], fx).lerp(high[x0].lerp(high[x1], fx), fy)
+    }
+}
+
+fn row_at(root_of_sine: f32, height: usize) -> f32 {
+    let elevation = libm::asinf((root_of_sine * root_of_sine).min(1.0));
+    libm::powf(elevation * std::f32::consts::FRAC_2_PI, 1.0 / CROWDING) * height as f32 - 0.5
+}
+
+/// Columns between drawn directions: a power of two that divides the width.
+fn stride_at(flat: f32, width: usize) -> usize {
+    let mut stride = 1;
+    while (stride * 2) as f32 * flat < 1.25 && stride < 32 && width.is_multiple_of(stride * 2) {
+        stride *= 2;
+    }
+    stride
+}
+
+fn fill_between(texels: &mut [Vec4], stride: usize) {
+    let width = texels.len();
+    for start in (0..width).step_by(stride) {
+        let (a, b) = (texels[start], texels[(start + stride) % width]);
+        for k in 1..stride {
+            texels[start + k] = a.lerp(b, k as f32 / stride as f32);
+        }
+    }
+}

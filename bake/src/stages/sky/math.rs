@@ -1,0 +1,130 @@
+//! Small mathematics of the sky: exponential, arc tangent and half floats as plain IEEE arithmetic on `f32`, so that
+//! they are fast enough for every pixel and give the same bits on every machine.
+
+use glam::Vec3A;
+
+/// e^x to a relative error of 3e-7; 0 below −87.
+#[inline]
+pub fn exp(x: f32) -> f32 {
+    if x < -87.0 {
+        return 0.0;
+    }
+    let scaled = x.min(88.0) * std::f32::consts::LOG2_E;
+    // Rounded by truncating a positive number: `floor` would be a call on machines without SSE 4.1.
+    let whole = (scaled + 128.5) as i32 - 128;
+    let f = (scaled - whole as f32) * std::f32::consts::LN_2;
+    let series = 1.0 + f * (1.0 + f * (0.5 + f * (1.0 / 6.0 + f * (1.0 / 24.0 + f * (1.0 / 120.0)))));
+    series * f32::from_bits(((whole + 127) as u32) << 23)
+}
+
+/// e^x of each component.
+#[inline]
+pub fn exp3(v: Vec3A) -> Vec3A {
+    Vec3A::new(exp(v.x), exp(v.y), exp(v.z))
+}
+
+/// The angle of (x, y) as part of a full turn in [0, 1), to 2e-6 of a turn; 0 at the origin.
+#[inline]
+pub fn turn(y: f32, x: f32) -> f32 {
+    let (ax, ay) = (x.abs(), y.abs());
+    let largest = ax.max(ay);
+    if largest == 0.0 {
+        return 0.0;
+    }
+    // Abramowitz and Stegun 4.4.49, an odd polynomial for the arc tangent in [0, 1].
+    let t = ax.min(ay) / largest;
+    let s = t * t;
+    let series = 1.0
+        + s * (-0.333_331_45
+            + s * (0.199_935_51
+                + s * (-0.142_088_99
+                    + s * (0.106_562_64 + s * (-0.075_289_64 + s * (0.042_909_614 + s * (-0.016_165_737 + s * 0.002_866_226)))))));
+    let mut a = t * series * std::f32::consts::FRAC_1_PI * 0.5;
+    if ay > ax {
+        a = 0.25 - a;
+    }
+    if x < 0.0 {
+        a = 0.5 - a;
+    }
+    let a = if y < 0.0 { 1.0 - a } else { a };
+    if a >= 1.0 { 0.0 } else { a }
+}
+
+/// The whole number below and the fraction above it.
+#[inline]
+pub fn split(x: f32) -> (i32, f32) {
+    let cut = x as i32;
+    let whole = cut - i32::from(cut as f32 > x);
+    (whole, x - whole as f32)
+}
+
+/// Hermite's step from 0 at `low` to 1 at `high`.
+#[inline]
+pub fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
+    let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// Linear interpolation.
+#[inline]
+pub fn lerp(a: f32, b: f32, t: f32) -> f32 {
+    a + (b - a) * t
+}
+
+/// Luminance of linear sRGB (Rec. 709).
+#[inline]
+pub fn luminance(c: Vec3A) -> f32 {
+    0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z
+}
+
+/// The phase function of Henyey and Greenstein (1941), per steradian.
+#[inline]
+pub fn henyey_greenstein(g: f32, cos_angle: f32) -> f32 {
+    let d = (1.0 + g * g - 2.0 * g * cos_angle).max(1e-6);
+    (1.0 - g * g) * (0.25 * std::f32::consts::FRAC_1_PI) / (d * d.sqrt())
+}
+
+/// The bits of the half float nearest to a value in [0, 65504]; ties go to even, as IEEE 754 has it.
+#[inline]
+pub fn half_bits(value: f32) -> u16 {
+    let bits = value.max(0.0).min(65504.0).to_bits();
+    // Below 2⁻¹⁴ the half is subnormal: adding ½ puts its ten bits at the end of the significand.
+    let subnormal = (f32::from_bits(bits) + 0.5).to_bits().wrapping_sub(0.5f32.to_bits());
+    let normal = bits.wrapping_sub(112 << 23).wrapping_add(0xFFF + ((bits >> 13) & 1)) >> 13;
+    if bits < (113 << 23) { subnormal as u16 } else { normal as u16 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exp_agrees_with_libm() {
+        for i in -800..80 {
+            let x = i as f32 * 0.1037;
+            let (ours, theirs) = (exp(x), libm::expf(x));
+            assert!((ours - theirs).abs() <= 3e-6 * theirs + 1e-37, "exp({x}) = {ours}, not {theirs}");
+        }
+    }
+
+    #[test]
+    fn turn_agrees_with_libm() {
+        for i in 0..720 {
+            let angle = (i as f32 + 0.3) * std::f32::consts::PI / 360.0;
+            let (y, x) = (libm::sinf(angle) * 3.0, libm::cosf(angle) * 3.0);
+            assert!((turn(y, x) - angle / std::f32::consts::TAU).abs() < 4e-6, "at {angle}");
+        }
+    }
+
+    #[test]
+    fn half_bits_agree_with_the_half_crate() {
+        for i in 0..400_000u32 {
+            let value = f32::from_bits(i * 2801);
+            if value < 65504.0 {
+                assert_eq!(half_bits(value), half::f16::from_f32(value).to_bits(), "{value:e}");
+            }
+        }
+        assert_eq!(half_bits(1e9), half::f16::MAX.to_bits());
+        assert_eq!(half_bits(f32::NAN), 0);
+    }
+}
