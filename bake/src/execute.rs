@@ -131,7 +131,8 @@ fn for_trees<T>(mut get: impl FnMut(&str) -> Result<T, StageError>) -> Result<Ve
 
 /// PNG files of pictures by name; `true` where the values are sRGB.
 fn pngs(images: Vec<(String, &Image8, bool)>) -> Vec<Output> {
-    images.into_par_iter().map(|(name, image, srgb)| Output::new(name, "png", png::encode(image, srgb))).collect()
+    let file = |image, srgb| if srgb { png::encode(image) } else { png::encode_linear(image) };
+    images.into_par_iter().map(|(name, image, srgb)| Output::new(name, "png", file(image, srgb))).collect()
 }
 
 fn terrain(params: &GroundParams, landform: &Landform) -> Result<Vec<Output>, StageError> {
