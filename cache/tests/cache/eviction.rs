@@ -78,6 +78,16 @@ fn the_least_recently_used_goes_first() {
 }
 
 #[test]
+fn a_root_whose_record_is_lost_stays() {
+    let world = tempfile::tempdir().expect("a temporary folder");
+    let cache = Cache::open(world.path()).expect("opens");
+    let root = cache.put_blob(&b"in use"[..], "bin").expect("stored");
+    let other = cache.put_blob(&b"not in use"[..], "bin").expect("stored");
+    cache.gc(at_once(0), &BTreeSet::from([root.digest])).expect("collects");
+    assert_eq!((cache.has_blob(&root), cache.has_blob(&other)), (true, false));
+}
+
+#[test]
 fn the_young_and_the_just_used_stay() {
     let world = tempfile::tempdir().expect("a temporary folder");
     let cache = Cache::open(world.path()).expect("opens");

@@ -81,3 +81,11 @@ fn a_digest_has_one_name() {
     assert!(text[1..].parse::<Digest>().is_err());
     assert!(format!("{text}0").parse::<Digest>().is_err());
 }
+
+#[test]
+fn fields_are_framed_by_their_length() {
+    // Without frames, both would be the bytes x 0 0 0 0 0.
+    let stage = ActionKey::builder("x\0", 0).build();
+    let parameter = ActionKey::builder("x", 0).parameters(&0_u8).expect("canonical").build();
+    assert_ne!(stage.digest(), parameter.digest());
+}
