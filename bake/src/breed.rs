@@ -89,7 +89,7 @@ impl Litter<'_> {
         }
         let first = if keeper == 1 { 2 } else { 1 };
         if child == first {
-            return (self.mutated(best, GENTLE), format!("like {}.{favourite}", self.parents.generation));
+            return (self.fresh(best, GENTLE), format!("like {}.{favourite}", self.parents.generation));
         }
         let other = (favourite + 1 + self.below(INDIVIDUALS as u32 - 1) as usize) % INDIVIDUALS;
         let crossed = self.crossed(&best, &self.parent(other));
@@ -104,7 +104,7 @@ impl Litter<'_> {
         let mother = self.below(INDIVIDUALS as u32) as usize;
         let father = (mother + 1 + self.below(INDIVIDUALS as u32 - 1) as usize) % INDIVIDUALS;
         let crossed = self.crossed(&self.parent(mother), &self.parent(father));
-        (self.mutated(crossed, STRONG), "new".into())
+        (self.fresh(crossed, STRONG), "new".into())
     }
 
     fn parent(&self, index: usize) -> Chromosome {
@@ -122,6 +122,18 @@ impl Litter<'_> {
             }
         }
         child
+    }
+
+    /// Mutated until it is none of the parents, whom the person has seen; a space of few codes may allow nothing else.
+    fn fresh(&mut self, mut chromosome: Chromosome, chance: f32) -> Chromosome {
+        for _ in 0..8 {
+            chromosome = self.mutated(chromosome, chance);
+            let seen = |other: &Individual| other.genome.chromosome(self.category) == &chromosome;
+            if !self.parents.individuals.iter().any(seen) {
+                break;
+            }
+        }
+        chromosome
     }
 
     /// With each gene changed by `chance`; at least one is.
