@@ -162,7 +162,7 @@ impl Litter<'_> {
     }
 
     fn below(&mut self, count: u32) -> u32 {
-        (u64::from(self.rng.next_u32()) * u64::from(count) >> 32) as u32
+        ((u64::from(self.rng.next_u32()) * u64::from(count)) >> 32) as u32
     }
 
     fn chance(&mut self, chance: f32) -> bool {
