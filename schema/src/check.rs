@@ -182,15 +182,11 @@ impl<'a> Checker<'a> {
         let line_start: usize = self.text.split_inclusive('\n').take(line - 1).map(str::len).sum();
         let in_line = self.text[line_start..].char_indices().nth(column - 1).map_or(usize::MAX, |(at, _)| at);
         let mut at = line_start.saturating_add(in_line);
-        let message = if self.text[line_start..]
-            .get(in_line.min(self.text.len())..)
-            .is_none_or(|rest| rest.trim().is_empty())
-        {
+        let mut message = syntax_message(&error.code);
+        if self.text.get(at..).is_none_or(|rest| rest.trim().is_empty()) {
             at = self.text.trim_end().len();
-            format!("the file ends too early: {}", lower(&error.code.to_string()))
-        } else {
-            lower(&error.code.to_string())
-        };
+            message = format!("the file ends too early: {message}");
+        }
         Report { diagnostics: vec![Diagnostic::at(self.file, self.text, at..at, message)] }
     }
 }
@@ -213,8 +209,20 @@ pub(crate) fn did_you_mean(name: &str, known: &[&str]) -> String {
         .map_or(String::new(), |(_, known)| format!("; did you mean {known}?"))
 }
 
-/// ron's messages without their capital letter, to stand after a colon.
-fn lower(message: &str) -> String {
-    let mut chars = message.chars();
-    chars.next().map_or(String::new(), |first| first.to_lowercase().chain(chars).collect())
+/// ron's messages in the words of somebody who edits a file, to stand after a colon.
+fn syntax_message(error: &ron::Error) -> String {
+    match error {
+        ron::Error::Eof => "a bracket or a quotation mark is still open".into(),
+        ron::Error::ExpectedComma => "expected a comma or a closing bracket before this".into(),
+        ron::Error::ExpectedMapColon => "expected a colon after the name".into(),
+        ron::Error::TrailingCharacters => "the file should end here; is one bracket too many closed?".into(),
+        ron::Error::ExpectedIdentifier | ron::Error::SuggestRawIdentifier(_) => {
+            "expected a name (decimals are written with a point: 7.4)".into()
+        }
+        other => {
+            let message = other.to_string();
+            let mut chars = message.chars();
+            chars.next().map_or(String::new(), |first| first.to_lowercase().chain(chars).collect())
+        }
+    }
 }

@@ -3,6 +3,9 @@
 use std::fmt;
 use std::ops::Range;
 
+/// Characters of a line that are shown; of longer ones the part around the fault.
+const WIDEST: usize = 120;
+
 /// One fault of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
@@ -24,11 +27,15 @@ impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { file, line, column, message, source, length } = self;
         writeln!(f, "{file}:{line}:{column}: {message}")?;
-        writeln!(f, "{line:>5} | {source}")?;
+        let from = if source.chars().count() > WIDEST { column.saturating_sub(WIDEST / 2) } else { 0 };
+        let cut = if from > 0 { "…" } else { "" };
+        let shown: String = source.chars().skip(from).take(WIDEST).collect();
+        writeln!(f, "{line:>5} | {cut}{shown}")?;
         // Tabs are kept so that the marks stand under what they mean.
-        let indent: String =
-            source.chars().take(column - 1).map(|c| if c == '\t' { c } else { ' ' }).collect();
-        write!(f, "{:>5} | {indent}{}", "", "^".repeat(*length))
+        let before = cut.chars().chain(source.chars().skip(from).take(column - 1 - from));
+        let indent: String = before.map(|c| if c == '\t' { c } else { ' ' }).collect();
+        let marks = (*length).min(from + WIDEST + 1 - column).max(1);
+        write!(f, "{:>5} | {indent}{}", "", "^".repeat(marks))
     }
 }
 

@@ -78,6 +78,17 @@ fn a_fault_is_shown_under_its_line() {
 }
 
 #[test]
+fn of_a_long_line_the_part_that_matters_is_shown() {
+    let line: String =
+        with_gene("height_m", "74").0.lines().map(|l| l.split("//").next().unwrap_or_default()).collect();
+    let told = faults(&line).to_string();
+    let lines: Vec<&str> = told.lines().collect();
+    let column = |text: &str, part: &str| text.find(part).map(|at| text[..at].chars().count());
+    assert!(lines[1].chars().count() < 140 && lines[1].contains("height_m: 74,"), "{told}");
+    assert_eq!(column(lines[1], "74,"), column(lines[2], "^^"), "{told}");
+}
+
+#[test]
 fn wrong_genes_say_what_would_be_right() {
     let cases = [
         (
@@ -178,8 +189,8 @@ fn no_truncation_is_accepted_or_panics() {
     let space = Space::builtin();
     let text = Population::random(&space, 3, 0).to_ron(&space);
     let end = text.rfind(')').expect("a bracket");
-    // Each cut costs a parse: take one in five, and all near the end.
-    for cut in (0..=end).filter(|cut| cut % 5 == 0 || end - cut < 200) {
+    // Each cut costs a parse: take one in 37, and all near the end.
+    for cut in (0..=end).filter(|cut| cut % 37 == 0 || end - cut < 100) {
         let Some(part) = text.get(..cut) else { continue };
         let report = Population::load(&space, "p.ron", part).expect_err("a part was accepted");
         let (lines, fault) = (part.lines().count().max(1), &report.diagnostics[0]);
