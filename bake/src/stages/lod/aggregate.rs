@@ -1,0 +1,192 @@
+//! Leaf cards and the like: the order in which elements go, what that costs in metres, and how much the rest grow.
+//!
+//! Cook, Halstead, Planck, Ryu, "Stochastic simplification of aggregate detail" (2007). The order is stratified:
+//! elements are paired with their neighbours in a k-d tree, one of each pair goes, pairs taken in a sequence that is
+//! spread over the whole; then the survivors pair up again. So no hole opens. Of a pair the one nearer the middle of
+//! the crown goes, for the outer one carries the silhouette.
+
+use glam::Vec3;
+
+use super::coverage::{Element, Silhouettes};
+use super::state::{PartSpan, State};
+
+/// No part keeps fewer elements than this.
+const LEAST_ELEMENTS: usize = 6;
+/// An element may grow to this part of the extent of all.
+const GREATEST_GROWN: f32 = 0.3;
+
+/// One aggregate part.
+pub struct Aggregate {
+    /// Which part of the mesh.
+    pub part: usize,
+    /// Elements in the order in which they go, without those that stay for ever.
+    pub order: Vec<u32>,
+    /// How many have gone.
+    pub gone: usize,
+    /// Elements at full detail, and vertices and triangles of each.
+    pub elements: (u32, u32, u32),
+    /// Error in metres per unit of growth.
+    weight_m: f64,
+    /// Greatest allowed scale.
+    most: f32,
+    silhouettes: Silhouettes,
+    lives: Vec<bool>,
+    /// Scale and number of elements when last calibrated.
+    last: (f32, usize),
+}
+
+impl Aggregate {
+    /// Plans the removal of a part's elements; `None` for surfaces and for empty parts.
+    pub fn new(state: &State, part: usize, weight: f32, fill: f32) -> Option<Self> {
+        let span = &state.parts[part];
+        let elements = span.elements()?;
+        let places = places(state, span)?;
+        let count = places.len();
+        let radius = places.iter().map(|place| f64::from(place.radius)).sum::<f64>() / count as f64;
+        let (low, high) = places.iter().fold((Vec3::MAX, Vec3::MIN), |(low, high), place| {
+            (low.min(place.centre - place.radius), high.max(place.centre + place.radius))
+        });
+        let extent = (high - low).max_element();
+        let shapes = (0..count).map(|e| element(state, span, e, &places[e])).collect();
+        Some(Self {
+            part,
+            order: removal_order(&places, (low + high) * 0.5),
+            gone: 0,
+            elements,
+            weight_m: f64::from(weight) * radius,
+            most: (GREATEST_GROWN * extent / radius as f32).max(1.0),
+            silhouettes: Silhouettes::new(shapes, low, high, fill),
+            lives: vec![true; count],
+            last: (1.0, count),
+        })
+    }
+
+    /// Elements that live.
+    pub fn living(&self) -> usize {
+        self.elements.0 as usize - self.gone
+    }
+
+    /// The error in metres once the next element has gone: by how much elements will have grown to keep the area.
+    pub fn next_cost_m(&self) -> Option<f64> {
+        (self.gone < self.order.len()).then(|| {
+            let ratio = f64::from(self.elements.0) / (self.living() - 1) as f64;
+            self.weight_m * (ratio.sqrt() - 1.0)
+        })
+    }
+
+    /// Takes the next element.
+    pub fn take_next(&mut self) -> Option<u32> {
+        let element = *self.order.get(self.gone)?;
+        self.gone += 1;
+        self.lives[element as usize] = false;
+        Some(element)
+    }
+
+    /// How much larger the living elements must be so that they cover as much as all did, seen from the sides.
+    pub fn calibrated_scale(&mut self) -> f32 {
+        let (last, before) = self.last;
+        let now = self.living();
+        if now == before {
+            return last;
+        }
+        let target = self.silhouettes.full() as f32;
+        let least = last;
+        let same_area = last * (before as f32 / now as f32).sqrt();
+        let most = (1.25 * same_area).min(self.most).max(least);
+        let cover = |scale: f32| self.silhouettes.covered(&self.lives, scale) as f32;
+        let mut near = (same_area.min(most), 0.0);
+        near.1 = cover(near.0);
+        let mut best = near;
+        for step in 0..3 {
+            let slope = if step == 0 { 1.3 * near.1 / near.0 } else { (best.1 - near.1) / (best.0 - near.0) };
+            let slope = if slope.is_finite() && slope > 0.0 { slope } else { near.1 / near.0 };
+            let wanted = (best.0 + (target - best.1) / slope.max(1e-3)).clamp(least, most);
+            if (best.1 - target).abs() <= 0.004 * target || wanted == best.0 {
+                break;
+            }
+            let found = (wanted, cover(wanted));
+            near = best;
+            best = found;
+        }
+        self.last = (best.0, now);
+        best.0
+    }
+}
+
+struct Place {
+    centre: Vec3,
+    /// Root mean square distance of its vertices from the centre, in metres.
+    radius: f32,
+}
+
+fn places(state: &State, span: &PartSpan) -> Option<Vec<Place>> {
+    let (count, per, _) = span.elements()?;
+    let place = |e: u32| {
+        let ids = (span.first_vertex + e * per) as usize..(span.first_vertex + (e + 1) * per) as usize;
+        let centre = Vec3::from_array(state.centre(ids.clone()));
+        let square = |v: &super::state::Vertex| Vec3::from_array(v.position).distance_squared(centre);
+        let sum: f32 = state.vertices[ids].iter().map(square).sum();
+        Place { centre, radius: (sum / per as f32).sqrt() }
+    };
+    let places: Vec<_> = (0..count).map(place).collect();
+    let sound = places.iter().all(|p| p.centre.is_finite() && p.radius.is_finite());
+    (sound && places.iter().any(|p| p.radius > 0.0)).then_some(places)
+}
+
+fn element(state: &State, span: &PartSpan, e: usize, place: &Place) -> Element {
+    let (_, per, triangles) = span.elements().unwrap_or_default();
+    let start = span.first_vertex as usize + e * per as usize;
+    let vertices = &state.vertices[start..start + per as usize];
+    let offsets = vertices.iter().map(|v| Vec3::from_array(v.position) - place.centre).collect();
+    let first = span.first_triangle as usize + e * triangles as usize;
+    let of_element = &state.triangles[first..first + triangles as usize];
+    let triangles = of_element.iter().map(|t| t.map(|v| v - start as u32)).collect();
+    Element { centre: place.centre, offsets, triangles }
+}
+
+/// Elements in the order in which they go; the last few never do.
+fn removal_order(places: &[Place], middle: Vec3) -> Vec<u32> {
+    let mut living: Vec<u32> = (0..places.len() as u32).collect();
+    neighbours_together(&mut living, places);
+    let mut order = Vec::with_capacity(places.len());
+    let worth = |e: u32| {
+        let place = &places[e as usize];
+        place.centre.distance(middle) + place.radius
+    };
+    while living.len() >= 2 * LEAST_ELEMENTS {
+        let mut leaving: Vec<(u32, u32)> = Vec::with_capacity(living.len() / 2);
+        let mut staying = Vec::with_capacity(living.len().div_ceil(2));
+        for (index, pair) in living.chunks(2).enumerate() {
+            match *pair {
+                [p, q] => {
+                    let (goes, stays) = if worth(p) <= worth(q) { (p, q) } else { (q, p) };
+                    staying.push(stays);
+                    // Multiples of the golden ratio spread the pairs evenly at every length of the sequence.
+                    leaving.push(((index as u32).wrapping_mul(0x9E37_79B9), goes));
+                }
+                _ => staying.extend_from_slice(pair),
+            }
+        }
+        leaving.sort_unstable();
+        order.extend(leaving.into_iter().map(|(_, element)| element));
+        living = staying;
+    }
+    order
+}
+
+/// Sorts so that consecutive pairs, fours, eights … lie close together: halves along the longest side, again and
+/// again, at powers of two.
+fn neighbours_together(elements: &mut [u32], places: &[Place]) {
+    if elements.len() <= 2 {
+        return;
+    }
+    let at = |e: u32| places[e as usize].centre;
+    let (low, high) =
+        elements.iter().fold((Vec3::MAX, Vec3::MIN), |(low, high), &e| (low.min(at(e)), high.max(at(e))));
+    let axis = (high - low).max_position();
+    let half = elements.len().next_power_of_two() / 2;
+    elements.select_nth_unstable_by(half, |&p, &q| at(p)[axis].total_cmp(&at(q)[axis]).then(p.cmp(&q)));
+    let (lower, upper) = elements.split_at_mut(half);
+    neighbours_together(lower, places);
+    neighbours_together(upper, places);
+}

@@ -1,0 +1,272 @@
+//! The order of everything that goes: edge collapses, whole pieces (twigs), elements of aggregates, by one cost in
+//! metres, until a mesh has at most so many vertices.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use glam::DVec3;
+
+use super::LodOptions;
+use super::aggregate::Aggregate;
+use super::collapse::{Dead, Surface};
+use super::quadric::QuadricMetric;
+use super::state::{Log, NONE, State};
+
+/// A piece may take a level this far below its target.
+const OVERSHOOT: usize = 4;
+
+/// A mesh on its way down.
+pub struct Sequence {
+    pub state: State,
+    pub log: Log,
+    pub aggregates: Vec<Aggregate>,
+    /// Vertex that each one that is gone merged into, or `NONE`.
+    pub heirs: Vec<u32>,
+    /// Place that each one that is gone without an heir shrank to.
+    pub graves: Vec<[f32; 3]>,
+    /// Greatest error so far, in metres.
+    pub error_m: f64,
+    surface: Surface<QuadricMetric>,
+    queue: BinaryHeap<Reverse<(u32, u32, u32, u32)>>,
+    versions: Vec<u32>,
+    /// Collapses that were refused and may be possible later.
+    refused: Vec<(u32, u32, u32)>,
+    /// Pieces by falling cost, and those put off because they are too large for the level.
+    pieces: Vec<(f64, u32)>,
+    put_off: Vec<(f64, u32)>,
+    ring: Vec<u32>,
+    unused: Vec<u32>,
+}
+
+enum Next {
+    Edge,
+    Piece,
+    Element(usize),
+}
+
+impl Sequence {
+    /// Everything in place, nothing gone.
+    pub fn new(state: State, options: &LodOptions) -> Self {
+        let surface = Surface::new(&state, QuadricMetric::default(), options.placement);
+        let aggregate = |p| Aggregate::new(&state, p, options.aggregate_weight, options.element_fill);
+        let aggregates: Vec<_> = (0..state.parts.len()).filter_map(aggregate).collect();
+        let mut used = vec![false; state.vertices.len()];
+        state.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
+        for span in &state.parts {
+            let Some((elements, per, _)) = span.elements() else { continue };
+            used[span.first_vertex as usize..][..(elements * per) as usize].fill(true);
+        }
+        let mut sequence = Self {
+            heirs: vec![NONE; state.vertices.len()],
+            graves: vec![[0.0; 3]; state.vertices.len()],
+            versions: vec![0; surface.topology.positions.len()],
+            unused: (0..used.len() as u32).filter(|&v| !used[v as usize]).collect(),
+            pieces: pieces_by_cost(&surface, f64::from(options.piece_weight)),
+            put_off: Vec::new(),
+            queue: BinaryHeap::new(),
+            refused: Vec::new(),
+            ring: Vec::new(),
+            log: Log::default(),
+            error_m: 0.0,
+            aggregates,
+            surface,
+            state,
+        };
+        sequence.queue_all();
+        sequence
+    }
+
+    /// Simplifies until at most `target` vertices live or nothing more can go. `watch` sees the number of vertices
+    /// and the error after every step.
+    pub fn reduce_to(&mut self, target: usize, mut watch: impl FnMut(usize, f64)) {
+        self.pieces.append(&mut self.put_off);
+        self.pieces.sort_by(|p, q| q.0.total_cmp(&p.0).then(q.1.cmp(&p.1)));
+        for (a, b, version) in std::mem::take(&mut self.refused) {
+            if self.version(a, b) == version {
+                self.queue_edge(a, b);
+            }
+        }
+        self.drop_unused(target);
+        while self.state.vertex_count > target {
+            let Some((next, cost_m)) = self.next() else { break };
+            match next {
+                Next::Edge => self.collapse_next(),
+                Next::Piece => self.drop_piece(target),
+                Next::Element(index) => self.drop_element(index, cost_m),
+            }
+            watch(self.state.vertex_count, self.error_m);
+        }
+    }
+
+    fn next(&mut self) -> Option<(Next, f64)> {
+        let mut best = None;
+        let mut offer = |next, cost: f64| {
+            if best.as_ref().is_none_or(|&(_, least)| cost < least) {
+                best = Some((next, cost));
+            }
+        };
+        if let Some(&Reverse((bits, ..))) = self.queue.peek() {
+            offer(Next::Edge, f64::from(f32::from_bits(bits)));
+        }
+        if let Some(&(cost, _)) = self.pieces.last() {
+            offer(Next::Piece, cost);
+        }
+        for (index, aggregate) in self.aggregates.iter().enumerate() {
+            if let Some(cost) = aggregate.next_cost_m() {
+                offer(Next::Element(index), cost);
+            }
+        }
+        best
+    }
+
+    fn version(&self, a: u32, b: u32) -> u32 {
+        // Versions only grow, so the sum stays the same only if both do.
+        self.versions[a as usize].wrapping_add(self.versions[b as usize])
+    }
+
+    fn queue_all(&mut self) {
+        let mut ring = Vec::new();
+        let mut entries = Vec::with_capacity(4 * self.versions.len());
+        for a in 0..self.versions.len() as u32 {
+            self.surface.neighbours(&self.state, a, &mut ring);
+            for &b in ring.iter().filter(|&&b| a < b) {
+                if let Some(candidate) = self.surface.candidate(&self.state, a, b) {
+                    entries.push(Reverse(((candidate.cost as f32).to_bits(), a, b, 0)));
+                }
+            }
+        }
+        self.queue = BinaryHeap::from(entries);
+    }
+
+    fn queue_edge(&mut self, a: u32, b: u32) {
+        if let Some(candidate) = self.surface.candidate(&self.state, a, b) {
+            let bits = (candidate.cost as f32).to_bits();
+            self.queue.push(Reverse((bits, a, b, self.version(a, b))));
+        }
+    }
+
+    fn collapse_next(&mut self) {
+        let Some(Reverse((_, a, b, version))) = self.queue.pop() else { return };
+        if self.version(a, b) != version {
+            return;
+        }
+        let Some(candidate) = self.surface.candidate(&self.state, a, b) else { return };
+        let mut dead = Dead { heirs: &mut self.heirs, graves: &mut self.graves };
+        let done = self.surface.collapse(&mut self.state, &mut self.log, &mut dead, [a, b], candidate);
+        let Some(done) = done else {
+            self.refused.push((a, b, version));
+            return;
+        };
+        self.error_m = self.error_m.max(done.error_m);
+        self.versions[a as usize] = self.versions[a as usize].wrapping_add(1);
+        self.versions[b as usize] = self.versions[b as usize].wrapping_add(1);
+        let mut ring = std::mem::take(&mut self.ring);
+        self.surface.neighbours(&self.state, done.point, &mut ring);
+        for &other in ring.iter().filter(|&&other| other != done.point) {
+            self.queue_edge(done.point, other);
+        }
+        self.ring = ring;
+    }
+
+    fn drop_piece(&mut self, target: usize) {
+        let Some((cost, index)) = self.pieces.pop() else { return };
+        let piece = &self.surface.topology.pieces[index as usize];
+        if piece.living_vertices > self.state.vertex_count - target + OVERSHOOT {
+            self.put_off.push((cost, index));
+            return;
+        }
+        let triangles = piece.triangles.clone();
+        let axis = self.piece_axis(triangles.clone());
+        let mut dead = Dead { heirs: &mut self.heirs, graves: &mut self.graves };
+        for k in triangles {
+            let t = self.surface.topology.piece_triangles[k];
+            if !self.state.triangle_lives[t as usize] {
+                continue;
+            }
+            let vertices = self.state.triangles[t as usize];
+            self.log.triangles.push((t, vertices));
+            self.state.triangle_lives[t as usize] = false;
+            for v in vertices {
+                let point = self.surface.topology.point_of[v as usize] as usize;
+                self.versions[point] = self.versions[point].wrapping_add(1);
+                if self.state.vertex_lives[v as usize] {
+                    dead.lay(&mut self.state, &mut self.log, v, NONE);
+                    dead.graves[v as usize] = axis.nearest(self.surface.topology.positions[point]);
+                }
+            }
+        }
+        self.log.finish_record();
+        self.error_m = self.error_m.max(cost);
+    }
+
+    /// The line that a piece thins out to: through its middle along its longest extent.
+    fn piece_axis(&self, triangles: std::ops::Range<usize>) -> Axis {
+        let topology = &self.surface.topology;
+        let living = triangles.map(|k| topology.piece_triangles[k] as usize);
+        let corners = living.filter(|&t| self.state.triangle_lives[t]).flat_map(|t| self.state.triangles[t]);
+        let points: Vec<DVec3> =
+            corners.map(|v| topology.positions[topology.point_of[v as usize] as usize]).collect();
+        let middle = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
+        let farthest = |from: DVec3| {
+            let further = |best: DVec3, &p: &DVec3| {
+                if p.distance_squared(from) > best.distance_squared(from) { p } else { best }
+            };
+            points.iter().fold(from, further)
+        };
+        let one_end = farthest(middle);
+        let along = (farthest(one_end) - one_end).try_normalize().unwrap_or(DVec3::Y);
+        Axis { middle, along, origin: topology.origin }
+    }
+
+    fn drop_element(&mut self, index: usize, cost_m: f64) {
+        let aggregate = &mut self.aggregates[index];
+        let (_, per, triangles) = aggregate.elements;
+        let Some(element) = aggregate.take_next() else { return };
+        let span = &self.state.parts[aggregate.part];
+        let first = span.first_vertex + element * per;
+        let first_triangle = span.first_triangle + element * triangles;
+        let centre = self.state.centre(first as usize..(first + per) as usize);
+        for t in first_triangle..first_triangle + triangles {
+            self.log.triangles.push((t, self.state.triangles[t as usize]));
+            self.state.triangle_lives[t as usize] = false;
+        }
+        let mut dead = Dead { heirs: &mut self.heirs, graves: &mut self.graves };
+        for v in first..first + per {
+            dead.lay(&mut self.state, &mut self.log, v, NONE);
+            dead.graves[v as usize] = centre;
+        }
+        self.log.finish_record();
+        self.error_m = self.error_m.max(cost_m);
+    }
+
+    /// Vertices that no triangle uses go first, one by one.
+    fn drop_unused(&mut self, target: usize) {
+        let mut dead = Dead { heirs: &mut self.heirs, graves: &mut self.graves };
+        while self.state.vertex_count > target {
+            let Some(vertex) = self.unused.pop() else { break };
+            dead.lay(&mut self.state, &mut self.log, vertex, NONE);
+            self.log.finish_record();
+        }
+    }
+}
+
+struct Axis {
+    middle: DVec3,
+    along: DVec3,
+    origin: DVec3,
+}
+
+impl Axis {
+    fn nearest(&self, point: DVec3) -> [f32; 3] {
+        let at = self.middle + self.along * (point - self.middle).dot(self.along);
+        (at + self.origin).to_array().map(|x| x as f32)
+    }
+}
+
+/// Pieces and the error in metres of doing without them, the cheapest last. The largest piece stays.
+fn pieces_by_cost(surface: &Surface<QuadricMetric>, weight: f64) -> Vec<(f64, u32)> {
+    let pieces = &surface.topology.pieces;
+    let largest = (0..pieces.len()).max_by(|&p, &q| pieces[p].extent_m.total_cmp(&pieces[q].extent_m));
+    let all = pieces.iter().enumerate().filter(|&(index, _)| Some(index) != largest);
+    all.map(|(index, piece)| (weight * piece.thickness_m, index as u32)).collect()
+}

@@ -1,0 +1,129 @@
+//! Triangles → one generalised triangle strip (thesis 4.4.1, after the local algorithm of Evans et al. 1996).
+//!
+//! A strip goes on as a pure strip as far as it can, turns a corner by a degenerate triangle, and when it is stuck
+//! the next one starts beside the last triangle drawn that has a neighbour left; degenerate triangles join them.
+//! Triangle n of a strip s is (s[n], s[n+1], s[n+2]), the other way round where n is odd.
+
+/// The strip of a list of triangles whose indices are less than `vertices`. Triangles that name a vertex twice
+/// are left out.
+pub fn strip(triangles: &[[u32; 3]], vertices: usize) -> Vec<u32> {
+    let mut walker = Walker::new(triangles, vertices);
+    let mut unseen = 0;
+    while let Some(start) = walker.start(&mut unseen) {
+        walker.begin(start);
+        while walker.go_on() || walker.turn() {}
+    }
+    walker.strip
+}
+
+/// The triangles of a strip, without degenerate ones, each starting with its first vertex in the strip's order.
+pub fn triangles(strip: &[u32]) -> Vec<[u32; 3]> {
+    let orient = |(n, t): (usize, &[u32])| if n % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] };
+    let whole = |t: &[u32; 3]| t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
+    strip.windows(3).enumerate().map(orient).filter(whole).collect()
+}
+
+struct Walker<'a> {
+    triangles: &'a [[u32; 3]],
+    /// Corners at vertex v: `corners[first[v]..first[v+1]]`.
+    first: Vec<u32>,
+    corners: Vec<u32>,
+    done: Vec<bool>,
+    /// Triangles drawn that may have a neighbour left.
+    drawn: Vec<u32>,
+    strip: Vec<u32>,
+}
+
+impl<'a> Walker<'a> {
+    fn new(triangles: &'a [[u32; 3]], vertices: usize) -> Self {
+        let mut first = vec![0_u32; vertices + 2];
+        triangles.iter().flatten().for_each(|&v| first[v as usize + 2] += 1);
+        (2..first.len()).for_each(|v| first[v] += first[v - 1]);
+        let mut corners = vec![0; 3 * triangles.len()];
+        for (corner, &v) in triangles.iter().flatten().enumerate() {
+            let slot = &mut first[v as usize + 1];
+            corners[*slot as usize] = corner as u32;
+            *slot += 1;
+        }
+        let done = triangles.iter().map(|t| t[0] == t[1] || t[1] == t[2] || t[2] == t[0]).collect();
+        let strip = Vec::with_capacity(3 * triangles.len());
+        Self { triangles, first, corners, done, drawn: Vec::new(), strip }
+    }
+
+    /// The undrawn triangle that has the edge from `u` to `v` in this direction, and its third vertex.
+    fn beside(&self, u: u32, v: u32) -> Option<(u32, u32)> {
+        let range = self.first[u as usize] as usize..self.first[u as usize + 1] as usize;
+        self.corners[range].iter().find_map(|&corner| {
+            let (t, k) = (corner as usize / 3, corner as usize % 3);
+            let triangle = self.triangles[t];
+            let fits = !self.done[t] && triangle[(k + 1) % 3] == v;
+            fits.then(|| (t as u32, triangle[(k + 2) % 3]))
+        })
+    }
+
+    /// The triangle to start from, turned so that the strip can go on.
+    fn start(&mut self, unseen: &mut usize) -> Option<[u32; 3]> {
+        let neighbour = |walker: &Self, t: u32| {
+            let [a, b, c] = walker.triangles[t as usize];
+            [(b, a), (c, b), (a, c)].into_iter().find_map(|(u, v)| walker.beside(u, v))
+        };
+        let mut found = None;
+        while let Some(&last) = self.drawn.last() {
+            found = neighbour(self, last).map(|(t, _)| t);
+            if found.is_some() {
+                break;
+            }
+            self.drawn.pop();
+        }
+        while found.is_none() && *unseen < self.triangles.len() {
+            found = (!self.done[*unseen]).then_some(*unseen as u32);
+            *unseen += 1;
+        }
+        let t = found?;
+        self.draw(t);
+        let [a, b, c] = self.triangles[t as usize];
+        let turns = [[a, b, c], [b, c, a], [c, a, b]];
+        Some(turns.into_iter().find(|&[_, v, w]| self.beside(w, v).is_some()).unwrap_or([a, b, c]))
+    }
+
+    fn draw(&mut self, t: u32) {
+        self.done[t as usize] = true;
+        self.drawn.push(t);
+    }
+
+    fn begin(&mut self, [a, b, c]: [u32; 3]) {
+        let Some(&last) = self.strip.last() else {
+            self.strip.extend([a, b, c]);
+            return;
+        };
+        // At an odd place a triangle counts the other way round.
+        self.strip.extend([last, a]);
+        let turned = if self.strip.len() % 2 == 0 { [a, b, c] } else { [a, c, b] };
+        self.strip.extend(turned);
+    }
+
+    /// Draws the neighbour across the last edge.
+    fn go_on(&mut self) -> bool {
+        let n = self.strip.len();
+        let (u, v) = (self.strip[n - 2], self.strip[n - 1]);
+        // The next triangle starts at n − 2 and is (u, v, w), or (v, u, w) where that is odd.
+        let found = if n % 2 == 0 { self.beside(u, v) } else { self.beside(v, u) };
+        let Some((t, w)) = found else { return false };
+        self.draw(t);
+        self.strip.push(w);
+        true
+    }
+
+    /// Puts the last triangle's first vertex in again before its last, if the neighbour across that edge is left.
+    fn turn(&mut self) -> bool {
+        let n = self.strip.len();
+        let [x, _, v] = [self.strip[n - 3], self.strip[n - 2], self.strip[n - 1]];
+        // After the turn the next triangle starts at n − 1.
+        let found = if n % 2 == 1 { self.beside(x, v) } else { self.beside(v, x) };
+        if found.is_none() {
+            return false;
+        }
+        self.strip.insert(n - 1, x);
+        true
+    }
+}

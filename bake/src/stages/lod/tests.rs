@@ -1,0 +1,319 @@
+//! What must hold for levels of detail, whatever the method.
+
+use std::collections::BTreeMap;
+
+use glam::Vec3;
+
+use super::shapes::{plane, sphere, torus, tree};
+use super::{LodOptions, levels, progressive, strip};
+use crate::model::{Level, LevelledMesh, Mesh, PartKind};
+
+fn shapes() -> Vec<(&'static str, Mesh)> {
+    vec![
+        ("plane", plane(24)),
+        ("torus", torus(48, 24)),
+        ("sphere", sphere(32, 30)),
+        ("tree", tree(14, 6, 700)),
+    ]
+}
+
+fn made(mesh: &Mesh) -> LevelledMesh {
+    levels(mesh, &LodOptions::default())
+}
+
+type Key = [[i64; 3]; 3];
+
+/// Triangles as positions on a grid of 10 µm, each from its least corner on; those without area left out.
+fn coarse_triangles(mesh: &Mesh, positions: &[[f32; 3]]) -> BTreeMap<Key, usize> {
+    let mut found = BTreeMap::new();
+    for triangle in mesh.parts.iter().flat_map(|part| &part.triangles) {
+        let corners = triangle.map(|v| positions[v as usize]);
+        let [p, q, r] = corners.map(Vec3::from_array);
+        let longest = (q - p).length().max((r - p).length()).max((r - q).length());
+        if (q - p).cross(r - p).length() <= 2e-5 * longest.max(1e-3) {
+            continue;
+        }
+        let key = corners.map(|c| c.map(|x| (f64::from(x) * 1e4).round() as i64));
+        let least = (0..3).min_by_key(|&k| key[k]).unwrap();
+        *found.entry([key[least], key[(least + 1) % 3], key[(least + 2) % 3]]).or_default() += 1;
+    }
+    found
+}
+
+/// Edges used an odd number of times, as pairs of positions.
+fn open_edges(mesh: &Mesh, part: usize) -> usize {
+    let mut edges: BTreeMap<[[u32; 3]; 2], usize> = BTreeMap::new();
+    for t in &mesh.parts[part].triangles {
+        for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
+            let [p, q] = [a, b].map(|v| mesh.positions[v as usize].map(f32::to_bits));
+            *edges.entry(if p < q { [p, q] } else { [q, p] }).or_default() += 1;
+        }
+    }
+    edges.values().filter(|&&uses| uses % 2 == 1).count()
+}
+
+#[test]
+fn the_original_is_the_first_level_and_comes_back_bit_for_bit() {
+    for (name, mesh) in shapes() {
+        let made = made(&mesh);
+        assert_eq!(made.levels[0].mesh, mesh, "{name}");
+        let read = progressive::decode(&made.progressive).unwrap();
+        assert_eq!(read.rebuild(usize::MAX), mesh, "{name}");
+        assert_eq!(read.vertex_range().1, mesh.positions.len());
+    }
+}
+
+#[test]
+fn each_level_is_rebuilt_from_its_number_of_vertices() {
+    for (name, mesh) in shapes() {
+        let made = made(&mesh);
+        let read = progressive::decode(&made.progressive).unwrap();
+        assert_eq!(read.marks().len(), made.levels.len());
+        for (level, mark) in made.levels.iter().zip(read.marks()) {
+            assert_eq!(mark.vertices as usize, level.mesh.positions.len());
+            assert_eq!(mark.error_m, level.error_m);
+            assert!(read.rebuild(mark.vertices as usize) == level.mesh, "{name} at {}", mark.vertices);
+        }
+    }
+}
+
+#[test]
+fn any_number_of_vertices_gives_a_sound_mesh() {
+    let mesh = tree(14, 6, 700);
+    let read = progressive::decode(&made(&mesh).progressive).unwrap();
+    let (least, most) = read.vertex_range();
+    for wanted in (least..most).step_by(97) {
+        let rebuilt = read.rebuild(wanted);
+        let count = rebuilt.positions.len();
+        assert!(count <= wanted && wanted - count < 40, "{count} of {wanted}");
+        assert!(rebuilt.parts.iter().flat_map(|p| &p.triangles).flatten().all(|&v| (v as usize) < count));
+        assert!(rebuilt.positions.iter().flatten().all(|x| x.is_finite()));
+    }
+}
+
+#[test]
+fn levels_halve_and_errors_grow() {
+    for (name, mesh) in shapes() {
+        let made = made(&mesh);
+        assert!(made.levels.len() >= 3, "{name} has {} levels", made.levels.len());
+        for pair in made.levels.windows(2) {
+            let (before, after) = (pair[0].mesh.positions.len(), pair[1].mesh.positions.len());
+            assert!(after <= before / 2 && after + 8 >= before / 2, "{name}: {before} to {after}");
+            assert!(pair[0].error_m > 0.0 && pair[1].error_m > pair[0].error_m, "{name}");
+        }
+        assert!(made.levels.last().unwrap().morph.is_none());
+    }
+}
+
+#[test]
+fn a_whole_morph_is_the_next_level() {
+    for (name, mesh) in shapes() {
+        for pair in made(&mesh).levels.windows(2) {
+            let Level { mesh: from, morph, .. } = &pair[0];
+            let morph = morph.as_ref().unwrap();
+            let to = &pair[1].mesh;
+            let moved: Vec<[f32; 3]> = (0..from.positions.len())
+                .map(|v| std::array::from_fn(|k| from.positions[v][k] + morph.positions[v][k]))
+                .collect();
+            let (got, wanted) = (coarse_triangles(from, &moved), coarse_triangles(to, &to.positions));
+            let count = |of: &BTreeMap<Key, usize>| of.values().sum::<usize>();
+            // Rounding to the grid may part a few twins.
+            let missing = wanted.iter().filter(|(key, n)| got.get(*key) != Some(n)).count();
+            assert!(missing * 100 <= wanted.len(), "{name}: {missing} of {}", wanted.len());
+            assert!(count(&got).abs_diff(count(&wanted)) <= 2, "{name}: {} {}", count(&got), count(&wanted));
+            assert_eq!(morph.normals.len(), from.normals.len());
+            assert_eq!(morph.uvs.len(), from.uvs.len());
+        }
+    }
+}
+
+#[test]
+fn what_is_closed_stays_closed() {
+    for (name, mesh) in [("torus", torus(48, 24)), ("sphere", sphere(32, 30)), ("tree", tree(14, 6, 700))] {
+        for level in made(&mesh).levels {
+            assert_eq!(open_edges(&level.mesh, 0), 0, "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_sphere_keeps_its_radius_and_its_volume() {
+    let volume = |mesh: &Mesh| {
+        let at = |v: u32| Vec3::from_array(mesh.positions[v as usize]);
+        let of = |t: &[u32; 3]| at(t[0]).dot(at(t[1]).cross(at(t[2])));
+        mesh.parts[0].triangles.iter().map(of).sum::<f32>() / 6.0
+    };
+    let mesh = sphere(48, 46);
+    let made = made(&mesh);
+    for level in &made.levels {
+        assert!((volume(&level.mesh) / volume(&mesh) - 1.0).abs() < 0.02, "{}", volume(&level.mesh));
+        let worst = level.mesh.positions.iter().map(|&p| (Vec3::from_array(p).length() - 1.0).abs());
+        let worst = worst.fold(0.0, f32::max);
+        assert!(worst < 0.12 && worst <= 4.0 * level.error_m + 1e-3, "{worst} at {}", level.error_m);
+    }
+}
+
+#[test]
+fn a_plane_stays_flat_and_whole() {
+    for level in made(&plane(24)).levels {
+        let at = |v: u32| Vec3::from_array(level.mesh.positions[v as usize]);
+        let area = |t: &[u32; 3]| (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0])).y / 2.0;
+        let whole: f32 = level.mesh.parts[0].triangles.iter().map(area).sum();
+        assert!((whole - 1.0).abs() < 1e-3, "{whole}");
+        // A flat sheet's texture coordinates follow from its positions.
+        for (p, uv) in level.mesh.positions.iter().zip(&level.mesh.uvs) {
+            assert!((p[0] - uv[0]).abs() < 1e-3 && (1.0 - p[2] - uv[1]).abs() < 1e-3, "{p:?} {uv:?}");
+        }
+    }
+}
+
+/// Pixels that a part covers from a direction, 128 px a side.
+pub fn covered(mesh: &Mesh, part: usize, azimuth: f32, fill: f32) -> usize {
+    let bounds = Vec3::new(4.5, 9.0, 4.5);
+    let (right, n) = (Vec3::new(libm::cosf(azimuth), 0.0, libm::sinf(azimuth)), 128_usize);
+    let mut pixels = vec![false; n * n];
+    let PartKind::Aggregate { triangles, .. } = mesh.parts[part].kind else { return 0 };
+    for element in mesh.parts[part].triangles.chunks(triangles as usize) {
+        let at = |v: u32| Vec3::from_array(mesh.positions[v as usize]);
+        let all = element.iter().flatten().map(|&v| at(v));
+        let centre = all.sum::<Vec3>() / (3 * element.len()) as f32;
+        for t in element {
+            let flat = |v: u32| {
+                let p = centre + (at(v) - centre) * fill.sqrt();
+                ((p.dot(right) / bounds.x * 0.5 + 0.5) * n as f32, p.y / bounds.y * n as f32)
+            };
+            let [a, b, c] = t.map(flat);
+            let side = |p: (f32, f32), q: (f32, f32), x: f32, y: f32| {
+                (q.0 - p.0) * (y - p.1) - (q.1 - p.1) * (x - p.0)
+            };
+            let low = |k: fn(&(f32, f32)) -> f32| {
+                [a, b, c].iter().map(k).fold(f32::MAX, f32::min).max(0.0) as usize
+            };
+            let high = |k: fn(&(f32, f32)) -> f32| {
+                (([a, b, c].iter().map(k).fold(0.0, f32::max) + 1.0) as usize).min(n)
+            };
+            for y in low(|p| p.1)..high(|p| p.1) {
+                for x in low(|p| p.0)..high(|p| p.0) {
+                    let (u, v) = (x as f32 + 0.5, y as f32 + 0.5);
+                    let sides = [side(a, b, u, v), side(b, c, u, v), side(c, a, u, v)];
+                    if sides.iter().all(|&s| s >= 0.0) || sides.iter().all(|&s| s <= 0.0) {
+                        pixels[y * n + x] = true;
+                    }
+                }
+            }
+        }
+    }
+    pixels.iter().filter(|&&p| p).count()
+}
+
+#[test]
+fn leaves_keep_covering_the_sky() {
+    let levels = made(&tree(30, 10, 3000)).levels;
+    for azimuth in [0.2, 1.1, 2.0, 2.9] {
+        let full = covered(&levels[0].mesh, 1, azimuth, 1.0) as f32;
+        for level in &levels[1..=4] {
+            let ratio = covered(&level.mesh, 1, azimuth, 1.0) as f32 / full;
+            assert!((0.9..1.1).contains(&ratio), "{ratio} at {} vertices", level.mesh.positions.len());
+        }
+    }
+}
+
+#[test]
+fn strips_hold_the_same_triangles() {
+    let first = |t: [u32; 3]| (0..3).map(|k| [t[k], t[(k + 1) % 3], t[(k + 2) % 3]]).min().unwrap();
+    for (name, mesh) in shapes() {
+        let mut indices = 0;
+        for level in made(&mesh).levels {
+            for (part, strip) in level.mesh.parts.iter().zip(&level.strips) {
+                let sorted = |triangles: &[[u32; 3]]| {
+                    let mut all: Vec<_> = triangles.iter().map(|&t| first(t)).collect();
+                    all.sort_unstable();
+                    all
+                };
+                assert_eq!(sorted(&strip::triangles(strip)), sorted(&part.triangles), "{name}");
+                indices += strip.len();
+            }
+        }
+        let triangles: usize = made(&mesh).levels.iter().map(|l| l.mesh.triangle_count()).sum();
+        let most = if name == "tree" { 3.2 } else { 1.8 };
+        assert!(indices as f32 / (triangles as f32) < most, "{name}: {}", indices as f32 / triangles as f32);
+    }
+}
+
+#[test]
+fn a_damaged_payload_is_an_error_and_never_a_panic() {
+    let bytes = made(&tree(3, 2, 40)).progressive;
+    for length in (0..bytes.len()).step_by(13) {
+        assert!(progressive::decode(&bytes[..length]).is_err());
+    }
+    for at in 0..bytes.len().min(6000) {
+        let mut broken = bytes.clone();
+        broken[at] ^= 1 << (at % 8);
+        if let Ok(read) = progressive::decode(&broken) {
+            let _ = read.rebuild(read.vertex_range().0 + 100);
+        }
+    }
+}
+
+#[test]
+fn odd_meshes_do_no_harm() {
+    let mut mesh = tree(3, 2, 40);
+    mesh.parts[0].triangles.push([0, 1, u32::MAX]);
+    mesh.parts[0].triangles.push([5, 5, 6]);
+    mesh.positions[9] = [f32::NAN; 3];
+    mesh.positions.push([1.0; 3]);
+    assert!(!made(&mesh).levels.is_empty());
+    assert_eq!(made(&Mesh::default()).levels.len(), 1);
+    assert_eq!(progressive::decode(&made(&Mesh::default()).progressive).unwrap().rebuild(9), Mesh::default());
+    // Three sheets on one edge, and every triangle twice.
+    let mut fan = plane(24);
+    let doubled: Vec<_> = fan.parts[0].triangles.iter().map(|t| [t[0], t[2], t[1]]).collect();
+    fan.parts[0].triangles.extend(doubled);
+    let made = made(&fan);
+    assert_eq!(progressive::decode(&made.progressive).unwrap().rebuild(usize::MAX), fan);
+}
+
+#[test]
+#[ignore = "prints figures"]
+#[expect(clippy::print_stdout, reason = "it is what the test is for")]
+fn figures() {
+    let meshes = [("tree", tree(60, 6, 4500)), ("bare", tree(70, 20, 8)), ("torus", torus(400, 200))];
+    for (name, mesh) in meshes {
+        let mut least = f64::MAX;
+        for _ in 0..5 {
+            #[expect(clippy::disallowed_methods, reason = "a measurement")]
+            let start = std::time::Instant::now();
+            std::hint::black_box(made(&mesh));
+            least = least.min(start.elapsed().as_secs_f64());
+        }
+        let made = made(&mesh);
+        println!(
+            "{name}: {} triangles, {:.1} ms, {:.2} Mtri/s, PM {} kB",
+            mesh.triangle_count(),
+            least * 1e3,
+            mesh.triangle_count() as f64 / least * 1e-6,
+            made.progressive.len() / 1000
+        );
+        for level in &made.levels {
+            let parts: Vec<_> = level.mesh.parts.iter().map(|p| p.triangles.len()).collect();
+            let cover: f32 = if level.mesh.parts.len() > 1 {
+                (0..8)
+                    .map(|k| {
+                        covered(&level.mesh, 1, k as f32 * 0.4, 1.0) as f32
+                            / covered(&mesh, 1, k as f32 * 0.4, 1.0) as f32
+                    })
+                    .sum::<f32>()
+                    / 8.0
+            } else {
+                1.0
+            };
+            let strip: usize = level.strips.iter().map(Vec::len).sum();
+            println!(
+                "  {:6} vertices {parts:?} error {:.5} m, coverage {cover:.3}, strip {:.2}/tri",
+                level.mesh.positions.len(),
+                level.error_m,
+                strip as f32 / level.mesh.triangle_count() as f32
+            );
+        }
+    }
+}

@@ -1,0 +1,264 @@
+//! Which points, edges and pieces the surface parts of a mesh have: vertices with bit-identical positions in one
+//! part are one point, and a point's triangles are a chain of corners that two points can join in constant time.
+
+use glam::DVec3;
+
+use super::state::{NONE, State};
+
+/// The surface ends here.
+pub const BOUNDARY: u8 = 1;
+/// The surface is not a surface here (an edge of three triangles, two fans that touch): never moves.
+pub const LOCKED: u8 = 2;
+
+/// A connected piece of surface.
+#[derive(Clone, Debug)]
+pub struct Piece {
+    /// Its triangles at full detail, a range of `Topology::piece_triangles`.
+    pub triangles: std::ops::Range<usize>,
+    /// How many of them live.
+    pub living_triangles: usize,
+    /// Its living vertices.
+    pub living_vertices: usize,
+    /// Mean width across its longest extent, in metres: a twig's diameter.
+    pub thickness_m: f64,
+    /// Diagonal of the box around it in metres.
+    pub extent_m: f64,
+}
+
+/// Points, corners and pieces; updated by `collapse`.
+pub struct Topology {
+    /// Taken from all positions, so that double precision is used near zero.
+    pub origin: DVec3,
+    /// Point of each vertex; `NONE` for vertices of aggregates and for unused ones.
+    pub point_of: Vec<u32>,
+    /// Where each point lies, relative to the origin.
+    pub positions: Vec<DVec3>,
+    /// `BOUNDARY` and `LOCKED`.
+    pub flags: Vec<u8>,
+    /// Living vertices at each point.
+    pub wedges: Vec<u32>,
+    /// Living corners of each vertex.
+    pub uses: Vec<u32>,
+    /// Piece of each point.
+    pub piece_of: Vec<u32>,
+    pub pieces: Vec<Piece>,
+    pub piece_triangles: Vec<u32>,
+    head: Vec<u32>,
+    tail: Vec<u32>,
+    next: Vec<u32>,
+}
+
+impl Topology {
+    /// Finds everything about the surface parts of a whole mesh.
+    pub fn new(state: &State) -> Self {
+        let (point_of, positions, origin) = number_points(state);
+        let points = positions.len();
+        let mut topology = Self {
+            origin,
+            flags: vec![0; points],
+            wedges: vec![0; points],
+            uses: vec![0; state.vertices.len()],
+            piece_of: vec![NONE; points],
+            pieces: Vec::new(),
+            piece_triangles: Vec::new(),
+            head: vec![NONE; points],
+            tail: vec![NONE; points],
+            next: vec![NONE; 3 * state.triangles.len()],
+            point_of,
+            positions,
+        };
+        topology.chain_corners(state);
+        topology.find_pieces(state);
+        topology
+    }
+
+    /// The point at a corner.
+    #[inline]
+    pub fn point_at(&self, state: &State, corner: u32) -> u32 {
+        self.point_of[state.triangles[corner as usize / 3][corner as usize % 3] as usize]
+    }
+
+    /// Points of a triangle, from the given corner on.
+    #[inline]
+    pub fn points_from(&self, state: &State, corner: u32) -> [u32; 3] {
+        let triangle = state.triangles[corner as usize / 3];
+        let k = corner as usize % 3;
+        [k, (k + 1) % 3, (k + 2) % 3].map(|k| self.point_of[triangle[k] as usize])
+    }
+
+    /// The living corners at a point; forgets dead ones.
+    pub fn star(&mut self, state: &State, point: u32, corners: &mut Vec<u32>) {
+        corners.clear();
+        let (mut before, mut corner) = (NONE, self.head[point as usize]);
+        while corner != NONE {
+            let after = self.next[corner as usize];
+            if state.triangle_lives[corner as usize / 3] {
+                corners.push(corner);
+                match before {
+                    NONE => self.head[point as usize] = corner,
+                    _ => self.next[before as usize] = corner,
+                }
+                before = corner;
+            }
+            corner = after;
+        }
+        match before {
+            NONE => self.head[point as usize] = NONE,
+            _ => self.next[before as usize] = NONE,
+        }
+        self.tail[point as usize] = before;
+    }
+
+    /// Gives all corners of `gone` to `kept`.
+    pub fn join(&mut self, kept: u32, gone: u32) {
+        let (kept, gone) = (kept as usize, gone as usize);
+        match self.tail[kept] {
+            NONE => self.head[kept] = self.head[gone],
+            tail => self.next[tail as usize] = self.head[gone],
+        }
+        if self.tail[gone] != NONE {
+            self.tail[kept] = self.tail[gone];
+        }
+        (self.head[gone], self.tail[gone]) = (NONE, NONE);
+    }
+
+    fn chain_corners(&mut self, state: &State) {
+        for t in surface_triangles(state) {
+            for k in 0..3 {
+                let (vertex, corner) = (state.triangles[t][k] as usize, (3 * t + k) as u32);
+                let point = self.point_of[vertex] as usize;
+                self.wedges[point] += u32::from(self.uses[vertex] == 0);
+                self.uses[vertex] += 1;
+                match self.tail[point] {
+                    NONE => self.head[point] = corner,
+                    tail => self.next[tail as usize] = corner,
+                }
+                self.tail[point] = corner;
+            }
+        }
+    }
+
+    fn find_pieces(&mut self, state: &State) {
+        let mut union: Vec<u32> = (0..self.positions.len() as u32).collect();
+        for t in surface_triangles(state) {
+            let [a, b, c] = state.triangles[t].map(|v| find(&mut union, self.point_of[v as usize]));
+            let least = a.min(b).min(c);
+            for root in [a, b, c] {
+                union[root as usize] = least;
+            }
+        }
+        for point in 0..union.len() {
+            let root = find(&mut union, point as u32) as usize;
+            if root == point {
+                self.piece_of[point] = self.pieces.len() as u32;
+                let none = Piece {
+                    triangles: 0..0,
+                    living_triangles: 0,
+                    living_vertices: 0,
+                    thickness_m: 0.0,
+                    extent_m: 0.0,
+                };
+                self.pieces.push(none);
+            }
+            self.piece_of[point] = self.piece_of[root];
+            self.pieces[self.piece_of[point] as usize].living_vertices += self.wedges[point] as usize;
+        }
+        self.collect_piece_triangles(state);
+        self.measure_pieces(state);
+    }
+
+    fn collect_piece_triangles(&mut self, state: &State) {
+        let piece = |t: usize| self.piece_of[self.point_of[state.triangles[t][0] as usize] as usize] as usize;
+        let mut count = 0;
+        for t in surface_triangles(state) {
+            self.pieces[piece(t)].living_triangles += 1;
+            count += 1;
+        }
+        let mut start = 0;
+        for piece in &mut self.pieces {
+            piece.triangles = start..start;
+            start += piece.living_triangles;
+        }
+        self.piece_triangles = vec![0; count];
+        for t in surface_triangles(state) {
+            let range = &mut self.pieces[piece(t)].triangles;
+            self.piece_triangles[range.end] = t as u32;
+            range.end += 1;
+        }
+    }
+
+    fn measure_pieces(&mut self, state: &State) {
+        for index in 0..self.pieces.len() {
+            let (mut area, mut low, mut high) = (0.0, DVec3::MAX, DVec3::MIN);
+            for &t in &self.piece_triangles[self.pieces[index].triangles.clone()] {
+                let at = |v: u32| self.positions[self.point_of[v as usize] as usize];
+                let [p, q, r] = state.triangles[t as usize].map(at);
+                area += 0.5 * (q - p).cross(r - p).length();
+                low = low.min(p).min(q).min(r);
+                high = high.max(p).max(q).max(r);
+            }
+            let extent_m = if low.x <= high.x { (high - low).length() } else { 0.0 };
+            // A tube of diameter d and length l has the area πdl.
+            let thickness_m = area / (std::f64::consts::PI * extent_m.max(f64::MIN_POSITIVE));
+            self.pieces[index].thickness_m = thickness_m.min(extent_m);
+            self.pieces[index].extent_m = extent_m;
+        }
+    }
+}
+
+/// Triangles of surface parts, by number.
+pub fn surface_triangles(state: &State) -> impl Iterator<Item = usize> {
+    let surfaces = state.parts.iter().filter(|span| span.elements().is_none());
+    surfaces.flat_map(|span| span.first_triangle as usize..(span.first_triangle + span.triangles) as usize)
+}
+
+fn find(union: &mut [u32], mut point: u32) -> u32 {
+    while union[point as usize] != point {
+        union[point as usize] = union[union[point as usize] as usize];
+        point = union[point as usize];
+    }
+    point
+}
+
+fn number_points(state: &State) -> (Vec<u32>, Vec<DVec3>, DVec3) {
+    let mut point_of = vec![NONE; state.vertices.len()];
+    let mut firsts: Vec<(u32, u32)> = Vec::new();
+    let slots = (2 * state.vertices.len()).next_power_of_two().max(2);
+    let mut table = vec![NONE; slots];
+    for (index, span) in state.parts.iter().enumerate().filter(|(_, span)| span.elements().is_none()) {
+        let range = span.first_triangle as usize..(span.first_triangle + span.triangles) as usize;
+        for &vertex in state.triangles[range].iter().flatten() {
+            if point_of[vertex as usize] != NONE {
+                continue;
+            }
+            let bits = state.vertices[vertex as usize].position.map(f32::to_bits);
+            let mut slot = hash(bits, index as u32) as usize & (slots - 1);
+            let same = |point: u32| {
+                let (other, part) = firsts[point as usize];
+                part == index as u32 && state.vertices[other as usize].position.map(f32::to_bits) == bits
+            };
+            while table[slot] != NONE && !same(table[slot]) {
+                slot = (slot + 1) & (slots - 1);
+            }
+            if table[slot] == NONE {
+                table[slot] = firsts.len() as u32;
+                firsts.push((vertex, index as u32));
+            }
+            point_of[vertex as usize] = table[slot];
+        }
+    }
+    let exact =
+        |first: &(u32, u32)| DVec3::from_array(state.vertices[first.0 as usize].position.map(f64::from));
+    let origin = firsts.first().map_or(DVec3::ZERO, exact);
+    let positions = firsts.iter().map(|first| exact(first) - origin).collect();
+    (point_of, positions, origin)
+}
+
+fn hash(bits: [u32; 3], part: u32) -> u32 {
+    let mut h = part.wrapping_mul(0x9E37_79B9);
+    for word in bits {
+        h = (h ^ word).wrapping_mul(0x85EB_CA6B);
+        h ^= h >> 15;
+    }
+    h.wrapping_mul(0xC2B2_AE35) ^ (h >> 13)
+}
