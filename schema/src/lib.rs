@@ -1,1 +1,3 @@
 //! The shared contract as plain checked data.
+
+pub mod gltf;
