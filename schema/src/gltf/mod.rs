@@ -13,8 +13,8 @@ mod sky;
 
 pub use heightfield::{GSC_HEIGHTFIELD, GroundDetail, GroundSurface, HeightfieldExtension};
 pub use instances::{
-    GSC_INSTANCES, INSTANCES_HEADER_BYTES, INSTANCE_BYTES, InstanceRecord, InstancesError, InstancesExtension,
-    InstancesTemplate, read_instances, write_instances,
+    GSC_INSTANCES, INSTANCE_BYTES, INSTANCES_HEADER_BYTES, InstanceRecord, InstancesError,
+    InstancesExtension, InstancesTemplate, read_instances, write_instances,
 };
 pub use progressive_mesh::{GSC_PROGRESSIVE_MESH, ProgressiveLevel, ProgressiveMeshExtension};
 pub use resource::Resource;
