@@ -9,6 +9,7 @@ use super::document::{
 };
 use super::document::{UNSIGNED_INT, push};
 use super::glb::write_glb;
+use super::tangents::tangents;
 use super::{ExportError, MaterialSet};
 use crate::model::{LevelledMesh, Material, Mesh};
 
@@ -30,12 +31,12 @@ pub fn levelled_glb(
         return Err(ExportError::Empty(name.into()));
     }
     materials.add_to(&mut document);
-    let material_of = |material| materials.index_of(material);
+    let surface_of = |material| materials.surface_of(material);
 
     let mut records = Vec::new();
     for (i, level) in levels.iter().enumerate() {
         let what = format!("{name}.D{i}");
-        let primitives = add_vertices(&mut document, &what, &level.mesh, &material_of)?;
+        let primitives = add_vertices(&mut document, &what, &level.mesh, &surface_of)?;
         let next = (i + 1 < levels.len()).then_some(level.morph.as_ref()).flatten();
         let mut json = json!({ "name": what, "primitives": [],
             "extras": { "level": i, "error_m": level.error_m } });
@@ -130,12 +131,21 @@ pub struct Primitive {
     pub json: Value,
 }
 
+/// What a part's material asks of its vertices.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Surface {
+    /// The material's index.
+    pub material: Option<usize>,
+    /// Whether it has a normal map, for which vertices need tangents.
+    pub normal_map: bool,
+}
+
 /// Writes a mesh's vertices, interleaved, and its indices; gives its primitives.
 pub fn add_vertices(
     document: &mut Document,
     what: &str,
     mesh: &Mesh,
-    material_of: &dyn Fn(Material) -> Option<usize>,
+    surface_of: &dyn Fn(Material) -> Surface,
 ) -> Result<Vec<Primitive>, ExportError> {
     let total = mesh.positions.len();
     let fits = |len: usize| len == 0 || len == total;
@@ -173,8 +183,14 @@ pub fn add_vertices(
         let indices: Vec<u32> = triangles.as_flattened().iter().map(|&i| i - first as u32).collect();
         let indices = document.indices(&indices, count, Some(ELEMENT_ARRAY_BUFFER));
         let mut json = json!({ "attributes": attributes, "indices": indices });
-        if let Some(material) = material_of(mesh.parts[part].material) {
+        let surface = surface_of(mesh.parts[part].material);
+        if let Some(material) = surface.material {
             json["material"] = material.into();
+        }
+        if surface.normal_map && layout.normal.is_some() && layout.uv.is_some() {
+            let all = tangents(&mesh.positions, &mesh.normals, &mesh.uvs, triangles, (first, count));
+            let view = document.view(bytemuck::cast_slice(&all), Some(ARRAY_BUFFER), None);
+            json["attributes"]["TANGENT"] = document.accessor(view, 0, FLOAT, count, "VEC4").into();
         }
         primitives.push(Primitive { part, first, count, json });
     }

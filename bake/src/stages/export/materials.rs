@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::ExportError;
 use super::document::{Document, push};
-use super::levels::levelled_glb;
+use super::levels::{Surface, levelled_glb};
 use crate::model::{LevelledMesh, Material};
 
 /// Trilinear filtering, repeating.
@@ -86,11 +86,18 @@ impl MaterialSet<'_> {
         }
     }
 
-    /// The index of a part's material.
-    pub(super) fn index_of(&self, material: Material) -> Option<usize> {
-        self.slots.iter().position(|&slot| slot == material)
+    /// A part's material and what it needs.
+    pub(super) fn surface_of(&self, material: Material) -> Surface {
+        let index = self.slots.iter().position(|&slot| slot == material);
+        let normal_map = index
+            .and_then(|i| self.materials.get(i))
+            .is_some_and(|m| m.get("normalTexture").is_some() || m.pointer(CLEARCOAT).is_some());
+        Surface { material: index, normal_map }
     }
 }
+
+/// The other place where a material may have a normal map.
+const CLEARCOAT: &str = "/extensions/KHR_materials_clearcoat/clearcoatNormalTexture";
 
 /// Adds `by` to every number called `key`, at any depth.
 fn shift(value: &mut Value, key: &str, by: usize) {

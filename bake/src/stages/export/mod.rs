@@ -15,6 +15,7 @@ mod start;
 mod svd;
 #[cfg(test)]
 mod synthetic;
+mod tangents;
 mod terrain;
 #[cfg(test)]
 mod tests;

@@ -78,8 +78,9 @@ fn tree_level(rings: &[f32], cards: &[(u32, f32)]) -> Mesh {
         let [x, y, z] = [1, 2, 3].map(|i| hash01(7, card as i32, i, 0));
         let middle = Vec3::new(3.0 * x - 1.5, 2.0 + 4.0 * y, 3.0 * z - 1.5);
         let normal = Vec3::new(middle.x, middle.y - 4.0, middle.z).normalize();
-        let right = normal.cross(Vec3::Y).normalize() * 0.3 * size;
-        let up = right.cross(normal).normalize() * 0.3 * size;
+        let right = normal.cross(Vec3::Y).normalize();
+        let up = right.cross(normal) * 0.3 * size;
+        let right = right * 0.3 * size;
         for (u, v) in [(0.0, 1.0), (1.0, 1.0), (1.0, 0.0), (0.0, 0.0)] {
             mesh.positions.push((middle + right * (2.0 * u - 1.0) - up * (2.0 * v - 1.0)).to_array());
             mesh.normals.push(normal.to_array());
@@ -120,10 +121,10 @@ pub fn tree(still: bool) -> LevelledMesh {
         &all.iter().map(|&(c, _)| (c, if goes(c) { 0.0 } else { grown })).collect::<Vec<_>>(),
     );
     let mut morph = Morph::default();
-    let finite = |a: [f32; 3], b: [f32; 3]| [0, 1, 2].map(|i| if a[i].is_nan() { 0.0 } else { a[i] - b[i] });
+    let difference = |a: [f32; 3], b: [f32; 3]| [0, 1, 2].map(|i| a[i] - b[i]);
     for i in 0..d0.positions.len() {
-        morph.positions.push(finite(target.positions[i], d0.positions[i]));
-        morph.normals.push(finite(target.normals[i], d0.normals[i]));
+        morph.positions.push(difference(target.positions[i], d0.positions[i]));
+        morph.normals.push(difference(target.normals[i], d0.normals[i]));
         morph.uvs.push([target.uvs[i][0] - d0.uvs[i][0], target.uvs[i][1] - d0.uvs[i][1]]);
     }
     let level = |mesh: Mesh, morph, error_m| Level { strips: strips(&mesh), mesh, morph, error_m };

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::ExportError;
 use super::document::{Document, Node};
 use super::glb::write_glb;
-use super::levels::add_vertices;
+use super::levels::{Surface, add_vertices};
 use crate::model::{Mesh, TerrainMesh};
 
 /// Names of the meshes and materials of [`terrain_glb`], in order.
@@ -29,10 +29,14 @@ pub fn terrain_glb(terrain: &TerrainMesh) -> Result<Vec<u8>, ExportError> {
         }
         let material = document.materials.len();
         document.materials.push(plain_material(name));
-        let primitives = add_vertices(&mut document, name, mesh, &|_| Some(material))?;
+        // Only the near mesh has textures.
+        let near = name == TERRAIN_MESHES[0];
+        let bare = Mesh { uvs: Vec::new(), ..mesh.clone() };
+        let surface = Surface { material: Some(material), normal_map: near };
+        let primitives = add_vertices(&mut document, name, if near { mesh } else { &bare }, &|_| surface)?;
         let primitives: Vec<Value> = primitives.into_iter().map(|p| p.json).collect();
         let mut object = json!({ "name": name, "primitives": primitives });
-        if name == TERRAIN_MESHES[0] {
+        if near {
             object["extras"] = json!({ "error_m": terrain.error_m });
         }
         document.meshes.push(object);

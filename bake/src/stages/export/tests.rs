@@ -83,7 +83,8 @@ fn geomorphs_lead_to_the_next_level() {
         let glb = tree_file(&tree);
         let (document, bin) = gltf_of(&glb);
         let sparse = document.accessors().filter(|a| a.sparse().is_some()).count();
-        assert_eq!(sparse > 0, still, "{sparse} sparse accessors");
+        // The trunk's deltas are sparse in both, those of the leaves only if most of them stay as they are.
+        assert_eq!(sparse, if still { 2 } else { 1 });
         let goals: Vec<[u32; 3]> = tree.levels[1]
             .mesh
             .positions
