@@ -32,8 +32,8 @@ environment = tree.nodes.new("ShaderNodeTexEnvironment")
 environment.image = bpy.data.images.load(os.path.join(os.path.dirname(path), sky["equirect"]["uri"]))
 coordinates = tree.nodes.new("ShaderNodeTexCoord")
 mapping = tree.nodes.new("ShaderNodeMapping")
-# Blender's middle column looks along its −y… plus 90°; ours along glTF's −z, which is Blender's +y.
-mapping.inputs["Rotation"].default_value = (0, 0, float(os.environ.get("SKY_TURN_DEG", "90")) * math.pi / 180)
+# The middle column of a picture is +x to Blender; ours is glTF's −z, which is Blender's +y.
+mapping.inputs["Rotation"].default_value = (0, 0, -math.pi / 2)
 tree.links.new(coordinates.outputs["Generated"], mapping.inputs["Vector"])
 tree.links.new(mapping.outputs["Vector"], environment.inputs["Vector"])
 tree.links.new(environment.outputs["Color"], background.inputs["Color"])

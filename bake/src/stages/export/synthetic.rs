@@ -78,8 +78,8 @@ fn tree_level(rings: &[f32], cards: &[(u32, f32)]) -> Mesh {
         let [x, y, z] = [1, 2, 3].map(|i| hash01(7, card as i32, i, 0));
         let middle = Vec3::new(3.0 * x - 1.5, 2.0 + 4.0 * y, 3.0 * z - 1.5);
         let normal = Vec3::new(middle.x, middle.y - 4.0, middle.z).normalize();
-        let right = normal.cross(Vec3::Y).normalize();
-        let up = right.cross(normal) * 0.3 * size;
+        let right = Vec3::Y.cross(normal).normalize();
+        let up = normal.cross(right) * 0.3 * size;
         let right = right * 0.3 * size;
         for (u, v) in [(0.0, 1.0), (1.0, 1.0), (1.0, 0.0), (0.0, 0.0)] {
             mesh.positions.push((middle + right * (2.0 * u - 1.0) - up * (2.0 * v - 1.0)).to_array());
