@@ -7,6 +7,7 @@
 mod check;
 pub mod edit;
 mod genome;
+pub mod gltf;
 mod load;
 pub mod names;
 mod parameter;

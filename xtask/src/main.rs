@@ -1,2 +1,57 @@
-//! Developer chores.
-fn main() {}
+//! A developer's chores: the whole check (`test`), set-up of the programs that it runs our files through (`setup`),
+//! and the picture in the README (`pictures`). Knows nothing of landscapes: it runs other programs and reports.
+#![expect(clippy::print_stdout, reason = "a command line program")]
+
+mod check;
+mod pictures;
+mod setup;
+mod tools;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Genescape's developer chores.
+#[derive(Parser)]
+#[command(bin_name = "cargo xtask")]
+struct Cli {
+    #[command(subcommand)]
+    chore: Chore,
+}
+
+#[derive(Subcommand)]
+enum Chore {
+    /// Everything that must hold before a change is merged; ends with "N passed, N failed".
+    Test {
+        /// Also open a bake's files with Blender, three.js and F3D (first time: installs about 1 GB in .interop/).
+        #[arg(long)]
+        interop: bool,
+        /// Only formatting, lints and tests.
+        #[arg(long, conflicts_with = "interop")]
+        quick: bool,
+    },
+    /// Install the programs that `test --interop` and `pictures` need into .interop/.
+    Setup,
+    /// Bake the starters and render all four with Blender into docs/pictures/starters.jpg.
+    Pictures {
+        /// Samples a pixel.
+        #[arg(long, default_value_t = 48)]
+        samples: u32,
+    },
+}
+
+fn main() -> ExitCode {
+    let done = match Cli::parse().chore {
+        Chore::Test { interop, quick } => check::run(interop, quick),
+        Chore::Setup => setup::all().map(|()| true),
+        Chore::Pictures { samples } => pictures::run(samples).map(|()| true),
+    };
+    match done {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            println!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,3 +1,64 @@
-//! Results → the files that other programs open: glTF, PNG, EXR.
+//! Results → the files that other programs open: glTF 2.0 (Khronos, 2021) with our extensions beside the core.
+//!
+//! Metres, right-handed, y up. Everything here is a pure function to bytes; where bytes are stored, and by what name
+//! they are found again, is the caller's affair: a scene gets the URIs of its blobs as arguments.
+
+mod document;
 pub mod exr;
+mod glb;
+mod levels;
+mod materials;
 pub mod png;
+mod scene;
+mod scene_import;
+mod scene_trees;
+mod single;
+mod start;
+mod svd;
+#[cfg(test)]
+mod synthetic;
+mod tangents;
+mod terrain;
+#[cfg(test)]
+mod tests;
+
+use thiserror::Error;
+
+pub use levels::levelled_glb;
+pub use materials::{MaterialSet, Picture, TreeImages, tree_glb};
+pub use scene::{
+    Blob, CloudSheet, GlbBlob, GroundBlobs, GroundDetailBlobs, HeightfieldBlobs, SceneParts, SkyBlobs,
+    TreeTemplateBlob, instances_bin, scene_gltf,
+};
+pub use single::single_glb;
+pub use start::{StartView, start_view};
+pub use terrain::terrain_glb;
+
+/// What `asset.generator` says.
+pub const GENERATOR: &str = concat!("Genescape ", env!("CARGO_PKG_VERSION"));
+
+/// Why a file could not be made.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ExportError {
+    /// glTF knows no mesh without triangles.
+    #[error("{0} has no triangles")]
+    Empty(String),
+    /// NaN or infinity, which glTF forbids.
+    #[error("{0} has an attribute that is not a finite number")]
+    NotFinite(String),
+    /// Indices or attribute lists that do not fit each other.
+    #[error("{0} is inconsistent: {1}")]
+    Inconsistent(String, &'static str),
+    /// A transform that cannot be split into glTF nodes.
+    #[error("the transform of {0} is mirrored or flattened (determinant {1})")]
+    Transform(String, f64),
+    /// An instance of a template that is not there.
+    #[error("{0} is of template {1}, but there are only {2}")]
+    Template(String, u32, usize),
+    /// A file given as input is not what it should be.
+    #[error("{0} is not a glTF file that can be used here: {1}")]
+    NotGltf(String, String),
+    /// A file that a scene names could not be had.
+    #[error("{0} could not be read: {1}")]
+    Missing(String, String),
+}

@@ -1,0 +1,197 @@
+//! Materials with their textures, for trees and for anyone's meshes.
+
+use serde_json::{Value, json};
+
+use super::ExportError;
+use super::document::{Document, push};
+use super::levels::{Surface, levelled_glb};
+use crate::model::{LevelledMesh, Material};
+
+/// Trilinear filtering, repeating.
+pub const REPEATING: (u32, u32) = (9987, 10497);
+/// Trilinear filtering, clamped to the edge.
+pub const CLAMPED: (u32, u32) = (9987, 33071);
+
+/// A sampler's JSON from minification filter and wrap mode.
+pub fn sampler((minify, wrap): (u32, u32)) -> Value {
+    json!({ "magFilter": 9729, "minFilter": minify, "wrapS": wrap, "wrapT": wrap })
+}
+
+/// An image file's bytes, to embed, or its place beside the glTF file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Picture<'a> {
+    /// A whole PNG or JPEG file.
+    Embedded {
+        /// The file's bytes.
+        bytes: &'a [u8],
+        /// `image/png` or `image/jpeg`.
+        mime_type: &'a str,
+    },
+    /// A PNG file by relative URI, and its smaller mip levels likewise (level 1 first) if they are not plain
+    /// averages: they go into the image's `extras.mipmaps`.
+    File {
+        /// Level 0.
+        uri: String,
+        /// Levels 1, 2, …
+        mipmaps: Vec<String>,
+    },
+}
+
+/// Materials, and which part's material each is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MaterialSet<'a> {
+    /// What `materials[i]` is for; parts of any other kind get no material.
+    pub slots: Vec<Material>,
+    /// glTF material objects; their texture indices refer to `textures`.
+    pub materials: Vec<Value>,
+    /// glTF texture objects; they refer to `samplers` and `images`.
+    pub textures: Vec<Value>,
+    /// glTF sampler objects.
+    pub samplers: Vec<Value>,
+    /// Images with their names.
+    pub images: Vec<(String, Picture<'a>)>,
+    /// Extensions that the objects above use.
+    pub extensions_used: Vec<String>,
+}
+
+impl MaterialSet<'_> {
+    /// Adds materials, textures and samplers; the images must follow before anyone else adds one. Gives the number
+    /// that the first material got.
+    pub(super) fn add_to(&self, document: &mut Document) -> usize {
+        let first = document.materials.len();
+        let (textures, samplers, images) =
+            (document.textures.len(), document.samplers.len(), document.images.len());
+        for material in &self.materials {
+            let mut material = material.clone();
+            shift(&mut material, "index", textures);
+            document.materials.push(material);
+        }
+        for texture in &self.textures {
+            let mut texture = texture.clone();
+            shift(&mut texture, "sampler", samplers);
+            shift(&mut texture, "source", images);
+            document.textures.push(texture);
+        }
+        document.samplers.extend_from_slice(&self.samplers);
+        document.extensions_used.extend(self.extensions_used.iter().cloned());
+        first
+    }
+
+    /// Adds the images; in a .glb after all meshes, so that vertices come first in the file.
+    pub(super) fn add_images_to(&self, document: &mut Document) {
+        for (name, picture) in &self.images {
+            let mut image = picture_json(document, picture);
+            image["name"] = name.as_str().into();
+            document.images.push(image);
+        }
+    }
+
+    /// A part's material and what it needs.
+    pub(super) fn surface_of(&self, material: Material) -> Surface {
+        let index = self.slots.iter().position(|&slot| slot == material);
+        let normal_map = index
+            .and_then(|i| self.materials.get(i))
+            .is_some_and(|m| m.get("normalTexture").is_some() || m.pointer(CLEARCOAT).is_some());
+        Surface { material: index, normal_map }
+    }
+}
+
+/// The other place where a material may have a normal map.
+const CLEARCOAT: &str = "/extensions/KHR_materials_clearcoat/clearcoatNormalTexture";
+
+/// Adds `by` to every number called `key`, at any depth.
+fn shift(value: &mut Value, key: &str, by: usize) {
+    match value {
+        Value::Object(object) => {
+            for (name, child) in object {
+                match child.as_u64().filter(|_| name == key) {
+                    Some(index) => *child = (index + by as u64).into(),
+                    None => shift(child, key, by),
+                }
+            }
+        }
+        Value::Array(list) => list.iter_mut().for_each(|child| shift(child, key, by)),
+        _ => {}
+    }
+}
+
+/// A glTF image object.
+fn picture_json(document: &mut Document, picture: &Picture<'_>) -> Value {
+    match picture {
+        Picture::Embedded { bytes, mime_type } => {
+            let view = document.view(bytes, None, None);
+            json!({ "bufferView": view, "mimeType": mime_type })
+        }
+        Picture::File { uri, mipmaps } if mipmaps.is_empty() => {
+            json!({ "uri": uri, "mimeType": "image/png" })
+        }
+        Picture::File { uri, mipmaps } => {
+            let mipmaps: Vec<Value> =
+                mipmaps.iter().map(|uri| json!({ "uri": uri, "mimeType": "image/png" })).collect();
+            json!({ "uri": uri, "mimeType": "image/png", "extras": { "mipmaps": mipmaps } })
+        }
+    }
+}
+
+/// The pictures on a tree.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TreeImages<'a> {
+    /// Bark, sRGB.
+    pub bark_color: Picture<'a>,
+    /// Bark normals.
+    pub bark_normal: Picture<'a>,
+    /// Leaf card, sRGB with alpha; absent on a bare tree.
+    pub leaf: Option<Picture<'a>>,
+    /// Blossom card, likewise.
+    pub blossom: Option<Picture<'a>>,
+    /// Alpha below this is cut away.
+    pub alpha_cutoff: f32,
+}
+
+impl<'a> TreeImages<'a> {
+    /// Bark, leaf and blossom as glTF materials; cards only as far as `used` says that parts have them.
+    pub(super) fn materials(&self, used: impl Fn(Material) -> bool) -> MaterialSet<'a> {
+        let mut set = MaterialSet {
+            slots: vec![Material::Bark],
+            materials: vec![json!({ "name": "bark",
+                "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 },
+                    "metallicFactor": 0, "roughnessFactor": 0.9 },
+                "normalTexture": { "index": 1 } })],
+            textures: vec![
+                json!({ "name": "bark colour", "sampler": 0, "source": 0 }),
+                json!({ "name": "bark normals", "sampler": 0, "source": 1 }),
+            ],
+            samplers: vec![sampler(REPEATING)],
+            images: vec![
+                ("bark colour".into(), self.bark_color.clone()),
+                ("bark normals".into(), self.bark_normal.clone()),
+            ],
+            extensions_used: Vec::new(),
+        };
+        let cards = [(Material::Leaf, "leaf", &self.leaf), (Material::Blossom, "blossom", &self.blossom)];
+        for (slot, name, picture) in cards {
+            let Some(picture) = picture.as_ref().filter(|_| used(slot)) else { continue };
+            if set.samplers.len() == 1 {
+                set.samplers.push(sampler(CLAMPED));
+            }
+            let image = push(&mut set.images, (name.into(), picture.clone()));
+            let texture = push(&mut set.textures, json!({ "name": name, "sampler": 1, "source": image }));
+            set.slots.push(slot);
+            set.materials.push(json!({ "name": name,
+                "pbrMetallicRoughness": { "baseColorTexture": { "index": texture },
+                    "metallicFactor": 0, "roughnessFactor": 0.65 },
+                "alphaMode": "MASK", "alphaCutoff": self.alpha_cutoff, "doubleSided": true }));
+        }
+        set
+    }
+}
+
+/// One tree as a self-contained .glb (with `Picture::File`, one that shares its pictures): see [`levelled_glb`].
+///
+/// # Errors
+/// As [`levelled_glb`].
+pub fn tree_glb(name: &str, mesh: &LevelledMesh, images: &TreeImages<'_>) -> Result<Vec<u8>, ExportError> {
+    let parts = || mesh.levels.iter().flat_map(|level| &level.mesh.parts);
+    let used = |slot| parts().any(|part| part.material == slot && !part.triangles.is_empty());
+    levelled_glb(name, mesh, &images.materials(used))
+}

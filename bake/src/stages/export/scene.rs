@@ -1,0 +1,317 @@
+//! All that a scene is made of → `scene.gltf`: small JSON whose buffers and images are blobs by relative URI, and
+//! which shows the scene in any viewer, without any extension but KHR_lights_punctual and KHR_texture_transform.
+
+use genescape_schema::gltf::{
+    GSC_HEIGHTFIELD, GSC_SKY, GroundDetail, GroundSurface, HeightfieldExtension, InstanceRecord, Resource,
+    SkyExtension, SkyLayer, write_instances,
+};
+use glam::{Quat, Vec3};
+use serde_json::{Value, json};
+
+use super::ExportError;
+use super::document::{Document, Node, push};
+use super::materials::{CLAMPED, REPEATING, TreeImages, sampler};
+use super::scene_import::GlbImport;
+use super::scene_trees::add_trees;
+use super::start::{StartView, start_view};
+use super::terrain::{TERRAIN_MESHES, apron_material, ground_material, water_material};
+use crate::model::{Instance, Landform, Placement, SkyLight};
+
+const PNG: &str = "image/png";
+const EXR: &str = "image/x-exr";
+const BYTES: &str = "application/octet-stream";
+
+/// A file that the scene names.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Blob {
+    /// URI relative to the scene file, `../../blobs/ab/abcdef….png`.
+    pub uri: String,
+    /// Its length.
+    pub byte_length: usize,
+}
+
+/// A .glb made by this crate that serves as a plain buffer: accessors of the scene point into its BIN chunk.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct GlbBlob<'a> {
+    /// URI relative to the scene file.
+    pub uri: String,
+    /// The whole file, to read its table of accessors.
+    pub bytes: &'a [u8],
+}
+
+/// The heightfield as files.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeightfieldBlobs {
+    /// 16-bit grey PNG: 0 is `range_m.0`, 65535 is `range_m.1`.
+    pub heights_png: Blob,
+    /// Heights in metres of the least and the greatest value.
+    pub range_m: (f32, f32),
+    /// The payload that the page on `GSC_heightfield` specifies.
+    pub lod: Blob,
+}
+
+/// What the ground looks like, as files.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroundBlobs {
+    /// `GroundMaps::color_srgb` as PNG.
+    pub color: Blob,
+    /// `GroundMaps::weights` as PNG.
+    pub weights: Blob,
+    /// `LightMap::image` as PNG.
+    pub light: Blob,
+    /// Grass, rock, scree, snow and mud.
+    pub details: Vec<GroundDetailBlobs>,
+}
+
+/// One tiling ground texture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroundDetailBlobs {
+    /// Its name.
+    pub name: String,
+    /// `GroundTexture::detail_srgb` as PNG.
+    pub detail: Blob,
+    /// `GroundTexture::normal` as PNG.
+    pub normal: Blob,
+    /// Metres that one tile covers.
+    pub tile_m: f32,
+}
+
+/// The sky as files.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SkyBlobs {
+    /// Equirectangular EXR.
+    pub equirect: Blob,
+    /// Six EXR faces: +X, −X, +Y, −Y, +Z, −Z.
+    pub faces: Vec<Blob>,
+    /// The same without clouds; may be empty.
+    pub clear_faces: Vec<Blob>,
+    /// Sheets of cloud, lowest first.
+    pub layers: Vec<CloudSheet>,
+}
+
+/// A sheet of cloud as a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CloudSheet {
+    /// "cumulus" or "cirrus".
+    pub name: String,
+    /// Height above the origin.
+    pub altitude_m: f32,
+    /// Metres that the picture covers.
+    pub extent_m: f32,
+    /// RGBA PNG.
+    pub image: Blob,
+}
+
+/// A kind of tree, made by [`super::tree_glb`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TreeTemplateBlob<'a> {
+    /// Its name: "tree-0".
+    pub name: String,
+    /// Its file.
+    pub glb: GlbBlob<'a>,
+}
+
+/// All that a scene is made of.
+#[derive(Clone, Debug)]
+pub struct SceneParts<'a> {
+    /// The scene's name: "g0003 scene-2".
+    pub name: String,
+    /// Which generation it belongs to.
+    pub generation: u32,
+    /// The genome's values in their units, by parameter name; goes into `extras` as it is.
+    pub genome: Value,
+    /// The land, to stand on and to look over.
+    pub land: &'a Landform,
+    /// What [`super::terrain_glb`] made.
+    pub terrain: GlbBlob<'a>,
+    /// The heightfield's files.
+    pub heightfield: HeightfieldBlobs,
+    /// The ground's files.
+    pub ground: GroundBlobs,
+    /// The kinds of trees, in the order of `Instance::template`.
+    pub templates: Vec<TreeTemplateBlob<'a>>,
+    /// The pictures that all trees share, by URI.
+    pub tree_images: TreeImages<'a>,
+    /// Where the trees stand.
+    pub placement: &'a Placement,
+    /// What [`instances_bin`] made of it.
+    pub instances: Blob,
+    /// Sun, sky and haze.
+    pub light: &'a SkyLight,
+    /// The sky's files.
+    pub sky: SkyBlobs,
+}
+
+/// The payload of `GSC_instances`.
+pub fn instances_bin(placement: &Placement) -> Vec<u8> {
+    let record = |i: &Instance| InstanceRecord {
+        world_from_tree: i.world_from_tree,
+        template: i.template,
+        trunk_cylinder_m: i.trunk_cylinder_m,
+    };
+    write_instances(&placement.instances.iter().map(record).collect::<Vec<_>>())
+}
+
+/// The text of `scene.gltf`: the same bytes for the same parts.
+///
+/// # Errors
+/// When a .glb is none, or an instance is mirrored or of an unknown template.
+pub fn scene_gltf(parts: &SceneParts<'_>) -> Result<Vec<u8>, ExportError> {
+    let view =
+        start_view(&parts.land.field, parts.land.water_level_m, parts.placement, parts.light.sun_direction);
+    let mut document = Document::default();
+    let mut roots = vec![add_camera(&mut document, &view), add_sun(&mut document, parts.light)];
+    roots.extend(add_terrain(&mut document, parts)?);
+    roots.push(add_trees(&mut document, parts, &view)?);
+    document.extensions_used.insert(GSC_SKY.into());
+    document.scenes.push(json!({
+        "name": parts.name, "nodes": roots,
+        "extensions": { GSC_SKY: sky_extension(parts) },
+        "extras": { "generation": parts.generation, "genome": parts.genome },
+    }));
+    Ok(document.json())
+}
+
+fn add_camera(document: &mut Document, view: &StartView) -> usize {
+    let camera = push(
+        &mut document.cameras,
+        json!({ "name": "start", "type": "perspective",
+            "perspective": { "aspectRatio": 1.6, "yfov": 0.87, "znear": 0.1, "zfar": 30000 } }),
+    );
+    document.node(Node {
+        name: "start".into(),
+        camera: Some(camera),
+        translation: Some(view.position_m.to_array()),
+        rotation: Some(view.rotation().to_array()),
+        ..Node::default()
+    })
+}
+
+/// The sun as a directional light. See `schema/docs/GSC_sky.md` on its intensity.
+fn add_sun(document: &mut Document, light: &SkyLight) -> usize {
+    let rgb = light.sun_irradiance_linear;
+    let greatest = rgb[0].max(rgb[1]).max(rgb[2]);
+    let color = if greatest > 0.0 { rgb.map(|c| (c / greatest).clamp(0.0, 1.0)) } else { [1.0; 3] };
+    document.extensions_used.insert("KHR_lights_punctual".into());
+    document.extensions.insert(
+        "KHR_lights_punctual".into(),
+        json!({ "lights": [{ "name": "sun", "type": "directional", "color": color,
+            "intensity": greatest.max(0.0) * light.exposure }] }),
+    );
+    // A glTF light shines along its own −z.
+    let rotation = Quat::from_rotation_arc(Vec3::Z, light.sun_direction.normalize_or(Vec3::Y)).normalize();
+    document.node(Node {
+        name: "sun".into(),
+        rotation: Some(rotation.to_array()),
+        extensions: Some(json!({ "KHR_lights_punctual": { "light": 0 } })),
+        extras: Some(json!({ "angle_rad": 2.0 * light.sun_angular_radius_rad })),
+        ..Node::default()
+    })
+}
+
+fn add_terrain(document: &mut Document, parts: &SceneParts<'_>) -> Result<Vec<usize>, ExportError> {
+    let glb = GlbImport::open(document, &parts.terrain)?;
+    let first_material = document.materials.len();
+    let names = glb.mesh_names();
+    for name in &names {
+        let material = match name.as_str() {
+            "apron" => apron_material(),
+            "water" => water_material(),
+            _ => add_ground(document, parts),
+        };
+        document.materials.push(material);
+    }
+    // The file has a material a mesh, in the same order.
+    let first_mesh = glb.import_meshes(document, &|material| Some(first_material + material.index))?;
+    let mut nodes = Vec::new();
+    for (i, name) in names.into_iter().enumerate() {
+        let mut node = Node { name, mesh: Some(first_mesh + i), ..Node::default() };
+        if node.name == TERRAIN_MESHES[0] {
+            let extension = heightfield_extension(parts);
+            node.extras = Some(json!({ "heightfield": {
+                "side": extension.side, "spacing_m": extension.spacing_m,
+                "min_m": extension.min_m, "max_m": extension.max_m, "png": extension.heights } }));
+            node.extensions = Some(json!({ GSC_HEIGHTFIELD: extension }));
+            document.extensions_used.insert(GSC_HEIGHTFIELD.into());
+        }
+        nodes.push(document.node(node));
+    }
+    Ok(nodes)
+}
+
+/// The ground's textures, and its material.
+fn add_ground(document: &mut Document, parts: &SceneParts<'_>) -> Value {
+    let ground = &parts.ground;
+    let clamped = push(&mut document.samplers, sampler(CLAMPED));
+    let mut texture = |name: &str, blob: &Blob, sampler: usize| {
+        let image = json!({ "name": name, "uri": blob.uri, "mimeType": PNG });
+        let source = push(&mut document.images, image);
+        push(&mut document.textures, json!({ "name": name, "sampler": sampler, "source": source }))
+    };
+    let color = texture("ground colour", &ground.color, clamped);
+    let light = texture("light map", &ground.light, clamped);
+    let repeating = clamped + 1;
+    let normal = ground.details.first().map(|grass| {
+        let repeats = parts.land.field.extent_m() / grass.tile_m;
+        (texture(&format!("{} normals", grass.name), &grass.normal, repeating), repeats)
+    });
+    if normal.is_some() {
+        document.samplers.push(sampler(REPEATING));
+        document.extensions_used.insert("KHR_texture_transform".into());
+    }
+    ground_material(color, light, normal)
+}
+
+fn heightfield_extension(parts: &SceneParts<'_>) -> HeightfieldExtension {
+    let (heightfield, ground) = (&parts.heightfield, &parts.ground);
+    let png = |blob: &Blob| Resource::file(&blob.uri, PNG);
+    let detail = |d: &GroundDetailBlobs| GroundDetail {
+        name: d.name.clone(),
+        detail: png(&d.detail),
+        normal: png(&d.normal),
+        tile_m: d.tile_m,
+    };
+    HeightfieldExtension {
+        side: parts.land.field.side,
+        spacing_m: parts.land.field.spacing_m,
+        min_m: heightfield.range_m.0,
+        max_m: heightfield.range_m.1,
+        water_level_m: parts.land.water_level_m,
+        heights: png(&heightfield.heights_png),
+        lod: Resource::file(&heightfield.lod.uri, BYTES),
+        surface: GroundSurface {
+            color: png(&ground.color),
+            weights: png(&ground.weights),
+            light: png(&ground.light),
+            details: ground.details.iter().map(detail).collect(),
+        },
+    }
+}
+
+fn sky_extension(parts: &SceneParts<'_>) -> SkyExtension {
+    let (light, sky) = (parts.light, &parts.sky);
+    let exr = |blob: &Blob| Resource::file(&blob.uri, EXR);
+    SkyExtension {
+        equirect: exr(&sky.equirect),
+        faces: sky.faces.iter().map(exr).collect(),
+        clear_faces: sky.clear_faces.iter().map(exr).collect(),
+        layers: sky
+            .layers
+            .iter()
+            .map(|layer| SkyLayer {
+                name: layer.name.clone(),
+                altitude_m: layer.altitude_m,
+                extent_m: layer.extent_m,
+                image: Resource::file(&layer.image.uri, PNG),
+            })
+            .collect(),
+        sun_direction: light.sun_direction.to_array(),
+        sun_angular_radius_rad: light.sun_angular_radius_rad,
+        sun_irradiance_linear: light.sun_irradiance_linear,
+        sky_irradiance_linear: light.sky_irradiance_linear,
+        zonal_radiance_linear: light.zonal_radiance_linear.clone(),
+        haze_linear: light.haze_linear,
+        haze_extinction_per_m: light.haze_extinction_per_m,
+        exposure: light.exposure,
+    }
+}

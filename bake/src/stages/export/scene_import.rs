@@ -1,0 +1,145 @@
+//! Meshes of a .glb → meshes of a scene that has the .glb for a buffer: only tables are copied, never vertices.
+
+use genescape_schema::gltf::{GSC_PROGRESSIVE_MESH, ProgressiveMeshExtension};
+use serde_json::{Value, json};
+
+use super::ExportError;
+use super::document::{Document, push};
+use super::glb::{Glb, read_glb};
+use super::scene::GlbBlob;
+
+/// A .glb that a scene uses.
+pub struct GlbImport {
+    uri: String,
+    glb: Glb,
+    buffer: usize,
+}
+
+/// A material of the file.
+pub struct FileMaterial<'a> {
+    pub index: usize,
+    pub name: &'a str,
+}
+
+impl GlbImport {
+    /// Adds the file to the scene's buffers.
+    pub fn open(document: &mut Document, blob: &GlbBlob<'_>) -> Result<Self, ExportError> {
+        let glb = read_glb(&blob.uri, blob.bytes)?;
+        let buffer = push(&mut document.buffers, json!({ "uri": blob.uri, "byteLength": blob.bytes.len() }));
+        Ok(Self { uri: blob.uri.clone(), glb, buffer })
+    }
+
+    fn list(&self, key: &str) -> &[Value] {
+        self.glb.json[key].as_array().map_or(&[], Vec::as_slice)
+    }
+
+    fn item(&self, key: &str, index: &Value) -> Result<&Value, ExportError> {
+        let found = index.as_u64().and_then(|i| self.list(key).get(i as usize));
+        found.ok_or_else(|| ExportError::NotGltf(self.uri.clone(), format!("it has no {key} {index}")))
+    }
+
+    /// Names of its meshes, in order.
+    pub fn mesh_names(&self) -> Vec<String> {
+        self.list("meshes").iter().map(|m| m["name"].as_str().unwrap_or_default().into()).collect()
+    }
+
+    /// Names of its materials, in order.
+    pub fn material_names(&self) -> impl Iterator<Item = &str> {
+        self.list("materials").iter().map(|material| material["name"].as_str().unwrap_or_default())
+    }
+
+    fn material(&self, index: &Value) -> Option<FileMaterial<'_>> {
+        let index = index.as_u64()? as usize;
+        Some(FileMaterial { index, name: self.material_names().nth(index)? })
+    }
+
+    /// Adds all meshes, in their order, so that mesh i becomes the returned number + i. `material_of` gives the
+    /// scene's material for one of the file's.
+    pub fn import_meshes(
+        &self,
+        document: &mut Document,
+        material_of: &dyn Fn(FileMaterial<'_>) -> Option<usize>,
+    ) -> Result<usize, ExportError> {
+        let first = document.meshes.len();
+        for mesh in self.list("meshes") {
+            let mut mesh = mesh.clone();
+            for primitive in mesh["primitives"].as_array_mut().into_iter().flatten() {
+                self.import_primitive(document, primitive, material_of)?;
+            }
+            if let Some(extension) = mesh.pointer_mut(&format!("/extensions/{GSC_PROGRESSIVE_MESH}")) {
+                *extension = self.import_progressive(document, extension, first)?;
+                document.extensions_used.insert(GSC_PROGRESSIVE_MESH.into());
+            }
+            document.meshes.push(mesh);
+        }
+        Ok(first)
+    }
+
+    fn import_primitive(
+        &self,
+        document: &mut Document,
+        primitive: &mut Value,
+        material_of: &dyn Fn(FileMaterial<'_>) -> Option<usize>,
+    ) -> Result<(), ExportError> {
+        let material = primitive.get("material").and_then(|index| self.material(index)).and_then(material_of);
+        if let Some(material) = material {
+            primitive["material"] = material.into();
+        }
+        let targets = primitive.get("targets").cloned();
+        for attribute in primitive["attributes"].as_object_mut().into_iter().flat_map(|o| o.values_mut()) {
+            *attribute = self.import_accessor(document, attribute)?.into();
+        }
+        primitive["indices"] = self.import_accessor(document, &primitive["indices"])?.into();
+        if let Some(mut targets) = targets {
+            for target in targets.as_array_mut().into_iter().flatten() {
+                for attribute in target.as_object_mut().into_iter().flat_map(|o| o.values_mut()) {
+                    *attribute = self.import_accessor(document, attribute)?.into();
+                }
+            }
+            primitive["targets"] = targets;
+        }
+        Ok(())
+    }
+
+    fn import_progressive(
+        &self,
+        document: &mut Document,
+        extension: &Value,
+        first_mesh: usize,
+    ) -> Result<Value, ExportError> {
+        let mut typed: ProgressiveMeshExtension = serde_json::from_value(extension.clone())
+            .map_err(|e| ExportError::NotGltf(self.uri.clone(), e.to_string()))?;
+        typed.buffer_view = self.import_view(document, &typed.buffer_view.into())?;
+        for level in &mut typed.levels {
+            level.mesh += first_mesh;
+            for accessor in level.strips.iter_mut().chain(level.texcoord_deltas.iter_mut().flatten()) {
+                *accessor = self.import_accessor(document, &(*accessor).into())?;
+            }
+        }
+        Ok(json!(typed))
+    }
+
+    fn import_accessor(&self, document: &mut Document, index: &Value) -> Result<usize, ExportError> {
+        let mut accessor = self.item("accessors", index)?.clone();
+        for place in ["/bufferView", "/sparse/indices/bufferView", "/sparse/values/bufferView"] {
+            if let Some(view) = accessor.pointer_mut(place) {
+                *view = self.import_view(document, view)?.into();
+            }
+        }
+        Ok(push(&mut document.accessors, accessor))
+    }
+
+    /// Views are few and found by place, since several accessors share the interleaved ones.
+    fn import_view(&self, document: &mut Document, index: &Value) -> Result<usize, ExportError> {
+        let mut view = self.item("bufferViews", index)?.clone();
+        let offset = view["byteOffset"].as_u64().unwrap_or(0) as usize + self.glb.bin_offset;
+        view["buffer"] = self.buffer.into();
+        view["byteOffset"] = offset.into();
+        // The views of this file are the last in the list, its interleaved vertices just before.
+        let known = document.buffer_views.iter().rev().take(64).position(|other| *other == view);
+        Ok(match known {
+            Some(back) => document.buffer_views.len() - 1 - back,
+            None => push(&mut document.buffer_views, view),
+        })
+    }
+}

@@ -1,0 +1,166 @@
+//! Where trees stand → nodes that share meshes: two nodes an instance, since one may not shear.
+
+use genescape_schema::gltf::{
+    GSC_INSTANCES, GSC_PROGRESSIVE_MESH, InstancesExtension, InstancesTemplate, ProgressiveLevel,
+    ProgressiveMeshExtension,
+};
+use glam::Vec3;
+use serde::Deserialize;
+use serde_json::json;
+
+use super::ExportError;
+use super::document::{Document, Node, push};
+use super::scene::SceneParts;
+use super::scene_import::{FileMaterial, GlbImport};
+use super::start::StartView;
+use super::svd::{decompose, determinant};
+use crate::model::{Instance, Material};
+
+/// Triangles that any viewer opens quickly.
+pub const TRIANGLE_BUDGET: usize = 3_000_000;
+
+/// One level of a template.
+#[derive(Clone, Copy, Debug)]
+struct Level {
+    /// i of D_i.
+    number: usize,
+    mesh: usize,
+    error_m: f32,
+    triangles: usize,
+}
+
+/// Adds the templates' meshes and a `trees` node with all instances below it; gives that node.
+pub fn add_trees(
+    document: &mut Document,
+    parts: &SceneParts<'_>,
+    view: &StartView,
+) -> Result<usize, ExportError> {
+    let mut files = Vec::new();
+    for template in &parts.templates {
+        files.push(GlbImport::open(document, &template.glb)?);
+    }
+    let has = |name: &str| files.iter().any(|file| file.material_names().any(|other| other == name));
+    let set = parts.tree_images.materials(|slot| match slot {
+        Material::Leaf => has("leaf"),
+        Material::Blossom => has("blossom"),
+        _ => true,
+    });
+    let first_material = set.add_to(document);
+    set.add_images_to(document);
+    let material_of = |material: FileMaterial<'_>| {
+        set.materials.iter().position(|m| m["name"] == material.name).map(|i| first_material + i)
+    };
+    let (mut templates, mut levels) = (Vec::new(), Vec::new());
+    for (file, template) in files.iter().zip(&parts.templates) {
+        let mesh = file.import_meshes(document, &material_of)?;
+        levels.push(levels_of(document, mesh));
+        templates.push(InstancesTemplate { name: template.name.clone(), mesh });
+    }
+    let instances = &parts.placement.instances;
+    let chosen = choose_levels(instances, &levels, view.position_m)?;
+    let mut children = Vec::with_capacity(chosen.len());
+    for (i, (instance, level)) in instances.iter().zip(chosen).enumerate() {
+        children.push(add_instance(document, format!("tree.{i:04}"), instance, level)?);
+    }
+    let buffer = push(
+        &mut document.buffers,
+        json!({ "uri": parts.instances.uri, "byteLength": parts.instances.byte_length }),
+    );
+    let buffer_view = push(
+        &mut document.buffer_views,
+        json!({ "buffer": buffer, "byteOffset": 0, "byteLength": parts.instances.byte_length }),
+    );
+    document.extensions_used.insert(GSC_INSTANCES.into());
+    let extension = InstancesExtension { buffer_view, count: instances.len(), templates };
+    Ok(document.node(Node {
+        name: "trees".into(),
+        children,
+        extensions: Some(json!({ GSC_INSTANCES: extension })),
+        ..Node::default()
+    }))
+}
+
+/// The levels of an imported mesh; a mesh without our extension is its own only level.
+fn levels_of(document: &Document, mesh: usize) -> Vec<Level> {
+    let extension = document.meshes[mesh].pointer(&format!("/extensions/{GSC_PROGRESSIVE_MESH}"));
+    let typed = extension.and_then(|e| ProgressiveMeshExtension::deserialize(e).ok());
+    match typed {
+        Some(typed) => {
+            let level = |(i, l): (usize, &ProgressiveLevel)| Level {
+                number: i,
+                mesh: l.mesh,
+                error_m: l.error_m,
+                triangles: l.triangles,
+            };
+            typed.levels.iter().enumerate().map(level).collect()
+        }
+        None => vec![Level { number: 0, mesh, error_m: 0.0, triangles: 0 }],
+    }
+}
+
+/// For each instance the coarsest level whose error looks smaller than one angle, the same for all: the smallest
+/// angle (of a fixed list) with which all trees together keep to the budget.
+fn choose_levels(
+    instances: &[Instance],
+    templates: &[Vec<Level>],
+    eye_m: Vec3,
+) -> Result<Vec<Level>, ExportError> {
+    let mut seen = Vec::with_capacity(instances.len());
+    for (i, instance) in instances.iter().enumerate() {
+        let levels = templates.get(instance.template as usize).ok_or_else(|| {
+            ExportError::Template(format!("tree.{i:04}"), instance.template, templates.len())
+        })?;
+        seen.push((levels, distance_in_tree_sizes(instance, eye_m)));
+    }
+    let mut angle_rad = 0.0005;
+    loop {
+        let choose = |(levels, distance): &(&Vec<Level>, f32)| {
+            let enough = levels.iter().rfind(|level| level.error_m <= angle_rad * distance);
+            *enough.unwrap_or(&levels[0])
+        };
+        let chosen: Vec<Level> = seen.iter().map(choose).collect();
+        let triangles: usize = chosen.iter().map(|level| level.triangles).sum();
+        if triangles <= TRIANGLE_BUDGET || angle_rad > 1.0 {
+            return Ok(chosen);
+        }
+        angle_rad *= 1.1;
+    }
+}
+
+/// Distance from the eye in metres of the template's space: a tree twice as large is seen as if half as far.
+fn distance_in_tree_sizes(instance: &Instance, eye_m: Vec3) -> f32 {
+    let a = &instance.world_from_tree;
+    let foot = Vec3::new(a[0][3], a[1][3], a[2][3]);
+    let column = |c: usize| Vec3::new(a[0][c], a[1][c], a[2][c]).length();
+    let size = column(0).max(column(1)).max(column(2)).max(1e-6);
+    foot.distance(eye_m) / size
+}
+
+/// Parent T·R(U)·S(Σ), child R(Vᵀ) with the mesh; gives the parent.
+fn add_instance(
+    document: &mut Document,
+    name: String,
+    instance: &Instance,
+    level: Level,
+) -> Result<usize, ExportError> {
+    let a = &instance.world_from_tree;
+    let linear = [0, 1, 2].map(|c| [0, 1, 2].map(|row| f64::from(a[row][c])));
+    let Some(split) = decompose(linear) else {
+        return Err(ExportError::Transform(name, determinant(linear)));
+    };
+    let child = document.node(Node {
+        name: format!("{name}.mesh"),
+        mesh: Some(level.mesh),
+        rotation: Some(split.right.map(|x| x as f32)),
+        ..Node::default()
+    });
+    Ok(document.node(Node {
+        name,
+        translation: Some([a[0][3], a[1][3], a[2][3]]),
+        rotation: Some(split.left.map(|x| x as f32)),
+        scale: Some(split.scale.map(|x| x as f32)),
+        children: vec![child],
+        extras: Some(json!({ "template": instance.template, "level": level.number })),
+        ..Node::default()
+    }))
+}

@@ -1,0 +1,163 @@
+//! Where a person first stands, and what they look at: a dry, level, open spot not far from the middle, facing a
+//! long view over the land that has trees in it and the sun beside or behind.
+
+use glam::{Quat, Vec2, Vec3};
+
+use crate::model::{Heightfield, Placement};
+
+/// Eyes above the ground, in metres.
+pub const EYE_M: f32 = 1.6;
+const SPOTS: i32 = 9;
+const AZIMUTHS: u32 = 24;
+
+/// A place to look from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StartView {
+    /// The eye.
+    pub position_m: Vec3,
+    /// Unit vector of the look.
+    pub direction: Vec3,
+}
+
+impl StartView {
+    /// Rotation of a glTF camera, which looks along its own −z with +y up.
+    pub fn rotation(&self) -> Quat {
+        let back = -self.direction;
+        let right = Vec3::Y.cross(back).normalize();
+        Quat::from_mat3(&glam::Mat3::from_cols(right, back.cross(right), back)).normalize()
+    }
+}
+
+/// Chooses the best of a fixed list of spots and azimuths.
+///
+/// `water_level_m` is the lake's surface; `towards_sun` a unit vector.
+pub fn start_view(
+    land: &Heightfield,
+    water_level_m: Option<f32>,
+    placement: &Placement,
+    towards_sun: Vec3,
+) -> StartView {
+    let scene = Surroundings { land, water_m: water_level_m.unwrap_or(f32::MIN), placement };
+    let step_m = land.extent_m() * 0.055;
+    let mut best = (f32::MIN, Vec2::ZERO, 0);
+    for j in -SPOTS / 2..=SPOTS / 2 {
+        for i in -SPOTS / 2..=SPOTS / 2 {
+            let spot = Vec2::new(i as f32, j as f32) * step_m;
+            let Some(standing) = scene.standing(spot) else { continue };
+            let trees = scene.trees_by_azimuth(spot);
+            for azimuth in 0..AZIMUTHS {
+                let score = standing + scene.view(spot, azimuth, &trees, towards_sun);
+                if score > best.0 {
+                    best = (score, spot, azimuth);
+                }
+            }
+        }
+    }
+    let (_, spot, azimuth) = best;
+    let ground_m = land.height_m(spot.x, spot.y).max(scene.water_m);
+    let along = heading(azimuth);
+    let pitch = scene.pitch(spot, along);
+    let direction = Vec3::new(along.x, pitch, along.y).normalize();
+    StartView { position_m: Vec3::new(spot.x, ground_m + EYE_M, spot.y), direction }
+}
+
+/// Unit vector in the (x, z) plane, clockwise from north (−z).
+fn heading(azimuth: u32) -> Vec2 {
+    let angle = azimuth as f32 * (core::f32::consts::TAU / AZIMUTHS as f32);
+    Vec2::new(libm::sinf(angle), -libm::cosf(angle))
+}
+
+struct Surroundings<'a> {
+    land: &'a Heightfield,
+    water_m: f32,
+    placement: &'a Placement,
+}
+
+impl Surroundings<'_> {
+    /// How good a spot is to stand on: `None` in water, on a steep slope or in a trunk.
+    fn standing(&self, spot: Vec2) -> Option<f32> {
+        let at = |x, z| self.land.height_m(x, z);
+        let ground = at(spot.x, spot.y);
+        let rise = Vec2::new(
+            at(spot.x + 2.0, spot.y) - at(spot.x - 2.0, spot.y),
+            at(spot.x, spot.y + 2.0) - at(spot.x, spot.y - 2.0),
+        )
+        .length()
+            / 4.0;
+        if ground < self.water_m + 0.3 || rise > 0.6 {
+            return None;
+        }
+        let far = spot.length() / self.land.extent_m();
+        let blocked = self.placement.instances.iter().any(|tree| {
+            let [x, z, radius] = tree.trunk_cylinder_m;
+            spot.distance(Vec2::new(x, z)) < radius + 3.5
+        });
+        (!blocked).then_some(-0.5 * rise - 0.6 * far)
+    }
+
+    /// For each azimuth, how many trees stand in a cone of ±30° around it: (in the way, in view).
+    fn trees_by_azimuth(&self, spot: Vec2) -> Vec<(f32, f32)> {
+        let mut bins = vec![(0.0f32, 0.0f32); AZIMUTHS as usize];
+        for tree in &self.placement.instances {
+            let offset = Vec2::new(tree.trunk_cylinder_m[0], tree.trunk_cylinder_m[1]) - spot;
+            let distance = offset.length();
+            if distance > 300.0 {
+                continue;
+            }
+            let turn = libm::atan2f(offset.x, -offset.y) / core::f32::consts::TAU;
+            let bin = ((turn + 1.0) * AZIMUTHS as f32 + 0.5) as usize % AZIMUTHS as usize;
+            if distance < 14.0 {
+                bins[bin].0 += 1.0 - distance / 14.0;
+            } else {
+                bins[bin].1 += 1.0 / (1.0 + distance * 0.01);
+            }
+        }
+        let n = bins.len();
+        let near = |i: usize, j: usize| bins[(i + n + j - 2) % n];
+        (0..n)
+            .map(|i| (0..5).map(|j| near(i, j)).fold((0.0, 0.0), |sum, bin| (sum.0 + bin.0, sum.1 + bin.1)))
+            .collect()
+    }
+
+    /// How good a look is.
+    fn view(&self, spot: Vec2, azimuth: u32, trees: &[(f32, f32)], towards_sun: Vec3) -> f32 {
+        let along = heading(azimuth);
+        let eye_m = self.land.height_m(spot.x, spot.y) + EYE_M;
+        let (mut steepest, mut seen, mut steps, mut top) = (f32::MIN, 0.0, 0.0, f32::MIN);
+        let mut distance = 6.0f32;
+        loop {
+            let p = spot + along * distance;
+            if p.abs().max_element() > 0.5 * self.land.extent_m() {
+                break;
+            }
+            let ground = self.land.height_m(p.x, p.y).max(self.water_m);
+            let slope = (ground - eye_m) / distance;
+            steps += 1.0;
+            if slope >= steepest {
+                (steepest, seen) = (slope, seen + 1.0);
+            }
+            top = top.max(slope);
+            distance *= 1.15;
+        }
+        let open = seen / f32::max(steps, 1.0);
+        // Mountains are worth looking at, but not a wall before one's face.
+        let relief = top.clamp(0.0, 0.3) - 2.0 * (top - 0.35).max(0.0);
+        let (in_the_way, in_view) = trees[azimuth as usize];
+        let sun = Vec2::new(towards_sun.x, towards_sun.z);
+        let facing_sun = if sun.length() > 1e-3 { along.dot(sun.normalize()) } else { 0.0 };
+        // Light from the side or from behind models the land; into a sun above the picture, all is flat.
+        let light = -0.6 * (facing_sun - 0.5).max(0.0) - 0.15 * (-facing_sun - 0.7).max(0.0);
+        open + 1.2 * relief + 0.5 * (in_view / (4.0 + in_view)) - 0.9 * in_the_way.min(2.0) + light
+    }
+
+    /// Slope of the look: towards the middle of what is to be seen, within ±10°.
+    fn pitch(&self, spot: Vec2, along: Vec2) -> f32 {
+        let eye_m = self.land.height_m(spot.x, spot.y).max(self.water_m) + EYE_M;
+        let slope = |distance: f32| {
+            let p = spot + along * distance;
+            (self.land.height_m(p.x, p.y).max(self.water_m) - eye_m) / distance
+        };
+        let mean = (slope(60.0) + slope(150.0) + slope(400.0)) / 3.0;
+        (0.6 * mean + 0.03).clamp(-0.17, 0.17)
+    }
+}

@@ -1,0 +1,150 @@
+//! The whole check, step by step, each with its time; later steps run even if earlier ones failed.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use anyhow::{Context, Result, ensure};
+
+use crate::setup;
+use crate::tools::{cargo, files, program, python, root, run as execute, script};
+
+/// A step by its name.
+type Step = (&'static str, fn() -> Result<()>);
+
+const QUICK: [Step; 3] = [("formatting", formatting), ("lints", lints), ("tests", tests)];
+const WHOLE: [Step; 3] = [("documentation", documentation), ("bake", bake), ("Khronos validator", validator)];
+const INTEROP: [Step; 3] = [("Blender", blender), ("three.js", three), ("F3D", f3d)];
+
+/// Runs the steps; whether all passed.
+pub fn run_steps(steps: &[Step]) -> bool {
+    let mut failed = Vec::new();
+    for (name, step) in steps {
+        println!("── {name}");
+        let start = Instant::now();
+        let result = step();
+        let seconds = start.elapsed().as_secs_f32();
+        match result {
+            Ok(()) => println!("── {name}: passed in {seconds:.1} s"),
+            Err(error) => {
+                println!("── {name}: FAILED in {seconds:.1} s: {error:#}");
+                failed.push(*name);
+            }
+        }
+    }
+    if !failed.is_empty() {
+        println!("failed: {}", failed.join(", "));
+    }
+    println!("{} passed, {} failed", steps.len() - failed.len(), failed.len());
+    failed.is_empty()
+}
+
+/// The check; whether all passed.
+pub fn run(interop: bool, quick: bool) -> Result<bool> {
+    let mut steps = QUICK.to_vec();
+    if !quick {
+        steps.extend(WHOLE);
+    }
+    if interop {
+        steps.extend(INTEROP);
+    }
+    Ok(run_steps(&steps))
+}
+
+fn formatting() -> Result<()> {
+    execute(&mut cargo(&["fmt", "--all", "--check"]))
+}
+
+fn lints() -> Result<()> {
+    execute(&mut cargo(&["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"]))
+}
+
+fn tests() -> Result<()> {
+    execute(&mut cargo(&["test", "--quiet", "--workspace"]))
+}
+
+fn documentation() -> Result<()> {
+    let arguments = ["doc", "--quiet", "--workspace", "--no-deps", "--document-private-items"];
+    execute(cargo(&arguments).env("RUSTDOCFLAGS", "-D warnings"))
+}
+
+/// Where the checked bake goes.
+fn world() -> PathBuf {
+    root().join("target/interop/world")
+}
+
+fn baked() -> PathBuf {
+    world().join("baked")
+}
+
+/// The starters, from nothing, and one scene as a single file.
+fn bake() -> Result<()> {
+    if world().exists() {
+        std::fs::remove_dir_all(world()).context("cannot remove the last check's world")?;
+    }
+    let bake = |arguments: &[&str]| {
+        let mut command = cargo(&["run", "--quiet", "--package", "genescape-bake", "--bin", "bake", "--"]);
+        command.args(arguments).arg("--world").arg(world());
+        command
+    };
+    execute(&mut bake(&[]))?;
+    let first = first_scene()?;
+    let first = first.to_str().context("the workspace's path is not UTF-8")?;
+    let single = single_file();
+    let single = single.to_str().context("the workspace's path is not UTF-8")?;
+    execute(&mut bake(&["export", first, single]))
+}
+
+fn single_file() -> PathBuf {
+    root().join("target/interop/single.glb")
+}
+
+fn scenes() -> Result<Vec<PathBuf>> {
+    files(&baked(), &["scene.gltf"])
+}
+
+fn first_scene() -> Result<PathBuf> {
+    scenes()?.into_iter().next().context("the bake made no scene")
+}
+
+/// A tree: the first .glb with levels in it.
+fn tree_file() -> Result<PathBuf> {
+    let has_levels = |path: &PathBuf| {
+        std::fs::read(path).is_ok_and(|b| {
+            let name = b"GSC_progressive_mesh";
+            b[..b.len().min(65536)].windows(name.len()).any(|window| window == name)
+        })
+    };
+    files(&baked(), &[".glb"])?.into_iter().find(has_levels).context("no .glb of the bake is a tree")
+}
+
+fn validator() -> Result<()> {
+    setup::node()?;
+    let mut all = files(&baked(), &["scene.gltf", ".glb"])?;
+    all.push(single_file());
+    execute(program("node").arg(script("validate.mjs")).args(all))
+}
+
+fn blender() -> Result<()> {
+    setup::blender()?;
+    for file in [first_scene()?, tree_file()?] {
+        execute(program(python()).arg(script("blender_check.py")).arg(file))?;
+    }
+    Ok(())
+}
+
+fn three() -> Result<()> {
+    setup::node()?;
+    execute(
+        program("node").arg(script("three_check.mjs")).args(scenes()?).arg(tree_file()?).arg(single_file()),
+    )
+}
+
+fn f3d() -> Result<()> {
+    setup::blender()?;
+    for (file, picture) in [(first_scene()?, "f3d-scene.png"), (tree_file()?, "f3d-tree.png")] {
+        let picture = root().join("target/interop").join(picture);
+        execute(program(python()).arg(script("f3d_render.py")).arg(file).arg(&picture))?;
+        ensure!(Path::new(&picture).is_file(), "F3D wrote no picture");
+    }
+    Ok(())
+}

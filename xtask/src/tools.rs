@@ -1,0 +1,78 @@
+//! Paths and programs that several chores use.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, Result, bail, ensure};
+
+/// The workspace's folder.
+pub fn root() -> PathBuf {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    here.parent().unwrap_or(here).to_owned()
+}
+
+/// Where other people's programs are installed: `.interop/`, or the folder that GENESCAPE_INTEROP names.
+pub fn interop() -> PathBuf {
+    std::env::var_os("GENESCAPE_INTEROP").map_or_else(|| root().join(".interop"), PathBuf::from)
+}
+
+/// Python with bpy and f3d.
+pub fn python() -> PathBuf {
+    interop().join("venv/bin/python")
+}
+
+/// One of our scripts.
+pub fn script(name: &str) -> PathBuf {
+    root().join("tests/interop").join(name)
+}
+
+/// Whether a program is on the path.
+pub fn is_installed(program: &str) -> bool {
+    let paths = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&paths).any(|folder| folder.join(program).is_file())
+}
+
+/// The cargo that runs us, in the workspace's folder.
+pub fn cargo(arguments: &[&str]) -> Command {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.args(arguments).current_dir(root());
+    command
+}
+
+/// A program in the workspace's folder, with its packages found.
+pub fn program(name: impl AsRef<std::ffi::OsStr>) -> Command {
+    let mut command = Command::new(name);
+    command.current_dir(root()).env("INTEROP", interop());
+    command
+}
+
+/// Runs a command, its output going to ours; an error unless it succeeds.
+pub fn run(command: &mut Command) -> Result<()> {
+    let status = command.status().with_context(|| format!("cannot start {:?}", command.get_program()))?;
+    ensure!(status.success(), "{:?} ended with {status}", command.get_program());
+    Ok(())
+}
+
+/// Files below a folder whose names end in one of `endings`, sorted.
+pub fn files(folder: &Path, endings: &[&str]) -> Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    let mut todo = vec![folder.to_owned()];
+    while let Some(folder) = todo.pop() {
+        for entry in
+            std::fs::read_dir(&folder).with_context(|| format!("cannot read {}", folder.display()))?
+        {
+            let path = entry?.path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            if path.is_dir() {
+                todo.push(path);
+            } else if endings.iter().any(|ending| name.ends_with(ending)) {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    if found.is_empty() {
+        bail!("no {} below {}", endings.join(" or "), folder.display());
+    }
+    Ok(found)
+}
