@@ -20,7 +20,7 @@ const TILE_M: f32 = 0.9;
 const ROOT_SIDES: usize = 20;
 /// Triangles of bark beyond which tubes get fewer sides.
 const MOST_TRIANGLES: usize = 12_500;
-const BARE_MOST_TRIANGLES: usize = 24_500;
+const BARE_MOST_TRIANGLES: usize = 22_500;
 
 /// A place along a stem where a ring of vertices goes.
 #[derive(Clone, Copy)]

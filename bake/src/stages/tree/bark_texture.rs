@@ -1,4 +1,4 @@
-//! Genes → tiling bark: colour in sRGB and tangent-space normals, 512² texels a repeat.
+//! Genes → tiling bark: 512² texels of colour in sRGB and 256² of tangent-space normals a repeat.
 //!
 //! Three barks blend by `bark_tone`: dark with deep furrows (oak), brown plates (pine), pale and smooth with dark
 //! lenticels (birch). u runs around the stem, v along it; noise wraps at the edges.
@@ -8,7 +8,7 @@ use glam::Vec3;
 use super::mips::Encoder;
 use super::params::TreeTextureParams;
 use crate::model::Image8;
-use crate::noise::{cellular2, fbm2, hash, hash01};
+use crate::noise::{cellular2, fbm2, hash};
 use crate::seed;
 
 /// Texels a side.
@@ -24,10 +24,10 @@ pub(super) fn paint(params: &TreeTextureParams) -> (Image8, Image8) {
         .map(|i| bark.texel((i % COARSE) as f32 / COARSE as f32, (i / COARSE) as f32 / COARSE as f32))
         .collect();
     let fine = enlarged(&coarse, seed.wrapping_add(40));
-    (colors(&fine), normals(&fine))
+    (colors(&fine), normals(&coarse))
 }
 
-/// Height in texels of `SIZE` and linear colour.
+/// Height in texels of `COARSE` and linear colour.
 #[derive(Clone, Copy)]
 struct Texel {
     height: f32,
@@ -65,7 +65,7 @@ impl Bark {
         let dark = Vec3::new(0.032, 0.025, 0.019);
         let light = Vec3::new(0.150, 0.122, 0.096);
         let color = dark.lerp(light, height) * (1.0 + 0.35 * wear);
-        Texel { height: height * 9.0, color }
+        Texel { height: height * 6.0, color }
     }
 
     /// Scales of bark with cracks between.
@@ -79,7 +79,7 @@ impl Bark {
         let dark = Vec3::new(0.040, 0.028, 0.020);
         let light = Vec3::new(0.205, 0.135, 0.088).lerp(Vec3::new(0.235, 0.180, 0.135), own);
         let color = dark.lerp(light, crack * (1.0 - 0.4 * layer)) * (1.0 + 0.25 * wear);
-        Texel { height: height * 8.0, color }
+        Texel { height: height * 5.5, color }
     }
 
     /// Pale bark with dark dashes around the stem.
@@ -88,7 +88,7 @@ impl Bark {
         let patches = self.tiled(9, u, v, 4, 5);
         let lenticel = smooth(((dashes - 0.36 + 0.3 * patches.min(0.3)) * 5.0).clamp(0.0, 1.0));
         let peel = self.tiled(10, u, v, 3, 16);
-        let scar = smooth(((self.tiled(11, u, v, 3, 6) - 0.52) * 5.0).clamp(0.0, 1.0));
+        let scar = smooth(((self.tiled(11, u, v, 9, 15) - 0.62) * 5.0).clamp(0.0, 1.0));
         let dark = (lenticel * 0.85).max(scar * 0.9);
         let pale = Vec3::new(0.52, 0.49, 0.44) * (1.0 + 0.12 * wear + 0.1 * peel);
         let color = pale.lerp(Vec3::new(0.060, 0.050, 0.044), dark);
@@ -131,25 +131,21 @@ fn mix(a: Option<Texel>, b: Option<Texel>, part: f32) -> Texel {
     }
 }
 
-/// Twice the size by wrapped bilinear interpolation, with fine grain added.
-fn enlarged(coarse: &[Texel], seed: u32) -> Vec<Texel> {
+/// Colours at twice the size by wrapped bilinear interpolation, with fine grain added.
+fn enlarged(coarse: &[Texel], seed: u32) -> Vec<Vec3> {
     let mut fine = Vec::with_capacity(SIZE * SIZE);
     for y in 0..SIZE {
         let (y0, y1, fy) = halfway(y);
+        let (upper, lower) = (&coarse[y0 * COARSE..][..COARSE], &coarse[y1 * COARSE..][..COARSE]);
+        let column: Vec<Vec3> =
+            upper.iter().zip(lower).map(|(a, b)| a.color + (b.color - a.color) * fy).collect();
         for x in 0..SIZE {
             let (x0, x1, fx) = halfway(x);
-            let at = |x: usize, y: usize| coarse[y * COARSE + x];
-            let lerp = |a: Texel, b: Texel, f: f32| Texel {
-                height: a.height + (b.height - a.height) * f,
-                color: a.color + (b.color - a.color) * f,
-            };
-            let mut texel = lerp(lerp(at(x0, y0), at(x1, y0), fx), lerp(at(x0, y1), at(x1, y1), fx), fy);
             // Fibres run along the stem: grain varies faster around it.
-            let grain =
-                hash01(seed, x as i32, (y / 3) as i32, 7) + hash01(seed, (x / 2) as i32, (y / 7) as i32, 8);
-            texel.height += 0.55 * (grain - 1.0);
-            texel.color *= 1.0 + 0.13 * (grain - 1.0);
-            fine.push(texel);
+            let bits = hash(seed, x as i32, (y / 3) as i32, 7);
+            let grain = (bits & 0xFF) as f32 * (1.0 / 255.0) - 0.5;
+            let color = column[x0] + (column[x1] - column[x0]) * fx;
+            fine.push(color * (1.0 + 0.2 * grain));
         }
     }
     fine
@@ -161,27 +157,28 @@ fn halfway(i: usize) -> (usize, usize, f32) {
     if i % 2 == 0 { ((i / 2 + last) & last, i / 2, 0.75) } else { (i / 2, (i / 2 + 1) & last, 0.25) }
 }
 
-fn colors(texels: &[Texel]) -> Image8 {
+fn colors(texels: &[Vec3]) -> Image8 {
     let encode = Encoder::new();
     let mut image = Image8::new(SIZE as u32, SIZE as u32, 3);
     for (out, texel) in image.data.chunks_exact_mut(3).zip(texels) {
-        out[0] = encode.byte(texel.color.x);
-        out[1] = encode.byte(texel.color.y);
-        out[2] = encode.byte(texel.color.z);
+        out[0] = encode.byte(texel.x);
+        out[1] = encode.byte(texel.y);
+        out[2] = encode.byte(texel.z);
     }
     image
 }
 
 /// Normals by central differences; red towards +u, green towards −v (up in the picture), as glTF has it.
 fn normals(texels: &[Texel]) -> Image8 {
-    let mut image = Image8::new(SIZE as u32, SIZE as u32, 3);
-    let height = |x: usize, y: usize| texels[(y % SIZE) * SIZE + x % SIZE].height;
-    for y in 0..SIZE {
-        for x in 0..SIZE {
-            let east = height(x + 1, y) - height(x + SIZE - 1, y);
-            let south = height(x, y + 1) - height(x, y + SIZE - 1);
-            let normal = Vec3::new(-0.5 * east, 0.5 * south, 1.0).normalize();
-            let at = 3 * (y * SIZE + x);
+    let mut image = Image8::new(COARSE as u32, COARSE as u32, 3);
+    let height = |x: usize, y: usize| texels[(y % COARSE) * COARSE + x % COARSE].height;
+    for y in 0..COARSE {
+        for x in 0..COARSE {
+            let east = height(x + 1, y) - height(x + COARSE - 1, y);
+            let south = height(x, y + 1) - height(x, y + COARSE - 1);
+            let normal = Vec3::new(-0.5 * east, 0.5 * south, 1.0);
+            let normal = normal / normal.length_squared().sqrt();
+            let at = 3 * (y * COARSE + x);
             for (out, part) in image.data[at..at + 3].iter_mut().zip(normal.to_array()) {
                 *out = (127.5 * (part + 1.0) + 0.5) as u8;
             }

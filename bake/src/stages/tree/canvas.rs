@@ -30,6 +30,25 @@ pub(super) struct Paint {
     pub fold: f32,
 }
 
+/// A rectangle along a unit vector: `from`..`to` along it, ±`half` across it.
+struct Oblong {
+    origin: Vec2,
+    axis: Vec2,
+    from: f32,
+    to: f32,
+    half: f32,
+}
+
+/// The x for which start + x·slope lies within from..to.
+fn interval(start: f32, slope: f32, from: f32, to: f32) -> (f32, f32) {
+    if slope.abs() < 1e-5 {
+        let inside = start >= from && start <= to;
+        return if inside { (-4.0, 4.0) } else { (0.0, -4.0) };
+    }
+    let (a, b) = ((from - start) / slope, (to - start) / slope);
+    (a.min(b).max(-4.0), a.max(b).min(4.0))
+}
+
 impl Canvas {
     /// An empty canvas.
     pub fn new(size: usize, width: f32) -> Self {
@@ -41,19 +60,31 @@ impl Canvas {
         self.size as f32 / self.width.sqrt()
     }
 
-    /// Calls `paint` for every pixel of the box, with the pixel's place in units, and lays what it returns (colour
-    /// and coverage) over the picture.
-    fn over(&mut self, lo: Vec2, hi: Vec2, paint: impl Fn(Vec2) -> Option<(Vec3, f32)>) {
+    /// Calls `paint` for every pixel of an oblong with its distances along and across (from `origin`, in units of
+    /// length), and lays what it returns (colour and coverage) over the picture.
+    fn over(&mut self, oblong: &Oblong, paint: impl Fn(f32, f32) -> Option<(Vec3, f32)>) {
         let size = self.size as f32;
-        let column = |x: f32| ((x / self.width + 0.5) * size).clamp(0.0, size);
+        let (origin, axis) = (oblong.origin, oblong.axis);
+        let side = Vec2::new(-axis.y, axis.x);
+        let (from, to, half) = (oblong.from, oblong.to, oblong.half);
+        let rise = (axis.y * from).min(axis.y * to) - side.y.abs() * half;
+        let top = (axis.y * from).max(axis.y * to) + side.y.abs() * half;
         let row = |y: f32| ((1.0 - y) * size).clamp(0.0, size);
-        let (x0, x1) = (column(lo.x).floor() as usize, column(hi.x).ceil() as usize);
-        let (y0, y1) = (row(hi.y).floor() as usize, row(lo.y).ceil() as usize);
+        let (y0, y1) = (row(origin.y + top).floor() as usize, row(origin.y + rise).ceil() as usize);
+        let step = self.width / size;
         for y in y0..y1 {
-            let up = 1.0 - (y as f32 + 0.5) / size;
+            let up = 1.0 - (y as f32 + 0.5) / size - origin.y;
+            // On this row, t = up·axis.y + x·axis.x and s = up·side.y + x·side.x.
+            let along = interval(up * axis.y, axis.x, from, to);
+            let across = interval(up * side.y, side.x, -half, half);
+            let (lo, hi) = (along.0.max(across.0) + origin.x, along.1.min(across.1) + origin.x);
+            let column = |x: f32| ((x / self.width + 0.5) * size).clamp(0.0, size);
+            let (x0, x1) = (column(lo).floor() as usize, column(hi).ceil() as usize);
             for x in x0..x1 {
-                let right = ((x as f32 + 0.5) / size - 0.5) * self.width;
-                if let Some((color, cover)) = paint(Vec2::new(right, up)) {
+                let right = (x as f32 + 0.5) * step - 0.5 * self.width - origin.x;
+                let t = right * axis.x + up * axis.y;
+                let s = right * side.x + up * side.y;
+                if let Some((color, cover)) = paint(t, s) {
                     blend(&mut self.pixels[y * self.size + x], color, cover);
                 }
             }
@@ -63,12 +94,15 @@ impl Canvas {
     /// A straight stroke that tapers from radius `from` to `to` (units).
     pub fn stroke(&mut self, a: Vec2, b: Vec2, radii: (f32, f32), color: Vec3) {
         let scale = self.scale();
-        let reach = radii.0.max(radii.1) + 1.5 / scale;
-        let (along, square) = (b - a, (b - a).length_squared().max(1e-9));
-        self.over(a.min(b) - reach, a.max(b) + reach, |p| {
-            let t = ((p - a).dot(along) / square).clamp(0.0, 1.0);
-            let d = (p - a - along * t).length();
-            let inside = (radii.0 + (radii.1 - radii.0) * t - d) * scale + 0.5;
+        let reach = radii.0.max(radii.1) + 1.0 / scale;
+        let length = (b - a).length();
+        let axis = if length > 1e-6 { (b - a) / length } else { Vec2::Y };
+        let oblong = Oblong { origin: a, axis, from: -reach, to: length + reach, half: reach };
+        self.over(&oblong, |t, s| {
+            let on = t.clamp(0.0, length);
+            let d = ((t - on) * (t - on) + s * s).sqrt();
+            let radius = radii.0 + (radii.1 - radii.0) * on / length.max(1e-6);
+            let inside = (radius - d) * scale + 0.5;
             (inside > 0.0).then(|| (color, inside.min(1.0)))
         });
     }
@@ -76,15 +110,11 @@ impl Canvas {
     /// A leaf from its base along the unit vector `axis`.
     pub fn leaf(&mut self, outline: &Outline, base: Vec2, axis: Vec2, length: f32, paint: &Paint) {
         let scale = self.scale() * length;
-        let side = Vec2::new(-axis.y, axis.x);
-        let (back, half) = (outline.back, outline.widest + 0.02);
-        let ends = [(-back, -half), (-back, half), (1.0, -half), (1.0, half)]
-            .map(|(t, s)| base + (axis * t + side * s) * length);
-        let lo = ends.iter().fold(Vec2::MAX, |lo, p| lo.min(*p));
-        let hi = ends.iter().fold(Vec2::MIN, |hi, p| hi.max(*p));
-        self.over(lo, hi, |p| {
-            let local = (p - base) / length;
-            let (t, s) = (local.dot(axis), local.dot(side));
+        let half = (outline.widest + 0.02) * length;
+        let oblong = Oblong { origin: base, axis, from: -outline.back * length, to: 1.01 * length, half };
+        let per_length = 1.0 / length;
+        self.over(&oblong, |t, s| {
+            let (t, s) = (t * per_length, s * per_length);
             let inside = outline.inside(t, s) * scale + 0.5;
             (inside > 0.0).then(|| (blade(paint, outline, t, s), inside.min(1.0)))
         });

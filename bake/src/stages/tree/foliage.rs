@@ -106,6 +106,7 @@ fn bearers(plan: &Plan, skeleton: &Skeleton) -> Vec<Bearer> {
         let (from, weight) = match last - stem.level {
             0 => (if last == 1 { 0.25 } else { 0.18 }, 1.0),
             1 if stem.level == 0 => (0.93, 1.0),
+            1 if plan.habit == Habit::Needle => (0.3, 0.8),
             1 => (0.62, 0.8),
             _ if stem.level == 0 => (0.93, 1.0),
             _ => (0.85, 0.6),
@@ -163,7 +164,7 @@ impl Twig {
         let (sin, cos) = libm::sincosf(self.turn);
         let side = x * cos + along.cross(x) * sin;
         let out = Vec3::new(root.x, 0.0, root.z).normalize_or(side);
-        let vary = 1.0 + 0.25 * dice.signed();
+        let vary = 1.0 + 0.22 * dice.signed();
         let any = Vec3::new(dice.signed(), dice.signed(), dice.signed());
         let (axis, facing, droop_rad, length_m) = match habit {
             Habit::Needle => {
@@ -309,9 +310,11 @@ impl Painter {
         let spread = if card.blossom { 0.03 } else { 0.05 + 0.13 * self.autumn };
         let light = 0.9 + 0.06 * bright;
         card.tint = Vec3::new(1.0 + spread * hue, 1.0 - 0.4 * spread * hue, 1.0 - spread * hue) * light;
+        // Blossom comes before the leaves are grown.
+        let size = if card.blossom { 1.3 } else { 1.0 - 0.7 * self.blossom };
+        card.length_m *= size;
+        card.width_m *= size;
         if card.blossom {
-            card.length_m *= 1.2;
-            card.width_m *= 1.2;
             card.tint = card.tint * 0.5 + 0.5;
         }
         card

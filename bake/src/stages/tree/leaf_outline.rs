@@ -24,13 +24,13 @@ impl Outline {
             1 => Self::blade(0.26 * narrow(leaf_aspect), |t| beta(t, 0.7, 1.15)),
             2 => Self::blade(0.11 * narrow(leaf_aspect), |t| beta(t, 0.6, 0.9)),
             3 => Self::blade(0.36 * leaf_aspect, |t| {
-                let lobes = 0.5 + 0.5 * libm::cosf(2.0 * PI * (4.0 * t - 0.62));
-                beta(t, 1.0, 0.42) * (0.58 + 0.42 * lobes)
+                let lobes = 0.5 + 0.5 * libm::cosf(2.0 * PI * (3.6 * t - 0.45));
+                beta(t, 1.0, 0.42) * (0.62 + 0.38 * lobes)
             }),
             4 => Self::polar(0.36, leaf_aspect, palmate),
             5 => Self::polar(0.34, leaf_aspect, heart),
             6 => Self::blade(0.045, |t| beta(t, 0.25, 0.4)),
-            7 => Self::blade(0.075 * narrow(leaf_aspect), |t| beta(t, 0.45, 0.8)),
+            7 => Self::blade(0.13 * narrow(leaf_aspect), |t| beta(t, 0.45, 0.8)),
             _ => Self::blade(0.33 * leaf_aspect, |t| {
                 let teeth = 1.0 - 0.05 * (t * 17.0).fract();
                 beta(t, 0.62, 0.9) * teeth

@@ -41,7 +41,7 @@ pub(super) fn leaves(params: &TreeTextureParams) -> Canvas {
         pairs: [7.0, 8.0, 9.0, 8.0, 6.0, 6.0, 0.0, 0.0][params.leaf_shape.min(7) as usize],
     };
     let card_m = card_length_m(habit, params.levels, params.height_m, params.leaf_size_m);
-    let leaf = (params.leaf_size_m / card_m).clamp(0.13, 0.36);
+    let leaf = (params.leaf_size_m / card_m).clamp(0.16, 0.36);
     match habit {
         Habit::Frond => brush.frond(params),
         Habit::Needle => brush.needles(leaf),
@@ -73,9 +73,9 @@ pub(super) fn leaf_color(hue_deg: f32) -> Vec3 {
         (30.0, Vec3::new(0.46, 0.125, 0.018)),
         (48.0, Vec3::new(0.52, 0.32, 0.030)),
         (66.0, Vec3::new(0.30, 0.31, 0.042)),
-        (90.0, Vec3::new(0.118, 0.205, 0.038)),
-        (115.0, Vec3::new(0.066, 0.155, 0.040)),
-        (150.0, Vec3::new(0.045, 0.125, 0.075)),
+        (90.0, Vec3::new(0.155, 0.275, 0.048)),
+        (115.0, Vec3::new(0.090, 0.220, 0.055)),
+        (150.0, Vec3::new(0.055, 0.165, 0.100)),
     ];
     let hue = hue_deg.clamp(15.0, 150.0);
     let above = STOPS.iter().position(|stop| stop.0 >= hue).unwrap_or(6).max(1);
@@ -163,7 +163,7 @@ impl Brush {
     /// Places of leaves along a twig: alternating, the last at its tip.
     fn spots(&mut self, twig: &[(Vec2, f32)], leaf: f32, from: f32, spots: &mut Vec<(Vec2, f32)>) {
         let length: f32 = twig.windows(2).map(|p| (p[1].0 - p[0].0).length()).sum();
-        let count = ((1.0 - from) * length / (0.36 * leaf)).round().max(2.0) as usize;
+        let count = ((1.0 - from) * length / (0.30 * leaf)).round().max(2.0) as usize;
         for k in 0..count {
             let t = from + (1.0 - from) * k as f32 / count as f32;
             let (at, angle) = point(twig, t);
@@ -214,13 +214,13 @@ impl Brush {
 
     /// A flat spray of conifer twigs, needles all along.
     fn needles(&mut self, leaf: f32) {
-        let needle = (0.42 * leaf).clamp(0.05, 0.1);
+        let needle = (0.45 * leaf).clamp(0.06, 0.1);
         let mut twigs = vec![(Vec2::ZERO, 0.0, 0.93)];
         for k in 0..9 {
             let t = 0.07 + 0.088 * k as f32;
             for sign in [-1.0, 1.0] {
                 let at = Vec2::new(0.0, 0.93 * (t + 0.02 * self.dice.signed()));
-                let length = (0.37 - 0.27 * t) * (1.0 + 0.15 * self.dice.signed());
+                let length = (0.40 - 0.27 * t) * (1.0 + 0.15 * self.dice.signed());
                 twigs.push((at, sign * (0.92 + 0.1 * self.dice.signed()), length));
             }
         }
@@ -236,8 +236,8 @@ impl Brush {
                     let lean = angle + sign * (0.75 - 0.3 * t + 0.22 * self.dice.signed());
                     let size = needle * (1.0 - 0.3 * t) * (0.9 + 0.2 * self.dice.signed());
                     let color = leaf_color(self.hue_deg + 8.0 * self.dice.signed());
-                    let light = (0.62 + 0.3 * t) * (1.0 + 0.22 * self.dice.signed());
-                    self.canvas.stroke(base, base + towards(lean) * size, (0.0062, 0.0035), color * light);
+                    let light = (0.8 + 0.35 * t) * (1.0 + 0.22 * self.dice.signed());
+                    self.canvas.stroke(base, base + towards(lean) * size, (0.0075, 0.0045), color * light);
                 }
             }
         }
@@ -250,7 +250,7 @@ impl Brush {
             self.outline = Outline::new(7, params.leaf_aspect);
         }
         let half = 0.5 * self.canvas.width;
-        let pairs = if feather { 34 } else { 13 };
+        let pairs = if feather { 36 } else { 13 };
         let color = leaf_color(self.hue_deg) * 1.1 + Vec3::new(0.03, 0.02, 0.0);
         for k in 0..pairs {
             let t = (k as f32 + 0.5) / pairs as f32;
@@ -278,13 +278,13 @@ impl Brush {
         let half = 0.5 * self.canvas.width;
         let main = self.twig(Vec2::ZERO, -0.4 * bend, 0.9, bend, 0.013);
         let pink = 0.35 + 0.65 * self.dice.unit();
-        for k in 0..40 {
-            let (at, _) = point(&main, (k as f32 + 0.5) / 40.0);
+        for k in 0..64 {
+            let (at, _) = point(&main, (k as f32 + 0.5) / 64.0);
             let spread = half * 0.86 - 0.075;
             let at = at + Vec2::new(spread * self.dice.signed(), 0.08 * self.dice.signed());
             let at = at.clamp(Vec2::new(-half + 0.085, 0.085), Vec2::new(half - 0.085, 0.915));
-            let size = 0.07 + 0.02 * self.dice.unit();
-            self.flower(at, size, pink, 0.8 + 0.25 * k as f32 / 40.0);
+            let size = 0.075 + 0.02 * self.dice.unit();
+            self.flower(at, size, pink, 0.8 + 0.25 * k as f32 / 64.0);
         }
     }
 

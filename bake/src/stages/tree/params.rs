@@ -135,7 +135,7 @@ impl Habit {
             Self::Broad => 0.92,
             Self::Willow => 0.42,
             Self::Needle => 0.66,
-            Self::Frond => 0.34,
+            Self::Frond => 0.42,
         }
     }
 }
@@ -148,8 +148,8 @@ pub(super) fn card_length_m(habit: Habit, levels: u32, height_m: f32, leaf_size_
     match habit {
         Habit::Broad => (leaf_size_m * 4.5).clamp(0.16 + 0.022 * height_m, 0.25 + 0.05 * height_m),
         Habit::Willow => (leaf_size_m * 7.0).clamp(0.3 + 0.04 * height_m, 0.4 + 0.075 * height_m),
-        Habit::Needle => (leaf_size_m * 8.0).clamp(0.2 + 0.03 * height_m, 0.3 + 0.05 * height_m),
-        Habit::Frond if levels <= 1 => (0.9 + 0.12 * height_m + 3.0 * leaf_size_m).min(0.75 * height_m),
+        Habit::Needle => (leaf_size_m * 10.0).clamp(0.25 + 0.038 * height_m, 0.35 + 0.055 * height_m),
+        Habit::Frond if levels <= 1 => (1.1 + 0.17 * height_m + 3.5 * leaf_size_m).min(0.7 * height_m),
         Habit::Frond => 0.35 + 0.035 * height_m + 1.5 * leaf_size_m,
     }
 }

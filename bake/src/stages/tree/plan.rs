@@ -9,7 +9,7 @@ use super::params::{Habit, TreeParams};
 const LEAF_BUDGET: u32 = 10_600;
 /// Triangles of bark to aim for under leaves, and on a bare tree.
 const BARK_BUDGET: f32 = 7_600.0;
-const BARE_BUDGET: f32 = 18_500.0;
+const BARE_BUDGET: f32 = 16_000.0;
 /// What a stem of level 2 and one of level 3 cost, in triangles.
 const SECONDARY_COST: f32 = 16.0;
 const TERTIARY_COST: f32 = 10.0;

@@ -12,7 +12,7 @@ use super::skeleton::Skeleton;
 /// Cells a side.
 const SIDE: usize = 14;
 /// The least factor on colours inside a crown.
-const DARKEST: f32 = 0.5;
+const DARKEST: f32 = 0.62;
 
 /// Light in [`DARKEST`]..1 on a grid over the crown, and the crown's own shape.
 pub(super) struct Shade {
