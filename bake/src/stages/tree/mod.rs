@@ -1,1 +1,78 @@
-//! Parameters → tree templates and their textures.
+//! Genes → tree templates (metres, foot at the origin, +y up) and the textures that they share.
+//!
+//! The skeleton follows Weber & Penn, "Creation and Rendering of Realistic Trees" (SIGGRAPH 1995): stems in up to
+//! four levels, an envelope for the crown, forks by error diffusion. Around it grow closed tubes of bark whose
+//! texture follows the branch, and cards that each hold a twig of leaves or blossom. Counts come from a triangle
+//! budget, so that no genome explodes.
+
+mod bark;
+mod bark_texture;
+mod canvas;
+mod crease;
+mod dice;
+mod foliage;
+mod leaf_outline;
+mod leaf_texture;
+mod mips;
+mod params;
+mod plan;
+mod shade;
+mod skeleton;
+
+#[cfg(test)]
+mod look;
+#[cfg(test)]
+mod presets;
+#[cfg(test)]
+mod tests;
+
+use rayon::join;
+
+use crate::model::{Material, Mesh, Part, PartKind, TreeTemplate, TreeTextures};
+
+pub use crease::crease_normals;
+pub use params::{TreeParams, TreeTextureParams};
+
+/// Alpha below this is cut away from leaf and blossom cards.
+pub const ALPHA_CUTOFF: f32 = 0.5;
+
+/// Grows the `index`th individual of a species: a closed `Bark` surface, then `Leaf` and `Blossom` aggregates if it
+/// bears any. Metres; at most about 26,000 triangles.
+///
+/// The elements of an aggregate are cards with consecutive vertices and triangles: 4 and 2 for broad leaves, 6 and
+/// 4 for willow leaves and needles (bent once), 18 and 20 for fronds (a folded, arching strip). Rows of vertices run
+/// from the root, which lies on a stem, to the tip; texture coordinate v is 1 at the root.
+pub fn template(params: &TreeParams, index: u32) -> TreeTemplate {
+    let mut dice = dice::Dice::new(params.tree_seed, index);
+    let plan = plan::Plan::new(params);
+    let skeleton = skeleton::grow(params, &plan, &mut dice);
+    let cards = foliage::place(params, &plan, &skeleton, &mut dice);
+    let shade = shade::Shade::new(&skeleton, &cards);
+
+    let mut mesh = Mesh::default();
+    let bark = bark::skin(params, &plan, &skeleton, &shade, &mut mesh);
+    mesh.parts.push(Part { material: Material::Bark, kind: PartKind::Surface, triangles: bark });
+    for (material, blossom) in [(Material::Leaf, false), (Material::Blossom, true)] {
+        let triangles = foliage::build(params, &cards, blossom, &shade, &mut mesh);
+        if !triangles.is_empty() {
+            mesh.parts.push(Part { material, kind: foliage::kind(params), triangles });
+        }
+    }
+    let bounds = mesh.bounds();
+    TreeTemplate {
+        bounds,
+        trunk_radius_m: skeleton.trunk_radius_m(params.height_m),
+        crown_radius_m: foliage::crown_radius_m(&skeleton, &cards),
+        mesh,
+    }
+}
+
+/// Paints the textures that all templates of a species share: tiling bark with its normals, and cards of leaves
+/// and of blossom with mip chains that keep their coverage. Square; sRGB where the field's name says so.
+pub fn textures(params: &TreeTextureParams) -> TreeTextures {
+    let ((bark_color_srgb, bark_normal), (leaf_srgb, blossom_srgb)) = join(
+        || bark_texture::paint(params),
+        || join(|| leaf_texture::paint_leaves(params), || leaf_texture::paint_blossom(params)),
+    );
+    TreeTextures { bark_color_srgb, bark_normal, leaf_srgb, blossom_srgb, alpha_cutoff: ALPHA_CUTOFF }
+}

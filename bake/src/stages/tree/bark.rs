@@ -1,0 +1,330 @@
+//! Stems → one surface of closed tubes, in metres, with texture coordinates that follow each branch.
+//!
+//! Every tube is closed by a cap at its base, hidden in its parent, and a point at its tip. Rings are carried along
+//! by parallel transport, so nothing twists. u counts a whole number of repeats around the stem; v grows by
+//! length over local circumference, so texels stay square while the stem thins.
+
+use std::f32::consts::TAU;
+
+use glam::Vec3;
+
+use super::params::TreeParams;
+use super::plan::Plan;
+use super::shade::Shade;
+use super::skeleton::{Skeleton, Stem, perpendicular};
+use crate::model::Mesh;
+
+/// Metres of bark that one repeat of the texture covers on the trunk.
+const TILE_M: f32 = 0.9;
+/// Sides of the trunk's tube when it has roots.
+const ROOT_SIDES: usize = 20;
+/// Triangles of bark beyond which tubes get fewer sides.
+const MOST_TRIANGLES: usize = 12_500;
+const BARE_MOST_TRIANGLES: usize = 22_500;
+
+/// A place along a stem where a ring of vertices goes.
+#[derive(Clone, Copy)]
+struct Station {
+    at: Vec3,
+    radius_m: f32,
+    /// Height above the ground for the flare of roots; `None` where there is none.
+    root_m: Option<f32>,
+}
+
+/// The shape of the roots.
+#[derive(Clone, Copy)]
+struct Roots {
+    flare: f32,
+    lobes: f32,
+    phase: f32,
+    reach_m: f32,
+}
+
+impl Roots {
+    /// Factor on the trunk's radius at an angle around it and a height above the ground.
+    fn factor(&self, angle: f32, height_m: f32) -> f32 {
+        let near = libm::expf(-(height_m / self.reach_m).max(-0.35));
+        let wave = self.lobes * angle + self.phase + 0.7 * libm::sinf(angle + 2.0 * self.phase);
+        let lobe = 0.5 + 0.5 * libm::cosf(wave);
+        // Lobes are sharp in the ground and fade into a fluted trunk above.
+        let lobe = lobe * lobe.sqrt() * near + 0.36 * (1.0 - near);
+        let flute = 1.0 + 0.035 * libm::cosf(wave);
+        flute * (1.0 + self.flare * near * (0.16 + 0.9 * lobe))
+    }
+}
+
+/// What is written to while tubes are made.
+struct Skin<'a> {
+    mesh: &'a mut Mesh,
+    triangles: Vec<[u32; 3]>,
+    shade: &'a Shade,
+    moss: f32,
+    circles: Vec<Vec<[f32; 2]>>,
+}
+
+/// Appends the vertices of all stems to `mesh` and returns their triangles.
+pub(super) fn skin(
+    params: &TreeParams,
+    plan: &Plan,
+    skeleton: &Skeleton,
+    shade: &Shade,
+    mesh: &mut Mesh,
+) -> Vec<[u32; 3]> {
+    let trunk_m = skeleton.stems.first().map_or(0.1, |stem| stem.radius_m);
+    let roots = Roots {
+        flare: params.root_flare * 0.9,
+        lobes: 4.0 + (params.tree_seed % 3) as f32,
+        phase: params.tree_seed as f32 * 0.7,
+        reach_m: 1.15 * trunk_m + 0.08,
+    };
+    let stations: Vec<Vec<Station>> =
+        skeleton.stems.iter().enumerate().map(|(i, stem)| stations(skeleton, stem, i == 0, &roots)).collect();
+    let most = if plan.bare { BARE_MOST_TRIANGLES } else { MOST_TRIANGLES };
+    let sides = budgeted_sides(skeleton, &stations, most);
+    let circles = (0..=ROOT_SIDES).map(circle).collect();
+    let moss = 0.5 * (1.0 - params.bark_tone);
+    let count: usize = stations.iter().zip(&sides).map(|(s, &n)| s.len() * (n + 1)).sum();
+    mesh.positions.reserve(count);
+    let mut skin = Skin { mesh, triangles: Vec::with_capacity(2 * count), shade, moss, circles };
+    for (index, stem) in skeleton.stems.iter().enumerate() {
+        let roots = (index == 0).then_some(&roots);
+        skin.tube(stem, &stations[index], sides[index], roots, index as u32);
+    }
+    skin.triangles
+}
+
+/// cos and sin around a circle of `sides`; the last is the first again, to the bit.
+fn circle(sides: usize) -> Vec<[f32; 2]> {
+    let mut points: Vec<[f32; 2]> = (0..sides)
+        .map(|k| {
+            let (sin, cos) = libm::sincosf(TAU * k as f32 / sides as f32);
+            [cos, sin]
+        })
+        .collect();
+    points.extend(points.first().copied());
+    points
+}
+
+/// Sides of each stem's tube, fewer and fewer until the budget is met.
+fn budgeted_sides(skeleton: &Skeleton, stations: &[Vec<Station>], most: usize) -> Vec<usize> {
+    let mut quality = 1.0;
+    loop {
+        let sides: Vec<usize> = skeleton
+            .stems
+            .iter()
+            .enumerate()
+            .map(|(i, stem)| if i == 0 { ROOT_SIDES } else { sides(stem, quality) })
+            .collect();
+        let triangles: usize = stations.iter().zip(&sides).map(|(s, &n)| s.len() * n * 2).sum();
+        if triangles <= most || quality < 0.3 {
+            return sides;
+        }
+        quality *= 0.85;
+    }
+}
+
+fn sides(stem: &Stem, quality: f32) -> usize {
+    let sides = 3.0 + quality * 13.0 * (stem.radius_m - 0.012).max(0.0).sqrt();
+    let least = if stem.level == 0 { 8.0 * quality } else { 3.0 };
+    (sides.max(least) as usize).clamp(3, 14)
+}
+
+/// Rings of one stem: its nodes, with more of them at the roots and at the collar where it leaves its parent.
+fn stations(skeleton: &Skeleton, stem: &Stem, has_roots: bool, roots: &Roots) -> Vec<Station> {
+    let nodes = &skeleton.nodes[stem.nodes.clone()];
+    let (a, b) = (nodes[0], nodes[1]);
+    let first_m = (b.at - a.at).length();
+    let on_first = |s_m: f32| {
+        let f = s_m / first_m.max(1e-4);
+        (a.at.lerp(b.at, f), a.radius_m + (b.radius_m - a.radius_m) * f)
+    };
+    let mut rings = Vec::with_capacity(nodes.len() + 7);
+    if has_roots {
+        let deep_m = 0.3_f32.max(0.7 * a.radius_m);
+        rings.push(Station { at: a.at - Vec3::Y * deep_m, radius_m: a.radius_m, root_m: Some(-deep_m) });
+        for part in [0.0, 0.25, 0.6, 1.1, 1.8, 2.8, 4.2] {
+            let s_m = part * roots.reach_m;
+            if s_m < 0.9 * first_m {
+                let (at, radius_m) = on_first(s_m);
+                rings.push(Station { at, radius_m, root_m: Some(s_m) });
+            }
+        }
+    } else {
+        rings.push(Station { at: a.at, radius_m: a.radius_m, root_m: None });
+        let out_m = stem.parent_radius_m;
+        if !stem.is_arm && a.radius_m > 0.02 && out_m + 2.2 * a.radius_m < 0.9 * first_m {
+            // The collar: thickest where the branch comes out of its parent's bark.
+            for (s_m, swell) in [(0.9 * out_m, 1.45), (out_m + 1.6 * a.radius_m, 1.06)] {
+                let (at, radius_m) = on_first(s_m);
+                rings.push(Station { at, radius_m: radius_m * swell, root_m: None });
+            }
+        }
+    }
+    let rooted = |at: Vec3| has_roots.then_some(at.y);
+    rings.extend(nodes[1..].iter().map(|n| Station { at: n.at, radius_m: n.radius_m, root_m: rooted(n.at) }));
+    rings
+}
+
+impl Skin<'_> {
+    /// One closed tube.
+    fn tube(&mut self, stem: &Stem, rings: &[Station], sides: usize, roots: Option<&Roots>, index: u32) {
+        let last = rings.len() - 1;
+        let middle_m = rings[last / 3].radius_m;
+        let repeats = (TAU * middle_m / TILE_M).round().max(1.0);
+        let start = self.mesh.positions.len() as u32;
+        // Each stem shows another part of the bark.
+        let mut v = (index as f32 * 0.618_034).fract();
+        let mut x = Vec3::ZERO;
+        for (i, ring) in rings[..last].iter().enumerate() {
+            let after = (rings[i + 1].at - ring.at).normalize_or(Vec3::Y);
+            let before = if i == 0 { after } else { (ring.at - rings[i - 1].at).normalize_or(after) };
+            let along = (before + after).normalize_or(after);
+            x = if i == 0 { perpendicular(along) } else { x };
+            x = (x - along * x.dot(along)).normalize_or(perpendicular(along));
+            let round_m = ring_round_m(ring, roots);
+            if i > 0 {
+                let step_m = (ring.at - rings[i - 1].at).length();
+                let mean_m = 0.5 * (round_m + ring_round_m(&rings[i - 1], roots));
+                v += step_m * repeats / (TAU * mean_m).max(1e-4);
+            }
+            let slope = slope_at(rings, i);
+            self.ring(stem, ring, (x, along), slope, sides, roots, (repeats, v), i);
+        }
+        self.tip(rings, sides, (repeats, v));
+        self.triangles_of_tube(start, sides as u32, last as u32);
+        if roots.is_some() {
+            self.smooth_root_normals(start as usize, sides, last);
+        }
+    }
+
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "one ring of a tube needs its frame, shape and texture place"
+    )]
+    fn ring(
+        &mut self,
+        stem: &Stem,
+        ring: &Station,
+        (x, along): (Vec3, Vec3),
+        slope: f32,
+        sides: usize,
+        roots: Option<&Roots>,
+        (repeats, v): (f32, f32),
+        number: usize,
+    ) {
+        let z = along.cross(x);
+        let color = self.color(stem, ring, number);
+        let first = self.mesh.positions.len();
+        for k in 0..=sides {
+            let [cos, sin] = self.circles[sides][k];
+            let out = x * cos - z * sin;
+            let swell = match (roots, ring.root_m) {
+                (Some(roots), Some(height_m)) => {
+                    roots.factor(TAU * (k % sides) as f32 / sides as f32, height_m)
+                }
+                _ => 1.0,
+            };
+            let position = if k == sides {
+                self.mesh.positions[first]
+            } else {
+                (ring.at + out * (ring.radius_m * swell)).to_array()
+            };
+            self.mesh.positions.push(position);
+            self.mesh.normals.push((out - along * slope).normalize_or(out).to_array());
+            self.mesh.uvs.push([repeats * k as f32 / sides as f32, v]);
+            self.mesh.colors.push(self.mossy(color, out, ring));
+        }
+    }
+
+    /// The last ring shrunk to a point: one vertex a side, all at the same place.
+    fn tip(&mut self, rings: &[Station], sides: usize, (repeats, v): (f32, f32)) {
+        let (end, before) = (rings[rings.len() - 1], rings[rings.len() - 2]);
+        let along = (end.at - before.at).normalize_or(Vec3::Y);
+        let length_m = (end.at - before.at).length();
+        let v = v + length_m * repeats / (TAU * (0.6 * before.radius_m).max(0.001));
+        let first = self.mesh.positions.len() - (sides + 1);
+        for k in 0..sides {
+            let out = Vec3::from_array(self.mesh.normals[first + k])
+                + Vec3::from_array(self.mesh.normals[first + k + 1]);
+            self.mesh.positions.push(end.at.to_array());
+            self.mesh.normals.push((out.normalize_or(along) + along * 0.8).normalize_or(along).to_array());
+            self.mesh.uvs.push([repeats * (k as f32 + 0.5) / sides as f32, v]);
+            self.mesh.colors.push(self.mesh.colors[first + k]);
+        }
+    }
+
+    /// Sides, tip and base cap of a tube of `rings` rings before its tip.
+    fn triangles_of_tube(&mut self, start: u32, sides: u32, rings: u32) {
+        let row = sides + 1;
+        for k in 1..sides - 1 {
+            self.triangles.push([start, start + k + 1, start + k]);
+        }
+        for ring in 0..rings - 1 {
+            let a = start + ring * row;
+            for k in a..a + sides {
+                self.triangles.push([k, k + 1, k + row + 1]);
+                self.triangles.push([k, k + row + 1, k + row]);
+            }
+        }
+        let a = start + (rings - 1) * row;
+        for k in 0..sides {
+            self.triangles.push([a + k, a + k + 1, a + row + k]);
+        }
+    }
+
+    /// Normals of lobed rings from their neighbours in the grid.
+    fn smooth_root_normals(&mut self, start: usize, sides: usize, rings: usize) {
+        let row = sides + 1;
+        let at =
+            |mesh: &Mesh, ring: usize, k: usize| Vec3::from_array(mesh.positions[start + ring * row + k]);
+        for ring in 0..rings {
+            for k in 0..sides {
+                let around = at(self.mesh, ring, k + 1) - at(self.mesh, ring, (k + sides - 1) % sides);
+                let up =
+                    at(self.mesh, (ring + 1).min(rings - 1), k) - at(self.mesh, ring.saturating_sub(1), k);
+                let old = Vec3::from_array(self.mesh.normals[start + ring * row + k]);
+                let normal = around.cross(up).normalize_or(old);
+                self.mesh.normals[start + ring * row + k] = normal.to_array();
+            }
+            self.mesh.normals[start + ring * row + sides] = self.mesh.normals[start + ring * row];
+        }
+    }
+
+    /// Light on a ring, darker in a crotch and near the ground.
+    fn color(&self, stem: &Stem, ring: &Station, number: usize) -> f32 {
+        let mut light = 0.25 + 0.75 * self.shade.at(ring.at);
+        if stem.level > 0 && number < 2 {
+            light *= 0.82;
+        }
+        if let Some(height_m) = ring.root_m {
+            light *= 0.72 + 0.28 * (height_m.max(0.0) / (2.5 * ring.radius_m + 0.1)).min(1.0);
+        }
+        light
+    }
+
+    /// Moss near the ground on the north side (−z) and on top of branches.
+    fn mossy(&self, light: f32, out: Vec3, ring: &Station) -> [u8; 4] {
+        let low = (1.0 - ring.at.y / 2.5).clamp(0.0, 1.0);
+        let moss = self.moss * (low * (0.35 - 0.65 * out.z).max(0.0) + 0.18 * out.y.max(0.0));
+        let byte = |f: f32| (255.0 * (light * f).clamp(0.0, 1.0) + 0.5) as u8;
+        [byte(1.0 - 0.55 * moss), byte(1.0 - 0.15 * moss), byte(1.0 - 0.7 * moss), 255]
+    }
+}
+
+/// 2π times this is about the circumference of a ring.
+fn ring_round_m(ring: &Station, roots: Option<&Roots>) -> f32 {
+    let swell = match (roots, ring.root_m) {
+        (Some(roots), Some(height_m)) => {
+            1.0 + 0.62 * roots.flare * libm::expf(-(height_m / roots.reach_m).max(-0.35))
+        }
+        _ => 1.0,
+    };
+    ring.radius_m * swell
+}
+
+/// Change of radius per metre along the stem.
+fn slope_at(rings: &[Station], i: usize) -> f32 {
+    let (a, b) = (&rings[i.saturating_sub(1)], &rings[(i + 1).min(rings.len() - 2)]);
+    let length_m = (b.at - a.at).length();
+    if length_m < 1e-4 { 0.0 } else { ((b.radius_m - a.radius_m) / length_m).clamp(-1.0, 1.0) }
+}

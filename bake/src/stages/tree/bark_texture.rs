@@ -1,0 +1,188 @@
+//! Genes → tiling bark: 512² texels of colour in sRGB and 256² of tangent-space normals a repeat.
+//!
+//! Three barks blend by `bark_tone`: dark with deep furrows (oak), brown plates (pine), pale and smooth with dark
+//! lenticels (birch). u runs around the stem, v along it; noise wraps at the edges.
+
+use glam::Vec3;
+
+use super::mips::Encoder;
+use super::params::TreeTextureParams;
+use crate::model::Image8;
+use crate::noise::{cellular2, fbm2, hash};
+use crate::seed;
+
+/// Texels a side.
+const SIZE: usize = 512;
+/// Texels a side of the height that colours and normals are made from.
+const COARSE: usize = 256;
+
+/// Colour and normals.
+pub(super) fn paint(params: &TreeTextureParams) -> (Image8, Image8) {
+    let seed = seed::noise_seed(u64::from(params.tree_seed), "bark", 0);
+    let bark = Bark { seed, tone: params.bark_tone.clamp(0.0, 1.0) };
+    let coarse: Vec<Texel> = (0..COARSE * COARSE)
+        .map(|i| bark.texel((i % COARSE) as f32 / COARSE as f32, (i / COARSE) as f32 / COARSE as f32))
+        .collect();
+    let fine = enlarged(&coarse, seed.wrapping_add(40));
+    (colors(&fine), normals(&coarse))
+}
+
+/// Height in texels of `COARSE` and linear colour.
+#[derive(Clone, Copy)]
+struct Texel {
+    height: f32,
+    color: Vec3,
+}
+
+struct Bark {
+    seed: u32,
+    tone: f32,
+}
+
+impl Bark {
+    /// What a place of the bark is like; (u, v) in 0..1.
+    fn texel(&self, u: f32, v: f32) -> Texel {
+        let tone = self.tone;
+        let wear = fbm2(self.seed.wrapping_add(90), u * 4.0, v * 4.0, 2, 0.5, 4);
+        if tone <= 0.5 {
+            let part = smooth(tone * 2.0);
+            let furrows = (part < 0.98).then(|| self.furrows(u, v, wear));
+            let plates = (part > 0.02).then(|| self.plates(u, v, wear));
+            return mix(furrows, plates, part);
+        }
+        let part = smooth((tone - 0.5) * 2.0);
+        let plates = (part < 0.98).then(|| self.plates(u, v, wear));
+        let birch = (part > 0.02).then(|| self.birch(u, v, wear));
+        mix(plates, birch, part)
+    }
+
+    /// Long ridges that join and part, with dark furrows between.
+    fn furrows(&self, u: f32, v: f32, wear: f32) -> Texel {
+        let sway = fbm2(self.seed.wrapping_add(1), u * 4.0, v * 4.0, 2, 0.5, 4) * 0.07;
+        let crest = (self.tiled(3, u + sway, v, 10, 3).abs() * 2.3).min(1.0);
+        let small = (self.tiled(4, u + sway, v, 22, 8).abs() * 1.8).min(1.0);
+        let height = smooth(crest) * 0.78 + small * 0.22;
+        let dark = Vec3::new(0.032, 0.025, 0.019);
+        let light = Vec3::new(0.150, 0.122, 0.096);
+        let color = dark.lerp(light, height) * (1.0 + 0.35 * wear);
+        Texel { height: height * 6.0, color }
+    }
+
+    /// Scales of bark with cracks between.
+    fn plates(&self, u: f32, v: f32, wear: f32) -> Texel {
+        let sway = fbm2(self.seed.wrapping_add(5), u * 5.0, v * 5.0, 2, 0.5, 5) * 0.45;
+        let (first, second, id) = cellular2(self.seed.wrapping_add(6), u * 10.0 + sway, v * 5.0 + sway, 5);
+        let crack = smooth(((second - first) * 3.2).min(1.0));
+        let own = (id & 0xFF) as f32 / 255.0;
+        let layer = self.tiled(7, u + 0.02 * sway, v, 6, 22).abs();
+        let height = crack * (0.72 + 0.28 * own) - 0.22 * layer * crack;
+        let dark = Vec3::new(0.040, 0.028, 0.020);
+        let light = Vec3::new(0.205, 0.135, 0.088).lerp(Vec3::new(0.235, 0.180, 0.135), own);
+        let color = dark.lerp(light, crack * (1.0 - 0.4 * layer)) * (1.0 + 0.25 * wear);
+        Texel { height: height * 5.5, color }
+    }
+
+    /// Pale bark with dark dashes around the stem.
+    fn birch(&self, u: f32, v: f32, wear: f32) -> Texel {
+        let dashes = self.tiled(8, u, v, 6, 44);
+        let patches = self.tiled(9, u, v, 4, 5);
+        let lenticel = smooth(((dashes - 0.36 + 0.3 * patches.min(0.3)) * 5.0).clamp(0.0, 1.0));
+        let peel = self.tiled(10, u, v, 3, 16);
+        let scar = smooth(((self.tiled(11, u, v, 9, 15) - 0.62) * 5.0).clamp(0.0, 1.0));
+        let dark = (lenticel * 0.85).max(scar * 0.9);
+        let pale = Vec3::new(0.52, 0.49, 0.44) * (1.0 + 0.12 * wear + 0.1 * peel);
+        let color = pale.lerp(Vec3::new(0.060, 0.050, 0.044), dark);
+        Texel { height: 1.2 + 0.8 * peel - 2.2 * dark, color }
+    }
+
+    /// Gradient noise of `across` by `along` cells a tile, in about [-1, 1].
+    fn tiled(&self, layer: u32, u: f32, v: f32, across: i32, along: i32) -> f32 {
+        let seed = self.seed.wrapping_add(layer);
+        let (x, y) = (u * across as f32, v * along as f32);
+        let (fx, fy) = (x.floor(), y.floor());
+        let (x0, y0) = ((fx as i32).rem_euclid(across), (fy as i32).rem_euclid(along));
+        let (x1, y1) = ((x0 + 1) % across, (y0 + 1) % along);
+        let (dx, dy) = (x - fx, y - fy);
+        let corner = |ix: i32, iy: i32, dx: f32, dy: f32| {
+            let h = hash(seed, ix, iy, 0);
+            let long = if h & 1 == 0 { dx } else { -dx };
+            let short = if h & 2 == 0 { dy } else { -dy };
+            if h & 4 == 0 { long + 0.5 * short } else { 0.5 * long + short }
+        };
+        let (s, t) = (smooth(dx), smooth(dy));
+        let upper = corner(x0, y0, dx, dy) * (1.0 - s) + corner(x1, y0, dx - 1.0, dy) * s;
+        let lower = corner(x0, y1, dx, dy - 1.0) * (1.0 - s) + corner(x1, y1, dx - 1.0, dy - 1.0) * s;
+        (upper * (1.0 - t) + lower * t) * 1.3
+    }
+}
+
+fn smooth(t: f32) -> f32 {
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// A blend of two barks; where one is missing, the other.
+fn mix(a: Option<Texel>, b: Option<Texel>, part: f32) -> Texel {
+    match (a, b) {
+        (Some(a), Some(b)) => {
+            Texel { height: a.height + (b.height - a.height) * part, color: a.color.lerp(b.color, part) }
+        }
+        (Some(one), None) | (None, Some(one)) => one,
+        (None, None) => Texel { height: 0.0, color: Vec3::splat(0.1) },
+    }
+}
+
+/// Colours at twice the size by wrapped bilinear interpolation, with fine grain added.
+fn enlarged(coarse: &[Texel], seed: u32) -> Vec<Vec3> {
+    let mut fine = Vec::with_capacity(SIZE * SIZE);
+    for y in 0..SIZE {
+        let (y0, y1, fy) = halfway(y);
+        let (upper, lower) = (&coarse[y0 * COARSE..][..COARSE], &coarse[y1 * COARSE..][..COARSE]);
+        let column: Vec<Vec3> =
+            upper.iter().zip(lower).map(|(a, b)| a.color + (b.color - a.color) * fy).collect();
+        for x in 0..SIZE {
+            let (x0, x1, fx) = halfway(x);
+            // Fibres run along the stem: grain varies faster around it.
+            let bits = hash(seed, x as i32, (y / 3) as i32, 7);
+            let grain = (bits & 0xFF) as f32 * (1.0 / 255.0) - 0.5;
+            let color = column[x0] + (column[x1] - column[x0]) * fx;
+            fine.push(color * (1.0 + 0.2 * grain));
+        }
+    }
+    fine
+}
+
+/// The two coarse texels that a fine one lies between, and the fraction.
+fn halfway(i: usize) -> (usize, usize, f32) {
+    let last = COARSE - 1;
+    if i % 2 == 0 { ((i / 2 + last) & last, i / 2, 0.75) } else { (i / 2, (i / 2 + 1) & last, 0.25) }
+}
+
+fn colors(texels: &[Vec3]) -> Image8 {
+    let encode = Encoder::new();
+    let mut image = Image8::new(SIZE as u32, SIZE as u32, 3);
+    for (out, texel) in image.data.chunks_exact_mut(3).zip(texels) {
+        out[0] = encode.byte(texel.x);
+        out[1] = encode.byte(texel.y);
+        out[2] = encode.byte(texel.z);
+    }
+    image
+}
+
+/// Normals by central differences; red towards +u, green towards −v (up in the picture), as glTF has it.
+fn normals(texels: &[Texel]) -> Image8 {
+    let mut image = Image8::new(COARSE as u32, COARSE as u32, 3);
+    let height = |x: usize, y: usize| texels[(y % COARSE) * COARSE + x % COARSE].height;
+    for y in 0..COARSE {
+        for x in 0..COARSE {
+            let east = height(x + 1, y) - height(x + COARSE - 1, y);
+            let south = height(x, y + 1) - height(x, y + COARSE - 1);
+            let normal = Vec3::new(-0.5 * east, 0.5 * south, 1.0);
+            let normal = normal / normal.length_squared().sqrt();
+            let at = 3 * (y * COARSE + x);
+            for (out, part) in image.data[at..at + 3].iter_mut().zip(normal.to_array()) {
+                *out = (127.5 * (part + 1.0) + 0.5) as u8;
+            }
+        }
+    }
+    image
+}

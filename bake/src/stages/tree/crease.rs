@@ -1,0 +1,210 @@
+//! A mesh without normals → the same mesh with smooth normals and sharp creases, angles in radians.
+//!
+//! The rule is that of section 4.1 of Merry's thesis: the normal of a face's corner averages the normals of those
+//! faces around the vertex that differ from the face's own by less than a threshold. Faces count by the angle of
+//! their corner there (Thürmer & Wüthrich 1998), so that how a flat side was cut into triangles does not show.
+
+use glam::Vec3;
+
+use crate::model::{Mesh, Part};
+
+/// The mesh with unit normals, vertices split where normals differ.
+///
+/// Vertices at bit-identical positions in the same part count as one place, so texture seams stay smooth. Faces
+/// without area take the average of all others around. Any normals that the mesh had are replaced. Triangles keep
+/// their number and order; every part's vertices become its own.
+pub fn crease_normals(mesh: &Mesh, threshold_rad: f32) -> Mesh {
+    let cos_threshold = libm::cosf(threshold_rad.clamp(0.0, std::f32::consts::PI));
+    let mut out = Mesh::default();
+    for part in &mesh.parts {
+        let corners = corners(mesh, part, cos_threshold);
+        append(mesh, part, &corners, &mut out);
+    }
+    out
+}
+
+fn position(mesh: &Mesh, vertex: u32) -> Vec3 {
+    Vec3::from_array(mesh.positions[vertex as usize])
+}
+
+/// Unit normal of a triangle; zero if it has no area.
+fn face_normal(mesh: &Mesh, [a, b, c]: [u32; 3]) -> Vec3 {
+    let (a, b, c) = (position(mesh, a), position(mesh, b), position(mesh, c));
+    (b - a).cross(c - a).normalize_or_zero()
+}
+
+/// Angle in radians at corner `k` of a triangle.
+fn corner_angle(mesh: &Mesh, triangle: [u32; 3], k: usize) -> f32 {
+    let at = |i: usize| position(mesh, triangle[i % 3]);
+    let (a, b) = ((at(k + 1) - at(k)).normalize_or_zero(), (at(k + 2) - at(k)).normalize_or_zero());
+    libm::acosf(a.dot(b).clamp(-1.0, 1.0))
+}
+
+/// Bits that are the same for the same place (−0 is 0).
+fn place(p: [f32; 3]) -> [u32; 3] {
+    p.map(|v| (v + 0.0).to_bits())
+}
+
+/// The normal of each corner of each triangle of a part.
+fn corners(mesh: &Mesh, part: &Part, cos_threshold: f32) -> Vec<[Vec3; 3]> {
+    let faces: Vec<Vec3> = part.triangles.iter().map(|&t| face_normal(mesh, t)).collect();
+    // All corners, sorted by place: each run is a vertex with the faces around it.
+    let mut incident: Vec<([u32; 3], u32, u8)> = Vec::with_capacity(3 * part.triangles.len());
+    for (face, triangle) in part.triangles.iter().enumerate() {
+        for (k, &vertex) in triangle.iter().enumerate() {
+            incident.push((place(mesh.positions[vertex as usize]), face as u32, k as u8));
+        }
+    }
+    incident.sort_unstable();
+    let mut normals = vec![[Vec3::ZERO; 3]; faces.len()];
+    for around in incident.chunk_by(|a, b| a.0 == b.0) {
+        let weights: Vec<f32> = around
+            .iter()
+            .map(|&(_, face, k)| corner_angle(mesh, part.triangles[face as usize], k as usize))
+            .collect();
+        for &(_, face, k) in around {
+            let own = faces[face as usize];
+            let sum: Vec3 = around
+                .iter()
+                .zip(&weights)
+                .filter(|((_, other, _), _)| {
+                    own == Vec3::ZERO || *other == face || own.dot(faces[*other as usize]) > cos_threshold
+                })
+                .map(|((_, other, _), &weight)| faces[*other as usize] * weight)
+                .sum();
+            normals[face as usize][k as usize] =
+                sum.try_normalize().unwrap_or(own).try_normalize().unwrap_or(Vec3::Y);
+        }
+    }
+    normals
+}
+
+/// Appends a part to `out`: one vertex for each different pair of old vertex and normal.
+fn append(mesh: &Mesh, part: &Part, corners: &[[Vec3; 3]], out: &mut Mesh) {
+    let mut uses: Vec<(u32, [u32; 3], usize)> = Vec::with_capacity(3 * corners.len());
+    for (face, triangle) in part.triangles.iter().enumerate() {
+        for k in 0..3 {
+            let bits = corners[face][k].to_array().map(f32::to_bits);
+            uses.push((triangle[k], bits, 3 * face + k));
+        }
+    }
+    uses.sort_unstable();
+    let mut triangles = vec![[0; 3]; part.triangles.len()];
+    for same in uses.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+        let old = same[0].0 as usize;
+        let new = out.positions.len() as u32;
+        out.positions.push(mesh.positions[old]);
+        out.normals.push(same[0].1.map(f32::from_bits));
+        out.uvs.push(mesh.uvs.get(old).copied().unwrap_or_default());
+        if let Some(&color) = mesh.colors.get(old) {
+            out.colors.push(color);
+        }
+        for &(_, _, corner) in same {
+            triangles[corner / 3][corner % 3] = new;
+        }
+    }
+    out.parts.push(Part { material: part.material, kind: part.kind, triangles });
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f32::consts::{FRAC_PI_4, TAU};
+
+    use super::*;
+    use crate::model::{Material, PartKind};
+
+    fn mesh(positions: Vec<[f32; 3]>, triangles: Vec<[u32; 3]>) -> Mesh {
+        let part = Part { material: Material::Foreign(0), kind: PartKind::Surface, triangles };
+        Mesh { positions, parts: vec![part], ..Mesh::default() }
+    }
+
+    /// Corners of all triangles: position and normal.
+    fn corner_list(mesh: &Mesh) -> Vec<(Vec3, Vec3)> {
+        let vertices = mesh.parts.iter().flat_map(|part| part.triangles.iter().flatten());
+        vertices.map(|&v| (position(mesh, v), Vec3::from_array(mesh.normals[v as usize]))).collect()
+    }
+
+    fn cylinder(sides: u32) -> Mesh {
+        let mut positions = vec![[0.0, 0.0, 0.0], [0.0, 2.0, 0.0]];
+        let mut triangles = Vec::new();
+        for k in 0..sides {
+            let (sin, cos) = libm::sincosf(TAU * k as f32 / sides as f32);
+            positions.push([cos, 0.0, sin]);
+            positions.push([cos, 2.0, sin]);
+            let (a, b) = (2 + 2 * k, 2 + 2 * ((k + 1) % sides));
+            triangles.extend([[a, a + 1, b + 1], [a, b + 1, b], [0, a, b], [1, b + 1, a + 1]]);
+        }
+        mesh(positions, triangles)
+    }
+
+    #[test]
+    fn a_cube_has_three_normals_at_every_corner() {
+        let positions = (0..8).map(|i| [(i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32]).collect();
+        let quads: [[u32; 4]; 6] =
+            [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+        let cube = crease_normals(&mesh(positions, triangles), FRAC_PI_4);
+        assert_eq!(cube.positions.len(), 24);
+        for normal in &cube.normals {
+            let n = Vec3::from_array(*normal).abs();
+            assert!((n.max_element() - 1.0).abs() < 1e-6 && (n.element_sum() - 1.0).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn a_cylinder_is_smooth_around_and_crisp_at_its_caps() {
+        for (p, n) in corner_list(&crease_normals(&cylinder(24), 0.6)) {
+            let radial = Vec3::new(p.x, 0.0, p.z);
+            assert!(n.y.abs() > 0.999 || (n.y.abs() < 1e-5 && n.dot(radial) > 0.999), "{p} {n}");
+        }
+    }
+
+    #[test]
+    fn the_normals_of_a_sphere_are_radial_and_none_is_split() {
+        let (rings, sides) = (12, 16);
+        let mut positions = vec![[0.0, 1.0, 0.0], [0.0, -1.0, 0.0]];
+        let mut triangles = Vec::new();
+        for i in 1..rings {
+            let (sin, cos) = libm::sincosf(std::f32::consts::PI * i as f32 / rings as f32);
+            for k in 0..sides {
+                let (s, c) = libm::sincosf(TAU * k as f32 / sides as f32);
+                positions.push([sin * c, cos, sin * s]);
+            }
+        }
+        let at = |i: u32, k: u32| 2 + (i - 1) * sides + k % sides;
+        for k in 0..sides {
+            triangles.push([0, at(1, k + 1), at(1, k)]);
+            triangles.push([1, at(rings - 1, k), at(rings - 1, k + 1)]);
+            for i in 1..rings - 1 {
+                triangles.push([at(i, k), at(i, k + 1), at(i + 1, k + 1)]);
+                triangles.push([at(i, k), at(i + 1, k + 1), at(i + 1, k)]);
+            }
+        }
+        let count = positions.len();
+        let sphere = crease_normals(&mesh(positions, triangles), 1.0);
+        assert_eq!(sphere.positions.len(), count);
+        for (p, n) in corner_list(&sphere) {
+            assert!(n.dot(p) > 0.995, "{p} {n}");
+        }
+    }
+
+    #[test]
+    fn a_texture_seam_stays_smooth_and_flat_faces_do_no_harm() {
+        let mut seamed = cylinder(8);
+        seamed.uvs = vec![[0.0, 0.0]; seamed.positions.len()];
+        let copy = seamed.positions.len() as u32;
+        seamed.positions.extend([seamed.positions[2], seamed.positions[3]]);
+        seamed.uvs.extend([[1.0, 0.0], [1.0, 1.0]]);
+        for triangle in seamed.parts[0].triangles.iter_mut().skip(28) {
+            *triangle = triangle.map(|v| if v == 2 || v == 3 { v - 2 + copy } else { v });
+        }
+        seamed.parts[0].triangles.push([4, 4, 5]);
+        let out = crease_normals(&seamed, 1.0);
+        assert_eq!(out.uvs.len(), out.positions.len());
+        for (p, n) in corner_list(&out) {
+            assert!((n.length() - 1.0).abs() < 1e-5);
+            let radial = Vec3::new(p.x, 0.0, p.z);
+            assert!(n.y.abs() > 0.9 || n.dot(radial) > 0.99, "{p} {n}");
+        }
+    }
+}

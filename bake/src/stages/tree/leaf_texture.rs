@@ -1,0 +1,311 @@
+//! Genes → pictures of a twig with leaves, needles, leaflets or blossom, as mip chains of sRGB with alpha.
+//!
+//! The twig starts at the bottom centre, where a card is joined to its stem, and fills the card.
+
+use glam::{Vec2, Vec3};
+
+use super::canvas::{Canvas, Paint};
+use super::dice::Dice;
+use super::leaf_outline::Outline;
+use super::mips;
+use super::params::{Habit, TreeTextureParams, card_length_m};
+use crate::model::Image8;
+
+/// Texels a side.
+const LEAF_PX: usize = 512;
+const BLOSSOM_PX: usize = 256;
+/// Albedo of young wood, linear.
+const TWIG: Vec3 = Vec3::new(0.10, 0.062, 0.033);
+
+/// The leaf card.
+pub(super) fn paint_leaves(params: &TreeTextureParams) -> Vec<Image8> {
+    mips::chain(&leaves(params))
+}
+
+/// The blossom card; one transparent texel if the species does not blossom.
+pub(super) fn paint_blossom(params: &TreeTextureParams) -> Vec<Image8> {
+    if params.blossom <= 0.0 {
+        return vec![Image8::new(1, 1, 4)];
+    }
+    mips::chain(&blossom(params))
+}
+
+pub(super) fn leaves(params: &TreeTextureParams) -> Canvas {
+    let habit = Habit::of(params.leaf_shape, params.levels);
+    let mut brush = Brush {
+        canvas: Canvas::new(LEAF_PX, habit.card_aspect()),
+        outline: Outline::new(params.leaf_shape, params.leaf_aspect),
+        dice: Dice::for_texture(params.tree_seed, 0),
+        hue_deg: params.leaf_hue_deg,
+        autumn: ((78.0 - params.leaf_hue_deg) / 25.0).clamp(0.0, 1.0),
+        pairs: [7.0, 8.0, 9.0, 8.0, 6.0, 6.0, 0.0, 0.0][params.leaf_shape.min(7) as usize],
+    };
+    let card_m = card_length_m(habit, params.levels, params.height_m, params.leaf_size_m);
+    let leaf = (params.leaf_size_m / card_m).clamp(0.16, 0.36);
+    match habit {
+        Habit::Frond => brush.frond(params),
+        Habit::Needle => brush.needles(leaf),
+        Habit::Willow => brush.willow(leaf.clamp(0.2, 0.3)),
+        Habit::Broad => brush.broad(leaf),
+    }
+    brush.canvas
+}
+
+fn blossom(params: &TreeTextureParams) -> Canvas {
+    let habit = Habit::of(params.leaf_shape, params.levels);
+    let mut brush = Brush {
+        canvas: Canvas::new(BLOSSOM_PX, habit.card_aspect()),
+        outline: Outline::petal(),
+        dice: Dice::for_texture(params.tree_seed, 1),
+        hue_deg: 0.0,
+        autumn: 0.0,
+        pairs: 0.0,
+    };
+    brush.flowers();
+    brush.canvas
+}
+
+/// Albedo of a leaf by hue: green is dark, yellow is bright, orange and red between. Linear RGB.
+pub(super) fn leaf_color(hue_deg: f32) -> Vec3 {
+    // Hue; albedo as in spectra of green, senescent and red leaves.
+    const STOPS: [(f32, Vec3); 7] = [
+        (15.0, Vec3::new(0.36, 0.045, 0.016)),
+        (30.0, Vec3::new(0.46, 0.125, 0.018)),
+        (48.0, Vec3::new(0.52, 0.32, 0.030)),
+        (66.0, Vec3::new(0.30, 0.31, 0.042)),
+        (90.0, Vec3::new(0.155, 0.275, 0.048)),
+        (115.0, Vec3::new(0.090, 0.220, 0.055)),
+        (150.0, Vec3::new(0.055, 0.165, 0.100)),
+    ];
+    let hue = hue_deg.clamp(15.0, 150.0);
+    let above = STOPS.iter().position(|stop| stop.0 >= hue).unwrap_or(6).max(1);
+    let (a, b) = (STOPS[above - 1], STOPS[above]);
+    a.1.lerp(b.1, (hue - a.0) / (b.0 - a.0))
+}
+
+struct Brush {
+    canvas: Canvas,
+    outline: Outline,
+    dice: Dice,
+    hue_deg: f32,
+    autumn: f32,
+    pairs: f32,
+}
+
+/// The unit vector at an angle from straight up, positive to the right.
+fn towards(angle: f32) -> Vec2 {
+    let (sin, cos) = libm::sincosf(angle);
+    Vec2::new(sin, cos)
+}
+
+impl Brush {
+    /// One leaf's paint: no two are quite alike; those laid on later are lighter.
+    fn paint(&mut self, light: f32) -> Paint {
+        let hue = self.hue_deg + (5.0 + 9.0 * self.autumn) * self.dice.signed();
+        let color = leaf_color(hue) * light * (1.0 + 0.13 * self.dice.signed());
+        let fold = 0.13 * if self.dice.unit() < 0.5 { 1.0 } else { -1.0 };
+        Paint { color, veins: 0.3, pairs: self.pairs, fold }
+    }
+
+    fn leaf(&mut self, base: Vec2, angle: f32, length: f32, light: f32) {
+        let paint = self.paint(light);
+        let axis = towards(angle);
+        let stalk = base + axis * (0.12 * length);
+        self.canvas.stroke(base, stalk, (0.005, 0.004), paint.color * 0.8);
+        self.canvas.leaf(&self.outline, stalk, axis, 0.94 * length, &paint);
+    }
+
+    /// A curved twig; returns points with their angles from base to tip.
+    fn twig(&mut self, base: Vec2, angle: f32, length: f32, bend: f32, radius: f32) -> Vec<(Vec2, f32)> {
+        const STEPS: usize = 8;
+        let mut points = vec![(base, angle)];
+        let (mut at, mut angle) = (base, angle);
+        for step in 0..STEPS {
+            let t = step as f32 / STEPS as f32;
+            let next = at + towards(angle) * (length / STEPS as f32);
+            let radii = (radius * (1.0 - 0.7 * t), radius * (1.0 - 0.7 * (t + 1.0 / STEPS as f32)));
+            self.canvas.stroke(at, next, radii, TWIG * (0.9 + 0.2 * t));
+            angle += bend / STEPS as f32;
+            at = next;
+            points.push((at, angle));
+        }
+        points
+    }
+
+    /// Broad leaves: a main twig with side twigs, leaves alternating along each.
+    fn broad(&mut self, leaf: f32) {
+        let bend = 0.25 * self.dice.signed();
+        let main = self.twig(Vec2::ZERO, -0.4 * bend, 0.97 - 0.8 * leaf, bend, 0.011);
+        let mut spots = Vec::new();
+        let fine = leaf < 0.3;
+        if fine {
+            // Side twigs in alternation; lower ones longer, so that the whole is round.
+            let count = (1.15 / leaf).round().clamp(4.0, 7.0) as usize;
+            for k in 0..count {
+                let t = 0.12 + 0.72 * k as f32 / count as f32;
+                let (at, angle) = point(&main, t);
+                let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+                let turn = sign * (0.85 + 0.15 * self.dice.signed()) + angle;
+                let length = (0.44 - 0.75 * leaf * 0.5) * libm::sinf(0.7 + 1.9 * t).max(0.35);
+                let side = self.twig(at, turn, length, -0.35 * sign, 0.007);
+                self.spots(&side, leaf, 0.25, &mut spots);
+            }
+        }
+        self.spots(&main, leaf, if fine { 0.45 } else { 0.16 }, &mut spots);
+        let count = spots.len() as f32;
+        for (i, (at, angle)) in spots.into_iter().enumerate() {
+            let length = leaf * (0.95 + 0.15 * self.dice.signed());
+            let (at, length) = self.fit(at, angle, length);
+            self.leaf(at, angle, length, 0.72 + 0.36 * i as f32 / count);
+        }
+    }
+
+    /// Places of leaves along a twig: alternating, the last at its tip.
+    fn spots(&mut self, twig: &[(Vec2, f32)], leaf: f32, from: f32, spots: &mut Vec<(Vec2, f32)>) {
+        let length: f32 = twig.windows(2).map(|p| (p[1].0 - p[0].0).length()).sum();
+        let count = ((1.0 - from) * length / (0.30 * leaf)).round().max(2.0) as usize;
+        for k in 0..count {
+            let t = from + (1.0 - from) * k as f32 / count as f32;
+            let (at, angle) = point(twig, t);
+            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+            spots.push((at, angle + sign * (0.95 - 0.35 * t + 0.2 * self.dice.signed())));
+        }
+        spots.push(point(twig, 1.0));
+    }
+
+    /// Shortens a leaf so that it stays on the card.
+    fn fit(&self, at: Vec2, angle: f32, length: f32) -> (Vec2, f32) {
+        let axis = towards(angle);
+        let side = Vec2::new(-axis.y, axis.x).abs() * (self.outline.widest * length);
+        let half = 0.5 * self.canvas.width - 0.006;
+        let room_x = (half - side.x * 0.9 - at.x.abs()).max(0.02) / axis.x.abs().max(1e-3);
+        let room_y = if axis.y > 0.0 { 0.994 - side.y * 0.6 - at.y } else { at.y - 0.006 - side.y * 0.6 };
+        let room_y = room_y.max(0.02) / axis.y.abs().max(1e-3);
+        (at, length.min(room_x).min(room_y).max(0.3 * length))
+    }
+
+    /// A hanging willow twig: long leaves at narrow angles.
+    fn willow(&mut self, leaf: f32) {
+        let sway = 0.16 * self.dice.signed();
+        let main = self.twig(Vec2::ZERO, -0.5 * sway, 0.82, sway, 0.009);
+        let mut spots = Vec::new();
+        let mut side_twigs = Vec::new();
+        for k in 0..4 {
+            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+            let (at, angle) = point(&main, 0.06 + 0.18 * k as f32);
+            side_twigs.push(self.twig(at, angle + 0.42 * sign, 0.34, -0.3 * sign, 0.005));
+        }
+        for twig in side_twigs.iter().chain([&main]) {
+            let length: f32 = twig.windows(2).map(|p| (p[1].0 - p[0].0).length()).sum();
+            let count = (length / 0.036) as usize;
+            for k in 0..=count {
+                let (at, angle) = point(twig, 0.06 + 0.94 * k as f32 / count as f32);
+                let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+                spots.push((at, angle + sign * (0.5 + 0.2 * self.dice.signed())));
+            }
+        }
+        let count = spots.len() as f32;
+        for (i, (at, angle)) in spots.into_iter().enumerate() {
+            let size = leaf * (0.9 + 0.2 * self.dice.signed());
+            let (at, length) = self.fit(at, angle, size);
+            self.leaf(at, angle, length, 0.72 + 0.36 * i as f32 / count);
+        }
+    }
+
+    /// A flat spray of conifer twigs, needles all along.
+    fn needles(&mut self, leaf: f32) {
+        let needle = (0.45 * leaf).clamp(0.06, 0.1);
+        let mut twigs = vec![(Vec2::ZERO, 0.0, 0.93)];
+        for k in 0..9 {
+            let t = 0.07 + 0.088 * k as f32;
+            for sign in [-1.0, 1.0] {
+                let at = Vec2::new(0.0, 0.93 * (t + 0.02 * self.dice.signed()));
+                let length = (0.40 - 0.27 * t) * (1.0 + 0.15 * self.dice.signed());
+                twigs.push((at, sign * (0.92 + 0.1 * self.dice.signed()), length));
+            }
+        }
+        for &(at, angle, length) in &twigs {
+            self.canvas.stroke(at, at + towards(angle) * length, (0.007, 0.004), TWIG);
+        }
+        for &(at, angle, length) in twigs.iter().rev() {
+            let count = (length / 0.0125) as usize;
+            for k in 0..count {
+                let t = k as f32 / count as f32;
+                let base = at + towards(angle) * (length * t);
+                for sign in [-1.0, 1.0] {
+                    let lean = angle + sign * (0.75 - 0.3 * t + 0.22 * self.dice.signed());
+                    let size = needle * (1.0 - 0.3 * t) * (0.9 + 0.2 * self.dice.signed());
+                    let color = leaf_color(self.hue_deg + 8.0 * self.dice.signed());
+                    let light = (0.8 + 0.35 * t) * (1.0 + 0.22 * self.dice.signed());
+                    self.canvas.stroke(base, base + towards(lean) * size, (0.0075, 0.0045), color * light);
+                }
+            }
+        }
+    }
+
+    /// Leaflets along a rib; leaflets of the species' own shape on a trunk without branches.
+    fn frond(&mut self, params: &TreeTextureParams) {
+        let feather = params.leaf_shape >= 6;
+        if feather {
+            self.outline = Outline::new(7, params.leaf_aspect);
+        }
+        let half = 0.5 * self.canvas.width;
+        let pairs = if feather { 36 } else { 13 };
+        let color = leaf_color(self.hue_deg) * 1.1 + Vec3::new(0.03, 0.02, 0.0);
+        for k in 0..pairs {
+            let t = (k as f32 + 0.5) / pairs as f32;
+            for sign in [-1.0, 1.0] {
+                let shape = libm::powf((t + 0.06).min(1.0), 0.35) * (1.04 - t * t * 0.8);
+                let angle = sign * (1.12 - 0.75 * t + 0.07 * self.dice.signed());
+                let length = if feather {
+                    (half * 1.12 * shape).min((half - 0.004) / libm::sinf(angle.abs()).max(0.2))
+                } else {
+                    half * 0.92 * shape
+                };
+                let base = Vec2::new(0.0, 0.03 + 0.93 * t);
+                let length = length.min((0.995 - base.y) / libm::cosf(angle).max(0.1)).max(0.015);
+                let mut paint = self.paint(0.84 + 0.25 * t);
+                paint.veins = if feather { 0.12 } else { 0.3 };
+                self.canvas.leaf(&self.outline, base, towards(angle), length, &paint);
+            }
+        }
+        self.canvas.stroke(Vec2::ZERO, Vec2::new(0.0, 0.97), (0.011, 0.002), color);
+    }
+
+    /// Clusters of five-petalled flowers along a twig, with a few young leaves.
+    fn flowers(&mut self) {
+        let bend = 0.25 * self.dice.signed();
+        let half = 0.5 * self.canvas.width;
+        let main = self.twig(Vec2::ZERO, -0.4 * bend, 0.9, bend, 0.013);
+        let pink = 0.35 + 0.65 * self.dice.unit();
+        for k in 0..64 {
+            let (at, _) = point(&main, (k as f32 + 0.5) / 64.0);
+            let spread = half * 0.86 - 0.075;
+            let at = at + Vec2::new(spread * self.dice.signed(), 0.08 * self.dice.signed());
+            let at = at.clamp(Vec2::new(-half + 0.085, 0.085), Vec2::new(half - 0.085, 0.915));
+            let size = 0.075 + 0.02 * self.dice.unit();
+            self.flower(at, size, pink, 0.8 + 0.25 * k as f32 / 64.0);
+        }
+    }
+
+    fn flower(&mut self, at: Vec2, size: f32, pink: f32, light: f32) {
+        let turn = self.dice.unit() * std::f32::consts::TAU;
+        let white = Vec3::new(0.80, 0.74, 0.76);
+        let rose = Vec3::new(0.78, 0.42, 0.52);
+        for petal in 0..5 {
+            let angle = turn + petal as f32 * std::f32::consts::TAU / 5.0;
+            let color = white.lerp(rose, pink * (0.5 + 0.5 * self.dice.unit())) * light.min(1.0);
+            let paint = Paint { color, veins: -0.1, pairs: 0.0, fold: 0.05 };
+            self.canvas.leaf(&self.outline, at, towards(angle), size, &paint);
+        }
+        self.canvas.stroke(at, at, (0.016, 0.016), Vec3::new(0.62, 0.24, 0.2) * light);
+    }
+}
+
+/// Place and angle at `t` in 0..1 of a twig.
+fn point(twig: &[(Vec2, f32)], t: f32) -> (Vec2, f32) {
+    let g = t.clamp(0.0, 1.0) * (twig.len() - 1) as f32;
+    let i = (g as usize).min(twig.len() - 2);
+    let (a, b, f) = (twig[i], twig[i + 1], g - i as f32);
+    (a.0.lerp(b.0, f), a.1 + (b.1 - a.1) * f)
+}

@@ -1,0 +1,131 @@
+//! A canvas → a mip chain in sRGB with alpha whose coverage at the cutoff is that of its first level.
+//!
+//! Alpha-tested foliage thins out in the distance because averaged alpha falls below the cutoff; each level's alpha
+//! is scaled until as much of it passes as at level 0 (Castaño, "Computing Alpha Mipmaps", 2010). Colour is
+//! averaged by alpha and bled outwards under transparent texels, so no dark rim appears.
+
+use super::ALPHA_CUTOFF;
+use super::canvas::Canvas;
+use crate::model::Image8;
+
+/// One level while it is made: linear RGB multiplied by alpha, and alpha.
+struct Level {
+    size: usize,
+    pixels: Vec<[f32; 4]>,
+}
+
+/// All levels down to one texel.
+pub(super) fn chain(canvas: &Canvas) -> Vec<Image8> {
+    let pixels = canvas.pixels.iter().map(|&[r, g, b, a]| [r * a, g * a, b * a, a]).collect();
+    let mut levels = vec![Level { size: canvas.size, pixels }];
+    while let Some(last) = levels.last().filter(|level| level.size > 1) {
+        levels.push(halved(last));
+    }
+    let target = kept(&levels[0], 1.0);
+    let mut colors: Vec<[f32; 3]> = Vec::new();
+    let mut images = Vec::with_capacity(levels.len());
+    let encode = Encoder::new();
+    for level in levels.iter().rev() {
+        colors = bled(level, &colors);
+        let scale = if level.size == canvas.size { 1.0 } else { alpha_scale(level, target) };
+        images.push(encode.image(level, &colors, scale));
+    }
+    images.reverse();
+    images
+}
+
+fn halved(level: &Level) -> Level {
+    let size = level.size / 2;
+    let mut pixels = Vec::with_capacity(size * size);
+    for rows in level.pixels.chunks_exact(2 * level.size) {
+        let (upper, lower) = rows.split_at(level.size);
+        for (a, b) in upper.chunks_exact(2).zip(lower.chunks_exact(2)) {
+            pixels.push(std::array::from_fn(|c| 0.25 * (a[0][c] + a[1][c] + b[0][c] + b[1][c])));
+        }
+    }
+    Level { size, pixels }
+}
+
+/// The byte that an alpha becomes.
+fn alpha_byte(alpha: f32, scale: f32) -> u8 {
+    (255.0 * (alpha * scale).min(1.0) + 0.5) as u8
+}
+
+/// Whether a texel of this alpha byte is kept.
+fn passes(byte: u8) -> bool {
+    f32::from(byte) >= 255.0 * ALPHA_CUTOFF
+}
+
+/// Part of the texels that are kept when alpha is scaled.
+fn kept(level: &Level, scale: f32) -> f32 {
+    let count = level.pixels.iter().filter(|p| passes(alpha_byte(p[3], scale))).count();
+    count as f32 / level.pixels.len() as f32
+}
+
+/// The factor on alpha that keeps the part `target` of the texels.
+fn alpha_scale(level: &Level, target: f32) -> f32 {
+    let wanted = (target * level.pixels.len() as f32 + 0.5) as usize;
+    if wanted == 0 {
+        return 1.0;
+    }
+    let mut alphas: Vec<f32> = level.pixels.iter().map(|p| p[3]).collect();
+    let (_, &mut least, _) = alphas.select_nth_unstable_by(wanted - 1, |a, b| b.total_cmp(a));
+    if least < 1e-3 { 1.0 } else { (ALPHA_CUTOFF + 0.4 / 255.0) / least }
+}
+
+/// Colour of every texel: its own where it has alpha, else that of the coarser level.
+fn bled(level: &Level, coarser: &[[f32; 3]]) -> Vec<[f32; 3]> {
+    let half = level.size / 2;
+    (0..level.pixels.len())
+        .map(|i| {
+            let [r, g, b, a] = level.pixels[i];
+            if a > 0.02 || coarser.is_empty() {
+                let over = 1.0 / a.max(1e-4);
+                return [r * over, g * over, b * over];
+            }
+            coarser[(i / level.size / 2) * half + (i % level.size) / 2]
+        })
+        .collect()
+}
+
+/// Linear light to 8-bit sRGB by a table.
+pub(super) struct Encoder(Vec<u8>);
+
+impl Encoder {
+    const STEPS: usize = 8192;
+
+    /// Fills the table: 8-bit thresholds are inverted, so only 256 powers are taken.
+    pub fn new() -> Self {
+        let mut table = Vec::with_capacity(Self::STEPS + 1);
+        for byte in 0..256_u32 {
+            let upper = decode((byte as f32 + 0.5) / 255.0);
+            while table.len() <= Self::STEPS && (table.len() as f32 / Self::STEPS as f32) < upper {
+                table.push(byte as u8);
+            }
+        }
+        table.resize(Self::STEPS + 1, 255);
+        Self(table)
+    }
+
+    /// One channel.
+    #[inline]
+    pub fn byte(&self, linear: f32) -> u8 {
+        self.0[(linear.clamp(0.0, 1.0) * Self::STEPS as f32 + 0.5) as usize]
+    }
+
+    fn image(&self, level: &Level, colors: &[[f32; 3]], scale: f32) -> Image8 {
+        let mut image = Image8::new(level.size as u32, level.size as u32, 4);
+        for ((out, color), pixel) in image.data.chunks_exact_mut(4).zip(colors).zip(&level.pixels) {
+            out[0] = self.byte(color[0]);
+            out[1] = self.byte(color[1]);
+            out[2] = self.byte(color[2]);
+            out[3] = alpha_byte(pixel[3], scale);
+        }
+        image
+    }
+}
+
+/// sRGB to linear.
+pub(super) fn decode(srgb: f32) -> f32 {
+    if srgb <= 0.040_45 { srgb / 12.92 } else { libm::powf((srgb + 0.055) / 1.055, 2.4) }
+}

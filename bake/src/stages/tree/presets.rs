@@ -1,0 +1,302 @@
+//! Species for tests and pictures: gene values after the tables of Weber & Penn and of Blender's Sapling.
+
+use super::params::{TreeParams, TreeTextureParams};
+
+/// An oak-like tree that the others differ from.
+pub(super) fn oak() -> TreeParams {
+    TreeParams {
+        tree_seed: 7,
+        crown_shape: 1,
+        height_m: 13.0,
+        height_variation: 0.15,
+        clear_trunk: 0.2,
+        levels: 3,
+        radius_ratio: 0.026,
+        radius_power: 1.25,
+        root_flare: 0.8,
+        base_splits: 0,
+        segment_splits: 0.4,
+        split_angle_deg: 34.0,
+        primary_branches: 34,
+        secondary_branches: 18,
+        primary_length: 0.5,
+        secondary_length: 0.42,
+        down_angle_deg: 62.0,
+        down_angle_variation_deg: -22.0,
+        rotation_deg: 137.5,
+        curve_deg: -10.0,
+        curve_variation_deg: 64.0,
+        curve_back_deg: -10.0,
+        tropism: 0.5,
+        taper: 1.0,
+        leaves_per_stem: 26,
+        leaf_shape: 3,
+        leaf_size_m: 0.13,
+        leaf_hue_deg: 98.0,
+        blossom: 0.0,
+        bark_tone: 0.13,
+    }
+}
+
+/// Names, genes and `leaf_aspect`.
+pub(super) fn all() -> Vec<(&'static str, TreeParams, f32)> {
+    vec![
+        ("oak", oak(), 0.8),
+        (
+            "spruce",
+            TreeParams {
+                tree_seed: 11,
+                crown_shape: 0,
+                height_m: 17.0,
+                clear_trunk: 0.06,
+                radius_ratio: 0.016,
+                radius_power: 1.3,
+                root_flare: 0.5,
+                segment_splits: 0.0,
+                primary_branches: 71,
+                secondary_branches: 12,
+                primary_length: 0.26,
+                secondary_length: 0.36,
+                down_angle_deg: 82.0,
+                down_angle_variation_deg: -24.0,
+                curve_deg: 12.0,
+                curve_variation_deg: 16.0,
+                curve_back_deg: -28.0,
+                tropism: -0.1,
+                leaves_per_stem: 14,
+                leaf_shape: 6,
+                leaf_size_m: 0.08,
+                leaf_hue_deg: 122.0,
+                bark_tone: 0.4,
+                ..oak()
+            },
+            0.5,
+        ),
+        (
+            "palm",
+            TreeParams {
+                tree_seed: 3,
+                crown_shape: 4,
+                height_m: 9.5,
+                levels: 1,
+                clear_trunk: 0.5,
+                radius_ratio: 0.017,
+                root_flare: 0.5,
+                curve_deg: 36.0,
+                curve_variation_deg: 24.0,
+                curve_back_deg: -20.0,
+                tropism: 0.3,
+                taper: 0.8,
+                leaves_per_stem: 34,
+                leaf_shape: 7,
+                leaf_size_m: 0.35,
+                leaf_hue_deg: 92.0,
+                segment_splits: 0.0,
+                bark_tone: 0.6,
+                ..oak()
+            },
+            0.6,
+        ),
+        (
+            "willow",
+            TreeParams {
+                tree_seed: 5,
+                crown_shape: 3,
+                height_m: 11.0,
+                clear_trunk: 0.24,
+                radius_ratio: 0.03,
+                radius_power: 1.4,
+                root_flare: 0.7,
+                segment_splits: 0.4,
+                split_angle_deg: 30.0,
+                primary_branches: 30,
+                secondary_branches: 22,
+                primary_length: 0.44,
+                secondary_length: 0.78,
+                down_angle_deg: 48.0,
+                down_angle_variation_deg: -14.0,
+                curve_deg: 10.0,
+                curve_variation_deg: 40.0,
+                curve_back_deg: 20.0,
+                tropism: -1.0,
+                leaves_per_stem: 30,
+                leaf_shape: 2,
+                leaf_size_m: 0.11,
+                leaf_hue_deg: 84.0,
+                bark_tone: 0.2,
+                ..oak()
+            },
+            0.6,
+        ),
+        (
+            "winter",
+            TreeParams {
+                tree_seed: 9,
+                height_m: 14.0,
+                levels: 4,
+                leaves_per_stem: 0,
+                crown_shape: 1,
+                primary_branches: 36,
+                secondary_branches: 20,
+                segment_splits: 0.55,
+                curve_variation_deg: 80.0,
+                tropism: 0.7,
+                bark_tone: 0.27,
+                ..oak()
+            },
+            0.8,
+        ),
+        (
+            "bush",
+            TreeParams {
+                tree_seed: 13,
+                crown_shape: 2,
+                height_m: 3.0,
+                clear_trunk: 0.0,
+                radius_ratio: 0.016,
+                root_flare: 0.1,
+                base_splits: 3,
+                split_angle_deg: 50.0,
+                segment_splits: 0.4,
+                primary_branches: 50,
+                secondary_branches: 10,
+                primary_length: 0.5,
+                secondary_length: 0.5,
+                down_angle_deg: 66.0,
+                down_angle_variation_deg: -40.0,
+                tropism: 0.5,
+                leaves_per_stem: 22,
+                leaf_shape: 0,
+                leaf_size_m: 0.06,
+                leaf_hue_deg: 104.0,
+                bark_tone: 0.33,
+                ..oak()
+            },
+            0.75,
+        ),
+        (
+            "birch",
+            TreeParams {
+                tree_seed: 21,
+                crown_shape: 5,
+                height_m: 15.0,
+                clear_trunk: 0.3,
+                radius_ratio: 0.013,
+                radius_power: 1.5,
+                root_flare: 0.4,
+                segment_splits: 0.1,
+                split_angle_deg: 20.0,
+                primary_branches: 42,
+                secondary_branches: 14,
+                primary_length: 0.32,
+                secondary_length: 0.44,
+                down_angle_deg: 48.0,
+                down_angle_variation_deg: -16.0,
+                curve_deg: 20.0,
+                curve_variation_deg: 30.0,
+                curve_back_deg: 20.0,
+                tropism: -0.2,
+                leaves_per_stem: 20,
+                leaf_shape: 5,
+                leaf_size_m: 0.06,
+                leaf_hue_deg: 48.0,
+                bark_tone: 1.0,
+                ..oak()
+            },
+            0.8,
+        ),
+        (
+            "cherry",
+            TreeParams {
+                tree_seed: 17,
+                crown_shape: 2,
+                height_m: 6.5,
+                clear_trunk: 0.26,
+                radius_ratio: 0.028,
+                root_flare: 0.5,
+                base_splits: 2,
+                split_angle_deg: 46.0,
+                segment_splits: 0.5,
+                primary_branches: 34,
+                secondary_branches: 14,
+                primary_length: 0.55,
+                secondary_length: 0.46,
+                down_angle_deg: 52.0,
+                down_angle_variation_deg: 10.0,
+                curve_deg: -6.0,
+                curve_variation_deg: 56.0,
+                tropism: 0.3,
+                leaves_per_stem: 22,
+                leaf_shape: 0,
+                leaf_size_m: 0.07,
+                leaf_hue_deg: 78.0,
+                blossom: 0.4,
+                bark_tone: 0.33,
+                ..oak()
+            },
+            0.55,
+        ),
+    ]
+}
+
+/// The texture genes that go with a species.
+pub(super) fn texture_params(params: &TreeParams, leaf_aspect: f32) -> TreeTextureParams {
+    TreeTextureParams {
+        tree_seed: params.tree_seed,
+        height_m: params.height_m,
+        levels: params.levels,
+        leaf_shape: params.leaf_shape,
+        leaf_size_m: params.leaf_size_m,
+        leaf_aspect,
+        leaf_hue_deg: params.leaf_hue_deg,
+        blossom: params.blossom,
+        bark_tone: params.bark_tone,
+    }
+}
+
+/// A genome with every gene anywhere in its range of `configs/space.ron`.
+pub(super) fn random(seed: u32) -> (TreeParams, f32) {
+    let mut dice = super::dice::Dice::for_texture(seed, 999);
+    let mut whole = |from: f32, to: f32| {
+        let value = dice.between(from, to + 1.0).floor();
+        value.min(to) as u32
+    };
+    let (tree_seed, crown_shape, levels, base_splits) =
+        (whole(0.0, 255.0), whole(0.0, 7.0), whole(1.0, 4.0), whole(0.0, 3.0));
+    let (primary_branches, secondary_branches) = (whole(8.0, 71.0), whole(0.0, 31.0));
+    let (leaves_per_stem, leaf_shape) = (whole(0.0, 63.0), whole(0.0, 7.0));
+    let mut range = |from: f32, to: f32| dice.between(from, to);
+    let params = TreeParams {
+        tree_seed,
+        crown_shape,
+        height_m: range(3.0, 30.0),
+        height_variation: range(0.0, 0.5),
+        clear_trunk: range(0.0, 0.6),
+        levels,
+        radius_ratio: range(0.008, 0.05),
+        radius_power: range(1.0, 2.0),
+        root_flare: range(0.0, 1.5),
+        base_splits,
+        segment_splits: range(0.0, 1.5),
+        split_angle_deg: range(0.0, 50.0),
+        primary_branches,
+        secondary_branches,
+        primary_length: range(0.1, 0.8),
+        secondary_length: range(0.1, 0.8),
+        down_angle_deg: range(20.0, 120.0),
+        down_angle_variation_deg: range(-50.0, 30.0),
+        rotation_deg: range(70.0, 180.0),
+        curve_deg: range(-60.0, 90.0),
+        curve_variation_deg: range(0.0, 120.0),
+        curve_back_deg: range(-60.0, 60.0),
+        tropism: range(-1.0, 2.0),
+        taper: range(0.7, 1.2),
+        leaves_per_stem,
+        leaf_shape,
+        leaf_size_m: 0.03 * libm::powf(13.3, range(0.0, 1.0)),
+        leaf_hue_deg: range(20.0, 140.0),
+        blossom: range(0.0, 0.4),
+        bark_tone: range(0.0, 1.0),
+    };
+    (params, 0.2 * libm::powf(10.0, range(0.0, 1.0)))
+}

@@ -1,0 +1,86 @@
+//! Cards → how much daylight reaches each place in the crown.
+//!
+//! Leaf area is gathered in a coarse grid over the crown; light falls through it from above and from four sides
+//! with Beer–Lambert extinction (Monsi & Saeki 1953). Leaves let light pass, so nothing gets darker than
+//! [`DARKEST`].
+
+use glam::Vec3;
+
+use super::foliage::Card;
+use super::skeleton::Skeleton;
+
+/// Cells a side.
+const SIDE: usize = 14;
+/// The least factor on colours inside a crown.
+const DARKEST: f32 = 0.62;
+
+/// Light in [`DARKEST`]..1 on a grid over the crown, and the crown's own shape.
+pub(super) struct Shade {
+    least: Vec3,
+    cell_m: Vec3,
+    light: Vec<f32>,
+}
+
+impl Shade {
+    /// Gathers the cards.
+    pub fn new(skeleton: &Skeleton, cards: &[Card]) -> Self {
+        let nodes = skeleton.nodes.iter().map(|node| node.at);
+        let points = nodes.chain(cards.iter().map(Card::middle));
+        let (lo, hi) = points.fold((Vec3::MAX, Vec3::MIN), |(lo, hi), p| (lo.min(p), hi.max(p)));
+        let cell_m = ((hi - lo) / SIDE as f32).max(Vec3::splat(0.02));
+        let mut area = vec![0.0; SIDE * SIDE * SIDE];
+        for card in cards {
+            let [x, y, z] = cell_of(lo, cell_m, card.middle());
+            // Half of a card is gaps.
+            area[(y * SIDE + z) * SIDE + x] += 0.5 * card.length_m * card.width_m;
+        }
+        Self { least: lo, cell_m, light: fall(&area, cell_m) }
+    }
+
+    /// The factor on colours at a place, trilinear.
+    pub fn at(&self, point: Vec3) -> f32 {
+        let g = (point - self.least) / self.cell_m - 0.5;
+        let g = g.clamp(Vec3::ZERO, Vec3::splat(SIDE as f32 - 1.001));
+        let (x, y, z) = (g.x as usize, g.y as usize, g.z as usize);
+        let f = Vec3::new(g.x - x as f32, g.y - y as f32, g.z - z as f32);
+        let row = |y: usize, z: usize| {
+            let i = (y * SIDE + z) * SIDE + x;
+            self.light[i] + (self.light[i + 1] - self.light[i]) * f.x
+        };
+        let layer = |y: usize| row(y, z) + (row(y, z + 1) - row(y, z)) * f.z;
+        layer(y) + (layer(y + 1) - layer(y)) * f.y
+    }
+}
+
+fn cell_of(least: Vec3, cell_m: Vec3, point: Vec3) -> [usize; 3] {
+    let g = (point - least) / cell_m;
+    [g.x, g.y, g.z].map(|v| (v.max(0.0) as usize).min(SIDE - 1))
+}
+
+/// Light in every cell from leaf area in square metres.
+fn fall(area: &[f32], cell_m: Vec3) -> Vec<f32> {
+    let across = [cell_m.y * cell_m.z, cell_m.x * cell_m.z, cell_m.x * cell_m.y];
+    let mut light = vec![0.0; area.len()];
+    // Strides of x, y, z, and the share of the light that comes along each, in both senses for x and z.
+    for (axis, stride, share) in [(1, SIDE * SIDE, 0.5), (0, 1, 0.25), (2, SIDE, 0.25)] {
+        let pass = |a: f32| libm::expf(-0.55 * a / across[axis]);
+        let others: [usize; 2] =
+            if axis == 1 { [1, SIDE] } else { [SIDE * SIDE, if axis == 0 { SIDE } else { 1 }] };
+        for line in 0..SIDE * SIDE {
+            let start = (line / SIDE) * others[0] + (line % SIDE) * others[1];
+            let (mut down, mut up) = (1.0, 1.0);
+            for k in 0..SIDE {
+                let (i, j) = (start + (SIDE - 1 - k) * stride, start + k * stride);
+                let (through_i, through_j) = (pass(area[i]), pass(area[j]));
+                let weight = if axis == 1 { share } else { 0.5 * share };
+                light[i] += weight * down * through_i.sqrt();
+                down *= through_i;
+                if axis != 1 {
+                    light[j] += weight * up * through_j.sqrt();
+                    up *= through_j;
+                }
+            }
+        }
+    }
+    light.iter().map(|&l| DARKEST + (1.0 - DARKEST) * (l * 1.45).min(1.0)).collect()
+}

@@ -1,0 +1,463 @@
+//! Genes → stems: polylines with a radius at every node, in metres, after Weber & Penn (1995).
+//!
+//! A stem that forks becomes several `Stem`s: the arms after the first start at the node where the stem forks, with
+//! the rest of its length. Lengths, radii and the crown's envelope follow the paper; pulls up and down act on
+//! direction vectors, so no rotation accumulates twist.
+
+use std::f32::consts::{PI, TAU};
+use std::ops::Range;
+
+use glam::Vec3;
+
+use super::dice::Dice;
+use super::params::TreeParams;
+use super::plan::Plan;
+
+/// No stem: the parent of the trunk.
+pub(super) const NONE: u32 = u32::MAX;
+/// Branches keep this far above the ground, in metres.
+const GROUND_CLEARANCE_M: f32 = 0.25;
+
+/// A point of a stem.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Node {
+    /// Place in metres.
+    pub at: Vec3,
+    /// Radius in metres.
+    pub radius_m: f32,
+}
+
+/// A run of nodes with shrinking radius.
+#[derive(Clone, Debug)]
+pub(super) struct Stem {
+    /// 0 trunk, 1 primary, …
+    pub level: u32,
+    /// The stem that it grows from.
+    pub parent: u32,
+    /// Radius in metres of the parent where it starts; 0 for the trunk.
+    pub parent_radius_m: f32,
+    /// Its nodes.
+    pub nodes: Range<usize>,
+    /// Where its first node lies along the stem before it forked, 0 to 1; its last lies at 1.
+    pub from: f32,
+    /// Length in metres that the stem has with the part below a fork.
+    pub length_m: f32,
+    /// Radius in metres at its start, below any fork.
+    pub radius_m: f32,
+    /// Which primary branch it belongs to, for masses of foliage; 0 is the trunk.
+    pub clump: u32,
+    /// Whether it is an arm of a fork.
+    pub is_arm: bool,
+}
+
+/// All stems, parents before children.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Skeleton {
+    /// The nodes of all stems.
+    pub nodes: Vec<Node>,
+    /// The stems.
+    pub stems: Vec<Stem>,
+    /// Number of clumps.
+    pub clumps: u32,
+}
+
+impl Skeleton {
+    /// Place, unit direction and radius at `z`, the fraction of the whole stem (`Stem::from` to 1).
+    pub fn along(&self, stem: &Stem, z: f32) -> (Vec3, Vec3, f32) {
+        let nodes = &self.nodes[stem.nodes.clone()];
+        let last = nodes.len() - 1;
+        let t = ((z - stem.from) / (1.0 - stem.from)).clamp(0.0, 1.0) * last as f32;
+        let i = (t as usize).min(last - 1);
+        let (a, b, f) = (nodes[i], nodes[i + 1], t - i as f32);
+        let direction = (b.at - a.at).normalize_or(Vec3::Y);
+        (a.at.lerp(b.at, f), direction, a.radius_m + (b.radius_m - a.radius_m) * f)
+    }
+
+    /// Radius in metres at breast height of whatever of the trunk passes there.
+    pub fn trunk_radius_m(&self, height_m: f32) -> f32 {
+        let breast_m = if height_m < 13.0 { 0.1 * height_m } else { 1.3 };
+        let mut radius_m = 0.0_f32;
+        for stem in self.stems.iter().filter(|stem| stem.level == 0) {
+            for pair in self.nodes[stem.nodes.clone()].windows(2) {
+                let (a, b) = (pair[0], pair[1]);
+                if a.at.y <= breast_m && b.at.y > breast_m {
+                    let f = (breast_m - a.at.y) / (b.at.y - a.at.y);
+                    let at = a.at.lerp(b.at, f);
+                    let aside = (at.x * at.x + at.z * at.z).sqrt();
+                    radius_m = radius_m.max(aside.min(0.5) + a.radius_m + (b.radius_m - a.radius_m) * f);
+                }
+            }
+        }
+        radius_m.max(0.02)
+    }
+}
+
+/// A stem about to grow.
+struct Sprout {
+    level: u32,
+    parent: u32,
+    parent_radius_m: f32,
+    at: Vec3,
+    along: Vec3,
+    /// Axis that a positive bend turns around: away from the parent.
+    axis: Vec3,
+    /// Segment to start at.
+    segment: u32,
+    length_m: f32,
+    radius_m: f32,
+    /// Factor on the radius after forks.
+    thickness: f32,
+    clump: u32,
+    is_arm: bool,
+}
+
+/// What one family (a stem and the arms it forks into) still has to share.
+struct Family {
+    arms: u32,
+    fork_error: f32,
+}
+
+struct Grower<'a> {
+    params: &'a TreeParams,
+    plan: &'a Plan,
+    dice: &'a mut Dice,
+    skeleton: Skeleton,
+    /// The trunk's length in metres.
+    trunk_m: f32,
+}
+
+/// Grows the stems of one individual.
+pub(super) fn grow(params: &TreeParams, plan: &Plan, dice: &mut Dice) -> Skeleton {
+    let trunk_m = params.height_m * (1.0 + params.height_variation * 0.7 * dice.signed());
+    let mut grower = Grower { params, plan, dice, skeleton: Skeleton::default(), trunk_m };
+    grower.trunk();
+    for level in 1..plan.levels {
+        grower.branches(level);
+    }
+    grower.skeleton
+}
+
+/// The crown's envelope: length of a branch over the longest, at `ratio` = 1 at the crown's base and 0 at its top
+/// (Weber & Penn, ShapeRatio).
+fn envelope(shape: u32, ratio: f32) -> f32 {
+    match shape {
+        0 => 0.2 + 0.8 * ratio,
+        1 => 0.2 + 0.8 * libm::sinf(PI * ratio),
+        2 => 0.2 + 0.8 * libm::sinf(0.5 * PI * ratio),
+        3 => 1.0,
+        4 => 0.5 + 0.5 * ratio,
+        5 if ratio <= 0.7 => ratio / 0.7,
+        5 => (1.0 - ratio) / 0.3,
+        6 => 1.0 - 0.8 * ratio,
+        _ if ratio <= 0.7 => 0.5 + 0.5 * ratio / 0.7,
+        _ => 0.5 + 0.5 * (1.0 - ratio) / 0.3,
+    }
+}
+
+/// Radius at `z` in 0..1 over that at 0. Up to 1, `taper` leaves 1 − taper at the tip; beyond, the stem thins early.
+fn taper_at(taper: f32, z: f32) -> f32 {
+    if taper <= 1.0 {
+        return 1.0 - taper * z;
+    }
+    libm::powf((1.0 - z).max(0.0), 1.0 + 2.0 * (taper - 1.0))
+}
+
+/// `v` turned by `angle_rad` around the unit `axis` (Rodrigues).
+fn turned(v: Vec3, axis: Vec3, angle_rad: f32) -> Vec3 {
+    let (sin, cos) = libm::sincosf(angle_rad);
+    v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos))
+}
+
+/// A unit vector at right angles to the unit vector `v`.
+pub(super) fn perpendicular(v: Vec3) -> Vec3 {
+    let helper = if v.x.abs() < 0.8 { Vec3::X } else { Vec3::Z };
+    v.cross(helper).normalize_or(Vec3::Z)
+}
+
+impl Grower<'_> {
+    fn is_palm(&self) -> bool {
+        self.plan.levels == 1
+    }
+
+    fn trunk(&mut self) {
+        let azimuth = self.dice.unit() * TAU;
+        let (sin, cos) = libm::sincosf(azimuth);
+        let radius_m = self.trunk_m * self.params.radius_ratio;
+        self.stem(Sprout {
+            level: 0,
+            parent: NONE,
+            parent_radius_m: 0.0,
+            at: Vec3::ZERO,
+            along: Vec3::Y,
+            axis: Vec3::new(cos, 0.0, sin),
+            segment: 0,
+            length_m: self.trunk_m,
+            radius_m,
+            thickness: 1.0,
+            clump: 0,
+            is_arm: false,
+        });
+    }
+
+    /// Grows a stem and all arms that it forks into.
+    fn stem(&mut self, sprout: Sprout) {
+        let level = sprout.level;
+        let mut family =
+            Family { arms: self.plan.most_arms[level as usize] - 1, fork_error: self.dice.unit() - 0.5 };
+        let mut waiting = vec![sprout];
+        while let Some(sprout) = waiting.pop() {
+            self.run(sprout, &mut family, &mut waiting);
+        }
+    }
+
+    /// Grows one run to its tip; arms are left in `waiting`.
+    fn run(&mut self, sprout: Sprout, family: &mut Family, waiting: &mut Vec<Sprout>) {
+        let level = sprout.level as usize;
+        let segments = self.plan.segments[level];
+        let step_m = sprout.length_m / segments as f32;
+        let taper = if self.is_palm() { 0.45 * self.params.taper } else { self.params.taper };
+        let first = self.skeleton.nodes.len();
+        let (mut at, mut along, mut thickness) = (sprout.at, sprout.along, sprout.thickness);
+        for segment in sprout.segment..=segments {
+            let z = segment as f32 / segments as f32;
+            let radius_m = (sprout.radius_m * thickness * taper_at(taper, z)).max(0.0015);
+            let radius_m =
+                if segment == sprout.segment { radius_m.min(self.start_limit(&sprout)) } else { radius_m };
+            self.skeleton.nodes.push(Node { at, radius_m });
+            if segment == segments {
+                break;
+            }
+            along = self.bend(along, sprout.axis, level, z, segments);
+            let forks = self.forks(level, segment, sprout.segment, family);
+            if forks > 0 {
+                let arms = forks + 1;
+                thickness *= 1.0 / (0.35 + 0.65 * arms as f32).sqrt();
+                let axes = self.fork_axes(along, arms);
+                let half_rad = self.fork_angle_rad(level, arms);
+                let before = along;
+                for (i, &axis) in axes.iter().enumerate() {
+                    let direction = turned(before, axis, half_rad * (0.8 + 0.4 * self.dice.unit()));
+                    if i == 0 {
+                        along = direction;
+                        continue;
+                    }
+                    let away = before.cross(direction).normalize_or(axis);
+                    waiting.push(Sprout {
+                        at,
+                        along: direction,
+                        axis: if level == 0 { away } else { sprout.axis },
+                        segment,
+                        thickness,
+                        is_arm: true,
+                        parent: self.skeleton.stems.len() as u32,
+                        parent_radius_m: radius_m,
+                        ..sprout
+                    });
+                }
+            }
+            at += along * step_m;
+        }
+        self.finish(first, sprout);
+    }
+
+    /// A branch starts no thicker than what it grows from.
+    fn start_limit(&self, sprout: &Sprout) -> f32 {
+        if sprout.parent == NONE { f32::MAX } else { 0.88 * sprout.parent_radius_m }
+    }
+
+    /// Keeps a stem above the ground by shrinking it about its start, or drops it.
+    fn finish(&mut self, first: usize, sprout: Sprout) {
+        let nodes = &mut self.skeleton.nodes[first..];
+        if nodes.len() < 2 {
+            self.skeleton.nodes.truncate(first);
+            return;
+        }
+        let start = nodes[0].at;
+        let lowest = nodes.iter().fold(f32::MAX, |low, node| low.min(node.at.y));
+        let floor = GROUND_CLEARANCE_M.min(0.06 * self.trunk_m);
+        let mut length_m = sprout.length_m;
+        if sprout.level > 0 && lowest < floor {
+            let scale = (start.y - floor) / (start.y - lowest).max(1e-4);
+            if scale < 0.15 {
+                self.skeleton.nodes.truncate(first);
+                return;
+            }
+            nodes.iter_mut().for_each(|node| node.at = start + (node.at - start) * scale);
+            length_m *= scale;
+        }
+        let segments = self.plan.segments[sprout.level as usize];
+        self.skeleton.stems.push(Stem {
+            level: sprout.level,
+            parent: sprout.parent,
+            parent_radius_m: sprout.parent_radius_m,
+            nodes: first..self.skeleton.nodes.len(),
+            from: sprout.segment as f32 / segments as f32,
+            length_m,
+            radius_m: sprout.radius_m,
+            clump: sprout.clump,
+            is_arm: sprout.is_arm,
+        });
+    }
+
+    /// The direction after one more segment: curve, gnarl, and the pull up or down.
+    fn bend(&mut self, along: Vec3, axis: Vec3, level: usize, z: f32, segments: u32) -> Vec3 {
+        let p = self.params;
+        let palm = self.is_palm();
+        let curve_gain = [if palm { 0.3 } else { 0.0 }, 1.0, 0.7, 0.5][level];
+        let gnarl_gain = [if palm { 0.2 } else { 0.3 }, 0.9, 1.0, 0.8][level];
+        let step = 1.0 / segments as f32;
+        let back = if z + 0.5 * step >= 0.5 { 2.0 * p.curve_back_deg } else { 0.0 };
+        let gnarl = (p.curve_variation_deg * gnarl_gain * step).to_radians();
+        let curve = ((p.curve_deg + back) * curve_gain * step).to_radians() + gnarl * self.dice.signed();
+        let mut next = turned(along, axis, curve);
+        next = (next + axis * (gnarl * self.dice.signed())).normalize_or(along);
+        let down = [0.0, 0.9, 3.4, 2.6][level];
+        let up = [if palm { 0.4 } else { 0.0 }, 0.5, 0.9, 0.9][level];
+        let pull = if p.tropism < 0.0 { p.tropism * down } else { p.tropism * up };
+        // Leaders right themselves whatever the genes say.
+        let pull = if level == 0 && !palm { 0.45 } else { pull };
+        let level_part = Vec3::Y - next * next.y;
+        (next + level_part * (pull * step)).normalize_or(next)
+    }
+
+    /// How many arms fork off at the end of this segment (Weber & Penn's error diffusion).
+    fn forks(&mut self, level: usize, segment: u32, first: u32, family: &mut Family) -> u32 {
+        let p = self.params;
+        let z = segment as f32 / self.plan.segments[level] as f32;
+        let wish = if level == 0 {
+            let base = 1 + (p.clear_trunk * 0.35 * self.plan.segments[0] as f32) as u32;
+            if segment == base && first == 0 && p.base_splits > 0 {
+                return p.base_splits.min(std::mem::take(&mut family.arms).max(1));
+            }
+            let open = z >= p.clear_trunk.max(0.2) && z < 0.8 && !self.is_palm();
+            if open { 0.28 * p.segment_splits } else { 0.0 }
+        } else if level == 1 && segment > first && z < 0.7 {
+            0.22 * p.segment_splits
+        } else {
+            0.0
+        };
+        let forks = (wish + family.fork_error + 0.5).floor().max(0.0);
+        family.fork_error += wish - forks;
+        let forks = (forks as u32).min(family.arms);
+        family.arms -= forks;
+        forks
+    }
+
+    /// Axes to turn each arm of a fork around, spread evenly around the stem.
+    fn fork_axes(&mut self, along: Vec3, arms: u32) -> Vec<Vec3> {
+        let start = self.dice.unit() * TAU;
+        let x = perpendicular(along);
+        (0..arms).map(|i| turned(x, along, start + TAU * i as f32 / arms as f32)).collect()
+    }
+
+    fn fork_angle_rad(&self, level: usize, arms: u32) -> f32 {
+        let wide = if level == 0 && arms > 2 { 0.75 } else { 0.5 };
+        (self.params.split_angle_deg * wide).max(8.0).to_radians()
+    }
+
+    /// Grows all stems of `level` on those of the level below.
+    fn branches(&mut self, level: u32) {
+        let parents: Vec<usize> =
+            (0..self.skeleton.stems.len()).filter(|&i| self.skeleton.stems[i].level == level - 1).collect();
+        let bare_part = if level == 1 { self.params.clear_trunk.max(0.02) } else { 0.14 };
+        let bearing = |stem: &Stem| (0.97 - stem.from.max(bare_part)).max(0.0);
+        let whole: f32 = parents.iter().map(|&i| bearing(&self.skeleton.stems[i])).sum();
+        let (mut error, mut azimuth) = (0.5, self.dice.unit() * TAU);
+        for index in parents {
+            let parent = self.skeleton.stems[index].clone();
+            let length = bearing(&parent);
+            let wish = if level == 1 {
+                self.plan.primaries * length / whole.max(1e-3)
+            } else {
+                self.wish(level, &parent) * length / 0.83
+            };
+            error += wish;
+            let count = error.floor().max(0.0) as u32;
+            error -= count as f32;
+            for k in 0..count {
+                let place = (k as f32 + 0.5 + 0.35 * self.dice.signed()) / count as f32;
+                let z = parent.from.max(bare_part) + length * place;
+                azimuth += self.params.rotation_deg.to_radians() + 0.18 * self.dice.signed();
+                self.branch(level, index, &parent, z, azimuth);
+            }
+        }
+    }
+
+    /// Children of a stem of level 1 or 2 (Weber & Penn, Stems).
+    fn wish(&self, level: u32, parent: &Stem) -> f32 {
+        let most = self.plan.children[level as usize - 2];
+        if level == 2 {
+            let longest = self.trunk_m * self.params.primary_length;
+            return most * (0.2 + 0.8 * (parent.length_m / longest.max(0.01)).min(1.2));
+        }
+        most
+    }
+
+    fn branch(&mut self, level: u32, index: usize, parent: &Stem, z: f32, azimuth: f32) {
+        let (at, along, parent_radius_m) = self.skeleton.along(parent, z);
+        let base = self.params.clear_trunk;
+        let ratio = ((1.0 - z) / (1.0 - base)).clamp(0.0, 1.0);
+        let length_m = self.length_m(level, parent, z, ratio);
+        if length_m < 0.02 {
+            return;
+        }
+        let x = perpendicular(along);
+        let mut side = turned(x, along, azimuth);
+        if level > 1 {
+            // Twigs spread sideways towards the light rather than straight down or up.
+            let flat = if self.plan.habit == super::params::Habit::Needle { 0.3 } else { 0.6 };
+            side.y = side.y * flat + 0.12;
+            side = (side - along * side.dot(along)).normalize_or(x);
+        }
+        let down = self.down_rad(level, ratio);
+        let (sin, cos) = libm::sincosf(down);
+        let direction = (along * cos + side * sin).normalize_or(side);
+        let radius_m = self.radius_m(level, parent, length_m, parent_radius_m);
+        let clump = if level == 1 {
+            self.skeleton.clumps += 1;
+            self.skeleton.clumps
+        } else {
+            parent.clump
+        };
+        self.stem(Sprout {
+            level,
+            parent: index as u32,
+            parent_radius_m,
+            at,
+            along: direction,
+            axis: along.cross(side).normalize_or(x),
+            segment: 0,
+            length_m,
+            radius_m,
+            thickness: 1.0,
+            clump,
+            is_arm: false,
+        });
+    }
+
+    fn length_m(&mut self, level: u32, parent: &Stem, z: f32, ratio: f32) -> f32 {
+        let p = self.params;
+        let vary = 1.0 + 0.14 * self.dice.signed();
+        match level {
+            1 => self.trunk_m * p.primary_length * envelope(p.crown_shape, ratio) * vary,
+            2 => parent.length_m * p.secondary_length * (1.0 - 0.6 * z) * 1.25 * vary,
+            _ => parent.length_m * (0.35 + 0.35 * p.secondary_length) * (1.0 - 0.6 * z) * 1.25 * vary,
+        }
+    }
+
+    fn radius_m(&self, level: u32, parent: &Stem, length_m: f32, parent_radius_m: f32) -> f32 {
+        let ratio = (length_m / parent.length_m.max(0.01)).min(1.0);
+        let radius_m = parent.radius_m * libm::powf(ratio, self.params.radius_power);
+        let thin = [0.0, 0.007, 0.0055, 0.005][level as usize];
+        radius_m.clamp(thin * length_m, (0.045 * length_m).max(0.004)).min(0.8 * parent_radius_m).max(0.0025)
+    }
+
+    /// Angle between a new branch and its parent; `ratio` is 1 at the crown's base, 0 at its top.
+    fn down_rad(&mut self, level: u32, ratio: f32) -> f32 {
+        let (angle, vary) = (self.params.down_angle_deg, self.params.down_angle_variation_deg);
+        let (angle, vary) = if level == 1 { (angle, vary) } else { (26.0 + 0.32 * angle, 0.3 * vary.abs()) };
+        let change =
+            if vary < 0.0 { vary * (1.0 - 2.0 * (0.2 + 0.8 * ratio)) } else { vary * self.dice.signed() };
+        (angle + change).clamp(12.0, 150.0).to_radians()
+    }
+}
