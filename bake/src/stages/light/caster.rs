@@ -234,7 +234,7 @@ impl Filter {
     /// parts at a height (the variance of a box is width²/12, of a disc radius²/4).
     fn widths(&self, height_m: f32) -> [f32; 2] {
         let disc = (height_m * self.spread).min(self.most_m);
-        self.texel_m.map(|texel| (6.0 * (disc * disc / 4.0 + texel * texel / 12.0)).sqrt())
+        self.texel_m.map(|texel| (6.0 * (disc * disc / 4.0 + texel * texel / 5.0)).sqrt())
     }
 
     fn slabs(&self) -> usize {

@@ -68,16 +68,22 @@ pub fn light_map(
     LightMap { image }
 }
 
-/// Interleaved gradient noise (Jimenez 2014) in [0, 1): even over any 3×3 texels, so that it cannot be seen.
+/// Interleaved gradient noise (Jimenez 2014) in [0, 1): even over any 3×3 texels, so that it cannot be seen. The
+/// inner fraction is kept as an integer of 32 bits, which wraps by itself.
+#[inline]
 fn dither(i: usize, j: usize) -> f32 {
-    let inner = 0.067_110_56 * i as f32 + 0.005_837_15 * j as f32;
-    let outer = 52.982_918 * (inner - inner.floor());
-    outer - outer.floor()
+    const UNIT: f64 = 4_294_967_296.0;
+    const ACROSS: u32 = (0.067_110_56 * UNIT) as u32;
+    const DOWN: u32 = (0.005_837_15 * UNIT) as u32;
+    let inner = (i as u32).wrapping_mul(ACROSS).wrapping_add((j as u32).wrapping_mul(DOWN));
+    let outer = 52.982_918 * ((inner >> 8) as f32 * (1.0 / 16_777_216.0));
+    outer - outer as i32 as f32
 }
 
 /// A value in [0, 1] as a byte, rounded up or down by the noise; 0 and 1 stay exact.
+#[inline]
 fn quantise(value: f32, noise: f32) -> u8 {
-    (value * 255.0 + noise * 0.999) as u8
+    (value * 255.0 + noise * 0.999) as i32 as u8
 }
 
 /// Bilinear interpolation from a square grid to the light map's texels: along each axis, where each texel's centre

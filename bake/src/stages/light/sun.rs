@@ -47,7 +47,14 @@ impl Sun {
     /// the horizon, in radii; `edge`: how much that changes over a texel, so that no edge is sharper than one.
     #[inline]
     pub fn visibility(&self, margin: f32, edge: f32) -> f32 {
-        if self.is_up() { (disc_above(margin / edge.max(1.0)) / self.open).min(1.0) } else { 0.0 }
+        let edge = edge.max(1.0);
+        if margin <= -edge || !self.is_up() {
+            0.0
+        } else if margin >= edge {
+            1.0
+        } else {
+            (disc_above(margin / edge) / self.open).min(1.0)
+        }
     }
 }
 
