@@ -155,27 +155,30 @@ impl Shadow {
             return;
         }
         let corners = if area > 0.0 { [a, b, c] } else { [a, c, b] };
-        let low = a[1].min(b[1]).min(c[1]).max(0.0);
-        let high = a[1].max(b[1]).max(c[1]).min(self.rows as f32);
-        let mut row = low.ceil();
-        while row < high {
+        // Each edge as its crossing with row 0 and its run per row; rising edges bound the right, falling the left.
+        let edges: [(f32, f32, f32); 3] = std::array::from_fn(|k| {
+            let (p, q) = (corners[k], corners[(k + 1) % 3]);
+            let rise = q[1] - p[1];
+            let run = if rise == 0.0 { 0.0 } else { (q[0] - p[0]) / rise };
+            (p[0] - p[1] * run, run, rise)
+        });
+        let low = ceil(a[1].min(b[1]).min(c[1]));
+        let high = ceil(a[1].max(b[1]).max(c[1])).min(self.rows);
+        for row in low..high {
             let (mut from, mut to) = (0.0_f32, self.columns as f32);
-            for k in 0..3 {
-                let (p, q) = (corners[k], corners[(k + 1) % 3]);
-                let rise = q[1] - p[1];
-                let cross = p[0] + (q[0] - p[0]) * (row - p[1]) / rise;
+            for (start, run, rise) in edges {
+                let cross = start + run * row as f32;
                 if rise > 0.0 {
                     to = to.min(cross);
                 } else if rise < 0.0 {
                     from = from.max(cross);
                 }
             }
-            let start = row as usize * self.columns;
-            let (first, end) = (from.ceil() as usize, (to.ceil() as usize).min(self.columns));
+            let (first, end) = (ceil(from), ceil(to));
             if first < end {
+                let start = row * self.columns;
                 layer[start + first..start + end].iter_mut().for_each(|cell| *cell *= left);
             }
-            row += 1.0;
         }
     }
 
@@ -183,35 +186,46 @@ impl Shadow {
     fn blur(&self, layer: &mut [f32], widths_m: [f32; 2]) {
         let radius = |axis: usize| (widths_m[axis] * self.cells_per_m[axis] * 0.5) as usize;
         let (across, up) = (radius(0), radius(1));
-        let mut line = vec![0.0; self.columns.max(self.rows)];
+        let mut copy = vec![0.0; layer.len()];
         for _ in 0..if across > 0 { 2 } else { 0 } {
-            for row in layer.chunks_exact_mut(self.columns) {
-                box_filter(&mut line, row, 0, 1, self.columns, across);
-            }
+            copy.copy_from_slice(layer);
+            let rows = layer.chunks_exact_mut(self.columns).zip(copy.chunks_exact(self.columns));
+            rows.for_each(|(to, from)| box_filter(to, from, 1, across));
         }
         for _ in 0..if up > 0 { 2 } else { 0 } {
-            for column in 0..self.columns {
-                box_filter(&mut line, layer, column, self.columns, self.rows, up);
-            }
+            copy.copy_from_slice(layer);
+            box_filter(layer, &copy, self.columns, up);
         }
     }
 }
 
-/// Mean over 2·radius+1 values; beyond the ends everything is lit.
-fn box_filter(line: &mut [f32], data: &mut [f32], first: usize, stride: usize, count: usize, radius: usize) {
-    for (k, value) in line[..count].iter_mut().enumerate() {
-        *value = 1.0 - data[first + k * stride];
-    }
-    let mut sum: f32 = line[..radius.min(count)].iter().sum();
+/// Smallest whole number not below a number; 0 for negative ones.
+#[inline]
+fn ceil(value: f32) -> usize {
+    let whole = value.max(0.0) as i32;
+    (whole + i32::from((whole as f32) < value)) as usize
+}
+
+/// Mean over 2·radius+1 lines of `width` values each; beyond the ends everything is lit.
+fn box_filter(to: &mut [f32], from: &[f32], width: usize, radius: usize) {
+    let count = from.len() / width;
+    let line = |at: usize| &from[at * width..(at + 1) * width];
     let scale = 1.0 / (2 * radius + 1) as f32;
-    for k in 0..count {
-        if k + radius < count {
-            sum += line[k + radius];
+    // The sum of what is held back, so that nothing need be added beyond the ends.
+    let mut sums = vec![0.0; width];
+    let change = |sums: &mut [f32], at: usize, sign: f32| {
+        sums.iter_mut().zip(line(at)).for_each(|(sum, value)| *sum += sign * (1.0 - value));
+    };
+    (0..radius.min(count)).for_each(|at| change(&mut sums, at, 1.0));
+    for at in 0..count {
+        if at + radius < count {
+            change(&mut sums, at + radius, 1.0);
         }
-        if k > radius {
-            sum -= line[k - radius - 1];
+        if at > radius {
+            change(&mut sums, at - radius - 1, -1.0);
         }
-        data[first + k * stride] = (1.0 - sum * scale).clamp(0.0, 1.0);
+        let values = to[at * width..(at + 1) * width].iter_mut();
+        values.zip(&sums).for_each(|(value, sum)| *value = (1.0 - sum * scale).clamp(0.0, 1.0));
     }
 }
 

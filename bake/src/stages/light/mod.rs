@@ -51,17 +51,16 @@ pub fn light_map(
     let to_crowns = Resampling::from_texels(side, shade.crown_side);
     let mut image = Image8::new(side as u32, side as u32, 3);
     image.data.par_chunks_mut(3 * side).enumerate().for_each(|(j, row)| {
-        let margin = to_samples.row(j, &sun_on_land.margin);
-        let edge = to_samples.row(j, &sun_on_land.edge);
-        let cosine = to_samples.row(j, &sun_on_land.cosine);
-        let sky = to_sky.row(j, &sky_on_land);
-        let crowns = to_crowns.row(j, &shade.crowns);
+        let struck = to_samples.row(j, &sun_on_land);
+        let sky = to_sky.row(j, sky_on_land.as_chunks::<1>().0);
+        let crowns = to_crowns.row(j, shade.crowns.as_chunks::<1>().0);
         let leaves = &shade.sun[j * side..(j + 1) * side];
         for (i, texel) in row.chunks_exact_mut(3).enumerate() {
-            let visible = sun.visibility(margin[i], edge[i]) * leaves[i];
+            let [margin, edge, cosine, _] = struck[i];
+            let visible = sun.visibility(margin, edge) * leaves[i];
             let noise = dither(i, j);
-            texel[0] = quantise((sky[i] * crowns[i]).min(1.0), noise);
-            texel[1] = quantise(cosine[i].max(0.0) * visible, noise);
+            texel[0] = quantise((sky[i][0] * crowns[i][0]).min(1.0), noise);
+            texel[1] = quantise(cosine.max(0.0) * visible, noise);
             texel[2] = quantise(visible, noise);
         }
     });
@@ -90,7 +89,7 @@ fn quantise(value: f32, noise: f32) -> u8 {
 /// lies.
 struct Resampling {
     side: usize,
-    places: Vec<(usize, f32)>,
+    places: Vec<(u32, f32)>,
 }
 
 impl Resampling {
@@ -109,23 +108,21 @@ impl Resampling {
         let places = (0..texels).map(|texel| {
             let at = place((texel as f32 + 0.5) / texels as f32).clamp(0.0, (side - 1) as f32);
             let whole = (at as usize).min(last);
-            (whole, at - whole as f32)
+            (whole as u32, at - whole as f32)
         });
         Self { side, places: places.collect() }
     }
 
-    /// One row of texels.
-    fn row(&self, texel_row: usize, grid: &[f32]) -> Vec<f32> {
+    /// One row of texels, from a grid of vectors.
+    fn row<const N: usize>(&self, texel_row: usize, grid: &[[f32; N]]) -> Vec<[f32; N]> {
         let (j, v) = self.places[texel_row];
-        let north = &grid[j * self.side..(j + 1) * self.side];
-        let below = (j + 1).min(self.side - 1);
-        let south = &grid[below * self.side..(below + 1) * self.side];
-        let blended: Vec<f32> = north.iter().zip(south).map(|(n, s)| n + (s - n) * v).collect();
-        let last = self.side - 1;
-        let texel = |&(i, u): &(usize, f32)| {
-            let (west, east) = (blended[i], blended[(i + 1).min(last)]);
-            west + (east - west) * u
-        };
+        let line = |j: usize| &grid[j * self.side..(j + 1) * self.side];
+        let (north, south) = (line(j as usize), line((j as usize + 1).min(self.side - 1)));
+        let blend =
+            |a: &[f32; N], b: &[f32; N], part: f32| std::array::from_fn(|n| a[n] + (b[n] - a[n]) * part);
+        let mut blended: Vec<[f32; N]> = north.iter().zip(south).map(|(n, s)| blend(n, s, v)).collect();
+        blended.push(blended[self.side - 1]);
+        let texel = |&(i, u): &(u32, f32)| blend(&blended[i as usize], &blended[i as usize + 1], u);
         self.places.iter().map(texel).collect()
     }
 
@@ -133,7 +130,7 @@ impl Resampling {
     fn whole(&self, texels: usize, grid: &[f32]) -> Vec<f32> {
         let mut whole = vec![0.0; texels * texels];
         let rows = whole.par_chunks_mut(texels).enumerate();
-        rows.for_each(|(j, row)| row.copy_from_slice(&self.row(j, grid)));
+        rows.for_each(|(j, row)| row.copy_from_slice(self.row(j, grid.as_chunks::<1>().0).as_flattened()));
         whole
     }
 }

@@ -74,17 +74,9 @@ pub(super) fn disc_above(distance: f32) -> f32 {
     table[whole] + (table[whole + 1] - table[whole]) * (at - whole as f32)
 }
 
-/// The sun at every sample of the field.
-pub(super) struct OnLand {
-    /// How far the disc's middle stands above the land, in radii.
-    pub margin: Vec<f32>,
-    /// Half of how much the margin changes from this sample to its neighbours, in radii.
-    pub edge: Vec<f32>,
-    /// n·l, negative on what is turned away.
-    pub cosine: Vec<f32>,
-}
-
-pub(super) fn on_land(sun: &Sun, land: &Landform) -> OnLand {
+/// The sun at every sample of the field: how far the disc's middle stands above the land, in radii; a third of how
+/// much that changes across the sample's neighbours; n·l, negative on what is turned away; and 0.
+pub(super) fn on_land(sun: &Sun, land: &Landform) -> Vec<[f32; 4]> {
     let field = &land.field;
     let side = field.side as usize;
     let (lowest, _) = field.range_m();
@@ -98,19 +90,17 @@ pub(super) fn on_land(sun: &Sun, land: &Landform) -> OnLand {
         let above = (sun.sin_elevation - sun.cos_elevation * *slope) / (1.0 + *slope * *slope).sqrt();
         *slope = above / sun.sin_radius;
     });
-    let mut edge = vec![0.0; side * side];
-    let mut cosine = vec![0.0; side * side];
-    edge.par_chunks_mut(side).zip(cosine.par_chunks_mut(side)).enumerate().for_each(
-        |(j, (edges, cosines))| {
-            let (north, south) = (j.saturating_sub(1) * side, (j + 1).min(side - 1) * side);
-            for i in 0..side {
-                let (west, east) = (i.saturating_sub(1), (i + 1).min(side - 1));
-                let dx = margin[j * side + east] - margin[j * side + west];
-                let dz = margin[south + i] - margin[north + i];
-                edges[i] = 0.35 * (dx * dx + dz * dz).sqrt();
-                cosines[i] = field.normal_at(i as u32, j as u32).dot(sun.direction);
-            }
-        },
-    );
-    OnLand { margin, edge, cosine }
+    let mut struck = vec![[0.0; 4]; side * side];
+    struck.par_chunks_mut(side).enumerate().for_each(|(j, row)| {
+        let (north, south) = (j.saturating_sub(1) * side, (j + 1).min(side - 1) * side);
+        for (i, sample) in row.iter_mut().enumerate() {
+            let (west, east) = (i.saturating_sub(1), (i + 1).min(side - 1));
+            let dx = margin[j * side + east] - margin[j * side + west];
+            let dz = margin[south + i] - margin[north + i];
+            let edge = 0.35 * (dx * dx + dz * dz).sqrt();
+            let cosine = field.normal_at(i as u32, j as u32).dot(sun.direction);
+            *sample = [margin[j * side + i], edge, cosine, 0.0];
+        }
+    });
+    struck
 }

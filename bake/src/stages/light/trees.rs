@@ -21,7 +21,7 @@ const BAND_ROWS: usize = 32;
 /// Shadows end here, in metres, however low the sun.
 const LONGEST_M: f32 = 1000.0;
 /// A crown's part of the sky below this is left out.
-const LEAST_CROWN: f32 = 0.004;
+const LEAST_CROWN: f32 = 0.008;
 
 /// What trees leave of sun and sky.
 pub(super) struct Shade {
