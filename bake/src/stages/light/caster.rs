@@ -7,6 +7,8 @@
 //! smooth; and by the sun's disc, more the higher a part stands, so that the trunk's shadow is sharp and the
 //! crown's is soft.
 
+use std::ops::Range;
+
 use glam::Vec3;
 
 use super::sun::Sun;
@@ -15,12 +17,11 @@ use crate::model::{Material, Mesh};
 /// Part of the light that a leaf card holds back: cards are about half empty.
 const LEAF_OPACITY: f32 = 0.55;
 /// Cells of a picture, at most, across and up.
-const MOST_CELLS: [usize; 2] = [112, 224];
+const MOST_CELLS: [usize; 2] = [96, 192];
 /// Cells per texel of the light map.
 const CELLS_PER_TEXEL: f32 = 4.0;
-/// Slabs of height that are filtered separately.
-const SLABS: usize = 4;
-
+/// Triangles wholly below this height are roots in the ground.
+const LOWEST_M: f32 = -0.25;
 /// What a crown hides of the sky, as a sphere squashed to its height.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Crown {
@@ -105,14 +106,16 @@ impl Shadow {
         let transmittance = vec![1.0; columns * rows];
         let mut shadow = Self { transmittance, columns, rows, origin, cells_per_m, low, high, reach_m };
         let grid: Vec<[f32; 2]> = points.iter().map(|&p| shadow.cell(p)).collect();
-        let slabs = filter.slabs();
-        for slab in 0..slabs {
-            let range = [top_m * slab as f32 / slabs as f32, top_m * (slab + 1) as f32 / slabs as f32];
+        let slabs = filter.slabs(top_m);
+        for (slab, range) in slabs.windows(2).enumerate() {
             let mut layer = vec![1.0; columns * rows];
-            if shadow.draw_slab(mesh, &grid, range, slab + 1 == slabs, &mut layer) {
-                let widths = filter.widths(0.5 * (range[0] + range[1]));
-                shadow.blur(&mut layer, widths);
-                shadow.transmittance.iter_mut().zip(&layer).for_each(|(whole, slab)| *whole *= slab);
+            let widths = filter.widths(0.5 * (range[0] + range[1].min(top_m)));
+            let range = [if slab == 0 { f32::MIN } else { range[0] }, range[1]];
+            if let Some(drawn) = shadow.draw_slab(mesh, &grid, range, &mut layer) {
+                let blurred = shadow.blur(&mut layer, drawn, widths);
+                let cells = blurred.start * columns..blurred.end * columns;
+                let whole = &mut shadow.transmittance[cells.clone()];
+                whole.iter_mut().zip(&layer[cells]).for_each(|(whole, slab)| *whole *= slab);
             }
         }
         Some(shadow)
@@ -123,37 +126,34 @@ impl Shadow {
         [(a - self.origin[0]) * self.cells_per_m[0], (c - self.origin[1]) * self.cells_per_m[1]]
     }
 
-    /// Draws the triangles whose middle lies in a range of heights; whether there were any.
+    /// Draws the triangles whose middle lies in a range of heights; the rows that it touched.
     fn draw_slab(
         &self,
         mesh: &Mesh,
         grid: &[[f32; 2]],
         range: [f32; 2],
-        top: bool,
         layer: &mut [f32],
-    ) -> bool {
-        let mut any = false;
+    ) -> Option<Range<usize>> {
+        let mut drawn: Option<Range<usize>> = None;
         for part in &mesh.parts {
             let left = 1.0 - opacity(part.material);
             for triangle in &part.triangles {
                 let heights = triangle.map(|v| mesh.positions[v as usize][1]);
                 let middle = (heights[0] + heights[1] + heights[2]) / 3.0;
-                let own = (middle >= range[0] || range[0] == 0.0) && (middle < range[1] || top);
-                if own && heights.iter().any(|&height| height > -0.25) {
-                    self.fill(triangle.map(|v| grid[v as usize]), left, layer);
-                    any = true;
+                if middle >= range[0] && middle < range[1] && heights.iter().any(|&y| y > LOWEST_M) {
+                    let rows = self.fill(triangle.map(|v| grid[v as usize]), left, layer);
+                    let before = drawn.unwrap_or(rows.clone());
+                    drawn = Some(before.start.min(rows.start)..before.end.max(rows.end));
                 }
             }
         }
-        any
+        drawn
     }
 
     /// Multiplies the cells whose middle lies in a triangle; edges belong to one of the triangles that share them.
-    fn fill(&self, [a, b, c]: [[f32; 2]; 3], left: f32, layer: &mut [f32]) {
+    /// Returns its rows.
+    fn fill(&self, [a, b, c]: [[f32; 2]; 3], left: f32, layer: &mut [f32]) -> Range<usize> {
         let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-        if area == 0.0 {
-            return;
-        }
         let corners = if area > 0.0 { [a, b, c] } else { [a, c, b] };
         // Each edge as its crossing with row 0 and its run per row; rising edges bound the right, falling the left.
         let edges: [(f32, f32, f32); 3] = std::array::from_fn(|k| {
@@ -180,22 +180,26 @@ impl Shadow {
                 layer[start + first..start + end].iter_mut().for_each(|cell| *cell *= left);
             }
         }
+        low..high.max(low)
     }
 
-    /// A tent, as two boxes after each other, along both axes.
-    fn blur(&self, layer: &mut [f32], widths_m: [f32; 2]) {
+    /// A tent, as two boxes after each other, along both axes, of the rows that were drawn; the rows it changed.
+    fn blur(&self, layer: &mut [f32], drawn: Range<usize>, widths_m: [f32; 2]) -> Range<usize> {
         let radius = |axis: usize| (widths_m[axis] * self.cells_per_m[axis] * 0.5) as usize;
         let (across, up) = (radius(0), radius(1));
+        let rows = drawn.start.saturating_sub(2 * up)..(drawn.end + 2 * up).min(self.rows);
+        let layer = &mut layer[rows.start * self.columns..rows.end * self.columns];
         let mut copy = vec![0.0; layer.len()];
         for _ in 0..if across > 0 { 2 } else { 0 } {
             copy.copy_from_slice(layer);
-            let rows = layer.chunks_exact_mut(self.columns).zip(copy.chunks_exact(self.columns));
-            rows.for_each(|(to, from)| box_filter(to, from, 1, across));
+            let lines = layer.chunks_exact_mut(self.columns).zip(copy.chunks_exact(self.columns));
+            lines.for_each(|(to, from)| box_filter(to, from, 1, across));
         }
         for _ in 0..if up > 0 { 2 } else { 0 } {
             copy.copy_from_slice(layer);
             box_filter(layer, &copy, self.columns, up);
         }
+        rows
     }
 }
 
@@ -241,17 +245,26 @@ impl Filter {
     fn new(sun: &Sun, texel_m: f32, top_m: f32) -> Self {
         let sin_elevation = sun.sin_elevation.max(0.02);
         let texel_m = [texel_m, texel_m * sin_elevation];
-        Self { texel_m, spread: sun.sin_radius / sin_elevation, most_m: 0.6 * top_m }
+        Self { texel_m, spread: sun.sin_radius / sin_elevation, most_m: 0.6 * top_m.max(0.0) }
     }
 
     /// Widths across and up of a box that, applied twice, spreads as much as a texel and the disc together, for
     /// parts at a height (the variance of a box is width²/12, of a disc radius²/4).
     fn widths(&self, height_m: f32) -> [f32; 2] {
         let disc = (height_m * self.spread).min(self.most_m);
-        self.texel_m.map(|texel| (6.0 * (disc * disc / 4.0 + texel * texel / 5.0)).sqrt())
+        self.texel_m.map(|texel| (6.0 * (disc * disc / 4.0 + texel * texel / 4.0)).sqrt())
     }
 
-    fn slabs(&self) -> usize {
-        if self.most_m / 0.6 * self.spread < 0.5 * self.texel_m[1] { 1 } else { SLABS }
+    /// Limits of the slabs of height that are filtered separately: more the softer the sun, thinner near the ground.
+    fn slabs(&self, top_m: f32) -> Vec<f32> {
+        let disc = top_m * self.spread;
+        let count = match disc {
+            _ if disc < 0.5 * self.texel_m[1] => 1,
+            _ if disc < 0.7 * self.texel_m[0] => 2,
+            _ => 4,
+        };
+        let limit = |k: u32| k as f32 / count as f32;
+        let limits = (0..count).map(|k| limit(k) * limit(k) * top_m);
+        limits.chain([f32::INFINITY]).collect::<Vec<f32>>()
     }
 }

@@ -51,7 +51,14 @@ fn scene(count: u32, cards: u32) -> (Landform, Placement, Vec<Mesh>) {
     let instances = (0..count).map(|k| {
         let random = |n: i32| hash01(9, k as i32, n, 3);
         let (x, z) = (random(0) * 1000.0 - 500.0, random(1) * 1000.0 - 500.0);
-        at(k % 5, x, land.field.height_m(x, z) - 0.1, z, random(2) * 6.28, 0.8 + 0.4 * random(3))
+        at(
+            k % 5,
+            x,
+            land.field.height_m(x, z) - 0.1,
+            z,
+            random(2) * std::f32::consts::TAU,
+            0.8 + 0.4 * random(3),
+        )
     });
     let placement = Placement { instances: instances.collect() };
     (land, placement, casters)
