@@ -96,18 +96,23 @@ pub struct TerrainMesh {
     pub error_m: f32,
 }
 
-/// What the terrain's levels of detail need at run time (thesis 3.2.1 and 3.2.2), in the layouts that the page on
-/// `GSC_heightfield` specifies.
+/// What the terrain's levels of detail need at run time (thesis 3.2.1 and 3.2.2). The page on `GSC_heightfield`
+/// says which sample splits which triangle of the bintree, and what its parents a and b are. Arrays of side² values
+/// are indexed like `Heightfield::heights_m`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TerrainLod {
-    /// Nested wedgie half-thickness in metres per bintree triangle, indexed by the vertex that splits it: side²
-    /// values. A triangle's value is never less than those of its children.
+    /// Half thickness in metres of the wedgie of the triangles that a sample splits: |displacement| plus the
+    /// greatest among the samples that split their halves. So a wedgie holds those of its children, and never is
+    /// thinner. The four corners, which split nothing, hold the greatest of all.
     pub wedgies_m: Vec<f32>,
-    /// Height in metres of each sample's place in the next coarser uniform triangulation less its own: side² values.
+    /// ½(h(a) + h(b)) − h in metres: from the sample to its place in the uniform triangulation of the next level,
+    /// diagonals alternating as in the bintree. 0 for the four corners.
     pub displacements_m: Vec<f32>,
-    /// The coarsest level of detail at which a sample is still used (0 = only at full resolution): side² values.
+    /// The coarsest level of detail at which a sample is still used (0 = only at full resolution): the greatest l
+    /// such that 2^l divides both its coordinates; k for the four corners.
     pub levels: Vec<u8>,
-    /// Lowest and highest sample of each block, from 1×1 block of the whole field down to blocks of 2×2 cells,
-    /// row by row, coarsest first: Σ 4^l pairs.
+    /// Lowest and highest sample of each block, displaced or not, its border included; from the one block of the
+    /// whole field down to blocks of 2×2 cells, row by row from the north-west, coarsest first: Σ 4^l pairs,
+    /// l = 0 … k−1.
     pub block_ranges_m: Vec<[f32; 2]>,
 }

@@ -7,6 +7,8 @@
 //! smooth; and by the sun's disc, more the higher a part stands, so that the trunk's shadow is sharp and the
 //! crown's is soft.
 
+use std::ops::Range;
+
 use glam::Vec3;
 
 use super::sun::Sun;
@@ -15,12 +17,11 @@ use crate::model::{Material, Mesh};
 /// Part of the light that a leaf card holds back: cards are about half empty.
 const LEAF_OPACITY: f32 = 0.55;
 /// Cells of a picture, at most, across and up.
-const MOST_CELLS: [usize; 2] = [112, 224];
+const MOST_CELLS: [usize; 2] = [96, 192];
 /// Cells per texel of the light map.
 const CELLS_PER_TEXEL: f32 = 4.0;
-/// Slabs of height that are filtered separately.
-const SLABS: usize = 4;
-
+/// Triangles wholly below this height are roots in the ground.
+const LOWEST_M: f32 = -0.25;
 /// What a crown hides of the sky, as a sphere squashed to its height.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Crown {
@@ -105,14 +106,16 @@ impl Shadow {
         let transmittance = vec![1.0; columns * rows];
         let mut shadow = Self { transmittance, columns, rows, origin, cells_per_m, low, high, reach_m };
         let grid: Vec<[f32; 2]> = points.iter().map(|&p| shadow.cell(p)).collect();
-        let slabs = filter.slabs();
-        for slab in 0..slabs {
-            let range = [top_m * slab as f32 / slabs as f32, top_m * (slab + 1) as f32 / slabs as f32];
+        let slabs = filter.slabs(top_m);
+        for (slab, range) in slabs.windows(2).enumerate() {
             let mut layer = vec![1.0; columns * rows];
-            if shadow.draw_slab(mesh, &grid, range, slab + 1 == slabs, &mut layer) {
-                let widths = filter.widths(0.5 * (range[0] + range[1]));
-                shadow.blur(&mut layer, widths);
-                shadow.transmittance.iter_mut().zip(&layer).for_each(|(whole, slab)| *whole *= slab);
+            let widths = filter.widths(0.5 * (range[0] + range[1].min(top_m)));
+            let range = [if slab == 0 { f32::MIN } else { range[0] }, range[1]];
+            if let Some(drawn) = shadow.draw_slab(mesh, &grid, range, &mut layer) {
+                let blurred = shadow.blur(&mut layer, drawn, widths);
+                let cells = blurred.start * columns..blurred.end * columns;
+                let whole = &mut shadow.transmittance[cells.clone()];
+                whole.iter_mut().zip(&layer[cells]).for_each(|(whole, slab)| *whole *= slab);
             }
         }
         Some(shadow)
@@ -123,95 +126,110 @@ impl Shadow {
         [(a - self.origin[0]) * self.cells_per_m[0], (c - self.origin[1]) * self.cells_per_m[1]]
     }
 
-    /// Draws the triangles whose middle lies in a range of heights; whether there were any.
+    /// Draws the triangles whose middle lies in a range of heights; the rows that it touched.
     fn draw_slab(
         &self,
         mesh: &Mesh,
         grid: &[[f32; 2]],
         range: [f32; 2],
-        top: bool,
         layer: &mut [f32],
-    ) -> bool {
-        let mut any = false;
+    ) -> Option<Range<usize>> {
+        let mut drawn: Option<Range<usize>> = None;
         for part in &mesh.parts {
             let left = 1.0 - opacity(part.material);
             for triangle in &part.triangles {
                 let heights = triangle.map(|v| mesh.positions[v as usize][1]);
                 let middle = (heights[0] + heights[1] + heights[2]) / 3.0;
-                let own = (middle >= range[0] || range[0] == 0.0) && (middle < range[1] || top);
-                if own && heights.iter().any(|&height| height > -0.25) {
-                    self.fill(triangle.map(|v| grid[v as usize]), left, layer);
-                    any = true;
+                if middle >= range[0] && middle < range[1] && heights.iter().any(|&y| y > LOWEST_M) {
+                    let rows = self.fill(triangle.map(|v| grid[v as usize]), left, layer);
+                    let before = drawn.unwrap_or(rows.clone());
+                    drawn = Some(before.start.min(rows.start)..before.end.max(rows.end));
                 }
             }
         }
-        any
+        drawn
     }
 
     /// Multiplies the cells whose middle lies in a triangle; edges belong to one of the triangles that share them.
-    fn fill(&self, [a, b, c]: [[f32; 2]; 3], left: f32, layer: &mut [f32]) {
+    /// Returns its rows.
+    fn fill(&self, [a, b, c]: [[f32; 2]; 3], left: f32, layer: &mut [f32]) -> Range<usize> {
         let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-        if area == 0.0 {
-            return;
-        }
         let corners = if area > 0.0 { [a, b, c] } else { [a, c, b] };
-        let low = a[1].min(b[1]).min(c[1]).max(0.0);
-        let high = a[1].max(b[1]).max(c[1]).min(self.rows as f32);
-        let mut row = low.ceil();
-        while row < high {
+        // Each edge as its crossing with row 0 and its run per row; rising edges bound the right, falling the left.
+        let edges: [(f32, f32, f32); 3] = std::array::from_fn(|k| {
+            let (p, q) = (corners[k], corners[(k + 1) % 3]);
+            let rise = q[1] - p[1];
+            let run = if rise == 0.0 { 0.0 } else { (q[0] - p[0]) / rise };
+            (p[0] - p[1] * run, run, rise)
+        });
+        let low = ceil(a[1].min(b[1]).min(c[1]));
+        let high = ceil(a[1].max(b[1]).max(c[1])).min(self.rows);
+        for row in low..high {
             let (mut from, mut to) = (0.0_f32, self.columns as f32);
-            for k in 0..3 {
-                let (p, q) = (corners[k], corners[(k + 1) % 3]);
-                let rise = q[1] - p[1];
-                let cross = p[0] + (q[0] - p[0]) * (row - p[1]) / rise;
+            for (start, run, rise) in edges {
+                let cross = start + run * row as f32;
                 if rise > 0.0 {
                     to = to.min(cross);
                 } else if rise < 0.0 {
                     from = from.max(cross);
                 }
             }
-            let start = row as usize * self.columns;
-            let (first, end) = (from.ceil() as usize, (to.ceil() as usize).min(self.columns));
+            let (first, end) = (ceil(from), ceil(to));
             if first < end {
+                let start = row * self.columns;
                 layer[start + first..start + end].iter_mut().for_each(|cell| *cell *= left);
             }
-            row += 1.0;
         }
+        low..high.max(low)
     }
 
-    /// A tent, as two boxes after each other, along both axes.
-    fn blur(&self, layer: &mut [f32], widths_m: [f32; 2]) {
+    /// A tent, as two boxes after each other, along both axes, of the rows that were drawn; the rows it changed.
+    fn blur(&self, layer: &mut [f32], drawn: Range<usize>, widths_m: [f32; 2]) -> Range<usize> {
         let radius = |axis: usize| (widths_m[axis] * self.cells_per_m[axis] * 0.5) as usize;
         let (across, up) = (radius(0), radius(1));
-        let mut line = vec![0.0; self.columns.max(self.rows)];
+        let rows = drawn.start.saturating_sub(2 * up)..(drawn.end + 2 * up).min(self.rows);
+        let layer = &mut layer[rows.start * self.columns..rows.end * self.columns];
+        let mut copy = vec![0.0; layer.len()];
         for _ in 0..if across > 0 { 2 } else { 0 } {
-            for row in layer.chunks_exact_mut(self.columns) {
-                box_filter(&mut line, row, 0, 1, self.columns, across);
-            }
+            copy.copy_from_slice(layer);
+            let lines = layer.chunks_exact_mut(self.columns).zip(copy.chunks_exact(self.columns));
+            lines.for_each(|(to, from)| box_filter(to, from, 1, across));
         }
         for _ in 0..if up > 0 { 2 } else { 0 } {
-            for column in 0..self.columns {
-                box_filter(&mut line, layer, column, self.columns, self.rows, up);
-            }
+            copy.copy_from_slice(layer);
+            box_filter(layer, &copy, self.columns, up);
         }
+        rows
     }
 }
 
-/// Mean over 2·radius+1 values; beyond the ends everything is lit.
-fn box_filter(line: &mut [f32], data: &mut [f32], first: usize, stride: usize, count: usize, radius: usize) {
-    for (k, value) in line[..count].iter_mut().enumerate() {
-        *value = 1.0 - data[first + k * stride];
-    }
-    let mut sum: f32 = line[..radius.min(count)].iter().sum();
+/// Smallest whole number not below a number; 0 for negative ones.
+#[inline]
+fn ceil(value: f32) -> usize {
+    let whole = value.max(0.0) as i32;
+    (whole + i32::from((whole as f32) < value)) as usize
+}
+
+/// Mean over 2·radius+1 lines of `width` values each; beyond the ends everything is lit.
+fn box_filter(to: &mut [f32], from: &[f32], width: usize, radius: usize) {
+    let count = from.len() / width;
+    let line = |at: usize| &from[at * width..(at + 1) * width];
     let scale = 1.0 / (2 * radius + 1) as f32;
-    for k in 0..count {
-        if k + radius < count {
-            sum += line[k + radius];
+    // The sum of what is held back, so that nothing need be added beyond the ends.
+    let mut sums = vec![0.0; width];
+    let change = |sums: &mut [f32], at: usize, sign: f32| {
+        sums.iter_mut().zip(line(at)).for_each(|(sum, value)| *sum += sign * (1.0 - value));
+    };
+    (0..radius.min(count)).for_each(|at| change(&mut sums, at, 1.0));
+    for at in 0..count {
+        if at + radius < count {
+            change(&mut sums, at + radius, 1.0);
         }
-        if k > radius {
-            sum -= line[k - radius - 1];
+        if at > radius {
+            change(&mut sums, at - radius - 1, -1.0);
         }
-        data[first + k * stride] = (1.0 - sum * scale).clamp(0.0, 1.0);
+        let values = to[at * width..(at + 1) * width].iter_mut();
+        values.zip(&sums).for_each(|(value, sum)| *value = (1.0 - sum * scale).clamp(0.0, 1.0));
     }
 }
 
@@ -227,17 +245,26 @@ impl Filter {
     fn new(sun: &Sun, texel_m: f32, top_m: f32) -> Self {
         let sin_elevation = sun.sin_elevation.max(0.02);
         let texel_m = [texel_m, texel_m * sin_elevation];
-        Self { texel_m, spread: sun.sin_radius / sin_elevation, most_m: 0.6 * top_m }
+        Self { texel_m, spread: sun.sin_radius / sin_elevation, most_m: 0.6 * top_m.max(0.0) }
     }
 
     /// Widths across and up of a box that, applied twice, spreads as much as a texel and the disc together, for
     /// parts at a height (the variance of a box is width²/12, of a disc radius²/4).
     fn widths(&self, height_m: f32) -> [f32; 2] {
         let disc = (height_m * self.spread).min(self.most_m);
-        self.texel_m.map(|texel| (6.0 * (disc * disc / 4.0 + texel * texel / 12.0)).sqrt())
+        self.texel_m.map(|texel| (6.0 * (disc * disc / 4.0 + texel * texel / 4.0)).sqrt())
     }
 
-    fn slabs(&self) -> usize {
-        if self.most_m / 0.6 * self.spread < 0.5 * self.texel_m[1] { 1 } else { SLABS }
+    /// Limits of the slabs of height that are filtered separately: more the softer the sun, thinner near the ground.
+    fn slabs(&self, top_m: f32) -> Vec<f32> {
+        let disc = top_m * self.spread;
+        let count = match disc {
+            _ if disc < 0.5 * self.texel_m[1] => 1,
+            _ if disc < 0.7 * self.texel_m[0] => 2,
+            _ => 4,
+        };
+        let limit = |k: u32| k as f32 / count as f32;
+        let limits = (0..count).map(|k| limit(k) * limit(k) * top_m);
+        limits.chain([f32::INFINITY]).collect::<Vec<f32>>()
     }
 }

@@ -106,7 +106,7 @@ impl<'a> Lines<'a> {
         let (along_m, across_m) = (place(along as f32), place(across));
         let [x, z] = if self.along_x { [along_m, across_m] } else { [across_m, along_m] };
         let edge_m = 0.5 * beyond.apron.extent_m();
-        let step_m = 0.5 * beyond.apron.spacing_m;
+        let step_m = beyond.apron.spacing_m;
         for step in (1..=(beyond.reach_m / step_m) as u32 + 1).rev() {
             let away_m = step as f32 * step_m;
             let (px, pz) = (x + self.towards[0] * away_m, z + self.towards[1] * away_m);

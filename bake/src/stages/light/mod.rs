@@ -51,40 +51,45 @@ pub fn light_map(
     let to_crowns = Resampling::from_texels(side, shade.crown_side);
     let mut image = Image8::new(side as u32, side as u32, 3);
     image.data.par_chunks_mut(3 * side).enumerate().for_each(|(j, row)| {
-        let margin = to_samples.row(j, &sun_on_land.margin);
-        let edge = to_samples.row(j, &sun_on_land.edge);
-        let cosine = to_samples.row(j, &sun_on_land.cosine);
-        let sky = to_sky.row(j, &sky_on_land);
-        let crowns = to_crowns.row(j, &shade.crowns);
+        let struck = to_samples.row(j, &sun_on_land);
+        let sky = to_sky.row(j, sky_on_land.as_chunks::<1>().0);
+        let crowns = to_crowns.row(j, shade.crowns.as_chunks::<1>().0);
         let leaves = &shade.sun[j * side..(j + 1) * side];
         for (i, texel) in row.chunks_exact_mut(3).enumerate() {
-            let visible = sun.visibility(margin[i], edge[i]) * leaves[i];
+            let [margin, edge, cosine, _] = struck[i];
+            let visible = sun.visibility(margin, edge) * leaves[i];
             let noise = dither(i, j);
-            texel[0] = quantise((sky[i] * crowns[i]).min(1.0), noise);
-            texel[1] = quantise(cosine[i].max(0.0) * visible, noise);
+            texel[0] = quantise((sky[i][0] * crowns[i][0]).min(1.0), noise);
+            texel[1] = quantise(cosine.max(0.0) * visible, noise);
             texel[2] = quantise(visible, noise);
         }
     });
     LightMap { image }
 }
 
-/// Interleaved gradient noise (Jimenez 2014) in [0, 1): even over any 3×3 texels, so that it cannot be seen.
+/// Interleaved gradient noise (Jimenez 2014) in [0, 1): even over any 3×3 texels, so that it cannot be seen. The
+/// inner fraction is kept as an integer of 32 bits, which wraps by itself.
+#[inline]
 fn dither(i: usize, j: usize) -> f32 {
-    let inner = 0.067_110_56 * i as f32 + 0.005_837_15 * j as f32;
-    let outer = 52.982_918 * (inner - inner.floor());
-    outer - outer.floor()
+    const UNIT: f64 = 4_294_967_296.0;
+    const ACROSS: u32 = (0.067_110_56 * UNIT) as u32;
+    const DOWN: u32 = (0.005_837_15 * UNIT) as u32;
+    let inner = (i as u32).wrapping_mul(ACROSS).wrapping_add((j as u32).wrapping_mul(DOWN));
+    let outer = 52.982_918 * ((inner >> 8) as f32 * (1.0 / 16_777_216.0));
+    outer - outer as i32 as f32
 }
 
 /// A value in [0, 1] as a byte, rounded up or down by the noise; 0 and 1 stay exact.
+#[inline]
 fn quantise(value: f32, noise: f32) -> u8 {
-    (value * 255.0 + noise * 0.999) as u8
+    (value * 255.0 + noise * 0.999) as i32 as u8
 }
 
 /// Bilinear interpolation from a square grid to the light map's texels: along each axis, where each texel's centre
 /// lies.
 struct Resampling {
     side: usize,
-    places: Vec<(usize, f32)>,
+    places: Vec<(u32, f32)>,
 }
 
 impl Resampling {
@@ -103,23 +108,21 @@ impl Resampling {
         let places = (0..texels).map(|texel| {
             let at = place((texel as f32 + 0.5) / texels as f32).clamp(0.0, (side - 1) as f32);
             let whole = (at as usize).min(last);
-            (whole, at - whole as f32)
+            (whole as u32, at - whole as f32)
         });
         Self { side, places: places.collect() }
     }
 
-    /// One row of texels.
-    fn row(&self, texel_row: usize, grid: &[f32]) -> Vec<f32> {
+    /// One row of texels, from a grid of vectors.
+    fn row<const N: usize>(&self, texel_row: usize, grid: &[[f32; N]]) -> Vec<[f32; N]> {
         let (j, v) = self.places[texel_row];
-        let north = &grid[j * self.side..(j + 1) * self.side];
-        let below = (j + 1).min(self.side - 1);
-        let south = &grid[below * self.side..(below + 1) * self.side];
-        let blended: Vec<f32> = north.iter().zip(south).map(|(n, s)| n + (s - n) * v).collect();
-        let last = self.side - 1;
-        let texel = |&(i, u): &(usize, f32)| {
-            let (west, east) = (blended[i], blended[(i + 1).min(last)]);
-            west + (east - west) * u
-        };
+        let line = |j: usize| &grid[j * self.side..(j + 1) * self.side];
+        let (north, south) = (line(j as usize), line((j as usize + 1).min(self.side - 1)));
+        let blend =
+            |a: &[f32; N], b: &[f32; N], part: f32| std::array::from_fn(|n| a[n] + (b[n] - a[n]) * part);
+        let mut blended: Vec<[f32; N]> = north.iter().zip(south).map(|(n, s)| blend(n, s, v)).collect();
+        blended.push(blended[self.side - 1]);
+        let texel = |&(i, u): &(u32, f32)| blend(&blended[i as usize], &blended[i as usize + 1], u);
         self.places.iter().map(texel).collect()
     }
 
@@ -127,7 +130,7 @@ impl Resampling {
     fn whole(&self, texels: usize, grid: &[f32]) -> Vec<f32> {
         let mut whole = vec![0.0; texels * texels];
         let rows = whole.par_chunks_mut(texels).enumerate();
-        rows.for_each(|(j, row)| row.copy_from_slice(&self.row(j, grid)));
+        rows.for_each(|(j, row)| row.copy_from_slice(self.row(j, grid.as_chunks::<1>().0).as_flattened()));
         whole
     }
 }

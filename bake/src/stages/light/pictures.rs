@@ -51,7 +51,14 @@ fn scene(count: u32, cards: u32) -> (Landform, Placement, Vec<Mesh>) {
     let instances = (0..count).map(|k| {
         let random = |n: i32| hash01(9, k as i32, n, 3);
         let (x, z) = (random(0) * 1000.0 - 500.0, random(1) * 1000.0 - 500.0);
-        at(k % 5, x, land.field.height_m(x, z) - 0.1, z, random(2) * 6.28, 0.8 + 0.4 * random(3))
+        at(
+            k % 5,
+            x,
+            land.field.height_m(x, z) - 0.1,
+            z,
+            random(2) * std::f32::consts::TAU,
+            0.8 + 0.4 * random(3),
+        )
     });
     let placement = Placement { instances: instances.collect() };
     (land, placement, casters)
@@ -127,19 +134,40 @@ fn measure() {
         let (land, placement, casters) = scene(count, cards);
         let light = light(elevation, 300.0, 0.53);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-        let mut best = f64::MAX;
-        for _ in 0..4 {
-            pool.install(|| {
-                let start = cpu_ms();
-                light_map(&light, &land, &placement, &casters, 1024);
-                best = best.min(cpu_ms() - start);
-            });
-        }
+        let start = pool.install(cpu_ms);
+        (0..4).for_each(|_| drop(pool.install(|| light_map(&light, &land, &placement, &casters, 1024))));
+        let mean = (pool.install(cpu_ms) - start) / 4.0;
         let triangles = casters[0].triangle_count();
         writeln!(
             std::io::stderr(),
-            "{count} trees of {triangles} triangles, {elevation}°: {best:.1} ms on one thread"
+            "{count} trees of {triangles} triangles, {elevation}°: {mean:.1} ms on one thread"
         )
         .unwrap();
     }
+}
+
+#[test]
+#[ignore = "prints times"]
+fn measure_parts() {
+    use std::io::Write;
+    let (land, placement, casters) = scene(1500, 400);
+    let light = light(30.0, 300.0, 0.53);
+    let sun = Sun::of(&light);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    pool.install(|| {
+        let time = |name: &str, work: &dyn Fn()| {
+            let start = cpu_ms();
+            (0..20).for_each(|_| work());
+            writeln!(std::io::stderr(), "{name}: {:.1} ms", (cpu_ms() - start) / 20.0).unwrap();
+        };
+        let to_samples = Resampling::from_samples(1024, 513);
+        let ground = to_samples.whole(1024, &land.field.heights_m);
+        let side = sky::side(&land);
+        time("ground", &|| drop(to_samples.whole(1024, &land.field.heights_m)));
+        time("sun", &|| drop(sun::on_land(&sun, &land)));
+        time("sky", &|| drop(sky::on_land(&light, &land, side)));
+        time("trees", &|| drop(trees::shade(&sun, &land, &placement, &casters, &ground, 1024)));
+        time("no trees", &|| drop(trees::shade(&sun, &land, &Placement::default(), &casters, &ground, 1024)));
+        time("all", &|| drop(light_map(&light, &land, &placement, &casters, 1024)));
+    });
 }

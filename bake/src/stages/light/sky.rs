@@ -31,21 +31,27 @@ pub(super) fn on_land(light: &SkyLight, land: &Landform, side: usize) -> Vec<f32
     let field = smoothed(&land.field, stride(land), side);
     let beyond = Beyond { apron: &land.apron, reach_m: REACH_M };
     let table = Table::of(light);
+    let normals = normals(&field);
     let mut sums = vec![0.0_f32; side * side];
     for azimuth in 0..AZIMUTHS {
         let angle = azimuth as f32 * (std::f32::consts::TAU / AZIMUTHS as f32);
         let towards = [libm::cosf(angle), libm::sinf(angle)];
         let slopes = slopes(&field, &beyond, towards);
         sums.par_chunks_mut(side).enumerate().for_each(|(j, row)| {
-            for (i, sum) in row.iter_mut().enumerate() {
-                let normal = field.normal_at(i as u32, j as u32);
-                *sum += table.arriving(normal, towards, slopes[j * side + i]);
+            let range = j * side..(j + 1) * side;
+            for ((sum, slope), normal) in row.iter_mut().zip(&slopes[range.clone()]).zip(&normals[range]) {
+                *sum += table.arriving(*normal, towards, *slope);
             }
         });
     }
     let whole = AZIMUTHS as f32 * table.upright[0];
     sums.iter_mut().for_each(|sum| *sum = (*sum / whole).min(1.0));
     sums
+}
+
+fn normals(field: &Heightfield) -> Vec<Vec3> {
+    let at = |k: u32| field.normal_at(k % field.side, k / field.side);
+    (0..field.side * field.side).into_par_iter().map(at).collect()
 }
 
 /// Every `stride`-th sample, each the mean of its neighbourhood by weights 1-2-1.

@@ -47,7 +47,14 @@ impl Sun {
     /// the horizon, in radii; `edge`: how much that changes over a texel, so that no edge is sharper than one.
     #[inline]
     pub fn visibility(&self, margin: f32, edge: f32) -> f32 {
-        if self.is_up() { (disc_above(margin / edge.max(1.0)) / self.open).min(1.0) } else { 0.0 }
+        let edge = edge.max(1.0);
+        if margin <= -edge || !self.is_up() {
+            0.0
+        } else if margin >= edge {
+            1.0
+        } else {
+            (disc_above(margin / edge) / self.open).min(1.0)
+        }
     }
 }
 
@@ -67,17 +74,9 @@ pub(super) fn disc_above(distance: f32) -> f32 {
     table[whole] + (table[whole + 1] - table[whole]) * (at - whole as f32)
 }
 
-/// The sun at every sample of the field.
-pub(super) struct OnLand {
-    /// How far the disc's middle stands above the land, in radii.
-    pub margin: Vec<f32>,
-    /// Half of how much the margin changes from this sample to its neighbours, in radii.
-    pub edge: Vec<f32>,
-    /// n·l, negative on what is turned away.
-    pub cosine: Vec<f32>,
-}
-
-pub(super) fn on_land(sun: &Sun, land: &Landform) -> OnLand {
+/// The sun at every sample of the field: how far the disc's middle stands above the land, in radii; a third of how
+/// much that changes across the sample's neighbours; n·l, negative on what is turned away; and 0.
+pub(super) fn on_land(sun: &Sun, land: &Landform) -> Vec<[f32; 4]> {
     let field = &land.field;
     let side = field.side as usize;
     let (lowest, _) = field.range_m();
@@ -91,19 +90,17 @@ pub(super) fn on_land(sun: &Sun, land: &Landform) -> OnLand {
         let above = (sun.sin_elevation - sun.cos_elevation * *slope) / (1.0 + *slope * *slope).sqrt();
         *slope = above / sun.sin_radius;
     });
-    let mut edge = vec![0.0; side * side];
-    let mut cosine = vec![0.0; side * side];
-    edge.par_chunks_mut(side).zip(cosine.par_chunks_mut(side)).enumerate().for_each(
-        |(j, (edges, cosines))| {
-            let (north, south) = (j.saturating_sub(1) * side, (j + 1).min(side - 1) * side);
-            for i in 0..side {
-                let (west, east) = (i.saturating_sub(1), (i + 1).min(side - 1));
-                let dx = margin[j * side + east] - margin[j * side + west];
-                let dz = margin[south + i] - margin[north + i];
-                edges[i] = 0.35 * (dx * dx + dz * dz).sqrt();
-                cosines[i] = field.normal_at(i as u32, j as u32).dot(sun.direction);
-            }
-        },
-    );
-    OnLand { margin, edge, cosine }
+    let mut struck = vec![[0.0; 4]; side * side];
+    struck.par_chunks_mut(side).enumerate().for_each(|(j, row)| {
+        let (north, south) = (j.saturating_sub(1) * side, (j + 1).min(side - 1) * side);
+        for (i, sample) in row.iter_mut().enumerate() {
+            let (west, east) = (i.saturating_sub(1), (i + 1).min(side - 1));
+            let dx = margin[j * side + east] - margin[j * side + west];
+            let dz = margin[south + i] - margin[north + i];
+            let edge = 0.35 * (dx * dx + dz * dz).sqrt();
+            let cosine = field.normal_at(i as u32, j as u32).dot(sun.direction);
+            *sample = [margin[j * side + i], edge, cosine, 0.0];
+        }
+    });
+    struck
 }

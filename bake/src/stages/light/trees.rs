@@ -21,7 +21,7 @@ const BAND_ROWS: usize = 32;
 /// Shadows end here, in metres, however low the sun.
 const LONGEST_M: f32 = 1000.0;
 /// A crown's part of the sky below this is left out.
-const LEAST_CROWN: f32 = 0.004;
+const LEAST_CROWN: f32 = 0.008;
 
 /// What trees leave of sun and sky.
 pub(super) struct Shade {
@@ -133,7 +133,8 @@ impl Pose {
         let world_from_tree = Mat3::from_cols(x, y, z).transpose();
         let determinant = world_from_tree.determinant();
         let foot = Vec3::from_array(instance.world_from_tree.map(|row| row[3]));
-        if template >= casters.len() || !(determinant > 1.0e-9) || !foot.is_finite() {
+        if template >= casters.len() || !determinant.is_finite() || determinant < 1.0e-9 || !foot.is_finite()
+        {
             return None;
         }
         let to_sun = world_from_tree.inverse() * sun.direction;
@@ -187,7 +188,7 @@ impl<'a> Laid<'a> {
         };
         let (a, c) = (project(pose.world_from_tree * right), project(pose.world_from_tree * up));
         let area = a.x * c.y - a.y * c.x;
-        if !(area.abs() > 1.0e-6) {
+        if !area.is_finite() || area.abs() < 1.0e-6 {
             return None;
         }
         let (mut low, mut high) = (Vec2::MAX, Vec2::MIN);

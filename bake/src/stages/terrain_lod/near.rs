@@ -70,7 +70,7 @@ impl<'a> Refiner<'a> {
         }
         // Room for the rounding of f32 in `exceeds`, so that the promise holds exactly.
         let (lowest, highest) = field.range_m();
-        let bound_m = max_error_m - 5.0e-7 * lowest.abs().max(highest.abs());
+        let bound_m = max_error_m.max(0.0) - 5.0e-7 * lowest.abs().max(highest.abs());
         Self { field, bound_m, marks, changed: false }
     }
 
@@ -147,7 +147,7 @@ fn exceeds(field: &Heightfield, triangle: &Triangle, middle: Sample, bound_m: f3
     let height = |[i, j]: Sample| field.at(i, j);
     let (ha, hb, hc) = (height(triangle.a), height(triangle.b), height(triangle.apex));
     let off_middle = (0.5 * (ha + hb) - height(middle)).abs();
-    if !(off_middle <= bound_m) {
+    if off_middle > bound_m || off_middle.is_nan() {
         return true;
     }
     let [a, b, c] = [triangle.a, triangle.b, triangle.apex].map(|s| [s[0] as i32, s[1] as i32]);
@@ -167,7 +167,8 @@ fn exceeds(field: &Heightfield, triangle: &Triangle, middle: Sample, bound_m: f3
         for (k, height) in heights.iter().enumerate() {
             worst = worst.max((height - (plane + k as i32 as f32 * east)).abs().to_bits() as i32);
         }
-        if !(f32::from_bits(worst as u32) <= bound_m) {
+        let worst = f32::from_bits(worst as u32);
+        if worst > bound_m || worst.is_nan() {
             return true;
         }
     }
