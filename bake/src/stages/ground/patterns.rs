@@ -88,20 +88,28 @@ impl Blade {
     }
 }
 
-/// Fractured rock: blocks at several heights, cracks between them, rough faces.
+/// Fractured rock: broken faces at all angles, sharp edges between them, a few open cracks.
 pub(super) fn rock() -> Pattern {
     from_texels(|u, v| {
-        let (a, b) = (fbm2(21, u * 7.0, v * 7.0, 3, 0.55, 7), fbm2(22, u * 7.0, v * 7.0, 3, 0.55, 7));
-        let large = blocks(23, u + 0.05 * a, v + 0.05 * b, 6);
-        let small = blocks(24, u + 0.03 * b, v - 0.03 * a, 17);
-        let rough = fbm2(25, u * 48.0, v * 48.0, 3, 0.6, 48);
-        let crack = large.crack.min(0.35 + 0.65 * small.crack);
-        let face = 0.55 * large.face + 0.25 * small.face + 0.16 * rough;
-        let height = crack * (0.25 + 0.75 * face);
-        let tone = (96.0 + 60.0 * large.shade * 0.6 + 34.0 * small.shade + 44.0 * rough) * (0.3 + 0.7 * crack);
-        let rust = 0.06 * a;
-        (height, [tone * (1.0 + rust), tone, tone * (1.0 - rust)])
+        let (a, b) = (fbm2(21, u * 6.0, v * 6.0, 3, 0.55, 6), fbm2(22, u * 6.0, v * 6.0, 3, 0.55, 6));
+        let (wu, wv) = (u + 0.05 * a, v + 0.05 * b);
+        let large = facet(23, wu, wv, 7);
+        let small = facet(24, wu + 0.02 * b, wv, 18);
+        let rough = fbm2(25, u * 40.0, v * 40.0, 4, 0.62, 40);
+        let crack = ((1.2 * a + 0.9 * b).abs() * 14.0).min(1.0).max(0.35 - 2.0 * b);
+        let crack = crack.clamp(0.0, 1.0);
+        let relief = 0.62 * large + 0.30 * small + 0.16 * rough;
+        let tone = (98.0 + 62.0 * (relief - 0.4) + 46.0 * rough) * (0.5 + 0.5 * crack);
+        let rust = 0.07 * a;
+        ((relief + 0.15) * (0.55 + 0.45 * crack), [tone * (1.0 + rust), tone, tone * (1.0 - rust)])
     })
+}
+
+/// Height, about 0 to 1, of broken stone of `cells` lumps a side: distances to lumps give planes that meet in edges.
+fn facet(seed: u32, u: f32, v: f32, cells: i32) -> f32 {
+    let (first, second, id) = cellular2(seed, u * cells as f32, v * cells as f32, cells);
+    let level = (id >> 5 & 0xFF) as f32 / 255.0;
+    0.5 * level + 0.5 * (second - first).min(0.6) + 0.2 * (0.5 - first)
 }
 
 /// A cell as a block with a tilted face.

@@ -5,9 +5,14 @@ use super::*;
 #[test]
 #[ignore = "writes pictures"]
 fn texture_pictures() {
-    let begin = std::time::Instant::now();
+    for (name, make) in [("grass", patterns::grass as fn() -> patterns::Pattern), ("rock", patterns::rock), ("scree", patterns::scree), ("snow", patterns::snow), ("mud", patterns::mud)] {
+        let begin = crate::stages::land::cpu_s();
+        make();
+        eprintln!("textures {name} {:.0} ms", 1e3 * (crate::stages::land::cpu_s() - begin));
+    }
+    let begin = crate::stages::land::cpu_s();
     let made = textures();
-    eprintln!("textures {:?}", begin.elapsed());
+    eprintln!("textures {:.0} ms", 1e3 * (crate::stages::land::cpu_s() - begin));
     let folder = std::env::temp_dir().join("genescape-land");
     std::fs::create_dir_all(&folder).expect("folder for pictures");
     for t in &made.textures {

@@ -108,7 +108,7 @@ fn pictures() {
 #[test]
 #[ignore = "measures"]
 fn speed() {
-    for k in 0..4 {
+    for k in 0..6 {
         let params = match k {
             0 => LandParams { stream_power_steps: 15, droplets: 60000.0, hurst: 0.5, lacunarity: 1.8, wavelength_m: 2000.0, ..random_params(3) },
             k => random_params(k),

@@ -93,7 +93,8 @@ impl Shape {
         let gain = libm::powf(p.lacunarity, -p.hurst);
         let share = (STEEPNESS * p.wavelength_m / p.relief_m).min(1.0);
         let mut octaves = Vec::new();
-        let (mut wavelength_m, mut amplitude, mut ridged) = (p.wavelength_m, 1.0f32, p.ridged);
+        // Every zero of the noise is a ridge: ridges stand twice as close as round tops would.
+        let (mut wavelength_m, mut amplitude, mut ridged) = (p.wavelength_m * (1.0 + 0.7 * p.ridged), 1.0f32, p.ridged);
         // An octave lower than 2 cm is not worth its time.
         while wavelength_m >= FINEST_M && amplitude * p.relief_m > 0.04 {
             let walkable = amplitude.min(1.6 * walkable_amplitude_m(wavelength_m) / (share * p.relief_m));

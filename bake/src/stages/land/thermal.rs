@@ -64,7 +64,7 @@ fn hardness(side: u32, params: &LandParams) -> Grid {
 /// The greatest drop in metres from a sample to its neighbour that holds.
 fn steepest_drops(hardness: &Grid, loose: &Grid, spacing_m: f32, talus_deg: f32) -> Vec<f32> {
     let drop_m = |deg: f32| libm::tanf(deg.to_radians()) * spacing_m;
-    let (talus, soft, hard) = (drop_m(talus_deg), drop_m(talus_deg + 5.0), drop_m((talus_deg + 18.0).min(57.0)));
+    let (talus, soft, hard) = (drop_m(talus_deg), drop_m(talus_deg + 5.0), drop_m((talus_deg + 15.0).min(54.0)));
     let pairs = hardness.values.iter().zip(&loose.values);
     pairs
         .map(|(h, l)| {
