@@ -120,7 +120,11 @@ impl Climate {
         let bare = t.slope + 0.10 * broken + 0.09 * t.outcrop - 0.10 * t.hollow - 0.06 * t.deposit;
         let rock = step(self.bare_slope, self.bare_slope + 0.18, bare);
         let loose = t.deposit + 0.22 * broken + 0.1 * t.outcrop;
-        let scree = if loose < 0.46 { 0.0 } else { step(0.46, 0.62, loose) * step(0.52, 0.74, (t.slope + 0.10 * broken) * 0.62 / self.talus.max(0.3)) };
+        let scree = if loose < 0.46 {
+            0.0
+        } else {
+            step(0.46, 0.62, loose) * step(0.52, 0.74, (t.slope + 0.10 * broken) * 0.62 / self.talus.max(0.3))
+        };
         let above_water = t.height_m - self.water_m;
         let wetness = (above_water - 0.3 * self.dryness) * self.shore_scale - 0.5 * broken - 0.3 * t.tuft;
         let shore = if wetness > 0.75 { 0.0 } else { 1.0 - step(0.35, 0.75, wetness) };
@@ -147,8 +151,10 @@ impl Climate {
         }
         let high = ((t.height_m - self.snow_line_m) / (6.0 * spread_m)).clamp(0.0, 1.0);
         // Higher up, snow clings to steeper rock.
-        let holds = 0.8 + 0.45 * high + 0.16 * broken + 0.15 * t.hollow;
-        step(-0.1, 0.25, depth) * (1.0 - step(holds, holds + 0.16, t.slope)) * step(0.0, 0.4, t.height_m - self.water_m)
+        let holds = 0.95 + 0.5 * high + 0.16 * broken + 0.15 * t.hollow;
+        step(-0.1, 0.25, depth)
+            * (1.0 - step(holds, holds + 0.16, t.slope))
+            * step(0.0, 0.4, t.height_m - self.water_m)
     }
 
     /// Its colour.
@@ -178,7 +184,8 @@ impl Climate {
     fn grass(&self, t: &Traits, n: &Noise) -> Rgb {
         let altitude = (t.height_m - self.lowest_m) / self.relief_m;
         let moist = 0.75 * t.flow + 0.35 * t.hollow + 0.12 * t.deposit;
-        let dry = 0.7 + 2.9 * self.dryness + 1.0 * t.patch + 0.45 * t.tuft + 0.5 * altitude - 1.5 * (moist - 0.25)
+        let dry = 0.7 + 2.9 * self.dryness + 1.0 * t.patch + 0.45 * t.tuft + 0.5 * altitude
+            - 1.5 * (moist - 0.25)
             + 0.35 * t.slope
             + 0.42 * n.broad
             + 0.34 * n.fine
@@ -207,7 +214,12 @@ impl Cover {
     #[inline]
     fn over(&mut self, part: f32) -> &mut Self {
         let left = 1.0 - part;
-        *self = Self { rock: self.rock * left, scree: self.scree * left, snow: self.snow * left, mud: self.mud * left };
+        *self = Self {
+            rock: self.rock * left,
+            scree: self.scree * left,
+            snow: self.snow * left,
+            mud: self.mud * left,
+        };
         self
     }
 }

@@ -20,7 +20,7 @@ mod thermal;
 mod water;
 
 #[cfg(test)]
-pub(crate) use pictures::cpu_s;
+pub(crate) use pictures::{cpu_s, write as write_picture};
 
 use serde::{Deserialize, Serialize};
 
