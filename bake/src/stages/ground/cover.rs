@@ -45,9 +45,9 @@ impl Cover {
 type Rgb = [f32; 3];
 
 const SNOW: Rgb = [0.80, 0.83, 0.87];
-const WET_MUD: Rgb = [0.070, 0.055, 0.038];
+const WET_MUD: Rgb = [0.062, 0.054, 0.037];
 const SAND: Rgb = [0.37, 0.30, 0.20];
-const GRAVEL: Rgb = [0.19, 0.175, 0.155];
+const GRAVEL: Rgb = [0.185, 0.176, 0.150];
 /// Grass from lush to dry and at last to bare sand; climate and moisture choose between neighbours.
 const GRASS: [Rgb; 6] = [
     [0.030, 0.056, 0.016],
@@ -82,6 +82,8 @@ pub(super) struct Climate {
     rock: Rgb,
     rock_band: Rgb,
     shore: Rgb,
+    /// Shores of low lands are lower: 1 or more.
+    shore_scale: f32,
 }
 
 impl Climate {
@@ -104,7 +106,8 @@ impl Climate {
             bare_slope: 0.42 + 0.5 * talus,
             dryness,
             rock,
-            rock_band: lerp(rock, ROCKS[other], 0.45),
+            rock_band: lerp(rock, ROCKS[other], 0.3),
+            shore_scale: (50.0 / (hi - lo).max(1.0)).clamp(1.0, 2.5),
             shore: lerp(lerp(WET_MUD, GRAVEL, 0.5), SAND, step(0.25, 0.6, dryness)),
         }
     }
@@ -117,10 +120,16 @@ impl Climate {
         let bare = t.slope + 0.10 * broken + 0.09 * t.outcrop - 0.10 * t.hollow - 0.06 * t.deposit;
         let rock = step(self.bare_slope, self.bare_slope + 0.18, bare);
         let loose = t.deposit + 0.22 * broken + 0.1 * t.outcrop;
-        let scree = step(0.46, 0.62, loose) * step(0.52, 0.74, (t.slope + 0.10 * broken) * 0.62 / self.talus.max(0.3));
+        let scree = if loose < 0.46 {
+            0.0
+        } else {
+            step(0.46, 0.62, loose) * step(0.52, 0.74, (t.slope + 0.10 * broken) * 0.62 / self.talus.max(0.3))
+        };
         let above_water = t.height_m - self.water_m;
-        let shore = 1.0 - step(0.35, 0.75, above_water - 0.5 * broken - 0.3 * t.tuft - 0.35 * self.dryness);
-        let bed = step(0.74, 0.84, t.flow + 0.05 * broken) * (1.0 - step(0.25, 0.6, t.slope));
+        let wetness = (above_water - 0.3 * self.dryness) * self.shore_scale - 0.5 * broken - 0.3 * t.tuft;
+        let shore = if wetness > 0.75 { 0.0 } else { 1.0 - step(0.35, 0.75, wetness) };
+        let wash = t.flow + 0.05 * broken;
+        let bed = if wash < 0.74 { 0.0 } else { step(0.74, 0.84, wash) * (1.0 - step(0.25, 0.6, t.slope)) };
         let mud = shore.max(bed);
         let snow = self.snow(t, broken);
         // Each lies over the ones before it.
@@ -137,10 +146,15 @@ impl Climate {
         let spread_m = 0.05 * self.relief_m + 2.0;
         let wander = 1.1 * t.patch + 0.8 * t.tuft + 0.9 * broken + 1.2 * t.hollow - 1.0 * (t.slope - 0.6);
         let depth = (t.height_m - self.snow_line_m) / spread_m + wander;
+        if depth <= -0.1 {
+            return 0.0;
+        }
         let high = ((t.height_m - self.snow_line_m) / (6.0 * spread_m)).clamp(0.0, 1.0);
         // Higher up, snow clings to steeper rock.
-        let holds = 0.8 + 0.45 * high + 0.16 * broken + 0.15 * t.hollow;
-        step(-0.1, 0.25, depth) * (1.0 - step(holds, holds + 0.16, t.slope)) * step(0.0, 0.4, t.height_m - self.water_m)
+        let holds = 0.95 + 0.5 * high + 0.16 * broken + 0.15 * t.hollow;
+        step(-0.1, 0.25, depth)
+            * (1.0 - step(holds, holds + 0.16, t.slope))
+            * step(0.0, 0.4, t.height_m - self.water_m)
     }
 
     /// Its colour.
@@ -151,7 +165,7 @@ impl Climate {
         add(&mut color, self.grass(t, n), grass);
         if cover.rock + cover.scree > 0.0 {
             // Beds of another stone, tilted and bent, and stains that run down.
-            let bed = (t.height_m * 0.16 + 1.6 * t.outcrop + 0.7 * n.broad) * 0.5;
+            let bed = (t.height_m * 0.11 + 1.9 * t.outcrop + 0.8 * t.tuft + 0.8 * n.broad) * 0.5;
             let bed = (bed - bed.floor() - 0.5).abs() * 2.0;
             let stone = lerp(self.rock, self.rock_band, step(0.3, 0.7, bed));
             let stone = scale(stone, 1.0 + 0.22 * n.broad + 0.20 * n.fine + 0.25 * n.grain);
@@ -170,12 +184,13 @@ impl Climate {
     fn grass(&self, t: &Traits, n: &Noise) -> Rgb {
         let altitude = (t.height_m - self.lowest_m) / self.relief_m;
         let moist = 0.75 * t.flow + 0.35 * t.hollow + 0.12 * t.deposit;
-        let dry = 0.7 + 2.9 * self.dryness + 1.0 * t.patch + 0.45 * t.tuft + 0.5 * altitude - 1.5 * (moist - 0.25)
+        let dry = 0.7 + 2.9 * self.dryness + 1.0 * t.patch + 0.45 * t.tuft + 0.5 * altitude
+            - 1.5 * (moist - 0.25)
             + 0.35 * t.slope
             + 0.42 * n.broad
             + 0.34 * n.fine
             + 0.25 * n.grain;
-        let dry = dry.max(0.0).min(4.999);
+        let dry = dry.clamp(0.0, 4.999);
         let k = dry as usize;
         let grass = lerp(GRASS[k], GRASS[k + 1], dry - k as f32);
         let heath = step(0.45, 0.85, t.outcrop - 0.5 * t.patch + 0.3 * n.broad) * 0.6;
@@ -199,7 +214,12 @@ impl Cover {
     #[inline]
     fn over(&mut self, part: f32) -> &mut Self {
         let left = 1.0 - part;
-        *self = Self { rock: self.rock * left, scree: self.scree * left, snow: self.snow * left, mud: self.mud * left };
+        *self = Self {
+            rock: self.rock * left,
+            scree: self.scree * left,
+            snow: self.snow * left,
+            mud: self.mud * left,
+        };
         self
     }
 }
@@ -224,6 +244,8 @@ fn add(sum: &mut Rgb, a: Rgb, weight: f32) {
 /// 0 below `lo`, 1 above `hi`, smooth between.
 #[inline]
 fn step(lo: f32, hi: f32, x: f32) -> f32 {
-    let t = ((x - lo) / (hi - lo)).max(0.0).min(1.0);
+    let t = (x - lo) * (1.0 / (hi - lo));
+    let t = if t > 0.0 { t } else { 0.0 };
+    let t = if t < 1.0 { t } else { 1.0 };
     t * t * (3.0 - 2.0 * t)
 }

@@ -74,7 +74,7 @@ pub fn apron_colors(params: &GroundParams, land: &Landform) -> Vec<[u8; 4]> {
         let (inner_x, inner_z) = (x.clamp(-half_m, half_m), z.clamp(-half_m, half_m));
         let away_m = (x - inner_x).abs().max((z - inner_z).abs());
         let own = || {
-            let here = traits::far(params, land, i, j);
+            let here = traits::far(&patches, land, i, j);
             mean_color(&climate, |_| here)
         };
         let border = || {

@@ -88,39 +88,30 @@ impl Blade {
     }
 }
 
-/// Fractured rock: blocks at several heights, cracks between them, rough faces.
+/// Fractured rock: folds of sharp creases within folds, ledges, and a few open cracks.
 pub(super) fn rock() -> Pattern {
     from_texels(|u, v| {
-        let (a, b) = (fbm2(21, u * 7.0, v * 7.0, 3, 0.55, 7), fbm2(22, u * 7.0, v * 7.0, 3, 0.55, 7));
-        let large = blocks(23, u + 0.05 * a, v + 0.05 * b, 6);
-        let small = blocks(24, u + 0.03 * b, v - 0.03 * a, 17);
-        let rough = fbm2(25, u * 48.0, v * 48.0, 3, 0.6, 48);
-        let crack = large.crack.min(0.35 + 0.65 * small.crack);
-        let face = 0.55 * large.face + 0.25 * small.face + 0.16 * rough;
-        let height = crack * (0.25 + 0.75 * face);
-        let tone = (96.0 + 60.0 * large.shade * 0.6 + 34.0 * small.shade + 44.0 * rough) * (0.3 + 0.7 * crack);
+        let a = fbm2(21, u * 5.0, v * 5.0, 2, 0.5, 5);
+        let (wu, wv) = (u + 0.05 * a, v - 0.04 * a);
+        // Each octave shifts the next, so that creases break off where they meet.
+        let (mut relief, mut shift, mut amplitude) = (0.0, 0.0, 0.5);
+        for (k, cells) in [6, 13, 29, 61].into_iter().enumerate() {
+            let scale = cells as f32;
+            let n = gradient2(22 + k as u32, wu * scale + shift, wv * scale - 0.6 * shift, cells).abs() * 1.5;
+            relief += amplitude * n;
+            shift = 0.5 * n;
+            amplitude *= 0.6;
+        }
+        let rough = fbm2(27, u * 90.0, v * 90.0, 2, 0.7, 90);
+        let open = gradient2(28, wu * 4.0 + 0.5 * relief, wv * 4.0, 4).abs();
+        let crack = (open * 16.0 + 0.45 + 1.2 * a).clamp(0.0, 1.0);
+        let ledge = relief * 5.0 + 1.5 * a;
+        let ledge = (ledge - ledge.floor()).min(0.5);
+        let height = (0.1 + relief + 0.12 * ledge + 0.07 * rough) * (0.6 + 0.4 * crack);
+        let tone = (52.0 + 130.0 * relief + 26.0 * ledge + 40.0 * rough) * (0.5 + 0.5 * crack);
         let rust = 0.06 * a;
         (height, [tone * (1.0 + rust), tone, tone * (1.0 - rust)])
     })
-}
-
-/// A cell as a block with a tilted face.
-struct Block {
-    /// 0 in the crack around it, 1 inside.
-    crack: f32,
-    /// Height of its face, about 0 to 1.
-    face: f32,
-    /// Its own shade, 0 to 1.
-    shade: f32,
-}
-
-/// The block at (u, v) of `cells` cells a side.
-fn blocks(seed: u32, u: f32, v: f32, cells: i32) -> Block {
-    let scale = cells as f32;
-    let (first, second, id) = cellular2(seed, u * scale, v * scale, cells);
-    let unit = |shift: u32| (id >> shift & 0xFF) as f32 / 255.0;
-    let crack = ((second - first) * 9.0).min(1.0);
-    Block { crack: crack * (2.0 - crack), face: 0.3 + 0.5 * unit(3) + 0.35 * (0.5 - first), shade: unit(13) }
 }
 
 /// Stones of all sizes, the larger on top.
@@ -136,7 +127,14 @@ pub(super) fn scree() -> Pattern {
         // From small to large; few are large.
         let size = k as f32 / count as f32;
         let radius = 4.5 + 6.0 * size + 15.0 * size * size * size * size * (0.4 + 0.6 * dice(3));
-        Stone::new(dice(0) * SIDE as f32, dice(1) * SIDE as f32, radius, 0.15 + 0.4 * size + 0.2 * dice(2), k).lay(&mut pattern);
+        Stone::new(
+            dice(0) * SIDE as f32,
+            dice(1) * SIDE as f32,
+            radius,
+            0.15 + 0.4 * size + 0.2 * dice(2),
+            k,
+        )
+        .lay(&mut pattern);
     }
     pattern
 }
@@ -162,7 +160,8 @@ impl Stone {
             let angle = turn + (s as f32 + 0.7 * (dice(10 + s as i32) - 0.5)) * 0.8976;
             let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
             let long = libm::cosf(angle - turn * 1.7).abs();
-            *side = [cos, sin, radius * (0.8 + 0.2 * dice(20 + s as i32)) * (stretch + (1.0 - stretch) * long)];
+            *side =
+                [cos, sin, radius * (0.8 + 0.2 * dice(20 + s as i32)) * (stretch + (1.0 - stretch) * long)];
         }
         let shade = 105.0 + 80.0 * dice(2);
         let warm = 0.10 * (dice(3) - 0.5);
@@ -183,7 +182,8 @@ impl Stone {
         for dy in -reach..=reach {
             for dx in -reach..=reach {
                 let (fx, fy) = (dx as f32, dy as f32);
-                let inside = self.sides.iter().fold(f32::MAX, |least, [c, s, r]| least.min(r - fx * c - fy * s));
+                let inside =
+                    self.sides.iter().fold(f32::MAX, |least, [c, s, r]| least.min(r - fx * c - fy * s));
                 if inside < -1.5 {
                     continue;
                 }
@@ -212,28 +212,47 @@ pub(super) fn snow() -> Pattern {
         let bend = fbm2(41, u * 6.0, v * 6.0, 2, 0.5, 6);
         let drift = fbm2(42, u * 8.0, v * 8.0, 3, 0.5, 8);
         // Ripples: the same noise drawn out across the wind, bent by it.
-        let ripple = gradient2(43, u * 12.0 + 0.6 * bend, v * 48.0 + 3.0 * bend, 48);
+        let ripple = gradient2(43, u * 12.0 + 0.6 * bend, v * 48.0 + 3.0 * bend, 12);
         let ripple = ripple * (0.5 + 0.5 * gradient2(44, u * 5.0, v * 5.0, 5));
         let grain = fbm2(45, u * 128.0, v * 128.0, 2, 0.8, 128);
-        let height = 0.5 + 0.55 * drift + 0.10 * ripple + 0.05 * grain;
-        let tone = 128.0 * (1.0 + 0.06 * drift + 0.035 * ripple + 0.05 * grain);
+        let height = 0.5 + 0.55 * drift + 0.13 * ripple + 0.07 * grain;
+        let tone = 128.0 * (1.0 + 0.08 * drift + 0.05 * ripple + 0.10 * grain);
         (height, [tone * (1.0 - 0.02 * drift), tone, tone * (1.0 + 0.03 * drift)])
     })
+}
+
+/// A cell as a plate of dried mud.
+struct Plate {
+    /// 0 in the crack around it, 1 inside.
+    crack: f32,
+    /// Its own shade, 0 to 1.
+    shade: f32,
+}
+
+/// The plate at (u, v) of `cells` cells a side.
+fn plate(seed: u32, u: f32, v: f32, cells: i32) -> Plate {
+    let scale = cells as f32;
+    let (first, second, id) = cellular2(seed, u * scale, v * scale, cells);
+    let crack = ((second - first) * 9.0).min(1.0);
+    Plate { crack: crack * (2.0 - crack), shade: (id >> 13 & 0xFF) as f32 / 255.0 }
 }
 
 /// Mud that dried and cracked, with finer cracks inside its plates.
 pub(super) fn mud() -> Pattern {
     from_texels(|u, v| {
-        let (a, b) = (fbm2(51, u * 9.0, v * 9.0, 3, 0.55, 9), fbm2(52, u * 9.0, v * 9.0, 3, 0.55, 9));
-        let plate = blocks(53, u + 0.03 * a, v + 0.03 * b, 13);
-        let hair = blocks(54, u - 0.016 * b, v + 0.016 * a, 31);
+        let (a, b) = (fbm2(51, u * 9.0, v * 9.0, 2, 0.55, 9), fbm2(52, u * 9.0, v * 9.0, 2, 0.55, 9));
+        let plate_here = plate(53, u + 0.03 * a, v + 0.03 * b, 13);
         // Only some plates split again, and cracks close here and there.
-        let split = 1.0 - (1.0 - hair.crack) * 0.55 * f32::from(u8::from(plate.shade > 0.45));
+        let split = if plate_here.shade > 0.45 {
+            0.45 + 0.55 * plate(54, u - 0.016 * b, v + 0.016 * a, 31).crack
+        } else {
+            1.0
+        };
         let open = 0.55 + 0.45 * (2.5 * a).clamp(-1.0, 1.0);
-        let crack = (1.0 - (1.0 - plate.crack) * open).min(split);
-        let silt = fbm2(55, u * 60.0, v * 60.0, 3, 0.65, 60);
-        let height = crack * (0.62 + 0.16 * plate.shade + 0.10 * silt + 0.12 * a);
-        let tone = (112.0 + 26.0 * plate.shade + 24.0 * a + 30.0 * silt) * (0.32 + 0.68 * crack);
+        let crack = (1.0 - (1.0 - plate_here.crack) * open).min(split);
+        let silt = fbm2(55, u * 70.0, v * 70.0, 2, 0.65, 70);
+        let height = crack * (0.62 + 0.16 * plate_here.shade + 0.10 * silt + 0.12 * a);
+        let tone = (112.0 + 26.0 * plate_here.shade + 24.0 * a + 30.0 * silt) * (0.32 + 0.68 * crack);
         let warm = 0.03 * b;
         (height, [tone * (1.0 + warm), tone, tone * (1.0 - warm)])
     })

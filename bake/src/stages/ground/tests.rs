@@ -1,21 +1,166 @@
 //! Properties of the ground.
 
+use std::sync::LazyLock;
+
 use super::*;
+use crate::stages::land::{LandParams, landform};
+
+/// An alpine land with snow, scree and a lake: everything that can cover the ground.
+static LAND: LazyLock<Landform> = LazyLock::new(|| {
+    let params = LandParams {
+        terrain_seed: 5,
+        relief_m: 220.0,
+        wavelength_m: 700.0,
+        hurst: 0.9,
+        lacunarity: 2.0,
+        ridged: 0.6,
+        domain_warp: 0.3,
+        offset: 0.4,
+        terraces: 0.0,
+        stream_power_steps: 6,
+        droplets: 15000.0,
+        talus_angle_deg: 33.0,
+        water_level: 0.15,
+        snow_line: 0.6,
+    };
+    landform(&params, 257)
+});
+
+const PARAMS: GroundParams = GroundParams { terrain_seed: 5, talus_angle_deg: 33.0, snow_line: 0.6 };
+
+static TEXTURES: LazyLock<crate::model::GroundTextures> = LazyLock::new(textures);
+
+fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("thread pool").install(work)
+}
+
+#[test]
+fn same_bytes_on_any_number_of_threads() {
+    let both = |threads| with_threads(threads, || (maps(&PARAMS, &LAND, 256), apron_colors(&PARAMS, &LAND)));
+    assert!(both(1) == both(5));
+}
+
+#[test]
+fn weights_share_what_there_is_and_all_covers_occur() {
+    let made = maps(&PARAMS, &LAND, 256);
+    let mut most = [0; 4];
+    for w in made.weights.data.chunks_exact(4) {
+        assert!(w.iter().map(|&w| u32::from(w)).sum::<u32>() <= 255);
+        for k in 0..4 {
+            most[k] = most[k].max(w[k]);
+        }
+    }
+    assert!(most.iter().all(|&w| w > 200), "strongest cover of rock, scree, snow, mud: {most:?}");
+}
+
+#[test]
+fn snow_lies_high_and_rock_is_steep() {
+    let made = maps(&PARAMS, &LAND, 256);
+    let mean = |channel: usize, of: &dyn Fn(u32, u32) -> f32| {
+        let (mut sum, mut total) = (0.0, 0.0);
+        for j in 0..256 {
+            for i in 0..256 {
+                let w = f32::from(made.weights.pixel(i, j)[channel]);
+                sum += w * of(i, j);
+                total += w;
+            }
+        }
+        sum / total
+    };
+    let height = |i, j| LAND.field.at(i, j);
+    let flat = |i, j| LAND.field.normal_at(i, j).y;
+    let everywhere = (0..256 * 256).map(|k| flat(k % 256, k / 256)).sum::<f32>() / 65536.0;
+    assert!(mean(2, &height) > LAND.snow_line_m);
+    assert!(mean(0, &flat) < everywhere - 0.05);
+    assert!(mean(3, &height) < LAND.water_level_m.expect("a lake") + 10.0);
+}
+
+#[test]
+fn albedo_is_that_of_real_ground() {
+    let made = maps(&PARAMS, &LAND, 256);
+    for (color, weights) in made.color_srgb.data.chunks_exact(3).zip(made.weights.data.chunks_exact(4)) {
+        // Linear 0.02 to 0.9 in green.
+        assert!((25..=245).contains(&color[1]), "{color:?}");
+        if weights[2] > 250 {
+            assert!(color[1] > 215, "snow of {color:?}");
+        }
+    }
+}
+
+#[test]
+fn apron_continues_the_map() {
+    let made = maps(&PARAMS, &LAND, 512);
+    let colors = apron_colors(&PARAMS, &LAND);
+    let linear = |c: u8| libm::powf((f32::from(c) / 255.0 + 0.055) / 1.055, 2.4);
+    let mut worst = 0.0f32;
+    for k in 0..=12 {
+        // The northern border, 32 texels around, against the apron's samples there, smoothed alike.
+        let mean = |texels: std::ops::Range<u32>| {
+            let sum: f32 = texels
+                .clone()
+                .flat_map(|i| (0..12).map(move |j| (i, j)))
+                .map(|(i, j)| linear(made.color_srgb.pixel(i, j)[1]))
+                .sum();
+            sum / (texels.len() * 12) as f32
+        };
+        let map = mean(k * 32..(k + 4) * 32);
+        let apron: f32 =
+            (0..=4).map(|s| f32::from(colors[(56 * 129 + 56 + k + s) as usize][1]) / 255.0).sum::<f32>()
+                / 5.0;
+        worst = worst.max((map - apron).abs());
+    }
+    assert!(worst < 0.12, "{worst} apart");
+    assert!(colors.len() == 129 * 129 && colors.iter().all(|c| c[3] == 255));
+}
+
+#[test]
+fn textures_tile() {
+    for t in &TEXTURES.textures {
+        for image in [&t.detail_srgb, &t.normal] {
+            let across =
+                |a: u32, b: u32| (0..512).map(|j| apart(image.pixel(a, j), image.pixel(b, j))).sum::<u32>();
+            let down =
+                |a: u32, b: u32| (0..512).map(|i| apart(image.pixel(i, a), image.pixel(i, b))).sum::<u32>();
+            let inside_across = (0..511).map(|i| across(i, i + 1)).max().unwrap_or(0);
+            let inside_down = (0..511).map(|j| down(j, j + 1)).max().unwrap_or(0);
+            assert!(across(511, 0) <= inside_across, "{} has a seam from top to bottom", t.name);
+            assert!(down(511, 0) <= inside_down, "{} has a seam from side to side", t.name);
+        }
+    }
+}
+
+fn apart(a: &[u8], b: &[u8]) -> u32 {
+    a.iter().zip(b).map(|(a, b)| u32::from(a.abs_diff(*b))).sum()
+}
+
+#[test]
+fn textures_have_their_mean_and_point_outwards() {
+    let names: Vec<&str> = TEXTURES.textures.iter().map(|t| t.name.as_str()).collect();
+    assert_eq!(names, ["grass", "rock", "scree", "snow", "mud"]);
+    for t in &TEXTURES.textures {
+        assert!((3.0..=6.0).contains(&t.tile_m));
+        for channel in 0..3 {
+            let sum: u64 = t.detail_srgb.data.iter().skip(channel).step_by(3).map(|&b| u64::from(b)).sum();
+            let mean = sum as f64 / (512.0 * 512.0);
+            assert!((mean - 128.0).abs() < 1.0, "{} has mean {mean}", t.name);
+        }
+        for n in t.normal.data.chunks_exact(3) {
+            let n = [0, 1, 2].map(|k| f32::from(n[k]) / 127.5 - 1.0);
+            let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
+            assert!((length - 1.0).abs() < 0.03 && n[2] > 0.0, "{} has the normal {n:?}", t.name);
+        }
+    }
+}
 
 #[test]
 #[ignore = "writes pictures"]
 fn texture_pictures() {
-    let begin = std::time::Instant::now();
+    use crate::stages::land::{cpu_s, write_picture};
+    let begin = cpu_s();
     let made = textures();
-    eprintln!("textures {:?}", begin.elapsed());
-    let folder = std::env::temp_dir().join("genescape-land");
-    std::fs::create_dir_all(&folder).expect("folder for pictures");
+    eprintln!("textures: {:.0} ms", 1e3 * (cpu_s() - begin));
     for t in &made.textures {
-        for (what, image) in [("detail", &t.detail_srgb), ("normal", &t.normal)] {
-            let path = folder.join(format!("{}-{what}.png", t.name));
-            let mut encoder = png::Encoder::new(std::fs::File::create(path).expect("picture"), 512, 512);
-            encoder.set_color(png::ColorType::Rgb);
-            encoder.write_header().and_then(|mut w| w.write_image_data(&image.data)).expect("picture");
-        }
+        write_picture(&format!("{}-detail", t.name), 512, 512, &t.detail_srgb.data);
+        write_picture(&format!("{}-normal", t.name), 512, 512, &t.normal.data);
     }
 }

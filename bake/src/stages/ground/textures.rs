@@ -18,7 +18,7 @@ pub fn textures() -> GroundTextures {
         ("grass", 3.0, 2.2, patterns::grass),
         ("rock", 6.0, 4.5, patterns::rock),
         ("scree", 4.0, 3.0, patterns::scree),
-        ("snow", 5.0, 2.0, patterns::snow),
+        ("snow", 5.0, 3.2, patterns::snow),
         ("mud", 4.0, 2.4, patterns::mud),
     ];
     let textures = kinds
@@ -47,10 +47,13 @@ fn detail(pattern: &Pattern) -> Image8 {
 /// The factor that gives one channel the mean 128 after clamping to bytes, by the secant of its clamped mean.
 fn scale_to_mean(tone: &[[f32; 3]], channel: usize) -> f32 {
     let mut scale = 1.0;
-    for _ in 0..4 {
+    for _ in 0..3 {
         // Truncation to bytes takes half a step off.
-        let sum: f64 = tone.iter().map(|t| f64::from((t[channel] * scale).clamp(0.0, 255.0))).sum();
-        scale *= 128.5 / (sum / tone.len() as f64).max(1e-3) as f32;
+        let rows = tone
+            .chunks_exact(SIDE)
+            .map(|row| row.iter().map(|t| (t[channel] * scale).clamp(0.0, 255.0)).sum::<f32>());
+        let mean = rows.sum::<f32>() / tone.len() as f32;
+        scale *= 128.5 / mean.max(1e-3);
     }
     scale
 }
@@ -64,7 +67,8 @@ fn normals(height: &[f32], depth_px: f32) -> Image8 {
         for (i, pixel) in row.chunks_exact_mut(3).enumerate() {
             let (west, east) = ((i + SIDE - 1) % SIDE, (i + 1) % SIDE);
             // Sobel, so that single texels do not glitter.
-            let dx = above[east] + 2.0 * here[east] + below[east] - above[west] - 2.0 * here[west] - below[west];
+            let dx =
+                above[east] + 2.0 * here[east] + below[east] - above[west] - 2.0 * here[west] - below[west];
             let dy = below[west] + 2.0 * below[i] + below[east] - above[west] - 2.0 * above[i] - above[east];
             let (nx, ny) = (-dx * 0.125 * depth_px, dy * 0.125 * depth_px);
             let length = (nx * nx + ny * ny + 1.0).sqrt();

@@ -3,7 +3,6 @@
 
 use rayon::prelude::*;
 
-use super::GroundParams;
 use crate::model::{Heightfield, Landform};
 use crate::noise::fbm2;
 use crate::seed::noise_seed;
@@ -118,9 +117,9 @@ fn sample(patches: &Patches, land: &Landform, i: u32, j: u32, step: u32) -> [f32
 }
 
 /// Traits of a sample of the apron, whose spacing hides much of the slope.
-pub(super) fn far(params: &GroundParams, land: &Landform, i: u32, j: u32) -> Traits {
+pub(super) fn far(patches: &Patches, land: &Landform, i: u32, j: u32) -> Traits {
     let (slope, hollow) = shape_at(&land.apron, i, j, 1);
-    let seed = |item| noise_seed(params.terrain_seed.into(), "ground", item);
+    let seed = |k: usize| patches.seeds[k];
     let (x, z) = (i as f32 * land.apron.spacing_m, j as f32 * land.apron.spacing_m);
     Traits {
         height_m: land.apron.at(i, j),
@@ -148,6 +147,7 @@ fn shape_at(field: &Heightfield, i: u32, j: u32, step: u32) -> (f32, f32) {
 
 /// Three layers of noise on a coarse grid.
 pub(super) struct Patches {
+    seeds: [u32; 3],
     values: Vec<[f32; 3]>,
 }
 
@@ -167,7 +167,7 @@ impl Patches {
                 1.6 * fbm2(seeds[2], x / 80.0, z / 80.0, 3, 0.6, 0),
             ];
         });
-        Self { values }
+        Self { seeds, values }
     }
 
     fn at(&self, u: f32, v: f32) -> [f32; 3] {

@@ -102,7 +102,11 @@ impl Ground<'_> {
                 speed = 0.3;
             } else {
                 let capacity = -rise * speed * water * CAPACITY;
-                let amount = if load > capacity { (load - capacity) * DEPOSITION } else { (load - capacity) * EROSION };
+                let amount = if load > capacity {
+                    (load - capacity) * DEPOSITION
+                } else {
+                    (load - capacity) * EROSION
+                };
                 let amount = amount.clamp(-MOST_M, MOST_M).max(rise);
                 self.change(old_x, old_z, amount);
                 load -= amount;
@@ -119,7 +123,8 @@ impl Ground<'_> {
         let (i, j) = (x as usize, z as usize);
         let (u, v) = (x - i as f32, z - j as f32);
         let k = j * self.n + i;
-        let (a, b, c, d) = (self.heights[k], self.heights[k + 1], self.heights[k + self.n], self.heights[k + self.n + 1]);
+        let (a, b, c, d) =
+            (self.heights[k], self.heights[k + 1], self.heights[k + self.n], self.heights[k + self.n + 1]);
         let (gx, gz) = ((b - a) * (1.0 - v) + (d - c) * v, (c - a) * (1.0 - u) + (d - b) * u);
         (a + (b - a) * u + (c - a) * v + (a - b - c + d) * u * v, gx, gz)
     }

@@ -64,7 +64,8 @@ impl Grid {
         wide.par_chunks_mut(m).zip(self.values.par_chunks(n)).for_each(|(out, row)| {
             for i in 0..n - 1 {
                 out[2 * i] = row[i];
-                out[2 * i + 1] = midpoint(row[i.saturating_sub(1)], row[i], row[i + 1], row[(i + 2).min(n - 1)]);
+                out[2 * i + 1] =
+                    midpoint(row[i.saturating_sub(1)], row[i], row[i + 1], row[(i + 2).min(n - 1)]);
             }
             out[m - 1] = row[n - 1];
         });

@@ -19,6 +19,9 @@ mod tests;
 mod thermal;
 mod water;
 
+#[cfg(test)]
+pub(crate) use pictures::{cpu_s, write as write_picture};
+
 use serde::{Deserialize, Serialize};
 
 use crate::model::{Heightfield, Landform};

@@ -108,9 +108,16 @@ fn pictures() {
 #[test]
 #[ignore = "measures"]
 fn speed() {
-    for k in 0..4 {
+    for k in 0..6 {
         let params = match k {
-            0 => LandParams { stream_power_steps: 15, droplets: 60000.0, hurst: 0.5, lacunarity: 1.8, wavelength_m: 2000.0, ..random_params(3) },
+            0 => LandParams {
+                stream_power_steps: 15,
+                droplets: 60000.0,
+                hurst: 0.5,
+                lacunarity: 1.8,
+                wavelength_m: 2000.0,
+                ..random_params(3)
+            },
             k => random_params(k),
         };
         let begin = cpu_s();
@@ -124,8 +131,19 @@ fn speed() {
         let maps = ground::maps(&ground, &land, 1024);
         let painted = cpu_s();
         let apron = ground::apron_colors(&ground, &land);
-        eprintln!("ground {:.0} apron {:.0} ms {}", (painted - end) * 1e3, (cpu_s() - painted) * 1e3, maps.weights.data.len() + apron.len());
-        eprintln!("{k}: {:.0} ms, {:?}, droplets {} steps {}", (end - begin) * 1e3, land.field.range_m(), params.droplets, params.stream_power_steps);
+        eprintln!(
+            "ground {:.0} apron {:.0} ms {}",
+            (painted - end) * 1e3,
+            (cpu_s() - painted) * 1e3,
+            maps.weights.data.len() + apron.len()
+        );
+        eprintln!(
+            "{k}: {:.0} ms, {:?}, droplets {} steps {}",
+            (end - begin) * 1e3,
+            land.field.range_m(),
+            params.droplets,
+            params.stream_power_steps
+        );
     }
 }
 
@@ -155,7 +173,8 @@ fn paint(params: &LandParams, land: &Landform) -> Paint {
     };
     let maps = ground::maps(&ground, land, 1024);
     let linear = |c: u8| libm::powf(f32::from(c) / 255.0, 2.2);
-    let field = maps.color_srgb.data.chunks_exact(3).map(|c| [linear(c[0]), linear(c[1]), linear(c[2])]).collect();
+    let field =
+        maps.color_srgb.data.chunks_exact(3).map(|c| [linear(c[0]), linear(c[1]), linear(c[2])]).collect();
     Paint { field, apron: ground::apron_colors(&ground, land) }
 }
 
@@ -208,7 +227,8 @@ fn height(land: &Landform, x: f32, z: f32) -> f32 {
 fn shade(land: &Landform, colors: &Paint, x: f32, z: f32) -> [u8; 3] {
     let inside = x.abs() < 512.0 && z.abs() < 512.0;
     let e = if inside { 2.0 } else { 40.0 };
-    let (dx, dz) = (height(land, x + e, z) - height(land, x - e, z), height(land, x, z + e) - height(land, x, z - e));
+    let (dx, dz) =
+        (height(land, x + e, z) - height(land, x - e, z), height(land, x, z + e) - height(land, x, z - e));
     let normal = glam::Vec3::new(-dx, 2.0 * e, -dz).normalize();
     let light = normal.dot(glam::Vec3::new(-0.6, 0.6, -0.45).normalize()).max(0.0) * 2.6 + 0.55 * normal.y;
     let at = |v: f32| ((v + 512.0) as usize).min(1023);
@@ -227,7 +247,8 @@ fn shade(land: &Landform, colors: &Paint, x: f32, z: f32) -> [u8; 3] {
     c.map(|v| (255.0 * libm::powf((v * light).min(1.0), 0.4545)) as u8)
 }
 
-fn write(name: &str, width: u32, height: u32, data: &[u8]) {
+/// Writes a picture (or, without a width, text) into the folder.
+pub(crate) fn write(name: &str, width: u32, height: u32, data: &[u8]) {
     let folder: PathBuf = std::env::temp_dir().join("genescape-land");
     std::fs::create_dir_all(&folder).expect("folder for pictures");
     if width == 0 {

@@ -93,7 +93,9 @@ impl Shape {
         let gain = libm::powf(p.lacunarity, -p.hurst);
         let share = (STEEPNESS * p.wavelength_m / p.relief_m).min(1.0);
         let mut octaves = Vec::new();
-        let (mut wavelength_m, mut amplitude, mut ridged) = (p.wavelength_m, 1.0f32, p.ridged);
+        // Every zero of the noise is a ridge: ridges stand twice as close as round tops would.
+        let (mut wavelength_m, mut amplitude, mut ridged) =
+            (p.wavelength_m * (1.0 + 0.7 * p.ridged), 1.0f32, p.ridged);
         // An octave lower than 2 cm is not worth its time.
         while wavelength_m >= FINEST_M && amplitude * p.relief_m > 0.04 {
             let walkable = amplitude.min(1.6 * walkable_amplitude_m(wavelength_m) / (share * p.relief_m));
@@ -142,7 +144,11 @@ impl Shape {
 
     /// The fitted land on a grid of the field, of which `known` is a part or that is part of `known`.
     pub fn sample(&self, side: u32, known: &Grid) -> Grid {
-        if side <= known.side { known.resized(side) } else { Grid::from_field(side, |x, z| self.height_m(x, z, 0.0)) }
+        if side <= known.side {
+            known.resized(side)
+        } else {
+            Grid::from_field(side, |x, z| self.height_m(x, z, 0.0))
+        }
     }
 
     /// Raw height in metres at a place; waves shorter than twice `spacing_m` are left out.
@@ -192,14 +198,16 @@ impl Shape {
             u += self.fold_m * (a.at(x, z) + 0.4 * c.at(x, z));
             v += self.fold_m * (b.at(x, z) + 0.4 * d.at(x, z));
         }
-        let massif = if self.share < 1.0 { self.massif[0].at(x, z) + 0.4 * self.massif[1].at(x, z) } else { 0.0 };
+        let massif =
+            if self.share < 1.0 { self.massif[0].at(x, z) + 0.4 * self.massif[1].at(x, z) } else { 0.0 };
         Sum { u, v, height: 0.0, weight: 1.0, massif }
     }
 
     /// Adds some of the octaves.
     fn add(&self, sum: &mut Sum, octaves: Range<usize>, spacing_m: f32) {
         for octave in &self.octaves[octaves] {
-            let kept = if spacing_m > 0.0 { (octave.wavelength_m / spacing_m - 2.0).clamp(0.0, 1.0) } else { 1.0 };
+            let kept =
+                if spacing_m > 0.0 { (octave.wavelength_m / spacing_m - 2.0).clamp(0.0, 1.0) } else { 1.0 };
             if kept == 0.0 {
                 break;
             }
@@ -219,7 +227,11 @@ impl Shape {
     fn finish(&self, value: f32, x: f32, z: f32) -> f32 {
         let (lo, hi) = self.range;
         let part = soften((value - lo) / (hi - lo).max(1e-6));
-        let flattened = if part > 0.0 { mix(part, part * part, 0.75 * self.offset) } else { part * (1.0 - 0.75 * self.offset) };
+        let flattened = if part > 0.0 {
+            mix(part, part * part, 0.75 * self.offset)
+        } else {
+            part * (1.0 - 0.75 * self.offset)
+        };
         let stepped = self.terraces.step(flattened, x, z);
         let r = (x * x + z * z) / (300.0 * 300.0);
         let bump = (1.0 - r.min(1.0)) * (1.0 - r.min(1.0));

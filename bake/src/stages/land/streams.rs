@@ -22,8 +22,8 @@ const NEIGHBOURS: [(i32, i32); 8] = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (
 /// Cuts valleys on each of `sides` in turn, coarse to fine, wide valleys before their tributaries.
 pub(super) fn carve_valleys(land: &mut Grid, loose: &mut Grid, params: &LandParams, sides: [u32; 2]) {
     let seed = noise_seed(params.terrain_seed.into(), "land", 3);
-    // Finer grids cost four times as much and have less to add.
-    let steps = [params.stream_power_steps, params.stream_power_steps.div_ceil(3)];
+    // Finer grids cost four times as much a step and have less to add.
+    let steps = [params.stream_power_steps, params.stream_power_steps.div_ceil(5)];
     for (side, steps) in sides.into_iter().zip(steps) {
         let before = land.resized(side);
         let mut after = before.clone();

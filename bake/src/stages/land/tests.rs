@@ -23,3 +23,155 @@ pub(crate) fn random_params(k: u32) -> LandParams {
         snow_line: gene(13, 0.2, 1.0),
     }
 }
+
+/// The least and the greatest value of every gene.
+fn corners() -> [LandParams; 2] {
+    let corner =
+        |seed, relief_m, wavelength_m, hurst, lacunarity, part: f32, steps, droplets, talus, water, snow| {
+            LandParams {
+                terrain_seed: seed,
+                relief_m,
+                wavelength_m,
+                hurst,
+                lacunarity,
+                ridged: part,
+                domain_warp: part,
+                offset: part,
+                terraces: part,
+                stream_power_steps: steps,
+                droplets,
+                talus_angle_deg: talus,
+                water_level: water,
+                snow_line: snow,
+            }
+        };
+    [
+        corner(0, 15.0, 200.0, 0.5, 1.8, 0.0, 0, 0.0, 20.0, 0.0, 0.2),
+        corner(255, 420.0, 2000.0, 1.3, 2.4, 1.0, 15, 60000.0, 45.0, 0.6, 1.0),
+    ]
+}
+
+fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("thread pool").install(work)
+}
+
+#[test]
+fn same_bytes_on_any_number_of_threads() {
+    let params = random_params(2);
+    let one = with_threads(1, || landform(&params, 129));
+    let many = with_threads(5, || landform(&params, 129));
+    assert_eq!(one, many);
+}
+
+#[test]
+fn any_genes_give_finite_land_of_the_relief_asked_for() {
+    for params in (20..23).map(random_params).chain(corners()) {
+        let land = landform(&params, 513);
+        let all = [&land.field.heights_m, &land.apron.heights_m, &land.flow, &land.deposit];
+        assert!(all.iter().all(|v| v.iter().all(|h| h.is_finite())), "{params:?}");
+        assert_eq!(
+            (land.field.heights_m.len(), land.flow.len(), land.deposit.len()),
+            (513 * 513, 513 * 513, 513 * 513)
+        );
+        let (lo, hi) = land.field.range_m();
+        assert!((hi - lo - params.relief_m).abs() < 0.04 * params.relief_m, "{} for {params:?}", hi - lo);
+        assert!(land.flow.iter().chain(&land.deposit).all(|v| (0.0..=1.0).contains(v)), "{params:?}");
+        let (_, far) = land.apron.range_m();
+        assert!(far < hi + 1.6 * params.relief_m + 60.0, "the horizon towers over {params:?}");
+        assert_eq!(params.snow_line > 0.999, land.snow_line_m > far.max(hi));
+    }
+}
+
+#[test]
+fn apron_equals_the_field_where_they_share_samples() {
+    let land = landform(&random_params(4), 257);
+    assert_eq!((land.apron.side, land.apron.spacing_m), (129, 64.0));
+    for j in 0..=16 {
+        for i in 0..=16 {
+            assert_eq!(land.apron.at(56 + i, 56 + j), land.field.at(i * 16, j * 16), "apron sample {i}, {j}");
+        }
+    }
+}
+
+#[test]
+fn apron_goes_on_where_the_field_ends() {
+    for params in (30..33).map(random_params) {
+        let land = landform(&params, 257);
+        let ring =
+            |i: u32, j: u32, out: u32, side: u32| (land.apron.at(i, j) - land.apron.at(out, side)).abs();
+        let steps: f32 =
+            (0..=16).map(|k| ring(56 + k, 56, 56 + k, 55) + ring(72, 56 + k, 73, 56 + k)).sum::<f32>() / 34.0;
+        let inside: f32 =
+            (0..=16).map(|k| ring(56 + k, 57, 56 + k, 58) + ring(70, 56 + k, 71, 56 + k)).sum::<f32>() / 34.0;
+        assert!(
+            steps < 1.8 * inside + 0.06 * params.relief_m,
+            "a step of {steps} m (inside {inside} m) in {params:?}"
+        );
+    }
+}
+
+#[test]
+fn loose_stone_holds_its_talus_angle() {
+    for params in (10..13).map(random_params) {
+        let land = landform(&LandParams { water_level: 0.0, ..params.clone() }, 513);
+        let steepest = libm::tanf((params.talus_angle_deg + 5.0).to_radians());
+        let (mut loose, mut steep) = (0, 0);
+        for j in 1..512 {
+            for i in 1..512 {
+                if land.deposit[(j * 513 + i) as usize] > 0.6 {
+                    let n = land.field.normal_at(i, j);
+                    loose += 1;
+                    steep += usize::from((1.0 - n.y * n.y).sqrt() / n.y > steepest);
+                }
+            }
+        }
+        assert!(steep * 100 <= loose, "{steep} of {loose} loose samples are too steep in {params:?}");
+    }
+}
+
+#[test]
+fn enough_land_stays_dry_and_one_starts_on_it() {
+    for k in 40..44 {
+        let params = LandParams { water_level: 0.6, ..random_params(k) };
+        let land = landform(&params, 257);
+        let water_m = land.water_level_m.expect("a lake");
+        let dry = land.field.heights_m.iter().filter(|&&h| h > water_m).count();
+        assert!(dry * 5 >= 257 * 257 * 2, "{dry} dry samples in {params:?}");
+        let middle = (-20..=20).flat_map(|j| (-20..=20).map(move |i| (i, j)));
+        let wet =
+            middle.filter(|&(i, j)| land.field.at((128 + i) as u32, (128 + j) as u32) <= water_m).count();
+        assert!(wet * 2 < 41 * 41, "{wet} wet samples in the middle of {params:?}");
+    }
+    assert_eq!(landform(&LandParams { water_level: 0.0, ..random_params(40) }, 65).water_level_m, None);
+}
+
+#[test]
+fn features_keep_their_place_at_any_size() {
+    let params = random_params(6);
+    let lands = [129, 513, 1025].map(|size| landform(&params, size));
+    let mut worst = 0.0f32;
+    for j in 0..129 {
+        for i in 0..129 {
+            let h = lands[1].field.at(i * 4, j * 4);
+            assert_eq!(lands[0].field.at(i, j), h);
+            worst = worst.max((lands[2].field.at(i * 8, j * 8) - h).abs());
+        }
+    }
+    assert!(worst < 0.02 * params.relief_m, "{worst} m apart");
+}
+
+#[test]
+fn no_sample_stands_alone() {
+    for params in (50..53).map(random_params) {
+        let land = landform(&params, 513);
+        for j in 1..512u32 {
+            for i in 1..512u32 {
+                let around = [(0, 0), (1, 0), (2, 0), (0, 1), (2, 1), (0, 2), (1, 2), (2, 2)];
+                let near = around.map(|(di, dj)| land.field.at(i + di - 1, j + dj - 1));
+                let (lo, hi) = near.iter().fold((f32::MAX, f32::MIN), |(lo, hi), &h| (lo.min(h), hi.max(h)));
+                let h = land.field.at(i, j);
+                assert!(h < hi + 1.2 && h > lo - 1.2, "a spike at {i}, {j} in {params:?}");
+            }
+        }
+    }
+}

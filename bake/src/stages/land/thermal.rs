@@ -43,7 +43,8 @@ fn roughen(land: &mut Grid, loose: &Grid, params: &LandParams) {
             let k = j * n + i;
             let (dx, dz) = (old[k + 1] - old[k - 1], old[k + n] - old[k - n]);
             let slope = (dx * dx + dz * dz).sqrt() / (2.0 * spacing_m);
-            let bare = smoothstep(0.85 * talus, 1.4 * talus, slope) * (1.0 - smoothstep(0.1, 0.5, loose.values[k]));
+            let bare =
+                smoothstep(0.85 * talus, 1.4 * talus, slope) * (1.0 - smoothstep(0.1, 0.5, loose.values[k]));
             if bare > 0.0 {
                 let (x, z) = (i as f32 * spacing_m, j as f32 * spacing_m);
                 let broad = gradient2(seed, x / 19.0 + old[k] / 40.0, z / 19.0, 0);
@@ -57,14 +58,16 @@ fn roughen(land: &mut Grid, loose: &Grid, params: &LandParams) {
 /// How much steeper than loose stone the rock stands here, 0 to 1.
 fn hardness(side: u32, params: &LandParams) -> Grid {
     let seed = noise_seed(params.terrain_seed.into(), "land", 5);
-    let coarse = Grid::from_field(129, |x, z| smoothstep(-0.45, 0.5, fbm2(seed, x / 110.0, z / 110.0, 3, 0.5, 0)));
+    let coarse =
+        Grid::from_field(129, |x, z| smoothstep(-0.45, 0.5, fbm2(seed, x / 110.0, z / 110.0, 3, 0.5, 0)));
     coarse.resized(side)
 }
 
 /// The greatest drop in metres from a sample to its neighbour that holds.
 fn steepest_drops(hardness: &Grid, loose: &Grid, spacing_m: f32, talus_deg: f32) -> Vec<f32> {
     let drop_m = |deg: f32| libm::tanf(deg.to_radians()) * spacing_m;
-    let (talus, soft, hard) = (drop_m(talus_deg), drop_m(talus_deg + 5.0), drop_m((talus_deg + 18.0).min(57.0)));
+    let (talus, soft, hard) =
+        (drop_m(talus_deg), drop_m(talus_deg + 5.0), drop_m((talus_deg + 15.0).min(54.0)));
     let pairs = hardness.values.iter().zip(&loose.values);
     pairs
         .map(|(h, l)| {
@@ -109,7 +112,8 @@ impl Row<'_> {
         }
         for (i, neighbour) in [(0, 0usize), (inner + 1, inner + 1)] {
             let k = (neighbour + shift).saturating_sub(1).min(inner + 1);
-            out[i] += 0.22 * surplus(other.heights[k] - self.heights[i], half * (self.holds[i] + other.holds[k]));
+            out[i] +=
+                0.22 * surplus(other.heights[k] - self.heights[i], half * (self.holds[i] + other.holds[k]));
         }
     }
 }
