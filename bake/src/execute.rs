@@ -327,7 +327,7 @@ fn scene(name: &str, genes: &[(String, f32)], inputs: &Inputs<'_>) -> Result<Vec
     });
     let parts = SceneParts {
         name: name.to_owned(),
-        genome: genes.iter().map(|(gene, value)| (gene.clone(), (*value).into())).collect(),
+        genome: genes.iter().map(|(gene, value)| (gene.clone(), serde_json::Value::from(*value))).collect(),
         land: &land,
         terrain: GlbBlob { uri: uri(inputs.blob("terrain", "mesh")?), bytes: &terrain },
         heightfield: HeightfieldBlobs {

@@ -1,7 +1,17 @@
 //! Turns a population of genomes into landscapes: a graph of pure stages run through a content-addressed cache.
 
+pub mod bench;
 pub mod breed;
+pub mod cli;
+pub mod commands;
+pub mod events;
+mod execute;
+pub mod lod_file;
 pub mod model;
 pub mod noise;
+pub mod plan;
+pub mod run;
 pub mod seed;
 pub mod stages;
+mod watch;
+pub mod world;

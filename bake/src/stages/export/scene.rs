@@ -116,8 +116,6 @@ pub struct TreeTemplateBlob<'a> {
 pub struct SceneParts<'a> {
     /// The scene's name: "g0003 scene-2".
     pub name: String,
-    /// Which generation it belongs to.
-    pub generation: u32,
     /// The genome's values in their units, by parameter name; goes into `extras` as it is.
     pub genome: Value,
     /// The land, to stand on and to look over.
@@ -167,7 +165,7 @@ pub fn scene_gltf(parts: &SceneParts<'_>) -> Result<Vec<u8>, ExportError> {
     document.scenes.push(json!({
         "name": parts.name, "nodes": roots,
         "extensions": { GSC_SKY: sky_extension(parts) },
-        "extras": { "generation": parts.generation, "genome": parts.genome },
+        "extras": { "genome": parts.genome },
     }));
     Ok(document.json())
 }

@@ -341,7 +341,6 @@ impl Synthetic {
         let file = |name: &str| Picture::File { uri: format!("blobs/{name}"), mipmaps: Vec::new() };
         SceneParts {
             name: "g0000 scene-0".into(),
-            generation: 0,
             genome: json!({ "height_m": 7.4, "relief_m": 120.0, "levels": 3 }),
             land: &self.land,
             terrain: GlbBlob { uri: "blobs/terrain.glb".into(), bytes: &self.terrain },
