@@ -65,7 +65,7 @@ impl Default for LodOptions {
             placement: Placement::Volume,
             aggregate_weight: 0.25,
             piece_weight: 1.0,
-            element_fill: 0.7,
+            element_fill: 0.95,
         }
     }
 }

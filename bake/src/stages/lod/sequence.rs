@@ -34,7 +34,7 @@ pub struct Sequence {
     /// Pieces by falling cost, and those put off because they are too large for the level.
     pieces: Vec<(f64, u32)>,
     put_off: Vec<(f64, u32)>,
-    ring: Vec<u32>,
+    found: Vec<(f64, u32)>,
     unused: Vec<u32>,
 }
 
@@ -65,7 +65,7 @@ impl Sequence {
             put_off: Vec::new(),
             queue: BinaryHeap::new(),
             refused: Vec::new(),
-            ring: Vec::new(),
+            found: Vec::new(),
             log: Log::default(),
             error_m: 0.0,
             aggregates,
@@ -125,15 +125,12 @@ impl Sequence {
     }
 
     fn queue_all(&mut self) {
-        let mut ring = Vec::new();
+        let mut found = Vec::new();
         let mut entries = Vec::with_capacity(4 * self.versions.len());
         for a in 0..self.versions.len() as u32 {
-            self.surface.neighbours(&self.state, a, &mut ring);
-            for &b in ring.iter().filter(|&&b| a < b) {
-                if let Some(candidate) = self.surface.candidate(&self.state, a, b) {
-                    entries.push(Reverse(((candidate.cost as f32).to_bits(), a, b, 0)));
-                }
-            }
+            self.surface.candidates(&self.state, a, &mut found);
+            let forward = found.iter().filter(|&&(_, b)| a < b);
+            entries.extend(forward.map(|&(cost, b)| Reverse(((cost as f32).to_bits(), a, b, 0))));
         }
         self.queue = BinaryHeap::from(entries);
     }
@@ -160,12 +157,13 @@ impl Sequence {
         self.error_m = self.error_m.max(done.error_m);
         self.versions[a as usize] = self.versions[a as usize].wrapping_add(1);
         self.versions[b as usize] = self.versions[b as usize].wrapping_add(1);
-        let mut ring = std::mem::take(&mut self.ring);
-        self.surface.neighbours(&self.state, done.point, &mut ring);
-        for &other in ring.iter().filter(|&&other| other != done.point) {
-            self.queue_edge(done.point, other);
+        let mut found = std::mem::take(&mut self.found);
+        self.surface.candidates(&self.state, done.point, &mut found);
+        for &(cost, other) in &found {
+            let version = self.version(done.point, other);
+            self.queue.push(Reverse(((cost as f32).to_bits(), done.point, other, version)));
         }
-        self.ring = ring;
+        self.found = found;
     }
 
     fn drop_piece(&mut self, target: usize) {
