@@ -243,11 +243,10 @@ fn real_meshes_keep_their_shape() {
                 100.0 * stated,
                 100.0 * far
             );
-            let few = level.mesh.positions.len() < 200;
-            assert!(far < if few { 0.06 } else { 0.02 }, "{name}: {far}");
+            let most = if level.mesh.positions.len() < 400 { 0.03 } else { 0.01 };
+            assert!(far < most, "{name}: {far}");
         }
-        let sixteenth = &made.levels[4];
-        assert!(distance(&mesh, &sixteenth.mesh) / diagonal < 0.01, "{name}");
+        assert!(made.levels.len() > 4, "{name}");
     }
 }
 

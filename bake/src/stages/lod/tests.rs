@@ -208,12 +208,16 @@ pub fn covered(mesh: &Mesh, part: usize, azimuth: f32, fill: f32) -> usize {
 
 #[test]
 fn leaves_keep_covering_the_sky() {
-    let levels = made(&tree(30, 10, 3000)).levels;
-    for azimuth in [0.2, 1.1, 2.0, 2.9] {
-        let full = covered(&levels[0].mesh, 1, azimuth, 1.0) as f32;
-        for level in &levels[1..=4] {
-            let ratio = covered(&level.mesh, 1, azimuth, 1.0) as f32 / full;
-            assert!((0.9..1.1).contains(&ratio), "{ratio} at {} vertices", level.mesh.positions.len());
+    let mesh = tree(30, 10, 3000);
+    for fill in [1.0, LodOptions::default().element_fill] {
+        let levels = levels(&mesh, &LodOptions { element_fill: fill, ..LodOptions::default() }).levels;
+        for azimuth in [0.2, 1.1, 2.0, 2.9] {
+            let full = covered(&mesh, 1, azimuth, fill) as f32;
+            for level in &levels[1..=4] {
+                let ratio = covered(&level.mesh, 1, azimuth, fill) as f32 / full;
+                let count = level.mesh.positions.len();
+                assert!((0.9..1.1).contains(&ratio), "{ratio} at {count} vertices, fill {fill}");
+            }
         }
     }
 }
