@@ -443,9 +443,8 @@ impl<M: Metric> Surface<M> {
 
         let piece = self.topology.piece_of[step.a as usize] as usize;
         let mut apexes = [NONE; 2];
-        for k in 0..step.view.triangles {
-            let corner = step.view.opposite[k];
-            apexes[k] = vertex_at(state, corner);
+        for (apex, &corner) in apexes.iter_mut().zip(&step.view.opposite).take(step.view.triangles) {
+            *apex = vertex_at(state, corner);
             let t = corner / 3;
             log.triangles.push((t, state.triangles[t as usize]));
             state.triangle_lives[t as usize] = false;
