@@ -6,6 +6,7 @@ pub mod cli;
 pub mod commands;
 pub mod events;
 mod execute;
+pub mod import;
 pub mod lod_file;
 pub mod model;
 pub mod noise;

@@ -19,6 +19,8 @@ const SEAM_PENALTY: f64 = 3.0;
 /// Weights of the planes that hold boundaries and seams in place, relative to the surface's own.
 const BOUNDARY_WEIGHT: f64 = 2.0;
 const SEAM_WEIGHT: f64 = 0.25;
+/// Keeping the volume may make the error so much larger.
+const VOLUME_SLACK: f64 = 1.2;
 /// A triangle may not turn further than this: cosine.
 const LEAST_COSINE: f64 = 0.15;
 
@@ -91,22 +93,33 @@ impl<M: Metric> Surface<M> {
         surface
     }
 
-    /// Points at the other ends of a point's edges, each once.
-    pub fn neighbours(&mut self, state: &State, point: u32, found: &mut Vec<u32>) {
-        let mut star = std::mem::take(&mut self.star_a);
-        self.topology.star(state, point, &mut star);
-        self.ring(state, point, &star, found);
-        self.star_a = star;
-    }
-
     /// The collapse of edge (a, b), if there can be one.
     pub fn candidate(&mut self, state: &State, a: u32, b: u32) -> Option<Candidate> {
         let mut star = std::mem::take(&mut self.star_a);
         self.topology.star(state, a, &mut star);
-        let view = self.view(state, b, &star);
+        let candidate = self.judge(state, a, b, &star);
         self.star_a = star;
+        candidate
+    }
+
+    /// All collapses of a point's edges: what each costs, and the point at the edge's other end.
+    pub fn candidates(&mut self, state: &State, point: u32, found: &mut Vec<(f64, u32)>) {
+        let (mut star, mut ring) = (std::mem::take(&mut self.star_a), std::mem::take(&mut self.wedges));
+        self.topology.star(state, point, &mut star);
+        self.ring(state, point, &star, &mut ring);
+        found.clear();
+        for &other in &ring {
+            if let Some(candidate) = self.judge(state, point, other, &star) {
+                found.push((candidate.cost, other));
+            }
+        }
+        (self.star_a, self.wedges) = (star, ring);
+    }
+
+    fn judge(&self, state: &State, a: u32, b: u32, star_a: &[u32]) -> Option<Candidate> {
+        let view = self.view(state, b, star_a);
         let (freedom, penalty) = self.freedom(a, b, &view)?;
-        let ends = [a, b].map(|p| self.topology.positions[p as usize]);
+        let ends = [self.topology.positions[a as usize], self.topology.positions[b as usize]];
         let placed = self.metric.place(a as usize, b as usize, ends, freedom);
         let length = (ends[1] - ends[0]).length() * LENGTH_WEIGHT;
         let cost = (placed.error_m * placed.error_m + length * length).sqrt() * penalty;
@@ -334,7 +347,9 @@ impl<M: Metric> Surface<M> {
         let open = (self.topology.flags[a as usize] | self.topology.flags[b as usize]) & BOUNDARY != 0;
         if self.placement == Placement::Volume && freedom == Freedom::Edge && !open {
             let at = self.keep_volume(state, on_edge, ends, a, star_a, star_b);
-            if at != on_edge && self.keeps_facing(state, [a, b], at, star_a, star_b) {
+            let [moved, still] = [at, on_edge].map(|x| self.metric.error_m(a as usize, b as usize, x));
+            let near = moved <= VOLUME_SLACK * still + LENGTH_WEIGHT * (ends[1] - ends[0]).length();
+            if at != on_edge && near && self.keeps_facing(state, [a, b], at, star_a, star_b) {
                 return Some((along, at));
             }
         }
@@ -428,9 +443,8 @@ impl<M: Metric> Surface<M> {
 
         let piece = self.topology.piece_of[step.a as usize] as usize;
         let mut apexes = [NONE; 2];
-        for k in 0..step.view.triangles {
-            let corner = step.view.opposite[k];
-            apexes[k] = vertex_at(state, corner);
+        for (apex, &corner) in apexes.iter_mut().zip(&step.view.opposite).take(step.view.triangles) {
+            *apex = vertex_at(state, corner);
             let t = corner / 3;
             log.triangles.push((t, state.triangles[t as usize]));
             state.triangle_lives[t as usize] = false;

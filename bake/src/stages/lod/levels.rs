@@ -11,8 +11,8 @@ use super::sequence::Sequence;
 use super::state::{NONE, State};
 use super::{LodOptions, progressive, strip};
 
-/// A level must at least lose this part of the vertices before it.
-const LEAST_LOSS: f64 = 0.4;
+/// A level may miss its number of vertices by one in so many; otherwise there is no such level.
+const TOLERANCE: usize = 50;
 /// An error may not be less than this part of the mesh's diagonal, and must grow by `LEAST_GROWTH` a level.
 const LEAST_ERROR: f32 = 1e-7;
 const LEAST_GROWTH: f32 = 1.05;
@@ -46,7 +46,7 @@ pub fn build(mesh: &Mesh, options: &LodOptions) -> LevelledMesh {
                 error_half_way_m = error_m;
             }
         });
-        if (before - sequence.state.vertex_count) as f64 <= LEAST_LOSS * before as f64 {
+        if sequence.state.vertex_count > target + target / TOLERANCE {
             break;
         }
         let mark = progressive::Mark::calibrated(&mut sequence);

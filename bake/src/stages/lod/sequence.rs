@@ -12,6 +12,10 @@ use super::collapse::{Dead, Surface};
 use super::quadric::QuadricMetric;
 use super::state::{Log, NONE, State};
 
+/// Nothing goes that costs more than this part of the mesh's diagonal.
+const GREATEST_COST: f64 = 0.06;
+/// Refused collapses are tried again whenever costs have grown by this factor.
+const RETRY_GROWTH: f64 = 1.4;
 /// A piece may take a level this far below its target.
 const OVERSHOOT: usize = 4;
 
@@ -31,10 +35,12 @@ pub struct Sequence {
     versions: Vec<u32>,
     /// Collapses that were refused and may be possible later.
     refused: Vec<(u32, u32, u32)>,
+    retry_above_m: f64,
+    most_m: f64,
     /// Pieces by falling cost, and those put off because they are too large for the level.
     pieces: Vec<(f64, u32)>,
     put_off: Vec<(f64, u32)>,
-    ring: Vec<u32>,
+    found: Vec<(f64, u32)>,
     unused: Vec<u32>,
 }
 
@@ -65,7 +71,9 @@ impl Sequence {
             put_off: Vec::new(),
             queue: BinaryHeap::new(),
             refused: Vec::new(),
-            ring: Vec::new(),
+            retry_above_m: 0.0,
+            most_m: GREATEST_COST * diagonal_m(&state),
+            found: Vec::new(),
             log: Log::default(),
             error_m: 0.0,
             aggregates,
@@ -81,14 +89,17 @@ impl Sequence {
     pub fn reduce_to(&mut self, target: usize, mut watch: impl FnMut(usize, f64)) {
         self.pieces.append(&mut self.put_off);
         self.pieces.sort_by(|p, q| q.0.total_cmp(&p.0).then(q.1.cmp(&p.1)));
-        for (a, b, version) in std::mem::take(&mut self.refused) {
-            if self.version(a, b) == version {
-                self.queue_edge(a, b);
-            }
-        }
+        self.retry();
         self.drop_unused(target);
         while self.state.vertex_count > target {
-            let Some((next, cost_m)) = self.next() else { break };
+            let Some((next, cost_m)) = self.next().filter(|&(_, cost_m)| cost_m <= self.most_m) else {
+                break;
+            };
+            if cost_m > self.retry_above_m && !self.refused.is_empty() {
+                self.retry_above_m = RETRY_GROWTH * cost_m;
+                self.retry();
+                continue;
+            }
             match next {
                 Next::Edge => self.collapse_next(),
                 Next::Piece => self.drop_piece(target),
@@ -98,7 +109,16 @@ impl Sequence {
         }
     }
 
-    fn next(&mut self) -> Option<(Next, f64)> {
+    /// Queues collapses again that were refused: what stood in their way may be gone.
+    fn retry(&mut self) {
+        for (a, b, version) in std::mem::take(&mut self.refused) {
+            if self.version(a, b) == version {
+                self.queue_edge(a, b);
+            }
+        }
+    }
+
+    fn next(&self) -> Option<(Next, f64)> {
         let mut best = None;
         let mut offer = |next, cost: f64| {
             if best.as_ref().is_none_or(|&(_, least)| cost < least) {
@@ -125,15 +145,12 @@ impl Sequence {
     }
 
     fn queue_all(&mut self) {
-        let mut ring = Vec::new();
+        let mut found = Vec::new();
         let mut entries = Vec::with_capacity(4 * self.versions.len());
         for a in 0..self.versions.len() as u32 {
-            self.surface.neighbours(&self.state, a, &mut ring);
-            for &b in ring.iter().filter(|&&b| a < b) {
-                if let Some(candidate) = self.surface.candidate(&self.state, a, b) {
-                    entries.push(Reverse(((candidate.cost as f32).to_bits(), a, b, 0)));
-                }
-            }
+            self.surface.candidates(&self.state, a, &mut found);
+            let forward = found.iter().filter(|&&(_, b)| a < b);
+            entries.extend(forward.map(|&(cost, b)| Reverse(((cost as f32).to_bits(), a, b, 0))));
         }
         self.queue = BinaryHeap::from(entries);
     }
@@ -160,12 +177,13 @@ impl Sequence {
         self.error_m = self.error_m.max(done.error_m);
         self.versions[a as usize] = self.versions[a as usize].wrapping_add(1);
         self.versions[b as usize] = self.versions[b as usize].wrapping_add(1);
-        let mut ring = std::mem::take(&mut self.ring);
-        self.surface.neighbours(&self.state, done.point, &mut ring);
-        for &other in ring.iter().filter(|&&other| other != done.point) {
-            self.queue_edge(done.point, other);
+        let mut found = std::mem::take(&mut self.found);
+        self.surface.candidates(&self.state, done.point, &mut found);
+        for &(cost, other) in &found {
+            let version = self.version(done.point, other);
+            self.queue.push(Reverse(((cost as f32).to_bits(), done.point, other, version)));
         }
-        self.ring = ring;
+        self.found = found;
     }
 
     fn drop_piece(&mut self, target: usize) {
@@ -261,6 +279,16 @@ impl Axis {
         let at = self.middle + self.along * (point - self.middle).dot(self.along);
         (at + self.origin).to_array().map(|x| x as f32)
     }
+}
+
+fn diagonal_m(state: &State) -> f64 {
+    let mut box_m = [[f64::MAX, f64::MIN]; 3];
+    for vertex in &state.vertices {
+        for (side, x) in box_m.iter_mut().zip(vertex.position.map(f64::from)) {
+            *side = [side[0].min(x), side[1].max(x)];
+        }
+    }
+    box_m.iter().map(|[low, high]| (high - low).max(0.0)).map(|side| side * side).sum::<f64>().sqrt()
 }
 
 /// Pieces and the error in metres of doing without them, the cheapest last. The largest piece stays.

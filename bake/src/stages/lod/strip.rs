@@ -98,7 +98,7 @@ impl<'a> Walker<'a> {
         };
         // At an odd place a triangle counts the other way round.
         self.strip.extend([last, a]);
-        let turned = if self.strip.len() % 2 == 0 { [a, b, c] } else { [a, c, b] };
+        let turned = if self.strip.len().is_multiple_of(2) { [a, b, c] } else { [a, c, b] };
         self.strip.extend(turned);
     }
 
@@ -107,7 +107,7 @@ impl<'a> Walker<'a> {
         let n = self.strip.len();
         let (u, v) = (self.strip[n - 2], self.strip[n - 1]);
         // The next triangle starts at n − 2 and is (u, v, w), or (v, u, w) where that is odd.
-        let found = if n % 2 == 0 { self.beside(u, v) } else { self.beside(v, u) };
+        let found = if n.is_multiple_of(2) { self.beside(u, v) } else { self.beside(v, u) };
         let Some((t, w)) = found else { return false };
         self.draw(t);
         self.strip.push(w);

@@ -81,9 +81,13 @@ impl Topology {
     /// Points of a triangle, from the given corner on.
     #[inline]
     pub fn points_from(&self, state: &State, corner: u32) -> [u32; 3] {
-        let triangle = state.triangles[corner as usize / 3];
-        let k = corner as usize % 3;
-        [k, (k + 1) % 3, (k + 2) % 3].map(|k| self.point_of[triangle[k] as usize])
+        let [a, b, c] = state.triangles[corner as usize / 3];
+        let [p, q, r] = match corner % 3 {
+            0 => [a, b, c],
+            1 => [b, c, a],
+            _ => [c, a, b],
+        };
+        [self.point_of[p as usize], self.point_of[q as usize], self.point_of[r as usize]]
     }
 
     /// The living corners at a point; forgets dead ones.

@@ -1,0 +1,173 @@
+//! Other people's meshes (.glb, .gltf, .obj; bytes) → our `Mesh`, sound enough for every stage, with materials and
+//! images passed through. Metres, y up, transforms of nodes applied. What had to be mended is listed, not hidden.
+
+mod accessor;
+mod clean;
+mod gltf_file;
+mod obj;
+
+#[cfg(test)]
+mod tests;
+
+use std::fmt;
+use std::io;
+
+use serde_json::Value;
+use thiserror::Error;
+
+use crate::model::Mesh;
+
+/// Why a file can't be used at all.
+#[derive(Debug, Error)]
+pub enum ImportError {
+    /// Its name says nothing that we know.
+    #[error("can't read .{0} files: give a .glb, .gltf or .obj file")]
+    Extension(String),
+    /// It isn't what its name says.
+    #[error("not a sound {format} file: {reason}")]
+    Malformed {
+        /// "glTF", "GLB" or "OBJ".
+        format: &'static str,
+        /// What is wrong.
+        reason: String,
+    },
+    /// It needs something that we don't have.
+    #[error("the file requires the glTF extension {0}, which Genescape doesn't know; export it without")]
+    RequiredExtension(String),
+    /// A file that it names can't be read.
+    #[error("the file needs \"{name}\", which can't be read: {source}")]
+    Missing {
+        /// As written in the file.
+        name: String,
+        /// Why not.
+        source: io::Error,
+    },
+    /// Nothing is left to simplify.
+    #[error("the file holds no triangle that can be used{}", listed(.0))]
+    Empty(Vec<Repair>),
+}
+
+fn listed(repairs: &[Repair]) -> String {
+    repairs.iter().map(|repair| format!("; {repair}")).collect()
+}
+
+/// Something that was left out or mended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Repair {
+    /// Vertices with NaN or infinite positions went, with their triangles.
+    NonFiniteVertices(usize),
+    /// Normals, texture coordinates or colours that were NaN or infinite became zero.
+    NonFiniteAttributes(usize),
+    /// Triangles that named vertices that aren't there went.
+    IndexOutOfRange(usize),
+    /// Triangles without area went.
+    DegenerateTriangles(usize),
+    /// Vertices that no triangle uses went.
+    UnusedVertices(usize),
+    /// Edges of more than two triangles: kept, but they never collapse.
+    NonManifoldEdges(usize),
+    /// Points, lines and primitives without positions were skipped.
+    SkippedPrimitives(usize),
+    /// Strips and fans became lists of triangles.
+    ConvertedPrimitives(usize),
+    /// Nodes that would have contained themselves were skipped.
+    CyclicNodes(usize),
+    /// Parts that lacked normals, so that none were kept: make new ones.
+    MissingNormals(usize),
+    /// A list that didn't fit its vertices was left out.
+    AttributeMismatch(String),
+    /// An image or a material file that couldn't be read was left out.
+    MissingFile(String),
+    /// A part of many like pieces will be thinned out as leaves are: how many pieces.
+    FoundAggregate(usize),
+}
+
+impl fmt::Display for Repair {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NonFiniteVertices(n) => write!(f, "{n} vertices with NaN or infinite positions removed"),
+            Self::NonFiniteAttributes(n) => write!(f, "{n} NaN or infinite attribute values set to zero"),
+            Self::IndexOutOfRange(n) => write!(f, "{n} triangles with missing vertices removed"),
+            Self::DegenerateTriangles(n) => write!(f, "{n} triangles without area removed"),
+            Self::UnusedVertices(n) => write!(f, "{n} unused vertices removed"),
+            Self::NonManifoldEdges(n) => write!(f, "{n} edges of more than two triangles are locked"),
+            Self::SkippedPrimitives(n) => {
+                write!(f, "{n} primitives of points or lines or without positions skipped")
+            }
+            Self::ConvertedPrimitives(n) => write!(f, "{n} strips or fans converted to triangles"),
+            Self::CyclicNodes(n) => write!(f, "{n} nodes that contain themselves skipped"),
+            Self::MissingNormals(n) => write!(f, "{n} parts without normals: all normals are made anew"),
+            Self::AttributeMismatch(name) => write!(f, "{name} doesn't fit its vertices and was left out"),
+            Self::MissingFile(name) => write!(f, "\"{name}\" can't be read and was left out"),
+            Self::FoundAggregate(n) => write!(f, "{n} like pieces will be thinned out as leaves are"),
+        }
+    }
+}
+
+/// A material as glTF writes it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImportedMaterial {
+    /// The glTF material object; its texture indices refer to `Imported::textures`.
+    pub json: Value,
+}
+
+/// An image's file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ImportedImage {
+    /// What the file calls it; may be empty.
+    pub name: String,
+    /// "image/png", "image/jpeg" or another; empty if unknown.
+    pub mime_type: String,
+    /// The encoded image; empty if it couldn't be read.
+    pub bytes: Vec<u8>,
+}
+
+/// Someone's mesh, mended.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Imported {
+    /// One part for each material used, `Material::Foreign(n)`. `normals` is empty if any part lacked them.
+    pub mesh: Mesh,
+    /// `materials[n]` belongs to `Material::Foreign(n)`.
+    pub materials: Vec<ImportedMaterial>,
+    /// glTF texture objects; their `source` is an index into `images`, their `sampler` into `samplers`.
+    pub textures: Vec<Value>,
+    /// glTF sampler objects.
+    pub samplers: Vec<Value>,
+    /// Images.
+    pub images: Vec<ImportedImage>,
+    /// What had to be mended.
+    pub repairs: Vec<Repair>,
+}
+
+/// Gives the bytes of a file that the main file names.
+pub type Resolve<'a> = dyn Fn(&str) -> io::Result<Vec<u8>> + 'a;
+
+/// Reads a mesh. `extension` is that of the file's name, without the dot, in any case; `resolve` is called with the
+/// names of buffers, images and material files as the file writes them (percent codes decoded).
+pub fn read_mesh(bytes: &[u8], extension: &str, resolve: &Resolve<'_>) -> Result<Imported, ImportError> {
+    let raw = match extension.to_ascii_lowercase().as_str() {
+        "glb" | "gltf" => gltf_file::read(bytes, resolve)?,
+        "obj" => obj::read(bytes, resolve)?,
+        _ => return Err(ImportError::Extension(extension.to_owned())),
+    };
+    clean::finish(raw)
+}
+
+/// A run of triangles as it was read, not yet checked.
+#[derive(Debug, Default)]
+struct Primitive {
+    material: usize,
+    positions: Vec<[f32; 3]>,
+    normals: Option<Vec<[f32; 3]>>,
+    uvs: Option<Vec<[f32; 2]>>,
+    colors: Option<Vec<[u8; 4]>>,
+    triangles: Vec<[u32; 3]>,
+}
+
+/// A file as it was read.
+#[derive(Debug, Default)]
+struct Raw {
+    primitives: Vec<Primitive>,
+    /// All but the mesh.
+    rest: Imported,
+}
