@@ -303,10 +303,22 @@ fn foreign_materials_pass_through() {
     let mesh = LevelledMesh { levels: vec![level], progressive: Vec::new() };
     let set = MaterialSet {
         slots: vec![Material::Foreign(0), Material::Foreign(1)],
-        materials: vec![serde_json::json!({ "name": "a" }), serde_json::json!({ "name": "b" })],
+        materials: vec![
+            serde_json::json!({ "name": "a", "extensions": { "KHR_materials_unlit": {} } }),
+            serde_json::json!({ "name": "b", "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }),
+        ],
+        textures: vec![serde_json::json!({ "source": 0 })],
+        images: vec![("lost".into(), Picture::Embedded { bytes: &[], mime_type: "" })],
         ..MaterialSet::default()
     };
-    let (document, _) = gltf_of(&levelled_glb("thing", &mesh, &set).unwrap());
+    let (document, bin) = gltf_of(&levelled_glb("thing", &mesh, &set).unwrap());
+    assert!(document.extensions_used().any(|name| name == "KHR_materials_unlit"));
+    let gltf::image::Source::View { view, mime_type } = document.images().next().unwrap().source() else {
+        panic!("images are embedded");
+    };
+    assert_eq!(mime_type, "image/png");
+    let png = std::io::Cursor::new(&bin[view.offset()..view.offset() + view.length()]);
+    assert_eq!(png::Decoder::new(png).read_info().unwrap().info().size(), (1, 1));
     let primitive = document.meshes().next().unwrap().primitives().next().unwrap();
     assert_eq!(primitive.material().name(), Some("b"));
 }
