@@ -3,7 +3,7 @@
 //!
 //! All four are listed in `extensionsUsed` only, never in `extensionsRequired`: a program that does not know them
 //! shows the whole scene without them. Property names are those of the fields here in camelCase, so a unit suffix
-//! stays visible (`error_m` is `errorM`). Every list of indices refers to the arrays of the glTF file it stands in.
+//! stays visible (`spacing_m` is `spacingM`). Every list of indices refers to the arrays of the glTF file it stands in.
 
 mod heightfield;
 mod instances;

@@ -21,16 +21,17 @@ pub struct ProgressiveMeshExtension {
 pub struct ProgressiveLevel {
     /// Its index in `meshes`.
     pub mesh: usize,
-    /// How far it is from the original in metres.
+    /// How far it is from the original in metres; `error` in JSON.
+    #[serde(rename = "error")]
     pub error_m: f32,
     /// Its vertices, all primitives together.
     pub vertices: usize,
     /// Its triangles, all primitives together.
     pub triangles: usize,
-    /// For each primitive, the accessor (VEC2, float) with what the geomorph adds to TEXCOORD_0 at weight 1, or null
-    /// where it adds nothing. Absent when it adds nothing anywhere, or when there is no next level.
+    /// For each primitive, the accessor (VEC2, float) with what the geomorph adds to TEXCOORD_0 at weight 1.
+    /// Absent on the last level.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub texcoord_deltas: Vec<Option<usize>>,
+    pub texcoord_deltas: Vec<usize>,
     /// For each primitive, the accessor (SCALAR, unsigned) of one generalised triangle strip, with degenerate
     /// triangles, over the primitive's vertices; the same triangles as the primitive's indices.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

@@ -63,7 +63,7 @@ pub fn levelled_glb(
                     target["NORMAL"] = add_deltas(&mut document, normals, false).into();
                 }
                 object["targets"] = json!([target]);
-                record.texcoord_deltas.push(add_uv_deltas(&mut document, morph.uvs.get(run)));
+                record.texcoord_deltas.push(add_uv_deltas(&mut document, morph.uvs.get(run), count));
             }
             if let Some(strip) = level.strips.get(part) {
                 record.strips.push(add_strip(&mut document, &what, strip, first, count)?);
@@ -73,9 +73,6 @@ pub fn levelled_glb(
         if next.is_some() {
             json["weights"] = json!([0]);
             json["extras"]["targetNames"] = json!([format!("geomorph to D{}", i + 1)]);
-        }
-        if record.texcoord_deltas.iter().all(Option::is_none) {
-            record.texcoord_deltas.clear();
         }
         records.push(record);
         document.meshes.push(json);
@@ -315,10 +312,20 @@ fn add_deltas(document: &mut Document, deltas: &[[f32; 3]], bounds: bool) -> usi
     accessor
 }
 
-fn add_uv_deltas(document: &mut Document, deltas: Option<&[[f32; 2]]>) -> Option<usize> {
-    let deltas = deltas.filter(|deltas| deltas.iter().any(|d| *d != [0.0; 2]))?;
-    let view = document.view(bytemuck::cast_slice(deltas), None, None);
-    Some(document.accessor(view, 0, FLOAT, deltas.len(), "VEC2"))
+/// Deltas of texture coordinates; where all are 0, a sparse accessor with one entry, since the gltf crate refuses
+/// those without any bytes.
+fn add_uv_deltas(document: &mut Document, deltas: Option<&[[f32; 2]]>, count: usize) -> usize {
+    if let Some(deltas) = deltas.filter(|deltas| deltas.iter().any(|d| *d != [0.0; 2])) {
+        let view = document.view(bytemuck::cast_slice(deltas), None, None);
+        return document.accessor(view, 0, FLOAT, deltas.len(), "VEC2");
+    }
+    let indices = document.view(&[0; 2], None, None);
+    let values = document.view(&[0; 8], None, None);
+    let accessor = json!({ "componentType": FLOAT, "count": count, "type": "VEC2",
+        "sparse": { "count": 1,
+            "indices": { "bufferView": indices, "byteOffset": 0, "componentType": UNSIGNED_SHORT },
+            "values": { "bufferView": values, "byteOffset": 0 } } });
+    push(&mut document.accessors, accessor)
 }
 
 fn add_strip(

@@ -1,5 +1,7 @@
 //! Materials with their textures, for trees and for anyone's meshes.
 
+use std::collections::BTreeSet;
+
 use serde_json::{Value, json};
 
 use super::ExportError;
@@ -20,11 +22,11 @@ pub fn sampler((minify, wrap): (u32, u32)) -> Value {
 /// An image file's bytes, to embed, or its place beside the glTF file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Picture<'a> {
-    /// A whole PNG or JPEG file.
+    /// A whole PNG or JPEG file; no bytes at all stand for one white pixel.
     Embedded {
         /// The file's bytes.
         bytes: &'a [u8],
-        /// `image/png` or `image/jpeg`.
+        /// `image/png` or `image/jpeg`; may be empty where `bytes` begin as one of these.
         mime_type: &'a str,
     },
     /// A PNG file by relative URI, and its smaller mip levels likewise (level 1 first) if they are not plain
@@ -50,8 +52,6 @@ pub struct MaterialSet<'a> {
     pub samplers: Vec<Value>,
     /// Images with their names.
     pub images: Vec<(String, Picture<'a>)>,
-    /// Extensions that the objects above use.
-    pub extensions_used: Vec<String>,
 }
 
 impl MaterialSet<'_> {
@@ -73,7 +73,9 @@ impl MaterialSet<'_> {
             document.textures.push(texture);
         }
         document.samplers.extend_from_slice(&self.samplers);
-        document.extensions_used.extend(self.extensions_used.iter().cloned());
+        for object in self.materials.iter().chain(&self.textures).chain(&self.samplers) {
+            collect_extensions(object, &mut document.extensions_used);
+        }
         first
     }
 
@@ -115,10 +117,36 @@ fn shift(value: &mut Value, key: &str, by: usize) {
     }
 }
 
+/// Names of all extensions in an object, at any depth.
+fn collect_extensions(value: &Value, names: &mut BTreeSet<String>) {
+    match value {
+        Value::Object(object) => {
+            if let Some(Value::Object(extensions)) = object.get("extensions") {
+                names.extend(extensions.keys().cloned());
+            }
+            object.values().for_each(|child| collect_extensions(child, names));
+        }
+        Value::Array(list) => list.iter().for_each(|child| collect_extensions(child, names)),
+        _ => {}
+    }
+}
+
+/// A PNG of one white pixel: what glTF takes for an absent texture.
+const WHITE_PIXEL: [u8; 67] =
+    *b"\x89\x50\x4e\x47\x0d\x0a\x1a\x0a\x00\x00\x00\x0d\x49\x48\x44\x52\x00\x00\x00\x01\x00\x00\x00\x01\
+    \x08\x00\x00\x00\x00\x3a\x7e\x9b\x55\x00\x00\x00\x0a\x49\x44\x41\x54\x78\x9c\x63\xf8\x0f\x00\x01\
+    \x01\x01\x00\xb1\x38\xf6\x14\x00\x00\x00\x00\x49\x45\x4e\x44\xae\x42\x60\x82";
+
 /// A glTF image object.
 fn picture_json(document: &mut Document, picture: &Picture<'_>) -> Value {
     match picture {
         Picture::Embedded { bytes, mime_type } => {
+            let (bytes, mime_type) = match (bytes, mime_type) {
+                ([], _) => (&WHITE_PIXEL[..], &"image/png"),
+                ([0x89, b'P', b'N', b'G', ..], &"") => (*bytes, &"image/png"),
+                ([0xFF, 0xD8, ..], &"") => (*bytes, &"image/jpeg"),
+                _ => (*bytes, mime_type),
+            };
             let view = document.view(bytes, None, None);
             json!({ "bufferView": view, "mimeType": mime_type })
         }
@@ -166,7 +194,6 @@ impl<'a> TreeImages<'a> {
                 ("bark colour".into(), self.bark_color.clone()),
                 ("bark normals".into(), self.bark_normal.clone()),
             ],
-            extensions_used: Vec::new(),
         };
         let cards = [(Material::Leaf, "leaf", &self.leaf), (Material::Blossom, "blossom", &self.blossom)];
         for (slot, name, picture) in cards {

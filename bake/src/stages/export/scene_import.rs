@@ -112,7 +112,7 @@ impl GlbImport {
         typed.buffer_view = self.import_view(document, &typed.buffer_view.into())?;
         for level in &mut typed.levels {
             level.mesh += first_mesh;
-            for accessor in level.strips.iter_mut().chain(level.texcoord_deltas.iter_mut().flatten()) {
+            for accessor in level.strips.iter_mut().chain(&mut level.texcoord_deltas) {
                 *accessor = self.import_accessor(document, &(*accessor).into())?;
             }
         }

@@ -210,7 +210,7 @@ pub fn placement(land: &Landform, count: u32) -> Placement {
         if y < land.water_level_m.unwrap() + 1.0 || instances.len() >= count as usize {
             continue;
         }
-        let turn = glam::Mat3::from_rotation_y(6.28 * r(2));
+        let turn = glam::Mat3::from_rotation_y(core::f32::consts::TAU * r(2));
         let shear = glam::Mat3::from_cols(
             Vec3::new(1.0 + 0.5 * r(3), 0.0, 0.2 * r(4)),
             Vec3::new(0.3 * r(5) - 0.15, 1.0 + r(6), 0.3 * r(7) - 0.15),
