@@ -154,7 +154,7 @@ fn enlarged(coarse: &[Texel], seed: u32) -> Vec<Vec3> {
 /// The two coarse texels that a fine one lies between, and the fraction.
 fn halfway(i: usize) -> (usize, usize, f32) {
     let last = COARSE - 1;
-    if i % 2 == 0 { ((i / 2 + last) & last, i / 2, 0.75) } else { (i / 2, (i / 2 + 1) & last, 0.25) }
+    if i.is_multiple_of(2) { ((i / 2 + last) & last, i / 2, 0.75) } else { (i / 2, (i / 2 + 1) & last, 0.25) }
 }
 
 fn colors(texels: &[Vec3]) -> Image8 {

@@ -75,7 +75,7 @@ impl Skeleton {
         let last = plan.levels - 1;
         let (thin, thick): (Vec<&Stem>, Vec<&Stem>) = self.stems.iter().partition(|stem| stem.level == last);
         let most = plan.bark_triangles as usize;
-        let thick: usize = thick.iter().map(|stem| 2 * cost(stem)).sum();
+        let thick: usize = thick.iter().map(|stem| 3 * cost(stem) / 2).sum();
         let thin: usize = thin.iter().map(|stem| cost(stem)).sum();
         if thick + thin <= most || last == 0 {
             return;
@@ -472,7 +472,7 @@ impl Grower<'_> {
         let radius_m = parent.radius_m * libm::powf(ratio, self.params.radius_power);
         let thin = [0.0, 0.007, 0.0055, 0.005][level as usize];
         // Without leaves, twigs are what there is to see.
-        let least_m = if self.plan.bare { 0.004 + 0.0002 * self.params.height_m } else { 0.0025 };
+        let least_m = if self.plan.bare { 0.005 + 0.0003 * self.params.height_m } else { 0.0025 };
         radius_m.clamp(thin * length_m, (0.045 * length_m).max(0.004)).min(0.8 * parent_radius_m).max(least_m)
     }
 
