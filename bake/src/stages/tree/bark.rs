@@ -18,9 +18,6 @@ use crate::model::Mesh;
 const TILE_M: f32 = 0.9;
 /// Sides of the trunk's tube when it has roots.
 const ROOT_SIDES: usize = 20;
-/// Triangles of bark beyond which tubes get fewer sides.
-const MOST_TRIANGLES: usize = 12_500;
-const BARE_MOST_TRIANGLES: usize = 22_500;
 
 /// A place along a stem where a ring of vertices goes.
 #[derive(Clone, Copy)]
@@ -79,8 +76,7 @@ pub(super) fn skin(
     };
     let stations: Vec<Vec<Station>> =
         skeleton.stems.iter().enumerate().map(|(i, stem)| stations(skeleton, stem, i == 0, &roots)).collect();
-    let most = if plan.bare { BARE_MOST_TRIANGLES } else { MOST_TRIANGLES };
-    let sides = budgeted_sides(skeleton, &stations, most);
+    let sides = budgeted_sides(skeleton, &stations, plan.bark_triangles as usize);
     let circles = (0..=ROOT_SIDES).map(circle).collect();
     let moss = 0.5 * (1.0 - params.bark_tone);
     let count: usize = stations.iter().zip(&sides).map(|(s, &n)| s.len() * (n + 1)).sum();
@@ -116,7 +112,7 @@ fn budgeted_sides(skeleton: &Skeleton, stations: &[Vec<Station>], most: usize) -
             .map(|(i, stem)| if i == 0 { ROOT_SIDES } else { sides(stem, quality) })
             .collect();
         let triangles: usize = stations.iter().zip(&sides).map(|(s, &n)| s.len() * n * 2).sum();
-        if triangles <= most || quality < 0.3 {
+        if triangles <= most || quality < 0.1 {
             return sides;
         }
         quality *= 0.85;
@@ -217,7 +213,7 @@ impl Skin<'_> {
         let first = self.mesh.positions.len();
         for k in 0..=sides {
             let [cos, sin] = self.circles[sides][k];
-            let out = x * cos - z * sin;
+            let out = x * cos + z * sin;
             let swell = match (roots, ring.root_m) {
                 (Some(roots), Some(height_m)) => {
                     roots.factor(TAU * (k % sides) as f32 / sides as f32, height_m)

@@ -8,7 +8,7 @@ use glam::Vec3;
 use super::mips::Encoder;
 use super::params::TreeTextureParams;
 use crate::model::Image8;
-use crate::noise::{cellular2, fbm2, hash};
+use crate::noise::{cellular2, gradient2, hash};
 use crate::seed;
 
 /// Texels a side.
@@ -43,7 +43,7 @@ impl Bark {
     /// What a place of the bark is like; (u, v) in 0..1.
     fn texel(&self, u: f32, v: f32) -> Texel {
         let tone = self.tone;
-        let wear = fbm2(self.seed.wrapping_add(90), u * 4.0, v * 4.0, 2, 0.5, 4);
+        let wear = gradient2(self.seed.wrapping_add(90), u * 4.0, v * 4.0, 4);
         if tone <= 0.5 {
             let part = smooth(tone * 2.0);
             let furrows = (part < 0.98).then(|| self.furrows(u, v, wear));
@@ -58,7 +58,7 @@ impl Bark {
 
     /// Long ridges that join and part, with dark furrows between.
     fn furrows(&self, u: f32, v: f32, wear: f32) -> Texel {
-        let sway = fbm2(self.seed.wrapping_add(1), u * 4.0, v * 4.0, 2, 0.5, 4) * 0.07;
+        let sway = gradient2(self.seed.wrapping_add(1), u * 4.0, v * 4.0, 4) * 0.07;
         let crest = (self.tiled(3, u + sway, v, 10, 3).abs() * 2.3).min(1.0);
         let small = (self.tiled(4, u + sway, v, 22, 8).abs() * 1.8).min(1.0);
         let height = smooth(crest) * 0.78 + small * 0.22;
@@ -70,7 +70,7 @@ impl Bark {
 
     /// Scales of bark with cracks between.
     fn plates(&self, u: f32, v: f32, wear: f32) -> Texel {
-        let sway = fbm2(self.seed.wrapping_add(5), u * 5.0, v * 5.0, 2, 0.5, 5) * 0.45;
+        let sway = gradient2(self.seed.wrapping_add(5), u * 5.0, v * 5.0, 5) * 0.45;
         let (first, second, id) = cellular2(self.seed.wrapping_add(6), u * 10.0 + sway, v * 5.0 + sway, 5);
         let crack = smooth(((second - first) * 3.2).min(1.0));
         let own = (id & 0xFF) as f32 / 255.0;
@@ -154,7 +154,7 @@ fn enlarged(coarse: &[Texel], seed: u32) -> Vec<Vec3> {
 /// The two coarse texels that a fine one lies between, and the fraction.
 fn halfway(i: usize) -> (usize, usize, f32) {
     let last = COARSE - 1;
-    if i % 2 == 0 { ((i / 2 + last) & last, i / 2, 0.75) } else { (i / 2, (i / 2 + 1) & last, 0.25) }
+    if i.is_multiple_of(2) { ((i / 2 + last) & last, i / 2, 0.75) } else { (i / 2, (i / 2 + 1) & last, 0.25) }
 }
 
 fn colors(texels: &[Vec3]) -> Image8 {

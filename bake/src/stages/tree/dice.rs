@@ -30,6 +30,7 @@ impl Dice {
     }
 
     /// Evenly in [from, to).
+    #[cfg(test)]
     pub fn between(&mut self, from: f32, to: f32) -> f32 {
         from + (to - from) * self.unit()
     }

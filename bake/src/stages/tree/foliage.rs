@@ -296,7 +296,10 @@ struct Painter {
 impl Painter {
     fn new(params: &TreeParams) -> Self {
         let autumn = ((78.0 - params.leaf_hue_deg) / 25.0).clamp(0.0, 1.0);
-        Self { autumn, blossom: params.blossom, clump: u32::MAX, clump_tint: Vec2::ZERO }
+        // Palms and ferns do not blossom.
+        let frond = Habit::of(params.leaf_shape, params.levels) == Habit::Frond;
+        let blossom = if frond { 0.0 } else { params.blossom };
+        Self { autumn, blossom, clump: u32::MAX, clump_tint: Vec2::ZERO }
     }
 
     fn paint(&mut self, mut card: Card, clump: u32, dice: &mut Dice) -> Card {

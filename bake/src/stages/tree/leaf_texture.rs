@@ -12,8 +12,7 @@ use super::params::{Habit, TreeTextureParams, card_length_m};
 use crate::model::Image8;
 
 /// Texels a side.
-const LEAF_PX: usize = 512;
-const BLOSSOM_PX: usize = 256;
+const SIZE: usize = 256;
 /// Albedo of young wood, linear.
 const TWIG: Vec3 = Vec3::new(0.10, 0.062, 0.033);
 
@@ -24,7 +23,7 @@ pub(super) fn paint_leaves(params: &TreeTextureParams) -> Vec<Image8> {
 
 /// The blossom card; one transparent texel if the species does not blossom.
 pub(super) fn paint_blossom(params: &TreeTextureParams) -> Vec<Image8> {
-    if params.blossom <= 0.0 {
+    if params.blossom <= 0.0 || Habit::of(params.leaf_shape, params.levels) == Habit::Frond {
         return vec![Image8::new(1, 1, 4)];
     }
     mips::chain(&blossom(params))
@@ -33,7 +32,7 @@ pub(super) fn paint_blossom(params: &TreeTextureParams) -> Vec<Image8> {
 pub(super) fn leaves(params: &TreeTextureParams) -> Canvas {
     let habit = Habit::of(params.leaf_shape, params.levels);
     let mut brush = Brush {
-        canvas: Canvas::new(LEAF_PX, habit.card_aspect()),
+        canvas: Canvas::new(SIZE, habit.card_aspect()),
         outline: Outline::new(params.leaf_shape, params.leaf_aspect),
         dice: Dice::for_texture(params.tree_seed, 0),
         hue_deg: params.leaf_hue_deg,
@@ -54,7 +53,7 @@ pub(super) fn leaves(params: &TreeTextureParams) -> Canvas {
 fn blossom(params: &TreeTextureParams) -> Canvas {
     let habit = Habit::of(params.leaf_shape, params.levels);
     let mut brush = Brush {
-        canvas: Canvas::new(BLOSSOM_PX, habit.card_aspect()),
+        canvas: Canvas::new(SIZE, habit.card_aspect()),
         outline: Outline::petal(),
         dice: Dice::for_texture(params.tree_seed, 1),
         hue_deg: 0.0,

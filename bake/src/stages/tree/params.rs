@@ -134,7 +134,7 @@ impl Habit {
         match self {
             Self::Broad => 0.92,
             Self::Willow => 0.42,
-            Self::Needle => 0.66,
+            Self::Needle => 0.78,
             Self::Frond => 0.42,
         }
     }

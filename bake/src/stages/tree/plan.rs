@@ -10,6 +10,9 @@ const LEAF_BUDGET: u32 = 10_600;
 /// Triangles of bark to aim for under leaves, and on a bare tree.
 const BARK_BUDGET: f32 = 7_600.0;
 const BARE_BUDGET: f32 = 16_000.0;
+/// Triangles of bark that are never exceeded.
+const BARK_MOST: u32 = 12_500;
+const BARE_MOST: u32 = 22_500;
 /// What a stem of level 2 and one of level 3 cost, in triangles.
 const SECONDARY_COST: f32 = 16.0;
 const TERTIARY_COST: f32 = 10.0;
@@ -33,6 +36,8 @@ pub(super) struct Plan {
     pub children: [f32; 2],
     /// Greatest number of cards.
     pub cards: u32,
+    /// Greatest number of triangles of bark.
+    pub bark_triangles: u32,
 }
 
 impl Plan {
@@ -63,6 +68,7 @@ impl Plan {
             primaries,
             children: children(params, levels, bare, habit, arms, left),
             cards: LEAF_BUDGET / habit.triangles(),
+            bark_triangles: if bare { BARE_MOST } else { BARK_MOST },
         }
     }
 }

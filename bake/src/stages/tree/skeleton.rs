@@ -13,8 +13,6 @@ use super::dice::Dice;
 use super::params::TreeParams;
 use super::plan::Plan;
 
-/// No stem: the parent of the trunk.
-pub(super) const NONE: u32 = u32::MAX;
 /// Branches keep this far above the ground, in metres.
 const GROUND_CLEARANCE_M: f32 = 0.25;
 
@@ -32,8 +30,6 @@ pub(super) struct Node {
 pub(super) struct Stem {
     /// 0 trunk, 1 primary, …
     pub level: u32,
-    /// The stem that it grows from.
-    pub parent: u32,
     /// Radius in metres of the parent where it starts; 0 for the trunk.
     pub parent_radius_m: f32,
     /// Its nodes.
@@ -73,6 +69,30 @@ impl Skeleton {
         (a.at.lerp(b.at, f), direction, a.radius_m + (b.radius_m - a.radius_m) * f)
     }
 
+    /// Leaves out evenly chosen stems of the last level until tubes of three sides fit the budget.
+    fn prune(&mut self, plan: &Plan) {
+        let cost = |stem: &Stem| 6 * (stem.nodes.len() - 1);
+        let last = plan.levels - 1;
+        let (thin, thick): (Vec<&Stem>, Vec<&Stem>) = self.stems.iter().partition(|stem| stem.level == last);
+        let most = plan.bark_triangles as usize;
+        let thick: usize = thick.iter().map(|stem| 3 * cost(stem) / 2).sum();
+        let thin: usize = thin.iter().map(|stem| cost(stem)).sum();
+        if thick + thin <= most || last == 0 {
+            return;
+        }
+        let part = most.saturating_sub(thick) as f32 / thin as f32;
+        let mut error = 0.5;
+        self.stems.retain(|stem| {
+            if stem.level < last {
+                return true;
+            }
+            error += part;
+            let keep = error >= 1.0;
+            error -= if keep { 1.0 } else { 0.0 };
+            keep
+        });
+    }
+
     /// Radius in metres at breast height of whatever of the trunk passes there.
     pub fn trunk_radius_m(&self, height_m: f32) -> f32 {
         let breast_m = if height_m < 13.0 { 0.1 * height_m } else { 1.3 };
@@ -95,7 +115,6 @@ impl Skeleton {
 /// A stem about to grow.
 struct Sprout {
     level: u32,
-    parent: u32,
     parent_radius_m: f32,
     at: Vec3,
     along: Vec3,
@@ -134,6 +153,7 @@ pub(super) fn grow(params: &TreeParams, plan: &Plan, dice: &mut Dice) -> Skeleto
     for level in 1..plan.levels {
         grower.branches(level);
     }
+    grower.skeleton.prune(plan);
     grower.skeleton
 }
 
@@ -185,7 +205,6 @@ impl Grower<'_> {
         let radius_m = self.trunk_m * self.params.radius_ratio;
         self.stem(Sprout {
             level: 0,
-            parent: NONE,
             parent_radius_m: 0.0,
             at: Vec3::ZERO,
             along: Vec3::Y,
@@ -228,7 +247,7 @@ impl Grower<'_> {
                 break;
             }
             along = self.bend(along, sprout.axis, level, z, segments);
-            let forks = self.forks(level, segment, sprout.segment, family);
+            let forks = self.forks(&sprout, segment, family);
             if forks > 0 {
                 let arms = forks + 1;
                 thickness *= 1.0 / (0.35 + 0.65 * arms as f32).sqrt();
@@ -242,14 +261,14 @@ impl Grower<'_> {
                         continue;
                     }
                     let away = before.cross(direction).normalize_or(axis);
+                    let sunk_m = if level == 0 && segment == 0 { 0.2 } else { 0.0 };
                     waiting.push(Sprout {
-                        at,
+                        at: at - direction * sunk_m,
                         along: direction,
                         axis: if level == 0 { away } else { sprout.axis },
                         segment,
                         thickness,
                         is_arm: true,
-                        parent: self.skeleton.stems.len() as u32,
                         parent_radius_m: radius_m,
                         ..sprout
                     });
@@ -262,7 +281,7 @@ impl Grower<'_> {
 
     /// A branch starts no thicker than what it grows from.
     fn start_limit(&self, sprout: &Sprout) -> f32 {
-        if sprout.parent == NONE { f32::MAX } else { 0.88 * sprout.parent_radius_m }
+        if sprout.parent_radius_m <= 0.0 { f32::MAX } else { 0.88 * sprout.parent_radius_m }
     }
 
     /// Keeps a stem above the ground by shrinking it about its start, or drops it.
@@ -288,7 +307,6 @@ impl Grower<'_> {
         let segments = self.plan.segments[sprout.level as usize];
         self.skeleton.stems.push(Stem {
             level: sprout.level,
-            parent: sprout.parent,
             parent_radius_m: sprout.parent_radius_m,
             nodes: first..self.skeleton.nodes.len(),
             from: sprout.segment as f32 / segments as f32,
@@ -321,17 +339,22 @@ impl Grower<'_> {
     }
 
     /// How many arms fork off at the end of this segment (Weber & Penn's error diffusion).
-    fn forks(&mut self, level: usize, segment: u32, first: u32, family: &mut Family) -> u32 {
+    fn forks(&mut self, sprout: &Sprout, segment: u32, family: &mut Family) -> u32 {
+        let level = sprout.level as usize;
         let p = self.params;
         let z = segment as f32 / self.plan.segments[level] as f32;
         let wish = if level == 0 {
-            let base = 1 + (p.clear_trunk * 0.35 * self.plan.segments[0] as f32) as u32;
-            if segment == base && first == 0 && p.base_splits > 0 {
-                return p.base_splits.min(std::mem::take(&mut family.arms).max(1));
+            // A tree without a clear trunk, a bush, forks in the ground.
+            let low = u32::from(p.clear_trunk > 0.06);
+            let base = low + (p.clear_trunk * 0.35 * self.plan.segments[0] as f32) as u32;
+            if segment == base && !sprout.is_arm && p.base_splits > 0 {
+                let forks = p.base_splits.min(family.arms);
+                family.arms -= forks;
+                return forks;
             }
             let open = z >= p.clear_trunk.max(0.2) && z < 0.8 && !self.is_palm();
             if open { 0.28 * p.segment_splits } else { 0.0 }
-        } else if level == 1 && segment > first && z < 0.7 {
+        } else if level == 1 && segment > sprout.segment && z < 0.7 {
             0.22 * p.segment_splits
         } else {
             0.0
@@ -378,7 +401,7 @@ impl Grower<'_> {
                 let place = (k as f32 + 0.5 + 0.35 * self.dice.signed()) / count as f32;
                 let z = parent.from.max(bare_part) + length * place;
                 azimuth += self.params.rotation_deg.to_radians() + 0.18 * self.dice.signed();
-                self.branch(level, index, &parent, z, azimuth);
+                self.branch(level, &parent, z, azimuth);
             }
         }
     }
@@ -393,7 +416,7 @@ impl Grower<'_> {
         most
     }
 
-    fn branch(&mut self, level: u32, index: usize, parent: &Stem, z: f32, azimuth: f32) {
+    fn branch(&mut self, level: u32, parent: &Stem, z: f32, azimuth: f32) {
         let (at, along, parent_radius_m) = self.skeleton.along(parent, z);
         let base = self.params.clear_trunk;
         let ratio = ((1.0 - z) / (1.0 - base)).clamp(0.0, 1.0);
@@ -421,7 +444,6 @@ impl Grower<'_> {
         };
         self.stem(Sprout {
             level,
-            parent: index as u32,
             parent_radius_m,
             at,
             along: direction,
@@ -449,7 +471,9 @@ impl Grower<'_> {
         let ratio = (length_m / parent.length_m.max(0.01)).min(1.0);
         let radius_m = parent.radius_m * libm::powf(ratio, self.params.radius_power);
         let thin = [0.0, 0.007, 0.0055, 0.005][level as usize];
-        radius_m.clamp(thin * length_m, (0.045 * length_m).max(0.004)).min(0.8 * parent_radius_m).max(0.0025)
+        // Without leaves, twigs are what there is to see.
+        let least_m = if self.plan.bare { 0.005 + 0.0003 * self.params.height_m } else { 0.0025 };
+        radius_m.clamp(thin * length_m, (0.045 * length_m).max(0.004)).min(0.8 * parent_radius_m).max(least_m)
     }
 
     /// Angle between a new branch and its parent; `ratio` is 1 at the crown's base, 0 at its top.
