@@ -1,4 +1,5 @@
-//! Pictures and times to judge by, made on request: `cargo test --release -- --ignored light::pictures`.
+//! Pictures and times to judge by, made on request: `cargo test --release -- --ignored light::pictures` writes into
+//! the folder `genescape-light` of the system's temporary folder.
 
 use super::tests::{at, land, light};
 use super::*;
@@ -70,8 +71,10 @@ fn cpu_ms() -> f64 {
     text.split(' ').next().unwrap().parse::<f64>().unwrap() * 1e-6
 }
 
-fn save(path: &str, image: &Image8) {
-    let file = std::fs::File::create(path).unwrap();
+fn save(name: &str, image: &Image8) {
+    let folder = std::env::temp_dir().join("genescape-light");
+    std::fs::create_dir_all(&folder).unwrap();
+    let file = std::fs::File::create(folder.join(name)).unwrap();
     let mut encoder = png::Encoder::new(file, image.width, image.height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.write_header().unwrap().write_image_data(&image.data).unwrap();
@@ -104,18 +107,17 @@ fn crop(image: &Image8, x: u32, y: u32, size: u32, zoom: u32) -> Image8 {
 #[test]
 #[ignore = "writes pictures"]
 fn pictures() {
-    std::fs::create_dir_all("/tmp/light").unwrap();
     let (land, placement, casters) = scene(400, 120);
     for (elevation, azimuth, size) in
         [(35.0, 300.0, 0.53), (12.0, 250.0, 0.53), (4.0, 130.0, 5.0), (65.0, 45.0, 2.0)]
     {
         let map = light_map(&light(elevation, azimuth, size), &land, &placement, &casters, 1024);
         let shaded = shaded(&map);
-        save(&format!("/tmp/light/el{elevation}.png"), &shaded);
-        save(&format!("/tmp/light/el{elevation}-near.png"), &crop(&shaded, 400, 400, 200, 4));
+        save(&format!("el{elevation}.png"), &shaded);
+        save(&format!("el{elevation}-near.png"), &crop(&shaded, 400, 400, 200, 4));
         let mut red = map.image.clone();
         red.data.chunks_exact_mut(3).for_each(|p| p.fill(p[0]));
-        save("/tmp/light/sky.png", &red);
+        save("sky.png", &red);
     }
 }
 

@@ -1,7 +1,5 @@
 //! The sun's direction and size → how much of its disc the land leaves visible (0–1) and how it strikes the ground.
 
-use std::sync::OnceLock;
-
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -26,6 +24,7 @@ pub(super) struct Sun {
     pub sin_radius: f32,
     /// What a flat horizon leaves of its disc.
     open: f32,
+    disc: Disc,
 }
 
 impl Sun {
@@ -34,8 +33,9 @@ impl Sun {
         let level = (direction.x * direction.x + direction.z * direction.z).sqrt();
         let towards = if level > 1.0e-6 { [direction.x / level, direction.z / level] } else { [1.0, 0.0] };
         let sin_radius = libm::sinf(light.sun_angular_radius_rad.clamp(0.0, 0.5)).max(LEAST_RADIUS);
-        let open = disc_above(direction.y / sin_radius);
-        Self { direction, towards, sin_elevation: direction.y, cos_elevation: level, sin_radius, open }
+        let disc = Disc::new();
+        let open = disc.above(direction.y / sin_radius);
+        Self { direction, towards, sin_elevation: direction.y, cos_elevation: level, sin_radius, open, disc }
     }
 
     /// Whether any of it is to be seen from level ground.
@@ -53,25 +53,31 @@ impl Sun {
         } else if margin >= edge {
             1.0
         } else {
-            (disc_above(margin / edge) / self.open).min(1.0)
+            (self.disc.above(margin / edge) / self.open).min(1.0)
         }
     }
 }
 
-/// The part of a disc above a straight line that passes `distance` radii below its middle: the analytic segment,
-/// ½ + (asin d + d·√(1−d²))/π, from a table with linear interpolation (off by less than 1/4000).
-pub(super) fn disc_above(distance: f32) -> f32 {
-    static TABLE: OnceLock<Vec<f32>> = OnceLock::new();
-    let table = TABLE.get_or_init(|| {
+/// The part of a disc above a straight line: the analytic segment, as a table with linear interpolation (off by
+/// less than 1/4000).
+pub(super) struct Disc(Vec<f32>);
+
+impl Disc {
+    pub fn new() -> Self {
         let entry = |step: usize| {
             let d = 2.0 * step as f32 / DISC_STEPS as f32 - 1.0;
             0.5 + (libm::asinf(d) + d * (1.0 - d * d).sqrt()) / std::f32::consts::PI
         };
-        (0..=DISC_STEPS).map(entry).collect()
-    });
-    let at = (distance.clamp(-1.0, 1.0) + 1.0) * (0.5 * DISC_STEPS as f32);
-    let whole = (at as usize).min(DISC_STEPS - 1);
-    table[whole] + (table[whole + 1] - table[whole]) * (at - whole as f32)
+        Self((0..=DISC_STEPS).map(entry).collect())
+    }
+
+    /// The part above a line that passes `distance` radii below the middle: ½ + (asin d + d·√(1−d²))/π.
+    #[inline]
+    pub fn above(&self, distance: f32) -> f32 {
+        let at = (distance.clamp(-1.0, 1.0) + 1.0) * (0.5 * DISC_STEPS as f32);
+        let whole = (at as usize).min(DISC_STEPS - 1);
+        self.0[whole] + (self.0[whole + 1] - self.0[whole]) * (at - whole as f32)
+    }
 }
 
 /// The sun at every sample of the field: how far the disc's middle stands above the land, in radii; a third of how
