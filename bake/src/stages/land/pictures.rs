@@ -53,7 +53,7 @@ fn starters() -> [(&'static str, LandParams); 4] {
         (
             "dunes-coast",
             LandParams {
-                terrain_seed: 200,
+                terrain_seed: 221,
                 relief_m: 28.0,
                 wavelength_m: 320.0,
                 hurst: 1.3,
