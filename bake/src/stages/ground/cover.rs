@@ -162,7 +162,9 @@ impl Climate {
     pub fn color(&self, t: &Traits, cover: &Cover, n: &Noise) -> Rgb {
         let grass = 1.0 - cover.rock - cover.scree - cover.snow - cover.mud;
         let mut color = [0.0; 3];
-        add(&mut color, self.grass(t, n), grass);
+        if grass > 0.0 {
+            add(&mut color, self.grass(t, n), grass);
+        }
         if cover.rock + cover.scree > 0.0 {
             // Beds of another stone, tilted and bent, and stains that run down.
             let bed = (t.height_m * 0.11 + 1.9 * t.outcrop + 0.8 * t.tuft + 0.8 * n.broad) * 0.5;
@@ -175,7 +177,9 @@ impl Climate {
         if cover.mud > 0.0 {
             add(&mut color, self.mud(t, n), cover.mud);
         }
-        add(&mut color, scale(SNOW, 1.0 + 0.03 * n.broad + 0.05 * n.grain), cover.snow);
+        if cover.snow > 0.0 {
+            add(&mut color, scale(SNOW, 1.0 + 0.03 * n.broad + 0.05 * n.grain), cover.snow);
+        }
         color.map(|c| if c > 0.0 { c } else { 0.0 })
     }
 

@@ -7,7 +7,7 @@ use super::cover::Noise;
 use crate::noise::{fbm2, hash01};
 use crate::seed::noise_seed;
 
-/// Texels a side of the fine tile: 32 cells of 8 texels, in three octaves.
+/// Texels a side of the fine tile: 32 cells of 8 texels, in two octaves.
 const FINE: usize = 256;
 /// Texels a side of the broad tile.
 const BROAD: usize = 351;
@@ -23,7 +23,7 @@ impl Grain {
     /// Tiles for a map of `side_px`: the finer the map, the finer its finest grain in metres.
     pub fn new(terrain_seed: u32, side_px: u32) -> Self {
         let seed = noise_seed(terrain_seed.into(), "ground grain", side_px.into());
-        Self { seed, fine: tile(seed, FINE, 32, 3), broad: tile(seed ^ 0x5555, BROAD, 9, 3) }
+        Self { seed, fine: tile(seed, FINE, 32, 2), broad: tile(seed ^ 0x5555, BROAD, 9, 3) }
     }
 
     /// The noise of texel (i, j).

@@ -153,7 +153,7 @@ struct Stone {
 impl Stone {
     fn new(x: f32, y: f32, radius: f32, base: f32, k: i32) -> Self {
         let dice = |salt: i32| hash01(33, k, salt, 0);
-        let turn = dice(0) * 6.283;
+        let turn = dice(0) * std::f32::consts::TAU;
         let stretch = 0.62 + 0.38 * dice(1);
         let mut sides = [[0.0; 3]; 7];
         for (s, side) in sides.iter_mut().enumerate() {

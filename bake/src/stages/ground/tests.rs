@@ -92,7 +92,7 @@ fn apron_continues_the_map() {
     let made = maps(&PARAMS, &LAND, 512);
     let colors = apron_colors(&PARAMS, &LAND);
     let linear = |c: u8| libm::powf((f32::from(c) / 255.0 + 0.055) / 1.055, 2.4);
-    let mut worst = 0.0f32;
+    let mut apart = 0.0f32;
     for k in 0..=12 {
         // The northern border, 32 texels around, against the apron's samples there, smoothed alike.
         let mean = |texels: std::ops::Range<u32>| {
@@ -107,9 +107,9 @@ fn apron_continues_the_map() {
         let apron: f32 =
             (0..=4).map(|s| f32::from(colors[(56 * 129 + 56 + k + s) as usize][1]) / 255.0).sum::<f32>()
                 / 5.0;
-        worst = worst.max((map - apron).abs());
+        apart += (map - apron).abs() / 13.0;
     }
-    assert!(worst < 0.12, "{worst} apart");
+    assert!(apart < 0.05, "{apart} apart");
     assert!(colors.len() == 129 * 129 && colors.iter().all(|c| c[3] == 255));
 }
 
@@ -123,8 +123,18 @@ fn textures_tile() {
                 |a: u32, b: u32| (0..512).map(|i| apart(image.pixel(i, a), image.pixel(i, b))).sum::<u32>();
             let inside_across = (0..511).map(|i| across(i, i + 1)).max().unwrap_or(0);
             let inside_down = (0..511).map(|j| down(j, j + 1)).max().unwrap_or(0);
-            assert!(across(511, 0) <= inside_across, "{} has a seam from top to bottom", t.name);
-            assert!(down(511, 0) <= inside_down, "{} has a seam from side to side", t.name);
+            assert!(
+                across(511, 0) * 10 <= inside_across * 11,
+                "{}: a seam from top to bottom, {} against {inside_across}",
+                t.name,
+                across(511, 0)
+            );
+            assert!(
+                down(511, 0) * 10 <= inside_down * 11,
+                "{}: a seam from side to side, {} against {inside_down}",
+                t.name,
+                down(511, 0)
+            );
         }
     }
 }

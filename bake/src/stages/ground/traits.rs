@@ -65,10 +65,11 @@ impl TraitsMap {
     }
 
     /// The traits along a row of constant v.
-    pub fn row(&self, v: f32) -> TraitsRow<'_> {
+    pub fn row(&self, v: f32) -> TraitsRow {
         let (j, f) = cell(v, self.side);
         let row = |j: usize| &self.values[j * self.side..][..self.side];
-        TraitsRow { north: row(j), south: row(j + 1), f }
+        let mix = |(a, b): (&[f32; COUNT], &[f32; COUNT])| std::array::from_fn(|k| a[k] + (b[k] - a[k]) * f);
+        TraitsRow { values: row(j).iter().zip(row(j + 1)).map(mix).collect() }
     }
 }
 
@@ -79,23 +80,19 @@ fn cell(u: f32, side: usize) -> (usize, f32) {
 }
 
 /// The traits between two rows of samples.
-pub(super) struct TraitsRow<'a> {
-    north: &'a [[f32; COUNT]],
-    south: &'a [[f32; COUNT]],
-    f: f32,
+pub(super) struct TraitsRow {
+    values: Vec<[f32; COUNT]>,
 }
 
-impl TraitsRow<'_> {
-    /// Bilinear between the four samples around.
+impl TraitsRow {
+    /// Linear between the two samples around.
     #[inline]
     pub fn at(&self, u: f32) -> Traits {
-        let (i, g) = cell(u, self.north.len());
-        let (a, b, c, d) = (&self.north[i], &self.north[i + 1], &self.south[i], &self.south[i + 1]);
-        let (wa, wb) = ((1.0 - g) * (1.0 - self.f), g * (1.0 - self.f));
-        let (wc, wd) = ((1.0 - g) * self.f, g * self.f);
+        let (i, f) = cell(u, self.values.len());
+        let (a, b) = (&self.values[i], &self.values[i + 1]);
         let mut out = [0.0; COUNT];
         for k in 0..COUNT {
-            out[k] = a[k] * wa + b[k] * wb + c[k] * wc + d[k] * wd;
+            out[k] = a[k] + (b[k] - a[k]) * f;
         }
         Traits::from_array(out)
     }

@@ -33,7 +33,6 @@ pub(super) fn rain(land: &mut Grid, loose: &mut Grid, guard: &Grid, params: &Lan
     }
     let seed = noise_seed(params.terrain_seed.into(), "land", 4);
     let before = land.clone();
-    // Steep land keeps drops short of capacity for long, so that each cuts in proportion to the relief.
     let mut ground = Ground { n: land.side as usize, heights: &mut land.values, guard: &guard.values };
     for k in 0..count {
         let (u, v) = start(seed, k, count);

@@ -93,8 +93,8 @@ impl Grid {
             let row = |r: usize| &self.values[r * n..][..n];
             let (a, b, c) = (row(j.saturating_sub(1)), row(j), row((j + 1).min(n - 1)));
             let column = |k: usize| a[k] + 2.0 * b[k] + c[k];
-            for i in 1..n - 1 {
-                out[i] = (column(i - 1) + 2.0 * column(i) + column(i + 1)) * 0.0625;
+            for (i, out) in out.iter_mut().enumerate().take(n - 1).skip(1) {
+                *out = (column(i - 1) + 2.0 * column(i) + column(i + 1)) * 0.0625;
             }
             out[0] = (3.0 * column(0) + column(1)) * 0.0625;
             out[n - 1] = (column(n - 2) + 3.0 * column(n - 1)) * 0.0625;

@@ -88,8 +88,8 @@ pub fn landform(params: &LandParams, size: u32) -> Landform {
     let flow = streams::flow(&worn, COARSE[1]);
     let peak = apron.values.iter().chain(&field.values).fold(f32::MIN, |a, &b| a.max(b));
     Landform {
-        flow: flow.resized(size).values,
-        deposit: loose.map(|m| m / (m + 0.4)).resized(size).values,
+        flow: flow.resized(size).map(|f| f.clamp(0.0, 1.0)).values,
+        deposit: loose.map(|m| m / (m + 0.4)).resized(size).map(|d| d.clamp(0.0, 1.0)).values,
         water_level_m: level.water_m,
         snow_line_m: if params.snow_line >= 0.999 { peak + 1.0 } else { params.snow_line * params.relief_m },
         field: into_field(field),
@@ -108,6 +108,8 @@ fn erode(params: &LandParams, raw: &Grid) -> (Grid, Grid) {
     let guard = grid::border_guard(FINE);
     streams::carve_valleys(&mut land, &mut loose, params, COARSE);
     droplets::rain(&mut land, &mut loose, &guard, params);
+    // Before the slopes slide, so that stretching does not make them steeper than they hold; and what that took.
+    rescale(&mut land, params.relief_m);
     thermal::slide(&mut land, &mut loose, params);
     rescale(&mut land, params.relief_m);
     (land, loose)

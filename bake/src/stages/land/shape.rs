@@ -248,7 +248,7 @@ impl Shape {
             .map(|k| ((k % 7 - 3) as f32 * 24.0, (k / 7 - 3) as f32 * 24.0))
             .map(|(x, z)| self.height_m(x, z, 30.0) / self.relief_m)
             .sum();
-        (self.water_level + 0.07 - sum / samples as f32).max(0.0).min(0.5)
+        (self.water_level + 0.07 - sum / samples as f32).clamp(0.0, 0.5)
     }
 }
 

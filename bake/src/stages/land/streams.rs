@@ -218,8 +218,8 @@ fn creep(land: &mut Grid, steepest_deg: f32) {
                 };
                 here[i] + moved(here[west]) + moved(here[east]) + moved(north[i]) + moved(south[i])
             };
-            for i in 1..n - 1 {
-                out[i] = at(i - 1, i, i + 1);
+            for (i, out) in out.iter_mut().enumerate().take(n - 1).skip(1) {
+                *out = at(i - 1, i, i + 1);
             }
             out[0] = at(0, 0, 1);
             out[n - 1] = at(n - 2, n - 1, n - 1);

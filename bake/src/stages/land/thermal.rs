@@ -14,7 +14,7 @@ const RIBS_M: f32 = 2.2;
 /// Slides the land and adds what came to rest to the `loose` layer.
 pub(super) fn slide(land: &mut Grid, loose: &mut Grid, params: &LandParams) {
     let hardness = hardness(land.side, params);
-    for sweeps in [6, 6, 8] {
+    for sweeps in [4; 6] {
         let steepest = steepest_drops(&hardness, loose, land.spacing_m, params.talus_angle_deg);
         let before = land.clone();
         for sweep in 0..sweeps {
@@ -39,7 +39,7 @@ fn roughen(land: &mut Grid, loose: &Grid, params: &LandParams) {
     let old = land.values.clone();
     let (spacing_m, talus) = (land.spacing_m, libm::tanf(params.talus_angle_deg.to_radians()));
     land.values.par_chunks_mut(n).enumerate().skip(1).take(n - 2).for_each(|(j, row)| {
-        for i in 1..n - 1 {
+        for (i, h) in row.iter_mut().enumerate().take(n - 1).skip(1) {
             let k = j * n + i;
             let (dx, dz) = (old[k + 1] - old[k - 1], old[k + n] - old[k - n]);
             let slope = (dx * dx + dz * dz).sqrt() / (2.0 * spacing_m);
@@ -48,8 +48,8 @@ fn roughen(land: &mut Grid, loose: &Grid, params: &LandParams) {
             if bare > 0.0 {
                 let (x, z) = (i as f32 * spacing_m, j as f32 * spacing_m);
                 let broad = gradient2(seed, x / 19.0 + old[k] / 40.0, z / 19.0, 0);
-                let fine = gradient2(seed ^ 1, x / 7.5, z / 7.5 + old[k] / 15.0, 0);
-                row[i] += RIBS_M * bare * ((0.5 - broad.abs() * 1.6) + 0.4 * (0.5 - fine.abs() * 1.6));
+                let fine = gradient2(seed ^ 1, x / 9.0, z / 9.0 + old[k] / 25.0, 0);
+                *h += RIBS_M * bare * ((0.5 - broad.abs() * 1.6) + 0.3 * (0.5 - fine.abs() * 1.6));
             }
         }
     });
@@ -106,23 +106,22 @@ impl Row<'_> {
         let inner = self.heights.len() - 2;
         let (h, t) = (&self.heights[1..][..inner], &self.holds[1..][..inner]);
         let (g, s) = (&other.heights[shift..][..inner], &other.holds[shift..][..inner]);
-        let half = 0.5 * reach;
         for (i, out) in out[1..][..inner].iter_mut().enumerate() {
-            *out += 0.22 * surplus(g[i] - h[i], half * (t[i] + s[i]));
+            *out += 0.24 * surplus(g[i] - h[i], reach * t[i], reach * s[i]);
         }
-        for (i, neighbour) in [(0, 0usize), (inner + 1, inner + 1)] {
-            let k = (neighbour + shift).saturating_sub(1).min(inner + 1);
-            out[i] +=
-                0.22 * surplus(other.heights[k] - self.heights[i], half * (self.holds[i] + other.holds[k]));
+        for i in [0, inner + 1] {
+            let k = (i + shift).saturating_sub(1).min(inner + 1);
+            let rise = other.heights[k] - self.heights[i];
+            out[i] += 0.24 * surplus(rise, reach * self.holds[i], reach * other.holds[k]);
         }
     }
 }
 
-/// How much of a rise is more than what holds, with its sign.
+/// How much of the rise to a neighbour is more than what the higher of the two holds, with its sign.
 #[inline]
-fn surplus(rise: f32, holds: f32) -> f32 {
-    let above = rise - holds;
-    let below = rise + holds;
+fn surplus(rise: f32, here_holds: f32, there_holds: f32) -> f32 {
+    let above = rise - there_holds;
+    let below = rise + here_holds;
     let above = if above > 0.0 { above } else { 0.0 };
     let below = if below < 0.0 { below } else { 0.0 };
     above + below
