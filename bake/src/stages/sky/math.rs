@@ -13,7 +13,8 @@ pub fn exp(x: f32) -> f32 {
     // Rounded by truncating a positive number: `floor` would be a call on machines without SSE 4.1.
     let whole = (scaled + 128.5) as i32 - 128;
     let f = (scaled - whole as f32) * std::f32::consts::LN_2;
-    let series = 1.0 + f * (1.0 + f * (0.5 + f * (1.0 / 6.0 + f * (1.0 / 24.0 + f * (1.0 / 120.0)))));
+    let series = 1.0
+        + f * (1.0 + f * (0.5 + f * (1.0 / 6.0 + f * (1.0 / 24.0 + f * (1.0 / 120.0 + f * (1.0 / 720.0))))));
     series * f32::from_bits(((whole + 127) as u32) << 23)
 }
 
