@@ -31,7 +31,15 @@ fn bilinear(image: &ImageF16, u: f32, v: f32, c: usize) -> f32 {
     a * (1.0 - fy) + b * fy
 }
 
-fn view(image: &ImageF16, azimuth_deg: f32, pitch_deg: f32, fov_deg: f32, w: u32, h: u32, exposure: f32) -> Image8 {
+fn view(
+    image: &ImageF16,
+    azimuth_deg: f32,
+    pitch_deg: f32,
+    fov_deg: f32,
+    w: u32,
+    h: u32,
+    exposure: f32,
+) -> Image8 {
     let mut out = Image8::new(w, h, 3);
     let (az, pitch) = (azimuth_deg.to_radians(), pitch_deg.to_radians());
     let k = libm::tanf(fov_deg.to_radians() * 0.5);
@@ -46,7 +54,8 @@ fn view(image: &ImageF16, azimuth_deg: f32, pitch_deg: f32, fov_deg: f32, w: u32
             let u = a / std::f32::consts::TAU + 0.5;
             let v = libm::acosf(y2 / len) / std::f32::consts::PI;
             for ch in 0..3 {
-                out.data[((j * w + i) * 3) as usize + ch] = byte(bilinear(image, u - u.floor(), v, ch) * exposure);
+                out.data[((j * w + i) * 3) as usize + ch] =
+                    byte(bilinear(image, u - u.floor(), v, ch) * exposure);
             }
         }
     }
@@ -70,7 +79,51 @@ fn main() {
     rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(run);
 }
 
+fn bench() {
+    for (cover, cirrus) in [(0.0, 0.0), (0.0, 0.5), (0.4, 0.0), (0.4, 0.5), (1.0, 0.5)] {
+        let p = SkyParams {
+            sky_seed: 3,
+            sun_elevation_deg: 25.0,
+            sun_azimuth_deg: 40.0,
+            turbidity: 3.0,
+            sun_size_deg: 0.6,
+            exposure_ev: 0.0,
+            cloud_cover: cover,
+            cloud_base_m: 1200.0,
+            cloud_thickness_m: 900.0,
+            cloud_scale_m: 1300.0,
+            cirrus,
+            haze_m: 30000.0,
+        };
+        let mut best = [f64::MAX; 4];
+        for _ in 0..4 {
+            let t = cpu_ms();
+            let l = light(&p);
+            best[0] = best[0].min(cpu_ms() - t);
+            let t = cpu_ms();
+            std::hint::black_box(images(&p, &l, 8, 16));
+            best[1] = best[1].min(cpu_ms() - t);
+            let t = cpu_ms();
+            let s = images(&p, &l, 512, 2048);
+            best[2] = best[2].min(cpu_ms() - t);
+            let t = cpu_ms();
+            std::hint::black_box(exr::encode(&s.equirect));
+            for layer in &s.layers {
+                std::hint::black_box(png::encode(&layer.image_srgb));
+            }
+            best[3] = best[3].min(cpu_ms() - t);
+        }
+        eprintln!(
+            "cover {cover} cirrus {cirrus}: light {:.0}, dome and sheets {:.0}, images {:.0}, encode {:.0}",
+            best[0], best[1], best[2], best[3]
+        );
+    }
+}
+
 fn run() {
+    if std::env::args().nth(1).as_deref() == Some("bench") {
+        return bench();
+    }
     let args: Vec<String> = std::env::args().collect();
     let dir = args.get(1).cloned().unwrap_or("/tmp/sky".into());
     let (vw, vh) = (480u32, 270u32);
@@ -112,11 +165,28 @@ fn run() {
             let t4 = cpu_ms();
             eprintln!(
                 "el {elevation} kind {i}: light {:.0} images {:.0} exr {:.0} ({} MB) layers png {:.0} ({} kB)  sun {:.2?} sky {:.2?} haze {:.2?}",
-                t1 - t0, t2 - t1, t3 - t2, bytes.len() / 1_000_000, t4 - t3, n / 1000,
-                l.sun_irradiance_linear, l.sky_irradiance_linear, l.haze_linear
+                t1 - t0,
+                t2 - t1,
+                t3 - t2,
+                bytes.len() / 1_000_000,
+                t4 - t3,
+                n / 1000,
+                l.sun_irradiance_linear,
+                l.sky_irradiance_linear,
+                l.haze_linear
             );
-            paste(&mut front, &view(&s.equirect, 50.0, 11.0, 60.0, vw, vh, 1.0), i as u32 * vw, j as u32 * vh);
-            paste(&mut side, &view(&s.equirect, 160.0, 11.0, 60.0, vw, vh, 1.0), i as u32 * vw, j as u32 * vh);
+            paste(
+                &mut front,
+                &view(&s.equirect, 50.0, 11.0, 60.0, vw, vh, 1.0),
+                i as u32 * vw,
+                j as u32 * vh,
+            );
+            paste(
+                &mut side,
+                &view(&s.equirect, 160.0, 11.0, 60.0, vw, vh, 1.0),
+                i as u32 * vw,
+                j as u32 * vh,
+            );
             let mut small = Image8::new(vw, 240, 3);
             for y in 0..240u32 {
                 for x in 0..vw {
@@ -131,7 +201,11 @@ fn run() {
                 let big = view(&s.equirect, 60.0, 12.0, 60.0, 1280, 720, 1.0);
                 std::fs::write(format!("{dir}/big_{j}_{i}.png"), png::encode(&big)).unwrap();
                 for layer in &s.layers {
-                    std::fs::write(format!("{dir}/layer_{j}_{i}_{}.png", layer.name), png::encode(&layer.image_srgb)).unwrap();
+                    std::fs::write(
+                        format!("{dir}/layer_{j}_{i}_{}.png", layer.name),
+                        png::encode(&layer.image_srgb),
+                    )
+                    .unwrap();
                 }
                 std::fs::write(format!("{dir}/sky_{j}_{i}.exr"), &bytes).unwrap();
             }

@@ -101,7 +101,11 @@ mod tests {
             .no_deep_data()
             .largest_resolution_level()
             .rgb_channels(
-                |size, _| ImageF16 { width: size.0 as u32, height: size.1 as u32, data: vec![0; size.0 * size.1 * 3] },
+                |size, _| ImageF16 {
+                    width: size.0 as u32,
+                    height: size.1 as u32,
+                    data: vec![0; size.0 * size.1 * 3],
+                },
                 |image: &mut ImageF16, at, (r, g, b): (f16, f16, f16)| {
                     let start = (at.1 * image.width as usize + at.0) * 3;
                     image.data[start..start + 3].copy_from_slice(&[r.to_bits(), g.to_bits(), b.to_bits()]);

@@ -213,7 +213,8 @@ impl Atmosphere {
             let passed = exp3(-extinction * dt);
             let gathered = scattering * through * (Vec3A::ONE - passed) / extinction.max(Vec3A::splat(1e-9));
             let mu_here = (r * sun_mu + t * cos_angle) / radius;
-            light += gathered * self.sun_at(radius - GROUND_KM, mu_here) * (0.25 * std::f32::consts::FRAC_1_PI);
+            light +=
+                gathered * self.sun_at(radius - GROUND_KM, mu_here) * (0.25 * std::f32::consts::FRAC_1_PI);
             feedback += gathered;
             through *= passed;
         }
@@ -249,7 +250,8 @@ impl Atmosphere {
             let sun = self.sun_at(height, mu_here);
             let rayleigh = RAYLEIGH_PER_KM * air;
             let mie = self.mie_scattering * haze;
-            sum.smooth += weight * (rayleigh * sun * phase + (rayleigh + mie) * self.multiple_at(height, mu_here));
+            sum.smooth +=
+                weight * (rayleigh * sun * phase + (rayleigh + mie) * self.multiple_at(height, mu_here));
             sum.mie += weight * mie * sun;
             through *= passed;
         }

@@ -64,7 +64,9 @@ fn add_cells(sum: &mut [f32], seed: u32, cells: i32, weight: f32) {
                 }
                 for (i, squared) in nearest.iter().enumerate() {
                     let (x, y, z) = (i % side, i / side % side, i / (side * side));
-                    let at = ((cz as usize * side + z) * SIDE + cy as usize * side + y) * SIDE + cx as usize * side + x;
+                    let at = ((cz as usize * side + z) * SIDE + cy as usize * side + y) * SIDE
+                        + cx as usize * side
+                        + x;
                     sum[at] += weight * (1.0 - (squared.sqrt() / size).min(1.0));
                 }
             }
@@ -79,7 +81,8 @@ fn neighbours(seed: u32, cells: i32, cell: [i32; 3]) -> [[f32; 3]; 27] {
         let offset = [i as i32 % 3 - 1, i as i32 / 3 % 3 - 1, i as i32 / 9 - 1];
         let at = [0, 1, 2].map(|axis: usize| (cell[axis] + offset[axis]).rem_euclid(cells));
         let h = hash(seed, at[0], at[1], at[2]);
-        *point = [0, 1, 2].map(|axis: usize| offset[axis] as f32 + ((h >> (10 * axis)) & 1023) as f32 / 1024.0);
+        *point =
+            [0, 1, 2].map(|axis: usize| offset[axis] as f32 + ((h >> (10 * axis)) & 1023) as f32 / 1024.0);
     }
     points
 }

@@ -11,16 +11,16 @@ use super::math::{exp, henyey_greenstein, lerp, smoothstep, split};
 use crate::noise;
 use crate::seed::noise_seed;
 
-/// Texels a side of the sheet.
+/// Texels a side of the sheet in pictures; a power of two, as any other side must be.
 pub const SIDE: usize = 512;
 /// Height above the ground in metres.
 pub const ALTITUDE_M: f32 = 9000.0;
 /// Metres after which the sheet repeats.
 pub const TILE_M: f32 = 36_000.0;
-const MASK: usize = SIDE - 1;
 
 /// The sheet: optical depth seen vertically, at full and at an eighth of the resolution.
 pub struct Cirrus {
+    side: usize,
     fine: Vec<f32>,
     coarse: Vec<f32>,
     sun: Vec3A,
@@ -29,21 +29,22 @@ pub struct Cirrus {
 }
 
 impl Cirrus {
-    /// The sheet of these genes, or `None` when there is none.
-    pub fn new(params: &SkyParams, sky: &ClearSky) -> Option<Self> {
+    /// The sheet of these genes with `side` texels a side, or `None` when there is none.
+    pub fn new(params: &SkyParams, sky: &ClearSky, side: usize) -> Option<Self> {
         let amount = params.cirrus.clamp(0.0, 1.0);
         if amount < 0.01 {
             return None;
         }
         let seed = noise_seed(u64::from(params.sky_seed), "sky.cirrus", 0);
-        let fine = optical_depths(seed, amount);
+        let fine = optical_depths(seed, amount, side);
         let sky_light = sky.irradiance(|s, d| s.radiance(d)) * std::f32::consts::FRAC_1_PI;
-        Some(Self { coarse: blurred(&fine), fine, sun: sky.sun, sun_light: sky.sun_at(ALTITUDE_M * 0.001), sky_light })
+        let sun_light = sky.sun_at(ALTITUDE_M * 0.001);
+        Some(Self { side, coarse: blurred(&fine, side), fine, sun: sky.sun, sun_light, sky_light })
     }
 
     /// Optical depth at a texel, seen vertically.
     pub fn depth_at(&self, column: usize, row: usize) -> f32 {
-        self.fine[row * SIDE + column]
+        self.fine[row * self.side + column]
     }
 
     /// Light of the sheet where it is dense, seen at an angle to the sun of cosine `cosine`.
@@ -55,12 +56,12 @@ impl Cirrus {
     /// Light and transparency of the sheet, through the air, in a unit direction with y > 0.
     pub fn seen(&self, direction: Vec3A, sky: &ClearSky) -> Vec4 {
         let t = distance_to_height(direction.y, ALTITUDE_M);
-        let texels = SIDE as f32 / TILE_M;
+        let texels = self.side as f32 / TILE_M;
         let (u, v) = (direction.x * t * texels, direction.z * t * texels);
         // Far away a pixel covers many texels.
         let far = smoothstep(25_000.0, 90_000.0, t);
-        let fine = bilinear(&self.fine, SIDE, u, v);
-        let coarse = bilinear(&self.coarse, SIDE / 8, (u - 3.5) / 8.0, (v - 3.5) / 8.0);
+        let fine = bilinear(&self.fine, self.side, u, v);
+        let coarse = bilinear(&self.coarse, self.side / 8, (u - 3.5) / 8.0, (v - 3.5) / 8.0);
         let slant = (t / ALTITUDE_M).min(3.5).sqrt();
         let through = exp(-lerp(fine, coarse, far) * slant);
         if through > 0.9995 {
@@ -91,28 +92,35 @@ fn fill(side: usize, value: impl Fn(usize, usize) -> f32 + Sync) -> Vec<f32> {
     texels
 }
 
-fn optical_depths(seed: u32, amount: f32) -> Vec<f32> {
-    let unit = 1.0 / SIDE as f32;
+fn optical_depths(seed: u32, amount: f32, side: usize) -> Vec<f32> {
+    let unit = 1.0 / side as f32;
     let heading = noise::hash01(seed, 1, 2, 3) * std::f32::consts::TAU;
     // The wind on a coarse grid; its direction turns by up to a radian.
-    const WIND: usize = SIDE / 16;
+    const WIND: usize = 32;
+    let shrink = side / WIND;
     let bearing = fill(WIND, |i, j| {
         let (x, y) = (i as f32 / WIND as f32, j as f32 / WIND as f32);
         heading + 0.9 * noise::fbm2(seed, x * 2.0, y * 2.0, 2, 0.5, 2)
     });
     let wind: Vec<(f32, f32)> = bearing.iter().map(|&a| (libm::cosf(a), libm::sinf(a))).collect();
-    let wind_at = |column: usize, row: usize| wind[(row / 16) * WIND + column / 16];
-    let grain = fill(SIDE, |i, j| {
+    let wind_at = |column: usize, row: usize| wind[(row / shrink) * WIND + column / shrink];
+    let grain = fill(side, |i, j| {
         let (x, y) = (i as f32 * unit, j as f32 * unit);
-        0.6 * noise::gradient2(seed ^ 0x55, x * 48.0, y * 48.0, 48)
-            + 0.4 * noise::gradient2(seed ^ 0xAA, x * 128.0, y * 128.0, 128)
+        0.7 * noise::gradient2(seed ^ 0x55, x * 64.0, y * 64.0, 64)
+            + 0.6 * (noise::hash01(seed ^ 0xAA, i as i32 / 2, j as i32 / 2, 5) - 0.5)
     });
-    let short = drawn_out(&grain, &wind_at, 3.0);
-    let long = drawn_out(&short, &wind_at, 11.0);
-    fill(SIDE, |i, j| {
-        let (x, y) = (i as f32 * unit, j as f32 * unit);
-        let patch = noise::fbm2(seed ^ 0x99, x * 3.0, y * 3.0, 3, 0.5, 3);
-        let at = j * SIDE + i;
+    let texel = side as f32 / SIDE as f32;
+    let short = drawn_out(&grain, side, &wind_at, 3.0 * texel);
+    let long = drawn_out(&short, side, &wind_at, 11.0 * texel);
+    const PATCHES: usize = 64;
+    let patches = fill(PATCHES, |i, j| {
+        let (x, y) = (i as f32 / PATCHES as f32, j as f32 / PATCHES as f32);
+        noise::fbm2(seed ^ 0x99, x * 3.0, y * 3.0, 3, 0.5, 3)
+    });
+    fill(side, |i, j| {
+        let zoom = PATCHES as f32 * unit;
+        let patch = bilinear(&patches, PATCHES, i as f32 * zoom, j as f32 * zoom);
+        let at = j * side + i;
         let streak = 0.5 + 1.9 * long[at] + 0.35 * short[at];
         let here = smoothstep(0.42 - 0.75 * amount, 0.8 - 0.55 * amount, patch + 0.55 * (streak - 0.5));
         0.75 * (0.3 + 0.7 * amount) * here * streak.clamp(0.0, 1.3) * (0.35 + 0.65 * here)
@@ -120,26 +128,32 @@ fn optical_depths(seed: u32, amount: f32) -> Vec<f32> {
 }
 
 /// Mean of eight samples along the wind on either side.
-fn drawn_out(texels: &[f32], wind: &(impl Fn(usize, usize) -> (f32, f32) + Sync), step: f32) -> Vec<f32> {
-    fill(SIDE, |i, j| {
+fn drawn_out(
+    texels: &[f32],
+    side: usize,
+    wind: &(impl Fn(usize, usize) -> (f32, f32) + Sync),
+    step: f32,
+) -> Vec<f32> {
+    let mask = side - 1;
+    fill(side, |i, j| {
         let (dx, dy) = wind(i, j);
         let mut sum = 0.0;
         for k in -4..=4 {
             let along = k as f32 * step;
-            let x = ((i as f32 + dx * along + 64.5) as usize).wrapping_sub(64) & MASK;
-            let y = ((j as f32 + dy * along + 64.5) as usize).wrapping_sub(64) & MASK;
-            sum += texels[y * SIDE + x];
+            let x = ((i as f32 + dx * along + 64.5) as usize).wrapping_sub(64) & mask;
+            let y = ((j as f32 + dy * along + 64.5) as usize).wrapping_sub(64) & mask;
+            sum += texels[y * side + x];
         }
         sum / 9.0
     })
 }
 
-fn blurred(fine: &[f32]) -> Vec<f32> {
-    fill(SIDE / 8, |i, j| {
+fn blurred(fine: &[f32], side: usize) -> Vec<f32> {
+    fill(side / 8, |i, j| {
         let mut sum = 0.0;
         for y in 0..8 {
             for x in 0..8 {
-                sum += fine[(j * 8 + y) * SIDE + i * 8 + x];
+                sum += fine[(j * 8 + y) * side + i * 8 + x];
             }
         }
         sum / 64.0

@@ -65,7 +65,7 @@ impl ClearSky {
             sun_ground: air.sun_transmittance(EYE_KM, sun.y, 64),
             ground: Vec3A::ZERO,
             haze: Vec3A::ZERO,
-            shade: 1.0 - 0.6 * smoothstep(0.5, 1.0, params.cloud_cover) * smoothstep(1.0, 0.5, dimming),
+            shade: 1.0 - 0.45 * smoothstep(0.5, 1.0, params.cloud_cover) * smoothstep(1.0, 0.5, dimming),
             haze_per_km,
             sun_flat: (sun.x / flat, sun.z / flat),
             table: Vec::new(),
@@ -103,14 +103,14 @@ impl ClearSky {
         let open = self.sun_ground * self.sun.y + sky;
         // What the eye rests on: mostly the sky itself.
         let key = luminance(sky).max(1e-6) + 0.03 * luminance(self.sun_ground) * self.sun.y;
-        let scale = NOON_SUN * libm::powf(NOON_KEY / key, 0.85) * libm::powf(dimming, -0.3);
+        let scale = NOON_SUN * libm::powf(NOON_KEY / key, 0.85) * libm::powf(dimming, -0.45);
         self.sun_above = scale;
         self.sun_ground *= scale;
         for entry in &mut self.table {
             *entry = (entry.0 * scale, entry.1 * scale);
         }
         let albedo = Vec3A::new(0.17, 0.16, 0.12);
-        self.ground = open * self.shade * scale * albedo * std::f32::consts::FRAC_1_PI;
+        self.ground = pale(open, 0.4) * self.shade * scale * albedo * std::f32::consts::FRAC_1_PI;
         self.fill_horizon();
     }
 
@@ -126,10 +126,9 @@ impl ClearSky {
                 let entry = self.table[row * COLUMNS + column];
                 sum = (sum.0 + entry.0, sum.1 + entry.1);
             }
-            let grey = 0.25 + 0.8 * (1.0 - self.shade);
-            let glow = self.shade * self.shade * self.shade;
-            self.horizon[column] =
-                (pale(sum.0 / rows, grey) * self.shade, pale(sum.1 / rows, grey) * glow);
+            let grey = 0.25 + 1.1 * (1.0 - self.shade);
+            let glow = glow_left(self.shade);
+            self.horizon[column] = (pale(sum.0 / rows, grey) * self.shade, pale(sum.1 / rows, grey) * glow);
             // Columns are even in cos φ; the measure of an azimuth is dφ.
             let weight = column_weight(column);
             mean = (mean.0 + self.horizon[column].0 * weight, mean.1 + self.horizon[column].1 * weight);
@@ -169,7 +168,8 @@ impl ClearSky {
         let f = u - i as f32;
         let smooth = self.horizon[i].0.lerp(self.horizon[i + 1].0, f);
         let mie = self.horizon[i].1.lerp(self.horizon[i + 1].1, f);
-        smooth + mie * mie_phase(level.x * self.sun.x + level.z * self.sun.z)
+        let cosine = direction.x * self.sun.x + direction.y * self.sun.y + direction.z * self.sun.z;
+        smooth + mie * mie_phase(cosine)
     }
 
     /// Radiance without the sun's disc in a unit direction.
@@ -197,7 +197,7 @@ impl ClearSky {
     #[inline]
     pub fn air(&self, direction: Vec3A) -> Vec3A {
         let lit = self.radiance(direction);
-        if self.shade == 1.0 { lit } else { (self.haze + (lit * self.shade - self.haze) * glow_left(self.shade)) }
+        if self.shade == 1.0 { lit } else { self.haze.lerp(lit * self.shade, glow_left(self.shade)) }
     }
 
     /// The lower half: hazy ground, the paler the nearer to the horizon.
@@ -206,7 +206,7 @@ impl ClearSky {
         let deep = 1.0 - exp(direction.y * 5.0);
         let ground = self.ground.lerp(self.haze, 0.3);
         // At the nadir azimuth means nothing: the mean haze takes over.
-        let around = haze.lerp(self.haze, smoothstep(0.0, 0.9, -direction.y));
+        let around = haze.lerp(self.haze, smoothstep(0.0, 0.3, -direction.y));
         around.lerp(ground, deep)
     }
 
@@ -260,11 +260,11 @@ impl ClearSky {
 }
 
 fn glow_left(shade: f32) -> f32 {
-    ((shade - 0.4) / 0.6).clamp(0.0, 1.0)
+    ((shade - 0.55) / 0.45).clamp(0.0, 1.0)
 }
 
 /// A colour drawn towards white of the same luminance.
-fn pale(color: Vec3A, amount: f32) -> Vec3A {
+pub fn pale(color: Vec3A, amount: f32) -> Vec3A {
     color.lerp(Vec3A::splat(luminance(color)), amount)
 }
 
@@ -292,7 +292,8 @@ impl SunDisc {
         let real = sky.sun_ground / (solid_angle * 0.8);
         let aureole = luminance(sky.radiance(sky.sun)).max(1e-3);
         // A large disc shines less, so that its share of the sky's light stays under some two per cent.
-        let share = 0.02 * luminance(sky.irradiance(|sky, d| sky.radiance(d))) / (solid_angle * 0.8 * sky.sun.y.max(0.1));
+        let share = 0.02 * luminance(sky.irradiance(|sky, d| sky.radiance(d)))
+            / (solid_angle * 0.8 * sky.sun.y.max(0.1));
         let cap = (20.0 * aureole).min(share.max(3.0 * aureole)).min(6e4);
         let bright = luminance(real).max(1e-6);
         let middle = real * (cap.min(bright) / bright);

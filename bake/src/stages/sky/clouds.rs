@@ -6,13 +6,16 @@
 use glam::{Vec3A, Vec4};
 
 use super::SkyParams;
-use super::clear::ClearSky;
+use super::clear::{ClearSky, pale};
 use super::field::{CloudField, Shape};
 use super::math::{exp, henyey_greenstein, smoothstep};
 
 const EARTH_M: f32 = 6_360_000.0;
 /// Extinction inside a cloud per metre: droplets of 10 µm, 0.2 g/m³.
 const EXTINCTION_PER_M: f32 = 0.035;
+
+/// Distance beyond which small billows are finer than a pixel.
+const FINE_M: f32 = 30_000.0;
 
 /// Cumulus or stratus under a certain light.
 pub struct Clouds {
@@ -48,7 +51,9 @@ impl Clouds {
         let field = CloudField::new(params)?;
         let middle_km = 0.001 * (field.base_m + 0.6 * field.height_m);
         let sky_light = sky.irradiance(|s, d| s.radiance(d)) * std::f32::consts::FRAC_1_PI;
-        Some(Self { field, sun: sky.sun, sun_light: sky.sun_at(middle_km), sky_light, ground_light: sky.ground })
+        // Under a deck, light has been scattered so often that its colours have mixed.
+        let sun_light = pale(sky.sun_at(middle_km), 0.5 * field.deck);
+        Some(Self { field, sun: sky.sun, sun_light, sky_light, ground_light: sky.ground })
     }
 
     /// The same clouds in a field that repeats exactly.
@@ -75,7 +80,14 @@ impl Clouds {
         self.walk(origin, Vec3A::Y, 0.0, field.height_m + 1.3 * reach, |t| t - 0.3 * reach)
     }
 
-    fn walk(&self, origin: Vec3A, direction: Vec3A, near: f32, far: f32, height: impl Fn(f32) -> f32) -> Marched {
+    fn walk(
+        &self,
+        origin: Vec3A,
+        direction: Vec3A,
+        near: f32,
+        far: f32,
+        height: impl Fn(f32) -> f32,
+    ) -> Marched {
         let field = &self.field;
         let reach = field.reach_m();
         let cosine = direction.x * self.sun.x + direction.y * self.sun.y + direction.z * self.sun.z;
@@ -83,28 +95,46 @@ impl Clouds {
         let mut light = Vec3A::ZERO;
         let (mut through, mut weight, mut distance) = (1.0, 0.0, 0.0);
         let mut t = near;
+        let mut source = Vec3A::ZERO;
+        let (mut steps_inside, mut empty) = (0, 2i32);
         while t < far {
-            let fine_step = (0.16 * field.billow_m).max(0.0045 * t).max((far - near) / 160.0);
+            let fine_step = (0.17 * field.billow_m).max(0.005 * t).max((far - near) / 128.0);
             let (x, y, z) = (origin.x + direction.x * t, height(t), origin.z + direction.z * t);
             let shape = field.shape(x, y, z);
             let outside = -shape.depth_m - reach;
             if outside > 0.0 {
                 t += (outside * 0.8).max(fine_step);
+                empty = 2;
                 continue;
             }
             let soft = 0.003 * t;
-            let density = field.density(shape, x, y, z, soft, true);
-            if density > 0.001 {
-                let passed = exp(-EXTINCTION_PER_M * density * fine_step);
-                let gathered = through * (1.0 - passed);
-                light += self.source(shape, Vec3A::new(x, y, z), soft, &phases) * gathered;
-                distance += t * gathered;
-                weight += gathered;
-                through *= passed;
-                if through < 0.02 {
-                    through = 0.0;
-                    break;
-                }
+            let searching = empty >= 2;
+            let density = field.density(shape, x, y, z, soft, t < FINE_M && !searching);
+            if density <= 0.001 {
+                // Longer steps while nothing is near.
+                empty += 1;
+                t += if searching { 1.6 * fine_step } else { fine_step };
+                continue;
+            }
+            if searching {
+                // Here again with all detail; `empty` now delays the next search.
+                empty = -2;
+                continue;
+            }
+            empty = 0;
+            let passed = exp(-EXTINCTION_PER_M * density * fine_step);
+            let gathered = through * (1.0 - passed);
+            if steps_inside % 2 == 0 {
+                source = self.source(shape, Vec3A::new(x, y, z), soft, &phases);
+            }
+            steps_inside += 1;
+            light += source * gathered;
+            distance += t * gathered;
+            weight += gathered;
+            through *= passed;
+            if through < 0.02 {
+                through = 0.0;
+                break;
             }
             t += fine_step;
         }
@@ -117,14 +147,19 @@ impl Clouds {
         // A sun at the horizon shines from a little above, or every cloud would stand in another's shadow.
         let sun = Vec3A::new(self.sun.x, self.sun.y.max(0.1), self.sun.z);
         let (mut depth, mut from) = (0.0, 0.0);
-        for (i, reach) in [0.22f32, 0.6, 1.4, 3.2].into_iter().enumerate() {
+        for (i, reach) in [0.28f32, 0.95, 2.8].into_iter().enumerate() {
             let to = reach * field.billow_m;
             let p = point + sun * (0.5 * (from + to));
             if p.y > field.height_m + field.reach_m() {
                 break;
             }
             let shape = field.shape(p.x, p.y, p.z);
-            depth += (to - from) * field.density(shape, p.x, p.y, p.z, soft + 0.1 * to, i == 0);
+            let density = if i == 0 {
+                field.density(shape, p.x, p.y, p.z, soft, false)
+            } else {
+                field.smooth_density(shape)
+            };
+            depth += (to - from) * density;
             from = to;
         }
         depth * EXTINCTION_PER_M
@@ -145,7 +180,8 @@ impl Clouds {
         // Many orders: builds up inwards (the powder effect), falls off as in the two-stream solution.
         let many = 0.19 * (0.5 + 0.5 * inside) / (1.0 + 0.14 * sun_depth);
         let open = 0.3 + 0.7 * up;
-        let ambient = self.sky_light * (open * (1.0 - 0.35 * inside)) + self.ground_light * (0.5 * (1.0 - up));
+        let ambient =
+            self.sky_light * (open * (1.0 - 0.35 * inside)) + self.ground_light * (0.5 * (1.0 - up));
         self.sun_light * (first + second + many) + ambient * 0.75
     }
 
@@ -185,7 +221,7 @@ struct Phases {
 impl Phases {
     fn new(cosine: f32) -> Self {
         let narrow = 0.75 * henyey_greenstein(0.82, cosine) + 0.25 * henyey_greenstein(-0.25, cosine);
-        Self { narrow: narrow.min(1.6), wide: henyey_greenstein(0.4, cosine) }
+        Self { narrow: narrow.min(0.7), wide: henyey_greenstein(0.4, cosine) }
     }
 }
 

@@ -68,16 +68,38 @@ impl Dome {
                 (libm::sinf(azimuth), -libm::cosf(azimuth))
             })
             .collect();
-        texels.par_chunks_exact_mut(width).enumerate().for_each(|(row, texels)| {
-            let unit = (row as f32 + 0.5) / height as f32;
-            let elevation = libm::powf(unit, CROWDING) * std::f32::consts::FRAC_PI_2;
-            let (sine, flat) = (libm::sinf(elevation), libm::cosf(elevation));
-            let stride = stride_at(flat, width);
-            for column in (0..width).step_by(stride) {
-                let (x, z) = around[column];
-                texels[column] = layers.seen(Vec3A::new(flat * x, sine, flat * z), sky);
+        let direction = |row: Row, column: usize| {
+            let (x, z) = around[column];
+            Vec3A::new(row.flat * x, row.sine, row.flat * z)
+        };
+        // First every other texel of every other row; then the rest, but only where neighbours differ.
+        let half = width / 2;
+        let mut sparse = vec![Vec4::ZERO; half * (height / 2 + 1)];
+        sparse.par_chunks_exact_mut(half).enumerate().for_each(|(row, texels)| {
+            let row = Row::new(2 * row, width, height);
+            let stride = row.stride.max(2) / 2;
+            for column in (0..half).step_by(stride) {
+                texels[column] = layers.seen(direction(row, 2 * column), sky);
             }
             fill_between(texels, stride);
+        });
+        texels.par_chunks_exact_mut(width).enumerate().for_each(|(row_index, texels)| {
+            let row = Row::new(row_index, width, height);
+            let (low, high) = sparse[row_index / 2 * half..].split_at(half);
+            let high = if row_index % 2 == 0 { low } else { high };
+            for column in (0..width).step_by(row.stride) {
+                let (i, j) = (column / 2, (column / 2 + 1) % half);
+                let j = if column % 2 == 0 { i } else { j };
+                let corners = [low[i], low[j], high[i], high[j]];
+                let known = row_index % 2 == 0 && column % 2 == 0;
+                texels[column] =
+                    if known || alike([low[i], low[(i + 1) % half], high[i], high[(i + 1) % half]]) {
+                        (corners[0] + corners[1] + corners[2] + corners[3]) * 0.25
+                    } else {
+                        layers.seen(direction(row, column), sky)
+                    };
+            }
+            fill_between(texels, row.stride);
         });
         Self { width, height, texels, row_of_sine }
     }
@@ -110,6 +132,34 @@ impl Dome {
         let (low, high) = (&self.texels[j * self.width..], &self.texels[(j + 1) * self.width..]);
         low[x0].lerp(low[x1], fx).lerp(high[x0].lerp(high[x1], fx), fy)
     }
+}
+
+/// A row of the map: its elevation, and how many columns lie between those that are drawn.
+#[derive(Clone, Copy)]
+struct Row {
+    sine: f32,
+    flat: f32,
+    stride: usize,
+}
+
+impl Row {
+    fn new(row: usize, width: usize, height: usize) -> Self {
+        let unit = ((row as f32 + 0.5) / height as f32).min(1.0);
+        let elevation = libm::powf(unit, CROWDING) * std::f32::consts::FRAC_PI_2;
+        let (sine, flat) = (libm::sinf(elevation), libm::cosf(elevation));
+        // At the horizon air blurs all detail away.
+        let stride = if sine < 0.025 { 2 } else { stride_at(flat, width) };
+        Self { sine, flat, stride }
+    }
+}
+
+/// Whether nothing can be lost by interpolating between these.
+fn alike(texels: [Vec4; 4]) -> bool {
+    let low = texels[0].min(texels[1]).min(texels[2].min(texels[3]));
+    let high = texels[0].max(texels[1]).max(texels[2].max(texels[3]));
+    let span = high - low;
+    let light = 0.035 * (high.x + high.y + high.z) + 0.002;
+    span.w < 0.03 && span.x + span.y + span.z < light
 }
 
 fn row_at(root_of_sine: f32, height: usize) -> f32 {

@@ -158,15 +158,26 @@ impl CloudField {
             return 1.0;
         }
         let k = 0.25 / self.billow_m;
-        let mut noise = self.billows.sample(x * k, y * k, z * k);
-        if fine {
-            let f = k * self.fine_factor;
-            noise = noise * 0.74 + 0.26 * self.billows.sample(z * f + 0.3, x * f, y * f + 0.7);
-        }
+        let coarse = self.billows.sample(x * k, y * k, z * k);
         // The base stays nearly flat.
-        let rough = 0.3 + 0.7 * smoothstep(0.0, 0.5 * self.billow_m, y);
-        let displaced = shape.depth_m + 2.0 * reach * rough * (noise - 0.56);
-        (displaced / ramp).clamp(0.0, 1.0)
+        let rough = 2.0 * reach * (0.3 + 0.7 * smoothstep(0.0, 0.5 * self.billow_m, y));
+        let least = shape.depth_m + rough * (coarse * 0.74 - 0.56);
+        if !fine {
+            return ((least + rough * 0.26 * coarse) / ramp).clamp(0.0, 1.0);
+        }
+        // Small billows matter only where they decide.
+        if least >= ramp || least + 0.26 * rough <= 0.0 {
+            return if least >= ramp { 1.0 } else { 0.0 };
+        }
+        let f = k * self.fine_factor;
+        let small = self.billows.sample(z * f + 0.3, x * f, y * f + 0.7);
+        ((least + rough * 0.26 * small) / ramp).clamp(0.0, 1.0)
+    }
+
+    /// Density without billows, for shadows: what counts there is the mean.
+    #[inline]
+    pub fn smooth_density(&self, shape: Shape) -> f32 {
+        ((shape.depth_m + 0.1 * self.billow_m) / (0.5 * self.billow_m)).clamp(0.0, 1.0)
     }
 }
 

@@ -29,7 +29,7 @@ use paint::Painter;
 /// Pixels a side of the cloudless cube faces.
 const CLEAR_FACE_PX: usize = 128;
 /// Directions around and up that the clouds are drawn in.
-const DOME_PX: (usize, usize) = (1280, 208);
+const DOME_PX: (usize, usize) = (1088, 184);
 /// Steps of elevation in `zonal_radiance_linear`.
 const ZONES: usize = 32;
 
@@ -69,10 +69,10 @@ struct Sky {
 }
 
 impl Sky {
-    fn new(params: &SkyParams) -> Self {
+    fn new(params: &SkyParams, cirrus_px: usize) -> Self {
         let clear = ClearSky::new(params, cloud_dimming(params));
         let clouds = Clouds::new(params, &clear);
-        let cirrus = cirrus::Cirrus::new(params, &clear);
+        let cirrus = cirrus::Cirrus::new(params, &clear, cirrus_px);
         Self { clear, layers: Layers { clouds, cirrus } }
     }
 
@@ -96,9 +96,10 @@ fn cloud_dimming(params: &SkyParams) -> f32 {
 
 /// Sun and sky as other stages need them; costs a few tens of milliseconds.
 pub fn light(params: &SkyParams) -> SkyLight {
-    let sky = Sky::new(params);
+    let sky = Sky::new(params, cirrus::SIDE / 4);
     let clear = &sky.clear;
-    let sun_through = sky.layers.clouds.as_ref().map_or(1.0, Clouds::sun_through) * (1.0 - 0.25 * params.cirrus);
+    let sun_through =
+        sky.layers.clouds.as_ref().map_or(1.0, Clouds::sun_through) * (1.0 - 0.25 * params.cirrus);
     let spokes = if sky.layers.is_empty() { 96 } else { 40 };
     let zonal: Vec<Vec3A> = (0..ZONES)
         .map(|zone| {
@@ -106,11 +107,8 @@ pub fn light(params: &SkyParams) -> SkyLight {
             clear.zonal(libm::sinf(elevation), |_, d| sky.radiance(d), spokes)
         })
         .collect();
-    let irradiance = if sky.layers.is_empty() {
-        clear.irradiance(|s, d| s.radiance(d))
-    } else {
-        zonal_irradiance(&zonal)
-    };
+    let irradiance =
+        if sky.layers.is_empty() { clear.irradiance(|s, d| s.radiance(d)) } else { zonal_irradiance(&zonal) };
     SkyLight {
         sun_direction: Vec3::from(clear.sun),
         sun_angular_radius_rad: 0.5 * params.sun_size_deg.to_radians(),
@@ -141,12 +139,11 @@ fn zonal_irradiance(zonal: &[Vec3A]) -> Vec3A {
 /// The sky as pictures: cube faces of `face_px` (512 is usual), an equirectangular picture `equirect_width_px` wide
 /// (2048 is usual; even), and cloud sheets. Exposure is not applied.
 pub fn images(params: &SkyParams, light: &SkyLight, face_px: u32, equirect_width_px: u32) -> SkyImages {
-    let sky = Sky::new(params);
+    let sky = Sky::new(params, cirrus::SIDE);
     debug_assert!((light.sun_direction - Vec3::from(sky.clear.sun)).length() < 1e-4);
     let clear = &sky.clear;
     let dome = (!sky.layers.is_empty()).then(|| Dome::new(&sky.layers, clear, DOME_PX.0, DOME_PX.1));
-    let painter =
-        |dome| Painter { sky: clear, disc: SunDisc::new(clear, params.sun_size_deg), dome };
+    let painter = |dome| Painter { sky: clear, disc: SunDisc::new(clear, params.sun_size_deg), dome };
     let (full, empty) = (painter(dome.as_ref()), painter(None));
     let faces = (0..6).map(|face| full.face(face, face_px.max(4) as usize)).collect();
     let clear_faces = (0..6).map(|face| empty.face(face, CLEAR_FACE_PX)).collect();

@@ -42,38 +42,39 @@ pub struct Painter<'a> {
     pub dome: Option<&'a Dome>,
 }
 
-/// The clear sky on a grid of nodes, `step` pixels apart.
+/// The clear sky on a grid of nodes, `across` × `down` pixels apart: it changes most from row to row.
 struct Grid {
     columns: usize,
-    step: usize,
+    across: usize,
+    down: usize,
     nodes: Vec<Vec3A>,
 }
 
 impl Grid {
-    fn new(width: usize, height: usize, step: usize, radiance: impl Fn(f32, f32) -> Vec3A + Sync) -> Self {
-        let (columns, rows) = (width.div_ceil(step) + 1, height.div_ceil(step) + 1);
+    fn new(size: (usize, usize), step: (usize, usize), radiance: impl Fn(f32, f32) -> Vec3A + Sync) -> Self {
+        let ((width, height), (across, down)) = (size, step);
+        let (columns, rows) = (width.div_ceil(across) + 1, height.div_ceil(down) + 1);
         let mut nodes = vec![Vec3A::ZERO; columns * rows];
         nodes.par_chunks_exact_mut(columns).enumerate().for_each(|(row, nodes)| {
-            let v = (row * step) as f32 / height as f32;
+            let v = (row * down) as f32 / height as f32;
             for (column, node) in nodes.iter_mut().enumerate() {
-                *node = radiance((column * step) as f32 / width as f32, v);
+                *node = radiance((column * across) as f32 / width as f32, v);
             }
         });
-        Self { columns, step, nodes }
+        Self { columns, across, down, nodes }
     }
 
     /// Pixels of one row, interpolated between nodes.
     fn row(&self, row: usize, pixels: &mut [Vec3A]) {
-        let step = self.step as f32;
-        let y = (row as f32 + 0.5) / step;
+        let y = (row as f32 + 0.5) / self.down as f32;
         let j = y as usize;
         let fy = y - j as f32;
         let near = &self.nodes[j * self.columns..(j + 1) * self.columns];
         let far = &self.nodes[(j + 1) * self.columns..(j + 2) * self.columns];
-        for (i, run) in pixels.chunks_mut(self.step).enumerate() {
+        for (i, run) in pixels.chunks_mut(self.across).enumerate() {
             let (a, b) = (near[i].lerp(far[i], fy), near[i + 1].lerp(far[i + 1], fy));
             for (k, pixel) in run.iter_mut().enumerate() {
-                *pixel = a.lerp(b, (k as f32 + 0.5) / step);
+                *pixel = a.lerp(b, (k as f32 + 0.5) / self.across as f32);
             }
         }
     }
@@ -82,8 +83,8 @@ impl Grid {
 impl Painter<'_> {
     /// One face of the cube, `side` pixels wide.
     pub fn face(&self, face: usize, side: usize) -> ImageF16 {
-        let step = if face == 2 || face == 3 { 4 } else { 2 };
-        let grid = Grid::new(side, side, step, |u, v| {
+        let step = if face == 2 || face == 3 { (4, 4) } else { (4, 2) };
+        let grid = Grid::new((side, side), step, |u, v| {
             self.sky.radiance(face_direction(face, 2.0 * u - 1.0, 2.0 * v - 1.0))
         });
         let place = |i: usize| (2 * i + 1) as f32 / side as f32 - 1.0;
@@ -111,7 +112,7 @@ impl Painter<'_> {
     /// The whole sky, `width` × `width` / 2.
     pub fn equirect(&self, width: usize) -> ImageF16 {
         let height = width / 2;
-        let grid = Grid::new(width, height, 2, |u, v| self.sky.radiance(equirect_direction(u, v)));
+        let grid = Grid::new((width, height), (4, 2), |u, v| self.sky.radiance(equirect_direction(u, v)));
         let pixel_rad = std::f32::consts::TAU / width as f32;
         let around: Vec<(f32, f32, f32)> = (0..width)
             .map(|i| {
@@ -135,7 +136,8 @@ impl Painter<'_> {
     #[inline]
     fn pixel(&self, direction: Vec3A, clear: Vec3A, clouds: Option<Vec4>, pixel_rad: f32) -> Vec3A {
         let mut color = clear;
-        let cosine = direction.x * self.sky.sun.x + direction.y * self.sky.sun.y + direction.z * self.sky.sun.z;
+        let cosine =
+            direction.x * self.sky.sun.x + direction.y * self.sky.sun.y + direction.z * self.sky.sun.z;
         let disc = (cosine > 0.998).then(|| self.disc.radiance(direction, pixel_rad));
         if let Some(seen) = clouds {
             color = color * seen.w + Vec3A::from(seen.truncate());
@@ -149,7 +151,11 @@ impl Painter<'_> {
     }
 
     fn image(
-        &self, width: usize, height: usize, grid: &Grid, pixel: impl Fn(usize, usize, Vec3A) -> Vec3A + Sync,
+        &self,
+        width: usize,
+        height: usize,
+        grid: &Grid,
+        pixel: impl Fn(usize, usize, Vec3A) -> Vec3A + Sync,
     ) -> ImageF16 {
         let mut data = vec![0u16; width * height * 3];
         data.par_chunks_exact_mut(width * 3).enumerate().for_each_init(

@@ -11,7 +11,7 @@ use crate::model::{CloudLayer, Image8};
 /// Pixels a side.
 const SIDE: usize = 512;
 /// Rays of the cumulus sheet a side; the picture is interpolated between.
-const RAYS: usize = 192;
+const RAYS: usize = 160;
 
 /// Sheets of the layers that there are, lowest first.
 pub fn layers(clouds: Option<Clouds>, cirrus: Option<&Cirrus>) -> Vec<CloudLayer> {
@@ -20,20 +20,34 @@ pub fn layers(clouds: Option<Clouds>, cirrus: Option<&Cirrus>) -> Vec<CloudLayer
     cumulus.into_iter().chain(high).collect()
 }
 
-/// Linear radiance to an sRGB byte, by Reinhard's curve with white at 4 and the standard transfer function.
-fn tone_byte(radiance: f32) -> u8 {
-    let x = radiance.max(0.0);
-    let mapped = (x * (1.0 + x / 16.0) / (1.0 + x)).min(1.0);
-    let srgb = if mapped <= 0.003_130_8 { 12.92 * mapped } else { 1.055 * libm::powf(mapped, 1.0 / 2.4) - 0.055 };
-    (srgb * 255.0 + 0.5) as u8
-}
+/// Linear radiance → sRGB bytes, by Reinhard's curve with white at 4 and the standard transfer function.
+struct Tone([u8; 4096]);
 
-fn rgba(light: Vec3A, alpha: f32) -> [u8; 4] {
-    [tone_byte(light.x), tone_byte(light.y), tone_byte(light.z), (alpha.clamp(0.0, 1.0) * 255.0 + 0.5) as u8]
+impl Tone {
+    fn new() -> Self {
+        let byte = |i: usize| {
+            let x = i as f32 / 4095.0;
+            let srgb = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * libm::powf(x, 1.0 / 2.4) - 0.055 };
+            (srgb * 255.0 + 0.5) as u8
+        };
+        Self(std::array::from_fn(byte))
+    }
+
+    fn byte(&self, radiance: f32) -> u8 {
+        let x = radiance.max(0.0);
+        let mapped = (x * (1.0 + x / 16.0) / (1.0 + x)).min(1.0);
+        self.0[(mapped * 4095.0 + 0.5) as usize]
+    }
+
+    fn rgba(&self, light: Vec3A, alpha: f32) -> [u8; 4] {
+        let alpha = (alpha.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
+        [self.byte(light.x), self.byte(light.y), self.byte(light.z), alpha]
+    }
 }
 
 fn cumulus_sheet(clouds: &Clouds) -> CloudLayer {
     let extent_m = clouds.field.tile_m;
+    let tone = Tone::new();
     let mut rays = vec![[0u8; 4]; RAYS * RAYS];
     rays.par_chunks_exact_mut(RAYS).enumerate().for_each(|(row, rays)| {
         for (column, ray) in rays.iter_mut().enumerate() {
@@ -42,7 +56,7 @@ fn cumulus_sheet(clouds: &Clouds) -> CloudLayer {
             let alpha = 1.0 - seen.through;
             // Unpremultiplied; where there is nothing, the colour of a thin edge.
             let light = if alpha > 0.004 { seen.light / alpha } else { clouds.edge_light() };
-            *ray = rgba(light, alpha);
+            *ray = tone.rgba(light, alpha);
         }
     });
     CloudLayer {
@@ -79,7 +93,7 @@ fn neighbours(pixel: usize) -> (usize, usize, f32) {
 
 fn cirrus_sheet(sheet: &Cirrus) -> CloudLayer {
     const { assert!(cirrus::SIDE == SIDE) };
-    let color = rgba(sheet.source(0.4), 0.0);
+    let color = Tone::new().rgba(sheet.source(0.4), 0.0);
     let mut image = Image8::new(SIDE as u32, SIDE as u32, 4);
     for (at, pixel) in image.data.chunks_exact_mut(4).enumerate() {
         let alpha = 1.0 - super::math::exp(-sheet.depth_at(at % SIDE, at / SIDE));
