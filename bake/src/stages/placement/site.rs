@@ -1,0 +1,136 @@
+//! Landform and genes → how well trees grow at a point, from 0 (not at all) to 1.
+//!
+//! Each limit has a soft edge, so that forests thin out rather than end at a line; at the limit itself the weight is
+//! exactly 0, so no tree ever stands beyond it.
+
+use crate::model::Landform;
+use crate::noise::gradient2;
+use crate::seed::noise_seed;
+
+use super::{EDGE_MARGIN_M, PlacementParams};
+
+/// Trees keep this many metres above the lake.
+pub(super) const WATER_MARGIN_M: f32 = 0.3;
+/// Drained area, as `Landform::flow` scales it, above which a bed is too wet, and from which trees get fewer.
+pub(super) const WETTEST_FLOW: f32 = 0.9;
+const WET_FLOW: f32 = 0.75;
+/// Degrees of slope over which trees get fewer towards the limit.
+const SLOPE_EDGE_DEG: f32 = 6.0;
+/// Part of the relief over which trees get fewer and smaller towards the lowest tree line.
+const TREE_LINE_EDGE: f32 = 0.2;
+/// Metres: the size of groves, and of the bays in their edges.
+const GROVE_M: f32 = 130.0;
+const BAY_M: f32 = 47.0;
+/// How many trees stand alone in a clearing, as part of those in a grove.
+const SOLITARY: f32 = 0.012;
+
+/// A point where trees grow.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spot {
+    /// How many trees grow there, as part of the most that do anywhere.
+    pub weight: f32,
+    /// How large they grow: less at the tree line and at the edge of a grove.
+    pub vigour: f32,
+}
+
+/// The land as trees see it.
+pub(super) struct Site<'a> {
+    pub land: &'a Landform,
+    half_m: f32,
+    clustering: f32,
+    slopes: [f32; 2],
+    /// Altitudes where trees begin to get fewer and where they end, in metres.
+    tree_line_m: [f32; 2],
+    shore_m: f32,
+    seed: u32,
+}
+
+impl<'a> Site<'a> {
+    pub fn new(params: &PlacementParams, land: &'a Landform) -> Self {
+        let (low, high) = land.field.range_m();
+        let shore_m = land.water_level_m.map_or(f32::NEG_INFINITY, |level| level + WATER_MARGIN_M);
+        // Of the relief above water: under a deep lake, a low tree line would leave no land at all.
+        let base = low.max(shore_m).min(high);
+        let limit = params.altitude_limit.clamp(0.0, 1.0);
+        let altitude = |part: f32| base + part * (high - base);
+        let tan = |degrees: f32| libm::tanf(degrees.clamp(0.0, 80.0).to_radians());
+        let slope = params.steepest_slope_deg;
+        let tree_line_m = if limit < 1.0 {
+            [altitude(limit - TREE_LINE_EDGE * (1.0 - limit)), altitude(limit)]
+        } else {
+            [f32::MAX, f32::MAX]
+        };
+        Self {
+            land,
+            half_m: 0.5 * land.field.extent_m() - EDGE_MARGIN_M,
+            clustering: params.clustering.clamp(0.0, 1.0),
+            slopes: [tan(slope - SLOPE_EDGE_DEG), tan(slope)],
+            tree_line_m,
+            shore_m,
+            seed: noise_seed(u64::from(params.tree_seed), "placement/groves", 0),
+        }
+    }
+
+    /// Metres from the middle to where trees end, along x and z.
+    pub fn half_m(&self) -> f32 {
+        self.half_m
+    }
+
+    /// How trees grow at (x, z); `None` where they don't.
+    pub fn at(&self, x_m: f32, z_m: f32) -> Option<Spot> {
+        if x_m.abs().max(z_m.abs()) > self.half_m {
+            return None;
+        }
+        let y = self.land.field.height_m(x_m, z_m);
+        if y < self.shore_m || y > self.tree_line_m[1] {
+            return None;
+        }
+        let gentle = 1.0 - smoothstep(self.slopes[0], self.slopes[1], self.slope(x_m, z_m));
+        let dry = 1.0 - smoothstep(WET_FLOW, WETTEST_FLOW, self.flow(x_m, z_m));
+        let mild = 1.0 - smoothstep(self.tree_line_m[0], self.tree_line_m[1], y);
+        let limits = gentle * dry * mild;
+        if limits <= 0.0 {
+            return None;
+        }
+        let grove = self.grove(x_m, z_m);
+        let weight = limits * (1.0 - self.clustering * (1.0 - SOLITARY) * (1.0 - grove));
+        let sheltered = 1.0 - 0.3 * self.clustering * (1.0 - grove);
+        Some(Spot { weight, vigour: sheltered * (0.5 + 0.5 * mild) })
+    }
+
+    /// Tangent of the slope, over the two metres around the point.
+    pub fn slope(&self, x_m: f32, z_m: f32) -> f32 {
+        let field = &self.land.field;
+        let step = field.spacing_m.clamp(0.5, 2.0);
+        let dx = field.height_m(x_m + step, z_m) - field.height_m(x_m - step, z_m);
+        let dz = field.height_m(x_m, z_m + step) - field.height_m(x_m, z_m - step);
+        (dx * dx + dz * dz).sqrt() / (2.0 * step)
+    }
+
+    /// The greatest flow of the four samples around the point: beds are narrow.
+    pub fn flow(&self, x_m: f32, z_m: f32) -> f32 {
+        let field = &self.land.field;
+        let last = (field.side - 1) as f32;
+        let cell = |m: f32| ((m / field.spacing_m + 0.5 * last).clamp(0.0, last) as u32).min(field.side - 2);
+        let at = (cell(z_m) * field.side + cell(x_m)) as usize;
+        let flow = |k: usize| self.land.flow.get(k).copied().unwrap_or(0.0);
+        let below = at + field.side as usize;
+        flow(at).max(flow(at + 1)).max(flow(below)).max(flow(below + 1))
+    }
+
+    /// 1 inside a grove, 0 in a clearing.
+    fn grove(&self, x_m: f32, z_m: f32) -> f32 {
+        let large = gradient2(self.seed, x_m / GROVE_M, z_m / GROVE_M, 0);
+        let small = gradient2(self.seed.wrapping_add(1), x_m / BAY_M, z_m / BAY_M, 0);
+        smoothstep(-0.02, 0.16, large + 0.35 * small)
+    }
+}
+
+/// 0 up to `from`, 1 from `to`, smooth between.
+fn smoothstep(from: f32, to: f32, x: f32) -> f32 {
+    if x >= to {
+        return 1.0;
+    }
+    let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}

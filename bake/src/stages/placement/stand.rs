@@ -1,0 +1,126 @@
+//! A point and a size → a tree's transform, with its foot in the ground, and its trunk's cylinder.
+//!
+//! The transform is Lean · Turn(φ) · Stretch · Turn(θ), then a translation. Lean is a shear along the ground, so the
+//! trunk's base stays level; stretch along a turned axis makes the whole non-orthogonal. Its singular values lie
+//! within about ±20 % of the size: well-conditioned, with a positive determinant.
+
+use glam::{Mat3, Vec2, Vec3};
+
+use crate::model::{Instance, Landform};
+
+use super::TreeFootprint;
+use super::scatter::Dice;
+use super::site::WATER_MARGIN_M;
+
+/// The largest size that `scale` gives.
+pub(super) const LARGEST: f32 = 1.5;
+/// Greatest stretch across the trunk, and along it.
+const STRETCH: f32 = 0.1;
+const STRETCH_UP: f32 = 0.08;
+/// Greatest lean: metres to the side per metre of height.
+pub(super) const LEAN: f32 = 0.07;
+/// Metres above the ground up to which the cylinder holds the trunk.
+const WALKER_M: f32 = 2.0;
+/// How much wider a trunk is at its foot than at breast height, where it meets the ground.
+const FOOT: f32 = 1.5;
+/// The same for collision, where a walker touches it.
+const TAPER: f32 = 1.25;
+/// Metres that every foot is below the lowest ground around it, so that no light shows.
+const SUNK_M: f32 = 0.03;
+/// Part of its height that a tree may be sunk on its uphill side, its roots not counted.
+const BURIED: f32 = 0.07;
+/// More than the lean moves a cylinder.
+pub(super) const TRUNK_RESERVE_M: f32 = 0.25;
+
+/// The eight compass points of the ring around a trunk.
+const RING: [[f32; 2]; 8] = {
+    const H: f32 = std::f32::consts::FRAC_1_SQRT_2;
+    [[1.0, 0.0], [H, H], [0.0, 1.0], [-H, H], [-1.0, 0.0], [-H, -H], [0.0, -1.0], [H, -H]]
+};
+
+/// The size of a tree of that vigour: within 1 ± `variation` for full vigour.
+pub(super) fn scale(variation: f32, vigour: f32, dice: &mut Dice) -> f32 {
+    ((1.0 + variation * dice.around_zero()) * vigour).clamp(0.2, LARGEST)
+}
+
+/// Radius in metres that holds a trunk's cylinder, however it leans, for a tree of that size.
+pub(super) fn trunk_reach_m(tree: &TreeFootprint, scale: f32) -> f32 {
+    TAPER * tree.trunk_radius_m * scale * (1.0 + STRETCH) + 2.0 * TRUNK_RESERVE_M
+}
+
+/// Stands a tree at (x, z); `None` where it would be buried on one side or wet on the other.
+pub(super) fn stand(
+    land: &Landform,
+    tree: &TreeFootprint,
+    template: u32,
+    [x, z]: [f32; 2],
+    scale: f32,
+    dice: &mut Dice,
+) -> Option<Instance> {
+    let (up, across, along) =
+        (1.0 + STRETCH_UP * dice.around_zero(), 1.0, 1.0 + STRETCH * dice.around_zero());
+    let stretch = Mat3::from_diagonal(scale * Vec3::new(across, up, along));
+    let (phi, theta) = (dice.roll() * std::f32::consts::TAU, dice.roll() * std::f32::consts::TAU);
+    let lean = LEAN * dice.roll() * direction(dice);
+    let shear = Mat3::from_cols(Vec3::X, Vec3::new(lean.x, 1.0, lean.y), Vec3::Z);
+    let linear = shear * turn(phi) * stretch * turn(theta);
+
+    let wide = scale * across.max(along);
+    let foot = foot(land, [x, z], FOOT * tree.trunk_radius_m * wide);
+    let sunk = foot.centre_m - foot.y_m;
+    let shore_m = land.water_level_m.map_or(f32::NEG_INFINITY, |level| level + WATER_MARGIN_M);
+    let buried = sunk > scale * up * (BURIED * tree.height_m + tree.root_depth_m) + SUNK_M;
+    if buried || foot.lowest_m < shore_m {
+        return None;
+    }
+    Some(Instance {
+        template,
+        world_from_tree: rows(linear, Vec3::new(x, foot.y_m, z)),
+        trunk_cylinder_m: cylinder([x, z], TAPER * tree.trunk_radius_m * wide, lean, sunk),
+    })
+}
+
+/// The cylinder around a leaning trunk from its foot to the walker's height: the lean's middle is its axis.
+fn cylinder([x, z]: [f32; 2], radius_m: f32, lean: Vec2, sunk_m: f32) -> [f32; 3] {
+    let aside = lean * 0.5 * (WALKER_M + sunk_m);
+    [x + aside.x, z + aside.y, radius_m + aside.length()]
+}
+
+/// The ground around a trunk.
+struct Foot {
+    centre_m: f32,
+    lowest_m: f32,
+    /// Where the foot goes.
+    y_m: f32,
+}
+
+fn foot(land: &Landform, [x, z]: [f32; 2], radius_m: f32) -> Foot {
+    let centre_m = land.field.height_m(x, z);
+    let (mut low, mut high) = (centre_m, centre_m);
+    for [dx, dz] in RING {
+        let y = land.field.height_m(x + dx * radius_m, z + dz * radius_m);
+        low = low.min(y);
+        high = high.max(y);
+    }
+    // Between two of eight points a slope falls by up to 1 − cos 22.5° of the ring's own rise further.
+    let lowest_m = low - 0.08 * 0.5 * (high - low);
+    Foot { centre_m, lowest_m, y_m: lowest_m - SUNK_M }
+}
+
+fn direction(dice: &mut Dice) -> Vec2 {
+    let (sin, cos) = libm::sincosf(dice.roll() * std::f32::consts::TAU);
+    Vec2::new(cos, sin)
+}
+
+fn turn(angle_rad: f32) -> Mat3 {
+    let (sin, cos) = libm::sincosf(angle_rad);
+    Mat3::from_cols(Vec3::new(cos, 0.0, -sin), Vec3::Y, Vec3::new(sin, 0.0, cos))
+}
+
+fn rows(linear: Mat3, translation: Vec3) -> [[f32; 4]; 3] {
+    let row = |k: usize| {
+        let r = linear.row(k);
+        [r.x, r.y, r.z, translation[k]]
+    };
+    [row(0), row(1), row(2)]
+}

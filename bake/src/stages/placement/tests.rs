@@ -1,0 +1,356 @@
+//! Nobody floats, drowns, clings to a cliff or stands in another's trunk; and the same genes give the same forest.
+
+use std::path::Path;
+
+use glam::{Mat3, Vec2, Vec3};
+use proptest::prelude::*;
+
+use crate::model::{Heightfield, Instance, Landform};
+use crate::noise::fbm2;
+
+use super::site::{Site, WATER_MARGIN_M, WETTEST_FLOW};
+use super::{
+    EDGE_MARGIN_M, MOST_TREES, PlacementParams, START_CLEARING_M, TreeFootprint, place, start_point,
+};
+
+/// Rolling land 1024 m wide with one river from north to south, and a lake if `water` is above 0.
+fn land(seed: u32, relief_m: f32, water: f32, side: u32) -> Landform {
+    let spacing_m = 1024.0 / (side - 1) as f32;
+    let middle = (side - 1) as f32 / 2.0;
+    let (mut heights_m, mut flow) = (Vec::new(), Vec::new());
+    for j in 0..side {
+        for i in 0..side {
+            let (x, z) = ((i as f32 - middle) * spacing_m, (j as f32 - middle) * spacing_m);
+            let bed = (x - 200.0 - 60.0 * fbm2(seed + 9, 0.5, z / 200.0, 2, 0.5, 0)).abs();
+            heights_m.push(relief_m * (0.5 + 0.5 * fbm2(seed, x / 400.0, z / 400.0, 5, 0.5, 0)));
+            flow.push((1.0 - bed / 60.0).clamp(0.0, 1.0));
+        }
+    }
+    let field = Heightfield { side, spacing_m, heights_m };
+    let (low, high) = field.range_m();
+    let water_level_m = (water > 0.0).then_some(low + water * (high - low));
+    let deposit = vec![0.0; flow.len()];
+    Landform { apron: field.clone(), field, flow, deposit, water_level_m, snow_line_m: high + 1.0 }
+}
+
+fn params() -> impl Strategy<Value = PlacementParams> {
+    (0_u32..256, 0.0_f32..=0.5, 1.6_f32..=6.4, 0.0_f32..=1.0, 10.0_f32..=50.0, 0.15_f32..=1.0).prop_map(
+        |(tree_seed, height_variation, ln_density, clustering, steepest_slope_deg, altitude_limit)| {
+            let density_per_ha = libm::expf(ln_density).clamp(5.0, 600.0);
+            PlacementParams {
+                tree_seed,
+                height_variation,
+                density_per_ha,
+                clustering,
+                steepest_slope_deg,
+                altitude_limit,
+            }
+        },
+    )
+}
+
+fn trees() -> impl Strategy<Value = Vec<TreeFootprint>> {
+    let tree = (3.0_f32..30.0, 0.008_f32..0.05, 0.05_f32..0.5, 0.0_f32..0.5).prop_map(|(h, r, c, d)| {
+        TreeFootprint { height_m: h, trunk_radius_m: h * r, crown_radius_m: h * c, root_depth_m: d }
+    });
+    prop::collection::vec(tree, 1..6)
+}
+
+fn lands() -> impl Strategy<Value = Landform> {
+    (
+        0_u32..1000,
+        15.0_f32..420.0,
+        prop_oneof![Just(0.0_f32), 0.05_f32..0.6],
+        prop_oneof![Just(129_u32), Just(257)],
+    )
+        .prop_map(|(seed, relief_m, water, side)| land(seed, relief_m, water, side))
+}
+
+fn linear(instance: &Instance) -> Mat3 {
+    let row = |k: usize| {
+        let r = instance.world_from_tree[k];
+        Vec3::new(r[0], r[1], r[2])
+    };
+    Mat3::from_cols(row(0), row(1), row(2)).transpose()
+}
+
+fn origin(instance: &Instance) -> Vec3 {
+    Vec3::new(instance.world_from_tree[0][3], instance.world_from_tree[1][3], instance.world_from_tree[2][3])
+}
+
+/// Points of a circle around the trunk's axis, in the world.
+fn ring(instance: &Instance, radius_m: f32, height_m: f32) -> Vec<Vec3> {
+    let point = |k: u32| {
+        let (sin, cos) = libm::sincosf(k as f32 / 32.0 * std::f32::consts::TAU);
+        linear(instance) * Vec3::new(radius_m * cos, height_m, radius_m * sin) + origin(instance)
+    };
+    (0..32).map(point).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..Default::default() })]
+
+    #[test]
+    fn nobody_floats_drowns_or_is_buried(params in params(), land in lands(), trees in trees()) {
+        for instance in place(&params, &land, &trees).instances {
+            let tree = trees[instance.template as usize];
+            let (foot, size) = (origin(&instance), linear(&instance).y_axis.y);
+            for p in ring(&instance, tree.trunk_radius_m, 0.0) {
+                let ground = land.field.height_m(p.x, p.z);
+                prop_assert!(p.y <= ground, "floats {} m", p.y - ground);
+                prop_assert!(land.water_level_m.is_none_or(|level| ground >= level + WATER_MARGIN_M));
+            }
+            let sunk = land.field.height_m(foot.x, foot.z) - foot.y;
+            prop_assert!(sunk <= 0.1 + size * (0.07 * tree.height_m + tree.root_depth_m), "{sunk} m deep");
+        }
+    }
+
+    #[test]
+    fn limits_hold(params in params(), land in lands(), trees in trees()) {
+        let site = Site::new(&params, &land);
+        let (low, high) = land.field.range_m();
+        let base = land.water_level_m.map_or(low, |level| level + WATER_MARGIN_M).min(high);
+        let half = 0.5 * land.field.extent_m() - EDGE_MARGIN_M;
+        let start = start_point(&land.field);
+        let instances = place(&params, &land, &trees).instances;
+        prop_assert!(instances.len() < MOST_TREES as usize);
+        for instance in &instances {
+            let p = origin(instance);
+            let slope = libm::atanf(site.slope(p.x, p.z)).to_degrees();
+            prop_assert!(slope <= params.steepest_slope_deg + 0.01, "{slope}°");
+            let altitude = (land.field.height_m(p.x, p.z) - base) / (high - base);
+            prop_assert!(altitude <= params.altitude_limit + 1e-4, "at {altitude} of the relief");
+            prop_assert!(site.flow(p.x, p.z) < WETTEST_FLOW);
+            prop_assert!(p.x.abs().max(p.z.abs()) <= half);
+            let [x, z, radius] = instance.trunk_cylinder_m;
+            let free = Vec2::new(x - start[0], z - start[2]).length() - radius;
+            prop_assert!(free >= START_CLEARING_M, "{free} m from the start");
+        }
+    }
+
+    #[test]
+    fn trunks_never_meet_and_cylinders_hold_them(params in params(), land in lands(), trees in trees()) {
+        let mut instances = place(&params, &land, &trees).instances;
+        for instance in &instances {
+            let [x, z, radius] = instance.trunk_cylinder_m;
+            let foot = origin(instance);
+            let top = land.field.height_m(foot.x, foot.z) + 2.0 - foot.y;
+            let up = linear(instance).y_axis.y;
+            for height in [0.0, 0.5 * top / up, top / up] {
+                for p in ring(instance, trees[instance.template as usize].trunk_radius_m, height) {
+                    prop_assert!(Vec2::new(p.x - x, p.z - z).length() <= radius + 1e-4);
+                }
+            }
+        }
+        instances.sort_by(|a, b| a.trunk_cylinder_m[0].total_cmp(&b.trunk_cylinder_m[0]));
+        for (k, a) in instances.iter().enumerate() {
+            let [ax, az, ar] = a.trunk_cylinder_m;
+            for b in instances[k + 1..].iter().take_while(|b| b.trunk_cylinder_m[0] - ax < 12.0) {
+                let [bx, bz, br] = b.trunk_cylinder_m;
+                let gap = Vec2::new(ax - bx, az - bz).length() - ar - br;
+                prop_assert!(gap > 0.25, "trunks {gap} m apart");
+            }
+        }
+    }
+
+    #[test]
+    fn transforms_are_affine_in_earnest_and_well_conditioned(params in params(), trees in trees()) {
+        let land = land(3, 60.0, 0.0, 129);
+        let mut skewed = 0;
+        let instances = place(&params, &land, &trees).instances;
+        for instance in &instances {
+            let m = linear(instance);
+            prop_assert!(m.is_finite() && m.determinant() > 0.0);
+            let size = libm::cbrtf(m.determinant());
+            prop_assert!((0.15..=1.7).contains(&size), "size {size}");
+            // Frobenius norms bound the condition number from above.
+            let norm = |m: Mat3| (m.x_axis.length_squared() + m.y_axis.length_squared() + m.z_axis.length_squared()).sqrt();
+            prop_assert!(norm(m) * norm(m.inverse()) < 3.3, "3 is a rotation");
+            skewed += usize::from(m.x_axis.normalize().dot(m.y_axis.normalize()).abs() > 1e-4);
+        }
+        prop_assert!(skewed * 10 >= instances.len() * 9, "{skewed} of {}", instances.len());
+    }
+
+    #[test]
+    fn same_genes_same_forest_another_seed_another(params in params(), land in lands(), trees in trees()) {
+        let first = place(&params, &land, &trees);
+        prop_assert_eq!(&first, &place(&params, &land, &trees));
+        let other = PlacementParams { tree_seed: params.tree_seed ^ 1, ..params };
+        prop_assert!(first.instances.is_empty() || first != place(&other, &land, &trees));
+    }
+}
+
+const OAK: TreeFootprint =
+    TreeFootprint { height_m: 12.0, trunk_radius_m: 0.3, crown_radius_m: 4.0, root_depth_m: 0.2 };
+
+fn usual() -> PlacementParams {
+    PlacementParams {
+        tree_seed: 7,
+        height_variation: 0.2,
+        density_per_ha: 40.0,
+        clustering: 0.5,
+        steepest_slope_deg: 35.0,
+        altitude_limit: 0.8,
+    }
+}
+
+#[test]
+fn hundreds_to_thousands_and_more_where_more_are_asked_for() {
+    let land = land(3, 60.0, 0.1, 257);
+    let mut before = 0;
+    for density_per_ha in [5.0, 10.0, 20.0, 60.0, 200.0, 600.0] {
+        let count = place(&PlacementParams { density_per_ha, ..usual() }, &land, &[OAK]).instances.len();
+        assert!(count > before.max(150) && count < MOST_TREES as usize, "{density_per_ha}/ha: {count}");
+        before = count;
+    }
+    assert!(before > 2000, "{before}");
+}
+
+/// Clark and Evans, 1954: mean distance to the nearest neighbour over that of points thrown at random. Above 1 is
+/// even, below 1 clustered.
+fn clark_evans(instances: &[Instance]) -> f32 {
+    let nearest = |a: &Instance| {
+        let others = instances.iter().filter(|b| *b != a);
+        others.map(|b| (origin(a) - origin(b)).with_y(0.0).length()).fold(f32::MAX, f32::min)
+    };
+    let mean = instances.iter().map(nearest).sum::<f32>() / instances.len() as f32;
+    mean / (0.5 * (1024.0 * 1024.0 / instances.len() as f32).sqrt())
+}
+
+#[test]
+fn clustering_goes_from_even_to_groves() {
+    let mut land = land(3, 10.0, 0.0, 129);
+    land.flow.fill(0.0);
+    let index = |clustering| {
+        let params = PlacementParams { clustering, density_per_ha: 8.0, altitude_limit: 1.0, ..usual() };
+        clark_evans(&place(&params, &land, &[OAK]).instances)
+    };
+    let (even, half, groves) = (index(0.0), index(0.5), index(1.0));
+    // Even groves stay above 1 themselves: the index is of both. What counts is how far it falls.
+    assert!(even > 1.25 && even > half && half > groves && groves < 0.8 * even, "{even} {half} {groves}");
+}
+
+#[test]
+fn trees_are_smaller_at_the_tree_line() {
+    let land = land(5, 200.0, 0.0, 257);
+    let params = PlacementParams { clustering: 0.0, altitude_limit: 0.6, ..usual() };
+    let (low, high) = land.field.range_m();
+    let (mut near, mut below) = (Vec::new(), Vec::new());
+    for instance in place(&params, &land, &[OAK]).instances {
+        let altitude = (origin(&instance).y - low) / (high - low);
+        let size = libm::cbrtf(linear(&instance).determinant());
+        if altitude > 0.56 {
+            near.push(size)
+        } else if altitude < 0.5 {
+            below.push(size)
+        }
+    }
+    let mean = |sizes: &[f32]| sizes.iter().sum::<f32>() / sizes.len() as f32;
+    assert!(near.len() > 5 && mean(&near) < 0.85 * mean(&below), "{} {}", mean(&near), mean(&below));
+}
+
+#[test]
+fn hopeless_land_and_no_templates_give_no_trees() {
+    let mut drowned = land(1, 50.0, 0.0, 129);
+    assert!(place(&usual(), &drowned, &[]).instances.is_empty());
+    drowned.water_level_m = Some(1000.0);
+    assert!(place(&usual(), &drowned, &[OAK]).instances.is_empty());
+}
+
+#[test]
+fn the_walker_starts_on_the_highest_sample_near_the_centre() {
+    let mut field = Heightfield { side: 129, spacing_m: 8.0, heights_m: vec![1.0; 129 * 129] };
+    assert_eq!(start_point(&field), [0.0, 1.0, -128.0], "of equals the northernmost");
+    field.heights_m[70 * 129 + 60] = 5.0;
+    field.heights_m[0] = 9.0;
+    assert_eq!(start_point(&field), [(60.0 - 64.0) * 8.0, 5.0, (70.0 - 64.0) * 8.0]);
+}
+
+/// Seen from above, a pixel a metre: land by height and slope, crowns, trunks, the start.
+fn picture(path: &Path, params: &PlacementParams, land: &Landform, trees: &[TreeFootprint]) {
+    let (low, high) = land.field.range_m();
+    let site = Site::new(params, land);
+    let mut pixels = vec![0_u8; 1024 * 1024 * 3];
+    for (k, pixel) in pixels.chunks_exact_mut(3).enumerate() {
+        let (x, z) = ((k % 1024) as f32 - 511.5, (k / 1024) as f32 - 511.5);
+        let y = land.field.height_m(x, z);
+        let shade = (0.75 + 0.9 * (y - land.field.height_m(x + 3.0, z + 3.0)) / 3.0).clamp(0.3, 1.2);
+        let t = (y - low) / (high - low);
+        let steep = site.slope(x, z) > libm::tanf(params.steepest_slope_deg.to_radians());
+        let color = if land.water_level_m.is_some_and(|level| y < level) {
+            [60.0, 100.0, 160.0]
+        } else if steep {
+            [150.0, 140.0, 130.0]
+        } else {
+            [150.0 + 60.0 * t, 170.0 + 40.0 * t, 110.0 + 90.0 * t]
+        };
+        let wet = if site.flow(x, z) > WETTEST_FLOW { 0.7 } else { 1.0 };
+        pixel.iter_mut().zip(color).for_each(|(p, c)| *p = (c * shade * wet).min(255.0) as u8);
+    }
+    let mut disc = |x: f32, z: f32, radius: f32, color: [u8; 3]| {
+        for j in (z - radius) as i32 + 511..=(z + radius) as i32 + 513 {
+            for i in (x - radius) as i32 + 511..=(x + radius) as i32 + 513 {
+                let (dx, dz) = (i as f32 - 511.5 - x, j as f32 - 511.5 - z);
+                if (0..1024).contains(&i) && (0..1024).contains(&j) && dx * dx + dz * dz <= radius * radius {
+                    let at = 3 * (j * 1024 + i) as usize;
+                    pixels[at..at + 3].copy_from_slice(&color);
+                }
+            }
+        }
+    };
+    for instance in &place(params, land, trees).instances {
+        let (p, tree) = (origin(instance), trees[instance.template as usize]);
+        let size = libm::cbrtf(linear(instance).determinant());
+        disc(p.x, p.z, tree.crown_radius_m * size, [30, 60 + 25 * (instance.template as u8 % 5), 35]);
+    }
+    let [x, _, z] = start_point(&land.field);
+    disc(x, z, 3.0, [255, 40, 40]);
+    let mut encoder = png::Encoder::new(std::fs::File::create(path).expect("created"), 1024, 1024);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.write_header().and_then(|mut writer| writer.write_image_data(&pixels)).expect("written");
+}
+
+#[test]
+#[ignore = "draws pictures"]
+fn pictures() {
+    let folder = std::env::temp_dir().join("placement");
+    std::fs::create_dir_all(&folder).expect("made");
+    let small = TreeFootprint { height_m: 8.0, crown_radius_m: 2.5, trunk_radius_m: 0.2, ..OAK };
+    let trees = [OAK, small, OAK, small, OAK];
+    let cases = [
+        ("even", 3, 120.0, 0.0, PlacementParams { clustering: 0.0, ..usual() }),
+        ("groves", 3, 120.0, 0.2, PlacementParams { clustering: 1.0, density_per_ha: 150.0, ..usual() }),
+        (
+            "mountain",
+            8,
+            400.0,
+            0.1,
+            PlacementParams { altitude_limit: 0.45, density_per_ha: 200.0, ..usual() },
+        ),
+        ("sparse", 5, 60.0, 0.3, PlacementParams { density_per_ha: 5.0, clustering: 0.7, ..usual() }),
+    ];
+    for (name, seed, relief_m, water, params) in cases {
+        let land = land(seed, relief_m, water, 513);
+        let count = place(&params, &land, &trees).instances.len();
+        eprintln!("{name}: {count} trees");
+        picture(&folder.join(format!("{name}.png")), &params, &land, &trees);
+    }
+}
+
+#[test]
+#[ignore = "a measurement"]
+fn cost() {
+    let land = land(3, 120.0, 0.1, 513);
+    for density_per_ha in [5.0, 40.0, 600.0] {
+        for clustering in [0.0, 1.0] {
+            let params = PlacementParams { density_per_ha, clustering, ..usual() };
+            let time = || {
+                let start = std::time::Instant::now();
+                let count = place(&params, &land, &[OAK; 5]).instances.len();
+                (start.elapsed(), count)
+            };
+            let best = (0..20).map(|_| time()).min().expect("several");
+            eprintln!("{density_per_ha}/ha, clustering {clustering}: {} trees, {:.2?}", best.1, best.0);
+        }
+    }
+}
