@@ -1,0 +1,198 @@
+//! A whole world, as a person bakes it: once, again, and after changing a gene.
+
+mod common;
+
+use std::fs;
+
+use common::World;
+
+/// What each stage depends on, said again by hand: its own categories of genes, and the stages it reads. The test
+/// works out from it what a change must rebuild, independently of `plan.rs`.
+const STAGES: &[(&str, &[&str], &[&str])] = &[
+    ("landform", &["terrain"], &[]),
+    ("terrain", &[], &["landform"]),
+    ("ground maps", &[], &["landform"]),
+    ("ground textures", &[], &[]),
+    ("tree textures", &["tree"], &[]),
+    ("tree 0", &["tree"], &["tree textures"]),
+    ("tree 1", &["tree"], &["tree textures"]),
+    ("tree 2", &["tree"], &["tree textures"]),
+    ("tree 3", &["tree"], &["tree textures"]),
+    ("tree 4", &["tree"], &["tree textures"]),
+    ("sky light", &["sky"], &[]),
+    ("sky pictures", &["sky"], &["sky light"]),
+    ("placement", &["tree"], &["landform", "tree 0"]),
+    ("light map", &[], &["sky light", "landform", "placement"]),
+    ("scene", &[], &["light map", "sky pictures", "terrain", "ground maps"]),
+];
+
+fn depends_on(stage: &str, category: &str) -> bool {
+    let (_, own, reads) = STAGES.iter().find(|(name, ..)| *name == stage).expect("a stage");
+    own.contains(&category) || reads.iter().any(|read| depends_on(read, category))
+}
+
+fn expected(category: &str, scene: u64) -> Vec<(String, u64)> {
+    let mut stages: Vec<_> = STAGES
+        .iter()
+        .filter(|(stage, ..)| depends_on(stage, category))
+        .map(|(stage, ..)| ((*stage).to_owned(), scene))
+        .collect();
+    stages.sort();
+    stages
+}
+
+/// Replaces the line of a gene in the chromosome of scene `scene`.
+fn set_gene(text: &str, scene: usize, gene: &str, value: &str) -> String {
+    let mut seen = 0;
+    let lines = text.lines().map(|line| {
+        if line.trim_start().starts_with(&format!("{gene}:")) {
+            seen += 1;
+            if seen == scene + 1 {
+                return format!("                {gene}: {value},");
+            }
+        }
+        line.to_owned()
+    });
+    let changed = lines.collect::<Vec<_>>().join("\n");
+    assert_ne!(changed, text, "{gene} of scene {scene} was found");
+    changed
+}
+
+#[test]
+fn first_bake_makes_everything_and_the_second_nothing() {
+    let world = World::new();
+    let first = world.bake(&[]).ok();
+    assert_eq!(first.of("scene_ready").count(), 4);
+    // Five trees, ten other stages a scene; the ground textures are shared by all.
+    assert_eq!(first.built().len(), 4 * 14 + 1, "{:?}", first.built());
+    for scene in 0..4 {
+        let path = world.file(&format!("baked/g0000/scene-{scene}/scene.gltf"));
+        let json: serde_json::Value = serde_json::from_slice(&fs::read(&path).expect("a scene")).expect("JSON");
+        assert!(json.get("extensionsRequired").is_none());
+        for buffer in json["buffers"].as_array().expect("buffers") {
+            let uri = buffer["uri"].as_str().expect("a file");
+            let file = fs::read(path.parent().expect("a folder").join(uri)).expect("the blob exists");
+            assert_eq!(file.len() as u64, buffer["byteLength"].as_u64().expect("a length"));
+            assert!(uri.contains(&blake3::hash(&file).to_hex().to_string()), "{uri} is named by its bytes");
+        }
+    }
+    assert!(world.file("baked/current.ron").is_file());
+
+    let before = world.files();
+    let second = world.bake(&[]).ok();
+    assert_eq!(second.built(), []);
+    assert_eq!(world.files(), before);
+}
+
+#[test]
+fn the_four_landscapes_differ() {
+    let world = World::new();
+    world.bake(&[]).ok();
+    let scenes: Vec<_> = (0..4).map(|s| fs::read(world.file(&format!("baked/g0000/scene-{s}/scene.gltf"))).expect("a scene")).collect();
+    for (a, b) in [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)] {
+        assert_ne!(scenes[a], scenes[b]);
+    }
+}
+
+#[test]
+fn a_changed_gene_rebuilds_what_depends_on_it_and_nothing_else() {
+    let world = World::new();
+    world.bake(&[]).ok();
+    for (scene, category, gene, value) in
+        [(1, "terrain", "terrain_seed", "77"), (2, "sky", "sun_elevation_deg", "45"), (3, "tree", "height_m", "11"), (0, "tree", "tree_seed", "3")]
+    {
+        world.edit(0, |text| set_gene(&text, scene, gene, value));
+        let built = world.bake(&[]).ok().built();
+        assert_eq!(built, expected(category, scene as u64), "{gene} of scene {scene}");
+    }
+}
+
+#[test]
+fn a_gene_changed_back_costs_nothing() {
+    let world = World::new();
+    world.bake(&[]).ok();
+    let original = fs::read_to_string(world.population(0)).expect("a population");
+    world.edit(0, |text| set_gene(&text, 0, "cloud_cover", "0.9"));
+    assert_ne!(world.bake(&[]).ok().built(), []);
+    world.edit(0, |_| original);
+    assert_eq!(world.bake(&[]).ok().built(), []);
+}
+
+#[test]
+fn comments_and_layout_of_a_population_do_not_matter() {
+    let world = World::new();
+    world.bake(&[]).ok();
+    world.edit(0, |text| format!("// mine\n\n{}\n", text.replace(": ", ":   ")));
+    assert_eq!(world.bake(&[]).ok().built(), []);
+}
+
+#[test]
+fn a_scene_becomes_one_file_that_needs_no_other() {
+    let world = World::new();
+    world.bake(&[]).ok();
+    let out = world.file("valley.glb");
+    let output = world.run(&["export", "0", out.to_str().expect("a path")]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let (document, buffers, _) = {
+        let gltf = gltf::Gltf::from_slice(&fs::read(&out).expect("written")).expect("glTF");
+        let blob = gltf.blob.clone().expect("a binary chunk");
+        (gltf.document, blob, ())
+    };
+    assert_eq!(document.buffers().count(), 1);
+    assert!(document.images().all(|image| matches!(image.source(), gltf::image::Source::View { .. })));
+    assert!(document.views().all(|view| view.offset() + view.length() <= buffers.len()));
+}
+
+#[test]
+fn next_breeds_from_votes() {
+    let world = World::new();
+    world.bake(&[]).ok();
+    world.edit(0, |text| {
+        assert!(text.contains("votes: None"));
+        text.replace("votes: None", "votes: Some((tree: Some(0), terrain: Some(1), sky: Some(2)))")
+    });
+    let next = world.bake(&["next"]).ok();
+    assert_eq!(next.of("scene_ready").count(), 4);
+    assert!(next.built().len() < 57, "chromosomes that live on are not baked again");
+    assert!(world.population(1).is_file());
+    assert!(world.file("baked/g0000/scene-0/scene.gltf").is_file(), "older generations stay");
+}
+
+#[test]
+fn explain_names_the_gene() {
+    let world = World::new();
+    world.bake(&[]).ok();
+    world.edit(0, |text| set_gene(&text, 1, "turbidity", "6"));
+    world.bake(&[]).ok();
+    let output = world.run(&["explain", "1"]);
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success());
+    assert!(text.contains("turbidity"), "{text}");
+    assert!(text.contains("reused"), "{text}");
+}
+
+#[test]
+fn params_prints_every_gene() {
+    let world = World::new();
+    let text = String::from_utf8(world.run(&["params"]).stdout).expect("text");
+    for parameter in genescape_schema::Space::builtin().parameters() {
+        assert!(text.contains(&parameter.name));
+    }
+}
+
+#[test]
+fn gc_keeps_what_scenes_use() {
+    let world = World::new();
+    world.bake(&[]).ok();
+    let output = world.run(&["cache", "gc", "--max-size", "0"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    for scene in 0..4 {
+        let path = world.file(&format!("baked/g0000/scene-{scene}/scene.gltf"));
+        let json: serde_json::Value = serde_json::from_slice(&fs::read(&path).expect("a scene")).expect("JSON");
+        for buffer in json["buffers"].as_array().expect("buffers") {
+            let uri = buffer["uri"].as_str().expect("a file");
+            assert!(path.parent().expect("a folder").join(uri).is_file(), "{uri} is in use");
+        }
+    }
+    world.bake(&[]).ok();
+}
