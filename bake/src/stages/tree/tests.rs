@@ -56,7 +56,7 @@ fn triangles_stay_within_budget() {
     for (params, tree) in trees() {
         let count = tree.mesh.triangle_count();
         assert!(count <= 26_000, "{count}: {params:?}");
-        assert!(count >= if params.levels == 1 { 600 } else { 1_500 }, "{count}: {params:?}");
+        assert!(count >= if params.levels == 1 { 600 } else { 1_200 }, "{count}: {params:?}");
     }
     let count = template(&oak(), 0).mesh.triangle_count();
     assert!((15_000..=22_000).contains(&count), "{count}");
