@@ -49,7 +49,7 @@ pub enum RunError {
     #[error("interrupted; what was finished is kept, and the next bake goes on from there")]
     Cancelled,
     /// A stage could not do its work.
-    #[error("{label}: {source}")]
+    #[error("stage \"{label}\" failed")]
     Stage {
         /// The node's label.
         label: String,
@@ -99,8 +99,9 @@ impl Runner<'_> {
     /// Runs `plan`; the results in the order of its nodes.
     pub fn run(&self, plan: &Plan) -> Result<Vec<Done>, RunError> {
         // A blob that turns out damaged when a stage reads it is gone from the cache by then: the next attempt finds
-        // its action missing and builds it again.
-        let mut attempts = 3;
+        // its action missing and builds it again. Each attempt mends one action at least, so there are no more
+        // attempts to make than there are actions.
+        let mut attempts = plan.nodes.len();
         loop {
             attempts -= 1;
             match self.attempt(plan) {
