@@ -203,3 +203,56 @@ fn gc_keeps_what_scenes_use() {
     }
     world.bake(&[]).ok();
 }
+
+/// `bake --watch`, with its events as they come.
+struct Watching {
+    child: std::process::Child,
+    lines: std::io::Lines<std::io::BufReader<std::process::ChildStdout>>,
+}
+
+impl Watching {
+    fn new(world: &World) -> Self {
+        let mut command = world.command(&["--watch", "--size", "65", "--json"]);
+        let mut child = command.stdout(std::process::Stdio::piped()).spawn().expect("bake runs");
+        let lines = std::io::BufRead::lines(std::io::BufReader::new(child.stdout.take().expect("piped")));
+        Self { child, lines }
+    }
+
+    /// The next event of one of the kinds.
+    fn next(&mut self, kinds: &[&str]) -> serde_json::Value {
+        loop {
+            let line = self.lines.next().expect("it goes on watching").expect("text");
+            let event: serde_json::Value = serde_json::from_str(&line).expect("JSON");
+            if kinds.iter().any(|kind| event["event"] == *kind) {
+                return event;
+            }
+        }
+    }
+}
+
+impl Drop for Watching {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+#[test]
+fn watch_bakes_what_is_saved_and_outlives_mistakes() {
+    let world = World::new();
+    let mut watching = Watching::new(&world);
+    assert_eq!(watching.next(&["done", "failed"])["built"], 57);
+    world.edit(0, |text| set_gene(&text, 1, "cloud_cover", "0.6"));
+    // A save may be seen as more than one event; the first bake after it does the work.
+    let built =
+        std::iter::repeat_with(|| watching.next(&["done"])["built"].clone()).find(|built| *built != 0);
+    assert_eq!(built.expect("endless"), 4);
+    let good = fs::read_to_string(world.population(0)).expect("a population");
+    fs::write(world.population(0), &good[..good.len() / 2]).expect("written");
+    assert_eq!(watching.next(&["failed"])["event"], "failed");
+    fs::write(world.population(0), good.replacen("cloud_cover: 0.6", "cloud_cover: 0.2", 1))
+        .expect("written");
+    let built =
+        std::iter::repeat_with(|| watching.next(&["done"])["built"].clone()).find(|built| *built != 0);
+    assert_eq!(built.expect("endless"), 4);
+}

@@ -144,10 +144,8 @@ impl Session {
         let generation = file.loaded.population.generation;
         listener.tell(&Event::Planned { generation, stages: plan.nodes.len() });
         let result = self.run(&plan, &file, &*listener);
-        if result.is_err() {
-            // The bar must not stand between the person and the message.
-            listener.tell(&Event::Done { built: 0, reused: 0, ms: 0.0 });
-        }
+        // The bar must not stand between the person and the message.
+        listener.end();
         let done = result?;
         self.world.publish_current(&file)?;
         self.remember(&plan, &done, generation)?;

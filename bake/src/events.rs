@@ -78,6 +78,9 @@ pub enum Event {
 pub trait Listener: Sync {
     /// Takes one event. Called from several threads.
     fn tell(&self, event: &Event);
+
+    /// No more will be told of this run.
+    fn end(&self) {}
 }
 
 /// One JSON object a line, on standard output.
@@ -149,9 +152,12 @@ impl Listener for Bar {
                 self.bar.inc(1);
             }
             Event::Notice { message } => self.bar.suspend(|| eprintln!("note: {message}")),
-            Event::SceneReady { .. } => {}
-            Event::Done { .. } | Event::Failed { .. } => self.bar.finish_and_clear(),
+            Event::SceneReady { .. } | Event::Done { .. } | Event::Failed { .. } => {}
         }
+    }
+
+    fn end(&self) {
+        self.bar.finish_and_clear();
     }
 }
 

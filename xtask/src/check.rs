@@ -12,7 +12,12 @@ use crate::tools::{cargo, files, program, python, root, run as execute, script};
 type Step = (&'static str, fn() -> Result<()>);
 
 const QUICK: [Step; 3] = [("formatting", formatting), ("lints", lints), ("tests", tests)];
-const WHOLE: [Step; 3] = [("documentation", documentation), ("bake", bake), ("Khronos validator", validator)];
+const WHOLE: [Step; 4] = [
+    ("documentation", documentation),
+    ("bake", bake),
+    ("debug and release give the same bytes", profiles),
+    ("Khronos validator", validator),
+];
 const INTEROP: [Step; 3] = [("Blender", blender), ("three.js", three), ("F3D", f3d)];
 
 /// Runs the steps; whether all passed.
@@ -92,6 +97,36 @@ fn bake() -> Result<()> {
     let single = single_file();
     let single = single.to_str().context("the workspace's path is not UTF-8")?;
     execute(&mut bake(&["export", first, single]))
+}
+
+/// The same starters by a release build: every file must be the one that the debug build made.
+fn profiles() -> Result<()> {
+    let release = root().join("target/interop/world-release");
+    if release.exists() {
+        std::fs::remove_dir_all(&release).context("cannot remove the last check's world")?;
+    }
+    let arguments =
+        ["run", "--quiet", "--release", "--package", "genescape-bake", "--bin", "bake", "--", "--world"];
+    execute(cargo(&arguments).arg(&release))?;
+    let contents = |world: &Path| -> Result<Vec<(PathBuf, Vec<u8>)>> {
+        let baked = world.join("baked");
+        let kinds = [".gltf", ".glb", ".bin", ".png", ".exr", ".json"];
+        files(&baked, &kinds)?
+            .into_iter()
+            .map(|path| Ok((path.strip_prefix(&baked)?.to_owned(), std::fs::read(&path)?)))
+            .collect()
+    };
+    let (debug, release) = (contents(&world())?, contents(&release)?);
+    ensure!(debug.len() > 100, "only {} files were baked", debug.len());
+    let differing = debug.iter().filter(|file| !release.contains(file)).map(|(path, _)| path);
+    let differing: Vec<_> = differing.collect();
+    ensure!(
+        debug.len() == release.len() && differing.is_empty(),
+        "{} files differ: {differing:?}",
+        differing.len()
+    );
+    println!("{} files are the same", debug.len());
+    Ok(())
 }
 
 fn single_file() -> PathBuf {

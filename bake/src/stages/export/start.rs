@@ -94,7 +94,7 @@ impl Surroundings<'_> {
             let [x, z, radius] = tree.trunk_cylinder_m;
             spot.distance(Vec2::new(x, z)) < radius + 3.5
         });
-        (!blocked).then_some(-1.2 * rise - 0.6 * far - 0.4 * bare)
+        (!blocked).then_some(-0.7 * rise - 0.4 * far - 0.4 * bare)
     }
 
     /// For each azimuth, how many trees stand in a cone of ±30° around it: (in the way, in view).
@@ -180,9 +180,9 @@ impl Surroundings<'_> {
         };
         let light = shade - 0.7 * (facing_sun + 0.1).max(0.0) - 0.15 * (-facing_sun - 0.7).max(0.0);
         // A landscape without a tree in it says nothing about its trees, and water doubles the sky.
-        let trees = in_view / (3.0 + in_view);
+        let trees = in_view / (1.5 + in_view);
         let water = (4.0 * lake / f32::max(steps, 1.0)).min(1.0);
-        0.8 * open + 1.2 * relief + 1.3 * trees + 0.35 * water - 0.9 * in_the_way.min(2.0) + light
+        0.8 * open + 1.2 * relief + 1.8 * trees + 0.6 * water - 1.2 * in_the_way.min(2.0) + light
     }
 
     /// Slope of the look: towards the middle of what is to be seen, within ±10°.
