@@ -52,7 +52,12 @@ impl Resolution {
         let cells = side - 1;
         // The clouds are drawn in 1088 directions around: finer pictures would only hold larger files.
         let face_px = (3 * cells / 4).min(512);
-        Ok(Self { side, map_px: (2 * cells).clamp(128, 2048).min(cells.max(1024)), face_px, equirect_px: 4 * face_px })
+        Ok(Self {
+            side,
+            map_px: (2 * cells).clamp(128, 2048).min(cells.max(1024)),
+            face_px,
+            equirect_px: 4 * face_px,
+        })
     }
 }
 
@@ -204,8 +209,11 @@ impl Plan {
             .collect();
         let sky: SkyParams = genome.read(space)?;
         let sky_light = self.add(scene, Job::SkyLight { params: sky.clone() }, &[]);
-        let sky_pictures =
-            self.add(scene, Job::SkyPictures { params: sky, face_px, equirect_px }, &[("sky light", sky_light)]);
+        let sky_pictures = self.add(
+            scene,
+            Job::SkyPictures { params: sky, face_px, equirect_px },
+            &[("sky light", sky_light)],
+        );
         let terrain = self.add(scene, Job::Terrain { params: ground.clone() }, &[("landform", landform)]);
         let ground_maps =
             self.add(scene, Job::GroundMaps { params: ground, side_px: map_px }, &[("landform", landform)]);

@@ -138,7 +138,8 @@ fn drawn_out(texels: &[f32], side: usize, wind: &[(f32, f32)], step: f32) -> Vec
             for k in -4..=4 {
                 let along = k as f32 * step;
                 let offset = |d: f32| ((d * along + 64.5) as usize).wrapping_sub(64);
-                let (x, y) = ((cell * run).wrapping_add(offset(dx)) & mask, row.wrapping_add(offset(dy)) & mask);
+                let (x, y) =
+                    ((cell * run).wrapping_add(offset(dx)) & mask, row.wrapping_add(offset(dy)) & mask);
                 let line = &texels[y * side..(y + 1) * side];
                 let (before, beyond) = (&line[x..side.min(x + run)], &line[..(x + run).saturating_sub(side)]);
                 for (sum, texel) in sums.iter_mut().zip(before.iter().chain(beyond)) {

@@ -159,8 +159,8 @@ fn alike(texels: [Vec4; 4]) -> bool {
     let low = texels[0].min(texels[1]).min(texels[2].min(texels[3]));
     let high = texels[0].max(texels[1]).max(texels[2].max(texels[3]));
     let span = high - low;
-    let light = 0.035 * (high.x + high.y + high.z) + 0.002;
-    span.w < 0.03 && span.x + span.y + span.z < light
+    let light = 0.05 * (high.x + high.y + high.z) + 0.002;
+    span.w < 0.04 && span.x + span.y + span.z < light
 }
 
 /// The map with every texel made anew from itself and its eight neighbours, row by row; columns wrap around.
@@ -168,7 +168,8 @@ fn from_neighbours(texels: &[Vec4], width: usize, make: impl Fn([[Vec4; 3]; 3]) 
     let last = texels.len() / width - 1;
     let mut made = vec![Vec4::ZERO; texels.len()];
     made.par_chunks_exact_mut(width).enumerate().for_each(|(row, made)| {
-        let rows = [row.saturating_sub(1), row, (row + 1).min(last)].map(|row| &texels[row * width..][..width]);
+        let rows =
+            [row.saturating_sub(1), row, (row + 1).min(last)].map(|row| &texels[row * width..][..width]);
         for (column, made) in made.iter_mut().enumerate() {
             let west = if column == 0 { width - 1 } else { column - 1 };
             let columns = [west, column, if column + 1 == width { 0 } else { column + 1 }];
