@@ -11,6 +11,7 @@ use genescape_schema::{Category, Population, Space};
 use crate::events::{Event, Listener};
 use crate::plan::{Plan, Resolution, TEMPLATES};
 use crate::run::Runner;
+use crate::say;
 use crate::stages::export::{self, Picture, TreeImages};
 use crate::stages::{lod, tree};
 
@@ -19,7 +20,7 @@ use crate::stages::{lod, tree};
 pub fn bench(runs: u32, pool: &rayon::ThreadPool, resolution: Resolution) -> Result<()> {
     let space = Space::builtin();
     let starter = Population::load(&space, "configs/starter.ron", crate::world::STARTER_RON)?.population;
-    println!(
+    say!(
         "{} cores, computing on {}; heightfield {}², {} templates a scene; {runs} runs\n",
         std::thread::available_parallelism().map_or(0, usize::from),
         pool.current_num_threads(),
@@ -42,11 +43,11 @@ pub fn bench(runs: u32, pool: &rayon::ThreadPool, resolution: Resolution) -> Res
         whole.add("unchanged", ms, built);
         for category in [Category::Tree, Category::Terrain, Category::Sky] {
             let mut changed = starter.clone();
-            *changed.individuals[0].genome.chromosome_mut(category) = Population::random(&space, u64::from(runs), 0)
-                .individuals[0]
-                .genome
-                .chromosome(category)
-                .clone();
+            *changed.individuals[0].genome.chromosome_mut(category) =
+                Population::random(&space, u64::from(runs), 0).individuals[0]
+                    .genome
+                    .chromosome(category)
+                    .clone();
             let (ms, built) = bench.bake(&changed, &Stages::default())?;
             whole.add(&format!("one {} chromosome changed", category.name()), ms, built);
         }
@@ -55,7 +56,7 @@ pub fn bench(runs: u32, pool: &rayon::ThreadPool, resolution: Resolution) -> Res
     stages.print("Each stage, wall-clock while others run beside it", "times");
     tree_costs(&space, &starter, runs)?;
     if let Some(bytes) = peak_memory() {
-        println!("peak memory of this process: {:.0} MiB", bytes as f64 / f64::from(1 << 20));
+        say!("peak memory of this process: {:.0} MiB", bytes as f64 / f64::from(1 << 20));
     }
     Ok(())
 }
@@ -113,7 +114,8 @@ fn tree_costs(space: &Space, starter: &Population, runs: u32) -> Result<()> {
             one_core.install(|| -> Result<()> {
                 let template = samples.time("generating it", || tree::template(&params, index));
                 let options = lod::LodOptions::default();
-                let levels = samples.time("progressive mesh, levels, strips", || lod::levels(&template.mesh, &options));
+                let levels = samples
+                    .time("progressive mesh, levels, strips", || lod::levels(&template.mesh, &options));
                 samples.time("writing the file", || export::tree_glb("tree", &levels, &NO_PICTURES))?;
                 triangles += template.mesh.triangle_count();
                 trees += 1;
@@ -121,7 +123,7 @@ fn tree_costs(space: &Space, starter: &Population, runs: u32) -> Result<()> {
             })?;
         }
     }
-    println!("templates have {} triangles on average", triangles / trees.max(1));
+    say!("templates have {} triangles on average", triangles / trees.max(1));
     samples.print("One tree template, on one core", "times");
     Ok(())
 }
@@ -160,15 +162,15 @@ impl Samples {
     }
 
     fn print(&self, title: &str, count: &str) {
-        println!("{title:<36} {:>9} {:>9} {:>9} {count:>13}", "min ms", "mean ms", "std dev");
+        say!("{title:<36} {:>9} {:>9} {:>9} {count:>13}", "min ms", "mean ms", "std dev");
         for name in &self.order {
             let (ms, n) = &self.values[name];
             let mean = ms.iter().sum::<f64>() / ms.len() as f64;
             let variance = ms.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / ms.len() as f64;
             let min = ms.iter().copied().fold(f64::MAX, f64::min);
-            println!("  {name:<34} {min:>9.2} {mean:>9.2} {:>9.2} {n:>13}", variance.sqrt());
+            say!("  {name:<34} {min:>9.2} {mean:>9.2} {:>9.2} {n:>13}", variance.sqrt());
         }
-        println!();
+        say!();
     }
 }
 

@@ -12,6 +12,7 @@ use crate::cli::{BakeArgs, CacheCommand, Cli, Command, RunArgs, WorldArgs};
 use crate::events::{Bar, Event, JsonLines, Listener};
 use crate::plan::{Plan, Resolution};
 use crate::run::{Done, RunError, Runner};
+use crate::say;
 use crate::watch::Watch;
 use crate::world::{self, PopulationFile, World};
 use crate::{bench, breed, lod_file};
@@ -126,7 +127,7 @@ impl Session {
     fn bake_new(&self, population: &Population) -> Result<()> {
         let path = self.world.save_population(population)?;
         if !self.json {
-            println!("made {}", path.display());
+            say!("made {}", path.display());
         }
         self.bake_file(&path)
     }
@@ -160,7 +161,12 @@ impl Session {
         Ok(())
     }
 
-    fn run(&self, plan: &Plan, file: &PopulationFile, listener: &dyn Listener) -> Result<Vec<Done>, RunError> {
+    fn run(
+        &self,
+        plan: &Plan,
+        file: &PopulationFile,
+        listener: &dyn Listener,
+    ) -> Result<Vec<Done>, RunError> {
         let population = &file.loaded.population;
         let scene_ready = |scene: usize, blob: &genescape_cache::BlobRef| -> Result<()> {
             let json = || -> Result<Vec<u8>> {
@@ -189,16 +195,16 @@ impl Session {
     fn summary(&self, file: &PopulationFile, built: usize, reused: usize, ms: f64) {
         let Population { generation, individuals, .. } = &file.loaded.population;
         if built == 0 {
-            println!("nothing to do: all {reused} stages are up to date ({ms:.0} ms)");
+            say!("nothing to do: all {reused} stages are up to date ({ms:.0} ms)");
         } else {
-            println!("four landscapes in {:.2} s: {built} stages built, {reused} reused", ms / 1e3);
+            say!("four landscapes in {:.2} s: {built} stages built, {reused} reused", ms / 1e3);
         }
         let width = individuals.iter().map(|i| i.name.chars().count()).max().unwrap_or(0);
         for (scene, individual) in individuals.iter().enumerate() {
             let path = self.world.scene_path(*generation, scene);
-            println!("  {scene}  {:width$}  {}", individual.name, path.display());
+            say!("  {scene}  {:width$}  {}", individual.name, path.display());
         }
-        println!(
+        say!(
             "Look at them: import a scene.gltf in Blender, or drop it on any glTF viewer;\n\
              `bake export 0 scene.glb` makes one self-contained file of scene 0.\n\
              Change them: edit {} and bake again.",
@@ -210,7 +216,7 @@ impl Session {
 fn bake(args: &BakeArgs) -> Result<()> {
     let mut session = Session::new(&args.run)?;
     if args.population.is_none() && session.world.begin()? && !session.json {
-        println!("made {} from the starter landscapes", session.world.root().display());
+        say!("made {} from the starter landscapes", session.world.root().display());
     }
     let target = |session: &Session| match &args.population {
         Some(path) => Ok(path.clone()),
@@ -241,12 +247,13 @@ fn bake(args: &BakeArgs) -> Result<()> {
             eprintln!("error: {error:#}");
         }
         if !session.json {
-            println!("watching {} (Ctrl-C ends)", session.world.root().display());
+            say!("watching {} (Ctrl-C ends)", session.world.root().display());
         }
         if !watch.wait(&|| INTERRUPTED.load(Ordering::SeqCst)) {
             return Ok(());
         }
-        last = session.world.reload_space().and_then(|()| target(&session)).and_then(|p| session.bake_file(&p));
+        last =
+            session.world.reload_space().and_then(|()| target(&session)).and_then(|p| session.bake_file(&p));
     }
 }
 
@@ -257,7 +264,7 @@ fn params(args: &WorldArgs, markdown: bool) -> Result<()> {
         Err(_) if !args.world.exists() => Space::builtin(),
         Err(error) => return Err(error),
     };
-    print!("{}", if markdown { space.to_markdown() } else { space.to_table() });
+    say!("{}", if markdown { space.to_markdown() } else { space.to_table() }.trim_end());
     Ok(())
 }
 
@@ -275,10 +282,11 @@ fn export(args: &WorldArgs, scene: &str, out: &Path) -> Result<()> {
     let json = std::fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
     let folder = path.parent().unwrap_or(Path::new("."));
     let read = |uri: &str| std::fs::read(folder.join(uri)).map_err(|error| error.to_string());
-    let glb = crate::stages::export::single_glb(&json, read)
-        .with_context(|| format!("{}: cannot be made one file; bake again if blobs are missing", path.display()))?;
+    let glb = crate::stages::export::single_glb(&json, read).with_context(|| {
+        format!("{}: cannot be made one file; bake again if blobs are missing", path.display())
+    })?;
     world::write_synced(out, &glb)?;
-    println!("wrote {} ({:.1} MB)", out.display(), glb.len() as f64 / 1e6);
+    say!("wrote {} ({:.1} MB)", out.display(), glb.len() as f64 / 1e6);
     Ok(())
 }
 
@@ -319,10 +327,10 @@ fn explain(args: &WorldArgs, scene: Option<usize>) -> Result<()> {
         return Err(BadInput("there are scenes 0 to 3".into()).into());
     }
     for index in (0..current.scenes.len()).filter(|index| scene.is_none_or(|scene| scene == *index)) {
-        println!("{} in the last bake:", current.scenes[index]);
+        say!("{} in the last bake:", current.scenes[index]);
         let history = cache.history(&scope(current.generation, index))?;
         for (stage, explanation) in history.last() {
-            println!("  {stage:<16} {explanation}");
+            say!("  {stage:<16} {explanation}");
         }
     }
     Ok(())
@@ -345,27 +353,27 @@ fn megabytes(bytes: u64) -> String {
 
 fn stats(cache: &Cache) -> Result<()> {
     let stats = cache.stats()?;
-    println!("{} blobs, {}; {} actions", stats.blobs, megabytes(stats.blob_bytes), stats.actions);
-    println!("{:<18} {:>8} {:>12} {:>12}", "stage", "actions", "size", "cost");
+    say!("{} blobs, {}; {} actions", stats.blobs, megabytes(stats.blob_bytes), stats.actions);
+    say!("{:<18} {:>8} {:>12} {:>12}", "stage", "actions", "size", "cost");
     for (name, stage) in &stats.stages {
         let cost = format!("{:.0} ms", stage.cost_ms);
-        println!("{name:<18} {:>8} {:>12} {cost:>12}", stage.actions, megabytes(stage.bytes));
+        say!("{name:<18} {:>8} {:>12} {cost:>12}", stage.actions, megabytes(stage.bytes));
     }
     Ok(())
 }
 
 fn verify(cache: &Cache) -> Result<()> {
     let report = cache.verify()?;
-    println!("read {} blobs ({}) and {} actions", report.blobs, megabytes(report.bytes), report.actions);
+    say!("read {} blobs ({}) and {} actions", report.blobs, megabytes(report.bytes), report.actions);
     for fault in &report.faults {
-        println!("  {fault}");
+        say!("  {fault}");
     }
     for foreign in &report.foreign {
-        println!("  {foreign}: none of ours, left alone");
+        say!("  {foreign}: none of ours, left alone");
     }
     match report.faults.len() {
         0 => {
-            println!("all is well");
+            say!("all is well");
             Ok(())
         }
         n => bail!("{n} damaged or missing; `bake` makes them again"),
@@ -381,7 +389,7 @@ fn gc(world: &World, cache: &Cache, max_size: u64) -> Result<()> {
     let options = GcOptions::to(max_size);
     let grace_min = options.grace.as_secs() / 60;
     let report = cache.gc(options, &roots)?;
-    println!(
+    say!(
         "removed {} blobs and {} actions; {} → {} ({} of it in use by the current scenes)",
         report.blobs_removed,
         report.actions_removed,
@@ -390,14 +398,16 @@ fn gc(world: &World, cache: &Cache, max_size: u64) -> Result<()> {
         megabytes(report.bytes_of_roots),
     );
     if report.bytes_left > max_size {
-        println!("more is left than asked for: what current scenes use stays, and what was used within {grace_min} min");
+        say!(
+            "more is left than asked for: what current scenes use stays, and what was used within {grace_min} min"
+        );
     }
     let kept: Vec<PathBuf> = current.iter().flat_map(|c| &c.scenes).map(|s| world.root().join(s)).collect();
     for file in world.scene_files()?.into_iter().filter(|file| !kept.contains(file)) {
         if !world::is_whole(&file)? {
             // A scene with holes is worse than none; its population file makes it again.
             std::fs::remove_file(&file).with_context(|| format!("cannot remove {}", file.display()))?;
-            println!("removed {}: parts of it are gone; bake its population to have it again", file.display());
+            say!("removed {}: parts of it are gone; bake its population to have it again", file.display());
         }
     }
     Ok(())

@@ -6,6 +6,15 @@ use std::sync::Mutex;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 
+/// `println!` for whom it may concern: nobody may be reading any more (`bake | head`), and that is no reason to stop.
+#[macro_export]
+macro_rules! say {
+    ($($words:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stdout().lock(), $($words)*);
+    }};
+}
+
 /// What happened.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
@@ -98,9 +107,10 @@ impl Bar {
     /// A bar that stays hidden until there is something to compute, and where standard error is no terminal.
     pub fn new() -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
-        let style = ProgressStyle::with_template("{bar:32.green/dim} {pos}/{len} {elapsed:.dim}  {wide_msg:.dim}")
-            .expect("a valid template")
-            .progress_chars("━━─");
+        let style =
+            ProgressStyle::with_template("{bar:32.green/dim} {pos}/{len} {elapsed:.dim}  {wide_msg:.dim}")
+                .expect("a valid template")
+                .progress_chars("━━─");
         bar.set_style(style);
         Self { bar, running: Mutex::default() }
     }

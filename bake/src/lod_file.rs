@@ -8,6 +8,7 @@ use anyhow::{Context, Result};
 use crate::commands::BadInput;
 use crate::import::{self, Imported};
 use crate::model::Material;
+use crate::say;
 use crate::stages::export::{self, MaterialSet, Picture};
 use crate::stages::{lod, tree};
 use crate::world;
@@ -24,7 +25,7 @@ pub fn convert(input: &Path, out: &Path, crease_deg: f32) -> Result<()> {
     let mut imported = import::read_mesh(&bytes, extension, &|name| fs::read(folder.join(name)))
         .map_err(|error| BadInput(format!("{}: {error}", input.display())))?;
     for repair in &imported.repairs {
-        println!("repair: {repair}");
+        say!("repair: {repair}");
     }
     if imported.mesh.normals.is_empty() {
         imported.mesh = tree::crease_normals(&imported.mesh, crease_deg.to_radians());
@@ -35,12 +36,12 @@ pub fn convert(input: &Path, out: &Path, crease_deg: f32) -> Result<()> {
         .with_context(|| format!("{}: cannot be written as glTF", input.display()))?;
     world::write_synced(out, &glb)?;
 
-    println!("{:<6} {:>10} {:>10} {:>12}", "level", "vertices", "triangles", "error (m)");
+    say!("{:<6} {:>10} {:>10} {:>12}", "level", "vertices", "triangles", "error (m)");
     for (index, level) in levels.levels.iter().enumerate() {
         let (vertices, triangles) = (level.mesh.positions.len(), level.mesh.triangle_count());
-        println!("D_{index:<4} {vertices:>10} {triangles:>10} {:>12.6}", level.error_m);
+        say!("D_{index:<4} {vertices:>10} {triangles:>10} {:>12.6}", level.error_m);
     }
-    println!("wrote {} ({:.1} MB)", out.display(), glb.len() as f64 / 1e6);
+    say!("wrote {} ({:.1} MB)", out.display(), glb.len() as f64 / 1e6);
     Ok(())
 }
 

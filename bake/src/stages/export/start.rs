@@ -3,7 +3,7 @@
 
 use glam::{Quat, Vec2, Vec3};
 
-use crate::model::{Heightfield, Placement};
+use crate::model::{Heightfield, Instance, Placement};
 
 /// Eyes above the ground, in metres.
 pub const EYE_M: f32 = 1.6;
@@ -103,11 +103,13 @@ impl Surroundings<'_> {
             return None;
         }
         let far = spot.length() / self.land.extent_m();
+        // Shores are bare; the grass begins a little above.
+        let bare = (1.0 - (ground - self.water_m - 0.6)).clamp(0.0, 1.0);
         let blocked = self.placement.instances.iter().any(|tree| {
             let [x, z, radius] = tree.trunk_cylinder_m;
             spot.distance(Vec2::new(x, z)) < radius + 3.5
         });
-        (!blocked).then_some(-0.5 * rise - 0.6 * far)
+        (!blocked).then_some(-1.2 * rise - 0.6 * far - 0.4 * bare)
     }
 
     /// For each azimuth, how many trees stand in a cone of ±30° around it: (in the way, in view).
@@ -116,15 +118,16 @@ impl Surroundings<'_> {
         for tree in &self.placement.instances {
             let offset = Vec2::new(tree.trunk_cylinder_m[0], tree.trunk_cylinder_m[1]) - spot;
             let distance = offset.length();
-            if distance > 300.0 {
+            if distance > 200.0 {
                 continue;
             }
             let turn = libm::atan2f(offset.x, -offset.y) / core::f32::consts::TAU;
             let bin = ((turn + 1.0) * AZIMUTHS as f32 + 0.5) as usize % AZIMUTHS as usize;
-            if distance < 14.0 {
-                bins[bin].0 += 1.0 - distance / 14.0;
-            } else {
-                bins[bin].1 += 1.0 / (1.0 + distance * 0.01);
+            if distance < 22.0 {
+                bins[bin].0 += 1.0 - distance / 22.0;
+            } else if self.sees(spot, tree) {
+                // One near enough to see its leaves counts for many that are a texture on a hill.
+                bins[bin].1 += 1.0 / (1.0 + distance * distance * 0.001);
             }
         }
         let n = bins.len();
@@ -134,11 +137,32 @@ impl Surroundings<'_> {
             .collect()
     }
 
+    /// Whether the middle of a tree can be seen over the land between.
+    fn sees(&self, spot: Vec2, tree: &Instance) -> bool {
+        let foot = Vec2::new(tree.trunk_cylinder_m[0], tree.trunk_cylinder_m[1]);
+        let eye_m = self.land.height_m(spot.x, spot.y) + EYE_M;
+        let middle_m = self.land.height_m(foot.x, foot.y) + 4.0;
+        [0.2, 0.4, 0.6, 0.8].into_iter().all(|t| {
+            let p = spot.lerp(foot, t);
+            self.land.height_m(p.x, p.y) < eye_m + (middle_m - eye_m) * t
+        })
+    }
+
+    /// Whether no hill stands between a place and the sun.
+    fn is_lit(&self, place: Vec2, towards_sun: Vec3) -> bool {
+        let ground_m = self.land.height_m(place.x, place.y);
+        (1..12).all(|step| {
+            let p = Vec3::new(place.x, ground_m + 0.5, place.y) + towards_sun * (4.0 * (step * step) as f32);
+            self.land.height_m(p.x, p.z) < p.y
+        })
+    }
+
     /// How good a look is.
     fn view(&self, spot: Vec2, azimuth: u32, trees: &[(f32, f32)], towards_sun: Vec3) -> f32 {
         let along = heading(azimuth);
         let eye_m = self.land.height_m(spot.x, spot.y) + EYE_M;
         let (mut steepest, mut seen, mut steps, mut top) = (f32::MIN, 0.0, 0.0, f32::MIN);
+        let mut lake = 0.0;
         let mut distance = 6.0f32;
         loop {
             let p = spot + along * distance;
@@ -150,19 +174,30 @@ impl Surroundings<'_> {
             steps += 1.0;
             if slope >= steepest {
                 (steepest, seen) = (slope, seen + 1.0);
+                if ground <= self.water_m && distance > 12.0 {
+                    lake += 1.0;
+                }
             }
             top = top.max(slope);
             distance *= 1.15;
         }
         let open = seen / f32::max(steps, 1.0);
         // Mountains are worth looking at, but not a wall before one's face.
-        let relief = top.clamp(0.0, 0.3) - 2.0 * (top - 0.35).max(0.0);
+        let relief = top.clamp(0.0, 0.3) - 5.0 * (top - 0.4).max(0.0);
         let (in_the_way, in_view) = trees[azimuth as usize];
         let sun = Vec2::new(towards_sun.x, towards_sun.z);
         let facing_sun = if sun.length() > 1e-3 { along.dot(sun.normalize()) } else { 0.0 };
         // Light from the side or from behind models the land; into a sun above the picture, all is flat.
-        let light = -0.6 * (facing_sun - 0.5).max(0.0) - 0.15 * (-facing_sun - 0.7).max(0.0);
-        open + 1.2 * relief + 0.5 * (in_view / (4.0 + in_view)) - 0.9 * in_the_way.min(2.0) + light
+        let shade = if [5.0, 12.0, 30.0].iter().all(|d| self.is_lit(spot + along * *d, towards_sun)) {
+            0.0
+        } else {
+            -0.5
+        };
+        let light = shade - 0.7 * (facing_sun + 0.1).max(0.0) - 0.15 * (-facing_sun - 0.7).max(0.0);
+        // A landscape without a tree in it says nothing about its trees, and water doubles the sky.
+        let trees = in_view / (3.0 + in_view);
+        let water = (4.0 * lake / f32::max(steps, 1.0)).min(1.0);
+        0.8 * open + 1.2 * relief + 1.3 * trees + 0.35 * water - 0.9 * in_the_way.min(2.0) + light
     }
 
     /// Slope of the look: towards the middle of what is to be seen, within ±10°.

@@ -107,7 +107,7 @@ impl Climate {
             dryness,
             rock,
             rock_band: lerp(rock, ROCKS[other], 0.3),
-            shore_scale: (50.0 / (hi - lo).max(1.0)).clamp(1.0, 2.5),
+            shore_scale: (80.0 / (hi - lo).max(1.0)).clamp(1.6, 3.2),
             shore: lerp(lerp(WET_MUD, GRAVEL, 0.5), SAND, step(0.25, 0.6, dryness)),
         }
     }
@@ -129,7 +129,7 @@ impl Climate {
         let wetness = (above_water - 0.3 * self.dryness) * self.shore_scale - 0.5 * broken - 0.3 * t.tuft;
         let shore = if wetness > 0.75 { 0.0 } else { 1.0 - step(0.35, 0.75, wetness) };
         let wash = t.flow + 0.05 * broken;
-        let bed = if wash < 0.74 { 0.0 } else { step(0.74, 0.84, wash) * (1.0 - step(0.25, 0.6, t.slope)) };
+        let bed = if wash < 0.84 { 0.0 } else { step(0.84, 0.92, wash) * (1.0 - step(0.25, 0.6, t.slope)) };
         let mud = shore.max(bed);
         let snow = self.snow(t, broken);
         // Each lies over the ones before it.

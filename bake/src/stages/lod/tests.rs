@@ -40,7 +40,7 @@ fn coarse_triangles(mesh: &Mesh, positions: &[[f32; 3]]) -> BTreeMap<Key, usize>
     found
 }
 
-/// Edges used an odd number of times, as pairs of positions.
+/// Edges (pairs of positions) that don't have two triangles.
 fn open_edges(mesh: &Mesh, part: usize) -> usize {
     let mut edges: BTreeMap<[[u32; 3]; 2], usize> = BTreeMap::new();
     for t in &mesh.parts[part].triangles {
@@ -49,7 +49,7 @@ fn open_edges(mesh: &Mesh, part: usize) -> usize {
             *edges.entry(if p < q { [p, q] } else { [q, p] }).or_default() += 1;
         }
     }
-    edges.values().filter(|&&uses| uses % 2 == 1).count()
+    edges.values().filter(|&&uses| uses != 2).count()
 }
 
 #[test]

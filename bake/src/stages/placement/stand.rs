@@ -32,10 +32,29 @@ const BURIED: f32 = 0.07;
 /// More than the lean moves a cylinder.
 pub(super) const TRUNK_RESERVE_M: f32 = 0.25;
 
-/// The eight compass points of the ring around a trunk.
-const RING: [[f32; 2]; 8] = {
+/// Sixteen points of the ring around a trunk, in order.
+const RING: [[f32; 2]; 16] = {
+    const C: f32 = 0.923_879_5;
     const H: f32 = std::f32::consts::FRAC_1_SQRT_2;
-    [[1.0, 0.0], [H, H], [0.0, 1.0], [-H, H], [-1.0, 0.0], [-H, -H], [0.0, -1.0], [H, -H]]
+    const S: f32 = 0.382_683_43;
+    [
+        [1.0, 0.0],
+        [C, S],
+        [H, H],
+        [S, C],
+        [0.0, 1.0],
+        [-S, C],
+        [-H, H],
+        [-C, S],
+        [-1.0, 0.0],
+        [-C, -S],
+        [-H, -H],
+        [-S, -C],
+        [0.0, -1.0],
+        [S, -C],
+        [H, -H],
+        [C, -S],
+    ]
 };
 
 /// The size of a tree of that vigour: within 1 ± `variation` for full vigour.
@@ -96,15 +115,23 @@ struct Foot {
 
 fn foot(land: &Landform, [x, z]: [f32; 2], radius_m: f32) -> Foot {
     let centre_m = land.field.height_m(x, z);
-    let (mut low, mut high) = (centre_m, centre_m);
-    for [dx, dz] in RING {
-        let y = land.field.height_m(x + dx * radius_m, z + dz * radius_m);
-        low = low.min(y);
-        high = high.max(y);
-    }
-    // Between two of eight points a slope falls by up to 1 − cos 22.5° of the ring's own rise further.
-    let lowest_m = low - 0.08 * 0.5 * (high - low);
+    let around = RING.map(|[dx, dz]| land.field.height_m(x + dx * radius_m, z + dz * radius_m));
+    let low = around.iter().fold(centre_m, |low, &y| low.min(y)).min(lowest_sample(land, [x, z], radius_m));
+    let step = (0..around.len()).map(|k| (around[k] - around[(k + 1) % around.len()]).abs());
+    // A gully between two points, with sides as steep as any beside it, is half a step deep.
+    let lowest_m = low - 0.5 * step.fold(0.0, f32::max);
     Foot { centre_m, lowest_m, y_m: lowest_m - SUNK_M }
+}
+
+/// The lowest sample within the radius, along x and z. A bilinear height has its least value over a disc either at
+/// a sample or on the rim, so with the ring this misses no pit.
+fn lowest_sample(land: &Landform, [x, z]: [f32; 2], radius_m: f32) -> f32 {
+    let field = &land.field;
+    let last = (field.side - 1) as f32;
+    let grid = |m: f32| (m / field.spacing_m + 0.5 * last).clamp(0.0, last);
+    let span = |m: f32| grid(m - radius_m).ceil() as u32..=grid(m + radius_m).floor() as u32;
+    let samples = span(z).flat_map(|j| span(x).map(move |i| field.at(i, j)));
+    samples.fold(f32::INFINITY, f32::min)
 }
 
 fn direction(dice: &mut Dice) -> Vec2 {

@@ -121,6 +121,8 @@ fn twigs(params: &TreeParams, plan: &Plan, skeleton: &Skeleton, dice: &mut Dice)
     let bearers = bearers(plan, skeleton);
     let outer = skeleton.stems.iter().filter(|stem| stem.level == plan.levels - 1).count();
     let wish = (params.leaves_per_stem * outer as u32) as f32 * 1.15;
+    // However few its stems, a tree in leaf has a crown.
+    let wish = wish.max(0.12 * plan.cards as f32);
     let count = wish.min(plan.cards as f32);
     let growth = (wish / count.max(1.0)).sqrt().clamp(1.0, MOST_GROWTH);
     let whole: f32 = bearers.iter().map(|bearer| bearer.share).sum();

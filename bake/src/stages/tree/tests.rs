@@ -56,7 +56,7 @@ fn triangles_stay_within_budget() {
     for (params, tree) in trees() {
         let count = tree.mesh.triangle_count();
         assert!(count <= 26_000, "{count}: {params:?}");
-        assert!(count >= if params.levels == 1 { 600 } else { 1_500 }, "{count}: {params:?}");
+        assert!(count >= if params.levels == 1 { 600 } else { 1_200 }, "{count}: {params:?}");
     }
     let count = template(&oak(), 0).mesh.triangle_count();
     assert!((15_000..=22_000).contains(&count), "{count}");
@@ -191,7 +191,7 @@ fn crowns_are_shaded_but_never_black() {
         tree.mesh.parts.iter().find(|part| part.material == Material::Leaf).expect("an oak has leaves");
     let light: Vec<u8> = leaf.triangles.iter().map(|t| tree.mesh.colors[t[0] as usize][1]).collect();
     let (least, most) = (light.iter().min().copied(), light.iter().max().copied());
-    assert!(least > Some(90) && most > Some(210), "{least:?} {most:?}");
+    assert!((Some(90)..Some(150)).contains(&least) && most > Some(210), "{least:?} {most:?}");
 }
 
 fn coverage(image: &crate::model::Image8) -> f32 {
