@@ -50,7 +50,8 @@ impl Resolution {
             ));
         }
         let cells = side - 1;
-        let face_px = cells.min(512);
+        // The clouds are drawn in 1088 directions around: finer pictures would only hold larger files.
+        let face_px = (3 * cells / 4).min(512);
         Ok(Self {
             side,
             map_px: (2 * cells).clamp(128, 2048).min(cells.max(1024)),

@@ -1,7 +1,8 @@
-//! A developer's chores: the whole check (`test`), set-up of the programs that it runs our files through (`setup`),
-//! and the picture in the README (`pictures`). Knows nothing of landscapes: it runs other programs and reports.
+//! A developer's chores: the whole check (`test`), times beside those of a peer (`bench`), set-up of the programs that
+//! these need (`setup`), and the picture in the README (`pictures`). Knows nothing of landscapes: it runs other programs and reports.
 #![expect(clippy::print_stdout, reason = "a command line program")]
 
+mod bench;
 mod check;
 mod pictures;
 mod setup;
@@ -32,6 +33,12 @@ enum Chore {
     },
     /// Install the programs that `test --interop` and `pictures` need into .interop/.
     Setup,
+    /// Time every stage, then a whole bake against ez-tree making as many trees (packages go to .interop/).
+    Bench {
+        /// Runs of `bake bench`.
+        #[arg(long, default_value_t = 3)]
+        runs: u32,
+    },
     /// Bake the starters and render all four with Blender into docs/pictures/starters.jpg.
     Pictures {
         /// Samples a pixel.
@@ -43,6 +50,7 @@ enum Chore {
 fn main() -> ExitCode {
     let done = match Cli::parse().chore {
         Chore::Test { interop, quick } => check::run(interop, quick),
+        Chore::Bench { runs } => bench::bench(runs),
         Chore::Setup => setup::all().map(|()| true),
         Chore::Pictures { samples } => pictures::run(samples).map(|()| true),
     };

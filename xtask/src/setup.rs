@@ -1,4 +1,4 @@
-//! Installs other people's programs: npm packages (the Khronos validator, three.js) and a Python environment with
+//! Installs other people's programs: npm packages (the Khronos validator, three.js, ez-tree) and a Python environment with
 //! Blender as a module and F3D. What is there already is left as it is.
 
 use std::process::Command;
@@ -27,10 +27,13 @@ pub fn all() -> Result<()> {
     blender()
 }
 
-/// The validator and three.js.
+/// The validator, three.js and ez-tree.
 pub fn node() -> Result<()> {
     let folder = interop();
-    if ["gltf-validator", "three"].iter().all(|name| folder.join("node_modules").join(name).is_dir()) {
+    if ["gltf-validator", "three", "@dgreenheck/ez-tree"]
+        .iter()
+        .all(|name| folder.join("node_modules").join(name).is_dir())
+    {
         return Ok(());
     }
     if !is_installed("npm") || !is_installed("node") {

@@ -5,15 +5,17 @@ use serde::{Deserialize, Serialize};
 
 use super::{Image8, ImageF16};
 
-/// Sun and sky as other stages need them: cheap, without pictures. Radiometric values are relative: a clear zenith
-/// at high sun is about 0.3; one unit of radiance is middle white after exposure 0 EV.
+/// Sun and sky as other stages need them: cheap, without pictures. Radiances and irradiances are relative, for an eye
+/// that is adapted to the scene: noon and dusk are of like brightness, and one unit of radiance is about white at an
+/// exposure of 0 EV.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SkyLight {
     /// Unit vector towards the sun.
     pub sun_direction: Vec3,
     /// Half the sun's angular diameter.
     pub sun_angular_radius_rad: f32,
-    /// Irradiance of the sun on a surface facing it, linear RGB, clouds not counted.
+    /// Irradiance of the sun on a surface that faces it, linear RGB: what air and, in the mean over the land, clouds let
+    /// through.
     pub sun_irradiance_linear: [f32; 3],
     /// Irradiance of the sky (without sun) on open level ground, linear RGB.
     pub sky_irradiance_linear: [f32; 3],

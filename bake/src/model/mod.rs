@@ -3,6 +3,7 @@
 //!
 //! Right-handed, y up, metres, radians; counter-clockwise front faces; colours linear unless a name says `_srgb`.
 
+mod floats;
 mod ground;
 mod image;
 mod light;

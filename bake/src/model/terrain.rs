@@ -3,7 +3,7 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-use super::Mesh;
+use super::{Mesh, floats};
 
 /// Heights on a square grid of (2^k+1)² samples, centred on the origin.
 ///
@@ -16,6 +16,7 @@ pub struct Heightfield {
     /// Metres between samples.
     pub spacing_m: f32,
     /// side² heights in metres.
+    #[serde(with = "floats")]
     pub heights_m: Vec<f32>,
 }
 
@@ -71,8 +72,10 @@ pub struct Landform {
     /// The walkable land, 1024 m from edge to edge.
     pub field: Heightfield,
     /// Drained area per sample, log-scaled to [0, 1]: 0 on a ridge, 1 in the greatest river bed.
+    #[serde(with = "floats")]
     pub flow: Vec<f32>,
     /// Loose material laid down by erosion, per sample, [0, 1].
+    #[serde(with = "floats")]
     pub deposit: Vec<f32>,
     /// Surface of the lake in metres; `None` when the land is dry.
     pub water_level_m: Option<f32>,

@@ -1,9 +1,8 @@
 //! Linear pictures → OpenEXR 2 files: one part, RGB half floats in uncompressed scan lines, as Blender's World and
 //! every compositor read them. The same picture always gives the same bytes: no timestamps, one thread.
 //!
-//! Skies in half floats hardly compress: measured on 2048 × 1024, ZIP and PIZ take several times as long as all the
-//! rest of a sky for a file half as large, and RLE saves a tenth. So lines are stored as they are, which makes the
-//! format simple enough to write here (OpenEXR, "File Layout"): a header of named attributes, a table of offsets, and
+//! Lines are stored as they are: compressing them would cost time in every bake, and this makes the format simple enough
+//! to write here (OpenEXR, "File Layout"): a header of named attributes, a table of offsets, and
 //! per line its number, its size and its channels in alphabetical order.
 
 use crate::model::ImageF16;

@@ -5,7 +5,7 @@ use genescape_schema::gltf::{
     GSC_HEIGHTFIELD, GSC_SKY, GroundDetail, GroundSurface, HeightfieldExtension, InstanceRecord, Resource,
     SkyExtension, SkyLayer, write_instances,
 };
-use glam::{Quat, Vec3};
+use glam::Vec3;
 use serde_json::{Value, json};
 
 use super::ExportError;
@@ -13,7 +13,7 @@ use super::document::{Document, Node, push};
 use super::materials::{CLAMPED, REPEATING, TreeImages, sampler};
 use super::scene_import::GlbImport;
 use super::scene_trees::add_trees;
-use super::start::{StartView, start_view};
+use super::start::{StartView, rotation_from_z, start_view};
 use super::terrain::{TERRAIN_MESHES, apron_material, ground_material, water_material};
 use crate::model::{Instance, Landform, Placement, SkyLight};
 
@@ -197,7 +197,7 @@ fn add_sun(document: &mut Document, light: &SkyLight) -> usize {
             "intensity": greatest.max(0.0) * light.exposure }] }),
     );
     // A glTF light shines along its own −z.
-    let rotation = Quat::from_rotation_arc(Vec3::Z, light.sun_direction.normalize_or(Vec3::Y)).normalize();
+    let rotation = rotation_from_z(light.sun_direction.normalize_or(Vec3::Y));
     document.node(Node {
         name: "sun".into(),
         rotation: Some(rotation.to_array()),

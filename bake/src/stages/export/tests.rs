@@ -319,7 +319,7 @@ fn foreign_materials_pass_through() {
     };
     assert_eq!(mime_type, "image/png");
     let png = std::io::Cursor::new(&bin[view.offset()..view.offset() + view.length()]);
-    assert_eq!(png::Decoder::new(png).read_info().unwrap().info().size(), (1, 1));
+    assert_eq!(::png::Decoder::new(png).read_info().unwrap().info().size(), (1, 1));
     let primitive = document.meshes().next().unwrap().primitives().next().unwrap();
     assert_eq!(primitive.material().name(), Some("b"));
 }

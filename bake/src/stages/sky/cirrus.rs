@@ -18,6 +18,9 @@ pub const ALTITUDE_M: f32 = 9000.0;
 /// Metres after which the sheet repeats.
 pub const TILE_M: f32 = 36_000.0;
 
+/// Cells a side in which the wind has one direction; a divisor of every side.
+const WIND: usize = 32;
+
 /// The sheet: optical depth seen vertically, at full and at an eighth of the resolution.
 pub struct Cirrus {
     side: usize,
@@ -96,22 +99,19 @@ fn optical_depths(seed: u32, amount: f32, side: usize) -> Vec<f32> {
     let unit = 1.0 / side as f32;
     let heading = noise::hash01(seed, 1, 2, 3) * std::f32::consts::TAU;
     // The wind on a coarse grid; its direction turns by up to a radian.
-    const WIND: usize = 32;
-    let shrink = side / WIND;
     let bearing = fill(WIND, |i, j| {
         let (x, y) = (i as f32 / WIND as f32, j as f32 / WIND as f32);
         heading + 0.9 * noise::fbm2(seed, x * 2.0, y * 2.0, 2, 0.5, 2)
     });
     let wind: Vec<(f32, f32)> = bearing.iter().map(|&a| (libm::cosf(a), libm::sinf(a))).collect();
-    let wind_at = |column: usize, row: usize| wind[(row / shrink) * WIND + column / shrink];
     let grain = fill(side, |i, j| {
         let (x, y) = (i as f32 * unit, j as f32 * unit);
         0.7 * noise::gradient2(seed ^ 0x55, x * 64.0, y * 64.0, 64)
             + 0.6 * (noise::hash01(seed ^ 0xAA, i as i32 / 2, j as i32 / 2, 5) - 0.5)
     });
     let texel = side as f32 / SIDE as f32;
-    let short = drawn_out(&grain, side, &wind_at, 3.0 * texel);
-    let long = drawn_out(&short, side, &wind_at, 11.0 * texel);
+    let short = drawn_out(&grain, side, &wind, 3.0 * texel);
+    let long = drawn_out(&short, side, &wind, 11.0 * texel);
     const PATCHES: usize = 64;
     let patches = fill(PATCHES, |i, j| {
         let (x, y) = (i as f32 / PATCHES as f32, j as f32 / PATCHES as f32);
@@ -127,25 +127,29 @@ fn optical_depths(seed: u32, amount: f32, side: usize) -> Vec<f32> {
     })
 }
 
-/// Mean of eight samples along the wind on either side.
-fn drawn_out(
-    texels: &[f32],
-    side: usize,
-    wind: &(impl Fn(usize, usize) -> (f32, f32) + Sync),
-    step: f32,
-) -> Vec<f32> {
-    let mask = side - 1;
-    fill(side, |i, j| {
-        let (dx, dy) = wind(i, j);
-        let mut sum = 0.0;
-        for k in -4..=4 {
-            let along = k as f32 * step;
-            let x = ((i as f32 + dx * along + 64.5) as usize).wrapping_sub(64) & mask;
-            let y = ((j as f32 + dy * along + 64.5) as usize).wrapping_sub(64) & mask;
-            sum += texels[y * side + x];
+/// Mean of nine samples along the wind, four on either side; `step` is the distance between them in texels.
+fn drawn_out(texels: &[f32], side: usize, wind: &[(f32, f32)], step: f32) -> Vec<f32> {
+    let (mask, run) = (side - 1, side / WIND);
+    let mut sums = vec![0.0; side * side];
+    sums.par_chunks_exact_mut(side).enumerate().for_each(|(row, sums)| {
+        // In a cell of the wind every texel reads the same nine places beside it: whole runs are added at once.
+        for (cell, sums) in sums.chunks_exact_mut(run).enumerate() {
+            let (dx, dy) = wind[row / run * WIND + cell];
+            for k in -4..=4 {
+                let along = k as f32 * step;
+                let offset = |d: f32| ((d * along + 64.5) as usize).wrapping_sub(64);
+                let (x, y) =
+                    ((cell * run).wrapping_add(offset(dx)) & mask, row.wrapping_add(offset(dy)) & mask);
+                let line = &texels[y * side..(y + 1) * side];
+                let (before, beyond) = (&line[x..side.min(x + run)], &line[..(x + run).saturating_sub(side)]);
+                for (sum, texel) in sums.iter_mut().zip(before.iter().chain(beyond)) {
+                    *sum += texel;
+                }
+            }
+            sums.iter_mut().for_each(|sum| *sum /= 9.0);
         }
-        sum / 9.0
-    })
+    });
+    sums
 }
 
 fn blurred(fine: &[f32], side: usize) -> Vec<f32> {

@@ -193,7 +193,9 @@ impl Clouds {
     /// Mean part of the sun's beam that the clouds let through to the ground.
     pub fn sun_through(&self) -> f32 {
         const SIDE: usize = 12;
-        let direction = Vec3A::new(self.sun.x, self.sun.y.max(0.1), self.sun.z).normalize();
+        let (x, y, z) = (self.sun.x, self.sun.y.max(0.1), self.sun.z);
+        // The sum in a fixed order, whatever the width of the machine's vectors.
+        let direction = Vec3A::new(x, y, z) / (x * x + y * y + z * z).sqrt();
         let slant = 1.0 / direction.y;
         let field = &self.field;
         let mut sum = 0.0;

@@ -101,6 +101,7 @@ impl Dome {
             }
             fill_between(texels, row.stride);
         });
+        let texels = smoothed(&without_glints(&texels, width), width);
         Self { width, height, texels, row_of_sine }
     }
 
@@ -158,8 +159,49 @@ fn alike(texels: [Vec4; 4]) -> bool {
     let low = texels[0].min(texels[1]).min(texels[2].min(texels[3]));
     let high = texels[0].max(texels[1]).max(texels[2].max(texels[3]));
     let span = high - low;
-    let light = 0.035 * (high.x + high.y + high.z) + 0.002;
-    span.w < 0.03 && span.x + span.y + span.z < light
+    let light = 0.05 * (high.x + high.y + high.z) + 0.002;
+    span.w < 0.04 && span.x + span.y + span.z < light
+}
+
+/// The map with every texel made anew from itself and its eight neighbours, row by row; columns wrap around.
+fn from_neighbours(texels: &[Vec4], width: usize, make: impl Fn([[Vec4; 3]; 3]) -> Vec4 + Sync) -> Vec<Vec4> {
+    let last = texels.len() / width - 1;
+    let mut made = vec![Vec4::ZERO; texels.len()];
+    made.par_chunks_exact_mut(width).enumerate().for_each(|(row, made)| {
+        let rows =
+            [row.saturating_sub(1), row, (row + 1).min(last)].map(|row| &texels[row * width..][..width]);
+        for (column, made) in made.iter_mut().enumerate() {
+            let west = if column == 0 { width - 1 } else { column - 1 };
+            let columns = [west, column, if column + 1 == width { 0 } else { column + 1 }];
+            *made = make(rows.map(|row| columns.map(|column| row[column])));
+        }
+    });
+    made
+}
+
+/// A ray that grazes a cloud's lit edge gives a texel that outshines its surroundings, and glitters where it is a few
+/// pixels large. Without two neighbours of its kind, as those in a silver lining have, it becomes like the others.
+fn without_glints(texels: &[Vec4], width: usize) -> Vec<Vec4> {
+    let light = |texel: Vec4| texel.x + texel.y + texel.z;
+    from_neighbours(texels, width, |[above, here, below]| {
+        let own = light(here[1]);
+        if own == 0.0 {
+            return here[1];
+        }
+        let (mut first, mut second) = (0.0f32, 0.0f32);
+        for around in [above[0], above[1], above[2], here[0], here[2], below[0], below[1], below[2]] {
+            let other = light(around);
+            second = second.max(other.min(first));
+            first = first.max(other);
+        }
+        if own <= 1.2 * second { here[1] } else { (above[1] + here[0] + here[2] + below[1]) * 0.25 }
+    })
+}
+
+/// Weighted 1 : 4 : 1 both ways, the cubic B-spline at its knots: interpolated texels no longer show as stairs.
+fn smoothed(texels: &[Vec4], width: usize) -> Vec<Vec4> {
+    let mean = |[a, b, c]: [Vec4; 3]| (a + b * 4.0 + c) * (1.0 / 6.0);
+    from_neighbours(texels, width, |rows| mean(rows.map(mean)))
 }
 
 fn row_at(root_of_sine: f32, height: usize) -> f32 {

@@ -13,6 +13,8 @@ mod dome;
 mod field;
 mod math;
 mod paint;
+#[cfg(test)]
+mod pictures;
 mod sheets;
 #[cfg(test)]
 mod tests;
@@ -136,8 +138,8 @@ fn zonal_irradiance(zonal: &[Vec3A]) -> Vec3A {
     sum * std::f32::consts::PI
 }
 
-/// The sky as pictures: cube faces of `face_px` (512 is usual), an equirectangular picture `equirect_width_px` wide
-/// (2048 is usual; even), and cloud sheets. Exposure is not applied.
+/// The sky as pictures: cube faces of `face_px` (384 is usual), an equirectangular picture `equirect_width_px` wide
+/// (1536 is usual; even), and cloud sheets. Exposure is not applied.
 pub fn images(params: &SkyParams, light: &SkyLight, face_px: u32, equirect_width_px: u32) -> SkyImages {
     let sky = Sky::new(params, cirrus::SIDE);
     debug_assert!((light.sun_direction - Vec3::from(sky.clear.sun)).length() < 1e-4);

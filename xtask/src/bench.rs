@@ -1,0 +1,74 @@
+//! Our bake against a peer on the same machine, in the same minute: the four starters, whole, against ez-tree making
+//! twenty trees without levels of detail, textures, land, light or files.
+
+use std::process::Command;
+use std::time::Instant;
+
+use anyhow::{Context, Result, ensure};
+
+use crate::setup;
+use crate::tools::{cargo, program, root, run};
+
+/// Trees in four scenes: five templates each.
+const TREES: &str = "20";
+/// Whole bakes; the fastest counts, as it does for the peer.
+const BAKES: u32 = 3;
+/// The most that a whole bake may take, in times of the peer's trees.
+const MOST: f64 = 6.0;
+
+/// Prints `bake bench`, then what the peer takes, then the ratios. Fails if a bake takes more than [`MOST`].
+pub fn bench(runs: u32) -> Result<bool> {
+    setup::node()?;
+    run(&mut cargo(&["build", "--release", "--quiet", "--package", "genescape-bake", "--bin", "bake"]))?;
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), Into::into);
+    let bake = target.join("release").join(format!("bake{}", std::env::consts::EXE_SUFFIX));
+    run(program(&bake).args(["bench", "--runs", &runs.to_string()]))?;
+
+    let world = root().join("target/bench-world");
+    let mut ours_ms = f64::MAX;
+    for _ in 0..BAKES {
+        if world.exists() {
+            std::fs::remove_dir_all(&world).context("cannot remove the last bake")?;
+        }
+        let start = Instant::now();
+        let output = program(&bake).arg("--world").arg(&world).output().context("cannot start bake")?;
+        ensure!(output.status.success(), "bake failed: {}", String::from_utf8_lossy(&output.stderr));
+        ours_ms = ours_ms.min(start.elapsed().as_secs_f64() * 1e3);
+    }
+    std::fs::remove_dir_all(&world).context("cannot remove the bake")?;
+
+    let peer = peer()?;
+    let ratio = ours_ms / peer.ms;
+    let cores = std::thread::available_parallelism().map_or(0, usize::from);
+    println!("four fresh scenes, the whole command: {ours_ms:.0} ms on {cores} cores (fastest of {BAKES})");
+    println!(
+        "ez-tree: {TREES} trees of {:.0} triangles: {:.0} ms on one core, {:.1} ms a tree",
+        peer.triangles,
+        peer.ms,
+        peer.ms / peer.trees
+    );
+    println!(
+        "our four scenes take {ratio:.1} times as long as their {TREES} trees; at most {MOST:.0} is the aim"
+    );
+    Ok(ratio <= MOST)
+}
+
+struct Peer {
+    trees: f64,
+    ms: f64,
+    triangles: f64,
+}
+
+/// Runs the peer's script, which prints three numbers.
+fn peer() -> Result<Peer> {
+    let script = root().join("tests/peers/ez_tree.mjs");
+    let mut node: Command = program("node");
+    let output = node.arg(script).arg(TREES).output().context("cannot start node")?;
+    ensure!(output.status.success(), "ez-tree failed: {}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8_lossy(&output.stdout);
+    let numbers: Vec<f64> = text.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    let [trees, ms, triangles] = numbers[..] else {
+        anyhow::bail!("ez-tree's script printed {text:?} instead of three numbers");
+    };
+    Ok(Peer { trees, ms, triangles })
+}
