@@ -344,6 +344,13 @@ impl Synthetic {
             genome: json!({ "height_m": 7.4, "relief_m": 120.0, "levels": 3 }),
             land: &self.land,
             terrain: GlbBlob { uri: "blobs/terrain.glb".into(), bytes: &self.terrain },
+            foreground: None,
+            view: crate::stages::start::start_view(
+                &self.land.field,
+                self.land.water_level_m,
+                &self.placement,
+                self.light.sun_direction,
+            ),
             heightfield: HeightfieldBlobs {
                 heights_png: self.blob("heights.png"),
                 range_m: self.land.field.range_m(),
@@ -357,6 +364,7 @@ impl Synthetic {
                     name: "grass".into(),
                     detail: self.blob("grass.png"),
                     normal: self.blob("grass-normal.png"),
+                    tile: self.blob("grass.png"),
                     tile_m: 4.0,
                 }],
             },

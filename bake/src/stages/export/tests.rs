@@ -7,6 +7,7 @@ use serde_json::Value;
 use super::svd::tests::{difference, product};
 use super::synthetic::*;
 use super::*;
+use crate::stages::start::start_view;
 use crate::model::{LevelledMesh, Material, Mesh};
 
 fn gltf_of(glb: &[u8]) -> (gltf::Document, Vec<u8>) {

@@ -33,7 +33,17 @@ pub(super) struct Cover {
     mud: f32,
 }
 
+/// Grass, rock, scree, snow and mud.
+pub(super) const KINDS: usize = 5;
+
 impl Cover {
+    /// The part of each kind, grass first.
+    #[inline]
+    pub fn parts(&self) -> [f32; KINDS] {
+        let grass = 1.0 - self.rock - self.scree - self.snow - self.mud;
+        [grass, self.rock, self.scree, self.snow, self.mud]
+    }
+
     /// Blend weights as bytes: rock, scree, snow, mud; their sum is at most 255.
     #[inline]
     pub fn bytes(&self) -> [u8; 4] {
