@@ -175,8 +175,8 @@ fn foreground(params: &GroundParams, map_px: u32, inputs: &Inputs<'_>) -> Result
     let view: StartView = read(inputs, "start", "view")?;
     let (positions, triangles) = export::near_mesh(&inputs.bytes("terrain", "mesh")?)?;
     let made: Foreground = ground::foreground(params, &land, map_px, &view, &positions, &triangles);
-    let kinds = ground::TEXTURES.map(str::to_owned);
-    Ok(vec![Output::new("mesh", "glb", export::foreground_glb(&made, &kinds)?)])
+    let glb = export::foreground_glb(&made, &ground::TEXTURES, ground::BLADE_WHITE)?;
+    Ok(vec![Output::new("mesh", "glb", glb)])
 }
 
 /// What is known of a texture besides its pictures.

@@ -43,4 +43,6 @@ pub struct Foreground {
     pub map_uvs: Vec<[f32; 2]>,
     /// The triangles of `TerrainMesh::near` that it does not replace.
     pub rest: Vec<[u32; 3]>,
+    /// Blades of grass that stand on it: no uvs, colours that are to be multiplied by `ground::BLADE_WHITE`.
+    pub grass: Mesh,
 }

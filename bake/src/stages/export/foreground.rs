@@ -9,12 +9,12 @@ use super::glb::write_glb;
 use super::levels::{Surface, add_vertices};
 use crate::model::{Foreground, Material};
 
-/// Mesh 0: the foreground with a material for each kind of ground, `TEXCOORD_1` on the maps of the whole field. The
-/// last accessor: indices of the rest of the near mesh.
+/// Mesh 0: the foreground with a material for each of `kinds` of ground, `TEXCOORD_1` on the maps of the whole
+/// field. Mesh 1, if grass grows there: its blades; `white` is the albedo of a vertex colour of 1. The last accessor: indices of the rest of the near mesh.
 ///
 /// # Errors
 /// When a list is inconsistent or not finite, or there are no triangles.
-pub fn foreground_glb(foreground: &Foreground, kinds: &[String]) -> Result<Vec<u8>, ExportError> {
+pub fn foreground_glb(foreground: &Foreground, kinds: &[&str], white: f32) -> Result<Vec<u8>, ExportError> {
     let mesh = &foreground.mesh;
     if mesh.triangle_count() == 0 {
         return Err(ExportError::Empty("the foreground".into()));
@@ -32,7 +32,7 @@ pub fn foreground_glb(foreground: &Foreground, kinds: &[String]) -> Result<Vec<u
         _ => Surface::default(),
     };
     let primitives = add_vertices(&mut document, "foreground", mesh, &surface_of)?;
-    let view = document.view(bytemuck::cast_slice(&foreground.map_uvs), Some(ARRAY_BUFFER), None);
+    let view = document.view(bytemuck::cast_slice(&foreground.map_uvs), Some(ARRAY_BUFFER), Some(8));
     let mut list = Vec::new();
     for primitive in primitives {
         let mut json = primitive.json;
@@ -43,11 +43,26 @@ pub fn foreground_glb(foreground: &Foreground, kinds: &[String]) -> Result<Vec<u
     document.meshes.push(json!({ "name": "foreground", "primitives": list }));
     let node = document.node(Node { name: "foreground".into(), mesh: Some(0), ..Node::default() });
     document.scenes.push(json!({ "name": "foreground", "nodes": [node] }));
+    if foreground.grass.triangle_count() > 0 {
+        let surface = Surface { material: Some(document.materials.len()), normal_map: false };
+        let blades = add_vertices(&mut document, "grass", &foreground.grass, &|_| surface)?;
+        let blades: Vec<Value> = blades.into_iter().map(|primitive| primitive.json).collect();
+        document.materials.push(blade_material(white));
+        document.meshes.push(json!({ "name": "grass", "primitives": blades }));
+        let node = document.node(Node { name: "grass".into(), mesh: Some(1), ..Node::default() });
+        document.scenes[0]["nodes"].as_array_mut().expect("made above").push(node.into());
+    }
     let rest = foreground.rest.as_flattened();
     let view = document.view(bytemuck::cast_slice(rest), Some(ELEMENT_ARRAY_BUFFER), None);
     document.accessor(view, 0, UNSIGNED_INT, rest.len(), "SCALAR");
     let json = document.json();
     Ok(write_glb(json, document.bin))
+}
+
+/// Blades of grass, coloured by their vertices.
+pub fn blade_material(white: f32) -> Value {
+    json!({ "name": "grass blades", "doubleSided": true, "pbrMetallicRoughness": {
+        "baseColorFactor": [white, white, white, 1], "metallicFactor": 0, "roughnessFactor": 0.8 } })
 }
 
 /// A kind of ground from near: its tiling colour and normals, and the light map as occlusion.

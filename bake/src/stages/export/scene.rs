@@ -228,10 +228,11 @@ fn add_terrain(document: &mut Document, parts: &SceneParts<'_>) -> Result<Vec<us
     }
     // The file has a material a mesh, in the same order.
     let first_mesh = glb.import_meshes(document, &|material| Some(first_material + material.index))?;
-    if let Some(foreground) = &foreground {
-        add_foreground(document, foreground, first_mesh, &ground.near)?;
-    }
     let mut nodes = Vec::new();
+    if let Some(foreground) = &foreground {
+        let grass = add_foreground(document, foreground, first_mesh, &ground.near)?;
+        nodes.extend(grass.map(|mesh| document.node(Node { name: "grass".into(), mesh: Some(mesh), ..Node::default() })));
+    }
     for (i, name) in names.into_iter().enumerate() {
         let mut node = Node { name, mesh: Some(first_mesh + i), ..Node::default() };
         if node.name == TERRAIN_MESHES[0] {
@@ -248,26 +249,29 @@ fn add_terrain(document: &mut Document, parts: &SceneParts<'_>) -> Result<Vec<us
 }
 
 /// The cut-out piece becomes further primitives of the terrain mesh, whose first one loses the triangles under it.
+/// Gives the mesh of the grass that stands on it, if any does.
 fn add_foreground(
     document: &mut Document,
     glb: &GlbImport,
     terrain: usize,
     materials: &[Option<Value>],
-) -> Result<(), ExportError> {
+) -> Result<Option<usize>, ExportError> {
     let rest = document.meshes[terrain]["primitives"][0]["indices"].as_u64().unwrap_or(0) as usize;
     glb.replace_accessor(document, rest)?;
     let mut places = Vec::new();
     for material in materials {
         places.push(material.as_ref().map(|material| push(&mut document.materials, material.clone())));
     }
-    glb.import_meshes(document, &|material| places.get(material.index).copied().flatten())?;
-    let mut piece = document.meshes.pop().unwrap_or_default();
+    let blades = glb.material_json(materials.len());
+    places.push(blades.map(|material| push(&mut document.materials, material)));
+    let first = glb.import_meshes(document, &|material| places.get(material.index).copied().flatten())?;
+    let mut piece = document.meshes.remove(first);
     if let (Some(all), Some(more)) =
         (document.meshes[terrain]["primitives"].as_array_mut(), piece["primitives"].as_array_mut())
     {
         all.append(more);
     }
-    Ok(())
+    Ok((document.meshes.len() > first).then_some(first))
 }
 
 /// The ground's materials.

@@ -48,6 +48,11 @@ impl GlbImport {
         self.list("materials").iter().map(|material| material["name"].as_str().unwrap_or_default())
     }
 
+    /// A material of the file as it is.
+    pub fn material_json(&self, index: usize) -> Option<Value> {
+        self.list("materials").get(index).cloned()
+    }
+
     /// Numbers of the materials that its primitives have.
     pub fn materials_in_use(&self) -> Vec<usize> {
         let primitives = self.list("meshes").iter().filter_map(|mesh| mesh["primitives"].as_array()).flatten();

@@ -195,7 +195,7 @@ impl Climate {
 
     /// Grass: lusher where water gathers, drier on crests and high up, in large patches of its own.
     #[inline]
-    fn grass(&self, t: &Traits, n: &Noise) -> Rgb {
+    pub fn grass(&self, t: &Traits, n: &Noise) -> Rgb {
         let altitude = (t.height_m - self.lowest_m) / self.relief_m;
         let moist = 0.75 * t.flow + 0.35 * t.hollow + 0.12 * t.deposit;
         let dry = 0.7 + 2.9 * self.dryness + 1.0 * t.patch + 0.45 * t.tuft + 0.5 * altitude

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use super::GroundParams;
 use super::cover::{Climate, KINDS};
 use super::grain::Grain;
+use super::grass::grass;
 use super::textures::{TILE_M, TILE_MEAN};
 use super::traits::{Patches, TraitsMap};
 use crate::model::{Foreground, Heightfield, Landform, Material, Mesh, Part, PartKind, StartView};
@@ -19,7 +20,7 @@ use crate::seed::noise_seed;
 
 /// Metres a side of the blocks that the near mesh is made of; the piece is a whole number of them.
 pub const BLOCK_M: f32 = 16.0;
-const SIDE_M: f32 = 6.0 * BLOCK_M;
+pub(super) const SIDE_M: f32 = 6.0 * BLOCK_M;
 /// Cells a side of the fine grid.
 const CELLS: usize = 128;
 const CELL_M: f32 = SIDE_M / CELLS as f32;
@@ -27,6 +28,8 @@ const CELL_M: f32 = SIDE_M / CELLS as f32;
 const AHEAD_M: f32 = 26.0;
 /// Metres over which the piece takes on the look of the land around it.
 const FADE_M: f32 = 14.0;
+/// Values of a texel: colour, parts, and the colour that grass has there.
+const TRAITS: usize = 6 + KINDS;
 /// Height in metres of the humps that the heightfield is too coarse for.
 const HUMPS_M: f32 = 0.07;
 
@@ -48,11 +51,12 @@ pub fn foreground(
     let inside = |t: &[u32; 3]| middle(t).min_element() > 0.0 && middle(t).max_element() < SIDE_M;
     let (cut, rest): (Vec<_>, Vec<_>) = triangles.iter().copied().partition(inside);
     let patch = Patch { land, corner, seed: noise_seed(params.terrain_seed.into(), "foreground", 0) };
-    let mut points = patch.points(&MapWindow::new(params, land, map_px, corner));
+    let window = MapWindow::new(params, land, map_px, corner);
+    let mut points = patch.points(&window);
     let border = patch.border(positions, &cut, &mut points);
     let shape = patch.triangles(&points, &border);
     let (mesh, map_uvs) = by_kind(&points, &shape, field.extent_m());
-    Foreground { mesh, map_uvs, rest }
+    Foreground { mesh, map_uvs, rest, grass: grass(&patch, &window, view) }
 }
 
 /// The north-west corner of the square of blocks that suits a view best.
@@ -82,12 +86,12 @@ struct Point {
 }
 
 /// The texels of the map around the piece, painted again.
-struct MapWindow {
+pub(super) struct MapWindow {
     first: [i32; 2],
     across: usize,
     texel_m: f32,
     half_m: f32,
-    values: Vec<[f32; 3 + KINDS]>,
+    values: Vec<[f32; TRAITS]>,
 }
 
 impl MapWindow {
@@ -101,7 +105,7 @@ impl MapWindow {
         let rows = place(first[1])..=place(first[1] + across as i32);
         let traits = TraitsMap::new(&Patches::new(params.terrain_seed, extent_m), land, rows);
         let grain = Grain::new(params.terrain_seed, map_px);
-        let mut values = vec![[0.0; 3 + KINDS]; across * across];
+        let mut values = vec![[0.0; TRAITS]; across * across];
         values.par_chunks_mut(across).enumerate().for_each(|(j, row)| {
             let j = (first[1] + j as i32).clamp(0, map_px as i32 - 1);
             let traits = traits.row(place(j));
@@ -110,14 +114,15 @@ impl MapWindow {
                 let (here, noise) = (traits.at(place(i)), grain.at(i as usize, j as usize));
                 let cover = climate.cover(&here, &noise);
                 value[..3].copy_from_slice(&climate.color(&here, &cover, &noise));
-                value[3..].copy_from_slice(&cover.parts());
+                value[3..3 + KINDS].copy_from_slice(&cover.parts());
+                value[3 + KINDS..].copy_from_slice(&climate.grass(&here, &noise));
             }
         });
         Self { first, across, texel_m, half_m: 0.5 * extent_m, values }
     }
 
     /// Colour and parts at a point, as a viewer filters the map.
-    fn at(&self, p: Vec2) -> [f32; 3 + KINDS] {
+    pub fn at(&self, p: Vec2) -> [f32; TRAITS] {
         let cell = |m: f32, first: i32| {
             let g = ((m + self.half_m) / self.texel_m - 0.5 - first as f32).clamp(0.0, (self.across - 1) as f32);
             let whole = (g as usize).min(self.across - 2);
@@ -128,24 +133,30 @@ impl MapWindow {
         let [a, b, c, d] = [k, k + 1, k + self.across, k + self.across + 1].map(|k| &self.values[k]);
         std::array::from_fn(|n| (a[n] * (1.0 - u) + b[n] * u) * (1.0 - v) + (c[n] * (1.0 - u) + d[n] * u) * v)
     }
+
+    /// The colour of grass at a point.
+    pub fn grass(&self, p: Vec2) -> [f32; 3] {
+        let value = self.at(p);
+        [value[3 + KINDS], value[4 + KINDS], value[5 + KINDS]]
+    }
 }
 
 /// The piece of land.
-struct Patch<'a> {
+pub(super) struct Patch<'a> {
     land: &'a Landform,
-    corner: Vec2,
-    seed: u32,
+    pub corner: Vec2,
+    pub seed: u32,
 }
 
 impl Patch<'_> {
     /// 0 on the border, 1 from `FADE_M` inside.
-    fn inward(&self, p: Vec2) -> f32 {
+    pub fn inward(&self, p: Vec2) -> f32 {
         let from_border = (p - self.corner).min(self.corner + SIDE_M - p).min_element();
         let t = (from_border / FADE_M).clamp(0.0, 1.0);
         t * t * (3.0 - 2.0 * t)
     }
 
-    fn height_m(&self, p: Vec2) -> f32 {
+    pub fn height_m(&self, p: Vec2) -> f32 {
         let inward = self.inward(p);
         let humps = if inward > 0.0 { fbm2(self.seed, p.x / 2.6, p.y / 2.6, 2, 0.5, 0) } else { 0.0 };
         self.land.field.height_m(p.x, p.y) + HUMPS_M * inward * humps
@@ -161,7 +172,7 @@ impl Patch<'_> {
     fn painted(&self, window: &MapWindow, p: Vec2) -> ([f32; 3], [f32; KINDS]) {
         let value = window.at(p);
         let (inward, mut color, mut parts) = (self.inward(p), [0.0; 3], [0.0; KINDS]);
-        parts.copy_from_slice(&value[3..]);
+        parts.copy_from_slice(&value[3..3 + KINDS]);
         let tuft = fbm2(self.seed ^ 1, p.x / 1.9, p.y / 1.9, 2, 0.7, 0) * inward;
         let hue = gradient2(self.seed ^ 2, p.x / 3.7, p.y / 3.7, 0) * inward;
         // Snow is even; everything else is lush here and worn there.

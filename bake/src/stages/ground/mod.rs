@@ -9,6 +9,7 @@
 mod cover;
 mod foreground;
 mod grain;
+mod grass;
 mod patterns;
 #[cfg(test)]
 mod tests;
@@ -22,6 +23,7 @@ use crate::model::{GroundMaps, Image8, Landform};
 use cover::{Climate, Noise};
 use grain::Grain;
 pub use foreground::{BLOCK_M, foreground};
+pub use grass::BLADE_WHITE;
 pub use textures::{TEXTURES, textures, tile_srgb};
 use traits::{Patches, Traits, TraitsMap};
 
