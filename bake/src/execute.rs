@@ -9,12 +9,15 @@ use rayon::prelude::*;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use crate::model::{Foreground, GroundMaps, GroundTextures, Image8, Landform, Mesh, Placement, SkyLight, StartView, TreeTextures};
+use crate::model::{
+    Foreground, GroundMaps, GroundTextures, Image8, Landform, Mesh, Placement, SkyLight, StartView,
+    TreeTextures,
+};
 use crate::plan::{Job, TEMPLATES};
 use crate::run::Inputs;
 use crate::stages::export::{
-    self, Blob, CloudSheet, ExportError, GlbBlob, GroundBlobs, GroundDetailBlobs, HeightfieldBlobs, Picture, SceneParts,
-    SkyBlobs, TreeImages, TreeTemplateBlob, exr, png,
+    self, Blob, CloudSheet, ExportError, GlbBlob, GroundBlobs, GroundDetailBlobs, HeightfieldBlobs, Picture,
+    SceneParts, SkyBlobs, TreeImages, TreeTemplateBlob, exr, png,
 };
 use crate::stages::ground::GroundParams;
 use crate::stages::placement::TreeFootprint;
@@ -150,7 +153,12 @@ fn terrain(params: &GroundParams, landform: &Landform) -> Result<Vec<Output>, St
         || {
             rayon::join(
                 || {
-                    let mesh = terrain_lod::mesh(landform, terrain_lod::default_error_m(field), ground::BLOCK_M, &colors);
+                    let mesh = terrain_lod::mesh(
+                        landform,
+                        terrain_lod::default_error_m(field),
+                        ground::BLOCK_M,
+                        &colors,
+                    );
                     export::terrain_glb(&mesh)
                 },
                 || terrain_lod::encode(field, &terrain_lod::lod(field)),
@@ -159,7 +167,8 @@ fn terrain(params: &GroundParams, landform: &Landform) -> Result<Vec<Output>, St
         || {
             let (low, high) = field.range_m();
             let scale = if high > low { 65535.0 / (high - low) } else { 0.0 };
-            let heights: Vec<u16> = field.heights_m.iter().map(|h| ((h - low) * scale + 0.5) as u16).collect();
+            let heights: Vec<u16> =
+                field.heights_m.iter().map(|h| ((h - low) * scale + 0.5) as u16).collect();
             png::encode_gray16(field.side, field.side, &heights)
         },
     );
@@ -190,11 +199,17 @@ fn ground_textures(GroundTextures { textures }: &GroundTextures) -> Vec<Output> 
     let index: Vec<_> =
         textures.iter().map(|t| GroundTextureIndex { name: t.name.clone(), tile_m: t.tile_m }).collect();
     let images = textures.iter().flat_map(|t| {
-        [(format!("{} detail", t.name), &t.detail_srgb, true), (format!("{} normal", t.name), &t.normal, false)]
+        [
+            (format!("{} detail", t.name), &t.detail_srgb, true),
+            (format!("{} normal", t.name), &t.normal, false),
+        ]
     });
     let mut outputs = pngs(images.collect());
-    let tiles: Vec<_> = textures.iter().enumerate().map(|(k, t)| ground::tile_srgb(k, &t.detail_srgb)).collect();
-    outputs.extend(pngs(textures.iter().zip(&tiles).map(|(t, tile)| (format!("{} tile", t.name), tile, true)).collect()));
+    let tiles: Vec<_> =
+        textures.iter().enumerate().map(|(k, t)| ground::tile_srgb(k, &t.detail_srgb)).collect();
+    outputs.extend(pngs(
+        textures.iter().zip(&tiles).map(|(t, tile)| (format!("{} tile", t.name), tile, true)).collect(),
+    ));
     outputs.push(encode("index", &index));
     outputs
 }
@@ -221,10 +236,13 @@ fn tree_textures(textures: &TreeTextures) -> Vec<Output> {
         ("bark color".to_owned(), &textures.bark_color_srgb, true),
         ("bark normal".to_owned(), &textures.bark_normal, false),
     ];
-    for (name, levels, count) in
-        [("leaf", &textures.leaf_srgb, index.leaf_levels), ("blossom", &textures.blossom_srgb, index.blossom_levels)]
-    {
-        images.extend(levels[..count].iter().enumerate().map(|(level, image)| (mip_name(name, level), image, true)));
+    for (name, levels, count) in [
+        ("leaf", &textures.leaf_srgb, index.leaf_levels),
+        ("blossom", &textures.blossom_srgb, index.blossom_levels),
+    ] {
+        images.extend(
+            levels[..count].iter().enumerate().map(|(level, image)| (mip_name(name, level), image, true)),
+        );
     }
     let mut outputs = pngs(images);
     outputs.push(encode("index", &index));
@@ -302,7 +320,8 @@ fn sky_pictures(images: &crate::model::SkyImages) -> Vec<Output> {
     pictures.extend(images.clear_faces.iter().enumerate().map(|(i, face)| (format!("clear face {i}"), face)));
     let mut outputs: Vec<Output> =
         pictures.into_par_iter().map(|(name, image)| Output::new(name, "exr", exr::encode(image))).collect();
-    let sheets = images.layers.iter().enumerate().map(|(i, layer)| (format!("layer {i}"), &layer.image_srgb, true));
+    let sheets =
+        images.layers.iter().enumerate().map(|(i, layer)| (format!("layer {i}"), &layer.image_srgb, true));
     outputs.extend(pngs(sheets.collect()));
     outputs.push(encode("index", &index));
     outputs
@@ -394,7 +413,11 @@ fn sky_blobs(
         (0..count).map(|i| blob("sky pictures", &format!("{name} {i}"))).collect()
     };
     let sheets = all("layer", index.layers.len())?;
-    let layers = index.layers.into_iter().zip(sheets).map(|((name, altitude_m, extent_m), image)| CloudSheet { name, altitude_m, extent_m, image });
+    let layers = index
+        .layers
+        .into_iter()
+        .zip(sheets)
+        .map(|((name, altitude_m, extent_m), image)| CloudSheet { name, altitude_m, extent_m, image });
     Ok(SkyBlobs {
         equirect: blob("sky pictures", "equirect")?,
         faces: all("face", index.faces)?,

@@ -52,7 +52,12 @@ impl Resolution {
         }
         let cells = side - 1;
         let face_px = cells.min(512);
-        Ok(Self { side, map_px: (2 * cells).clamp(128, 2048).min(cells.max(1024)), face_px, equirect_px: 4 * face_px })
+        Ok(Self {
+            side,
+            map_px: (2 * cells).clamp(128, 2048).min(cells.max(1024)),
+            face_px,
+            equirect_px: 4 * face_px,
+        })
     }
 }
 
@@ -215,11 +220,17 @@ impl Plan {
             .collect();
         let sky: SkyParams = genome.read(space)?;
         let sky_light = self.add(scene, Job::SkyLight { params: sky.clone() }, &[]);
-        let sky_pictures =
-            self.add(scene, Job::SkyPictures { params: sky, face_px, equirect_px }, &[("sky light", sky_light)]);
+        let sky_pictures = self.add(
+            scene,
+            Job::SkyPictures { params: sky, face_px, equirect_px },
+            &[("sky light", sky_light)],
+        );
         let terrain = self.add(scene, Job::Terrain { params: ground.clone() }, &[("landform", landform)]);
-        let ground_maps =
-            self.add(scene, Job::GroundMaps { params: ground.clone(), side_px: map_px }, &[("landform", landform)]);
+        let ground_maps = self.add(
+            scene,
+            Job::GroundMaps { params: ground.clone(), side_px: map_px },
+            &[("landform", landform)],
+        );
         let ground_textures = self.add(scene, Job::GroundTextures, &[]);
 
         let mut inputs = vec![("landform".to_owned(), landform)];

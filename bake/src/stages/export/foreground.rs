@@ -20,7 +20,10 @@ pub fn foreground_glb(foreground: &Foreground, kinds: &[&str], white: f32) -> Re
         return Err(ExportError::Empty("the foreground".into()));
     }
     if foreground.map_uvs.len() != mesh.positions.len() {
-        return Err(ExportError::Inconsistent("the foreground".into(), "its attribute lists differ in length"));
+        return Err(ExportError::Inconsistent(
+            "the foreground".into(),
+            "its attribute lists differ in length",
+        ));
     }
     let mut document = Document::default();
     document.materials = kinds

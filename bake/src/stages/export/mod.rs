@@ -24,6 +24,7 @@ mod tests;
 
 use thiserror::Error;
 
+pub use foreground::foreground_glb;
 pub use levels::levelled_glb;
 pub use materials::{MaterialSet, Picture, TreeImages, tree_glb};
 pub use scene::{
@@ -31,7 +32,6 @@ pub use scene::{
     TreeTemplateBlob, instances_bin, scene_gltf,
 };
 pub use single::single_glb;
-pub use foreground::foreground_glb;
 pub use terrain::{near_mesh, terrain_glb};
 
 /// What `asset.generator` says.

@@ -10,10 +10,10 @@ use serde_json::{Value, json};
 
 use super::ExportError;
 use super::document::{Document, Node, push};
+use super::foreground::tiled_material;
 use super::materials::{CLAMPED, REPEATING, TreeImages, sampler};
 use super::scene_import::GlbImport;
 use super::scene_trees::add_trees;
-use super::foreground::tiled_material;
 use super::terrain::{TERRAIN_MESHES, apron_material, ground_material, water_material};
 use crate::model::{Instance, Landform, Placement, SkyLight, StartView};
 
@@ -231,7 +231,11 @@ fn add_terrain(document: &mut Document, parts: &SceneParts<'_>) -> Result<Vec<us
     let mut nodes = Vec::new();
     if let Some(foreground) = &foreground {
         let grass = add_foreground(document, foreground, first_mesh, &ground.near)?;
-        nodes.extend(grass.map(|mesh| document.node(Node { name: "grass".into(), mesh: Some(mesh), ..Node::default() })));
+        nodes.extend(
+            grass.map(|mesh| {
+                document.node(Node { name: "grass".into(), mesh: Some(mesh), ..Node::default() })
+            }),
+        );
     }
     for (i, name) in names.into_iter().enumerate() {
         let mut node = Node { name, mesh: Some(first_mesh + i), ..Node::default() };
@@ -296,8 +300,8 @@ fn add_ground(document: &mut Document, parts: &SceneParts<'_>, occurs: &[usize])
     let (mut grass_normal, mut near) = (None, Vec::new());
     for (kind, detail) in ground.details.iter().enumerate() {
         let here = occurs.contains(&kind);
-        let normal =
-            (kind == 0 || here).then(|| texture(&format!("{} normals", detail.name), &detail.normal, repeating));
+        let normal = (kind == 0 || here)
+            .then(|| texture(&format!("{} normals", detail.name), &detail.normal, repeating));
         if let (0, Some(normal)) = (kind, normal) {
             grass_normal = Some((normal, parts.land.field.extent_m() / detail.tile_m));
         }

@@ -55,7 +55,8 @@ impl GlbImport {
 
     /// Numbers of the materials that its primitives have.
     pub fn materials_in_use(&self) -> Vec<usize> {
-        let primitives = self.list("meshes").iter().filter_map(|mesh| mesh["primitives"].as_array()).flatten();
+        let primitives =
+            self.list("meshes").iter().filter_map(|mesh| mesh["primitives"].as_array()).flatten();
         primitives.filter_map(|p| p["material"].as_u64()).map(|m| m as usize).collect()
     }
 

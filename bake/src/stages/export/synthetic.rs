@@ -27,13 +27,13 @@ impl Files {
 
 pub fn png(side: u32, channels: u32, sixteen: bool, value: impl Fn(u32, u32, u32) -> f32) -> Vec<u8> {
     let mut out = Vec::new();
-    let mut encoder = png::Encoder::new(&mut out, side, side);
+    let mut encoder = ::png::Encoder::new(&mut out, side, side);
     encoder.set_color(match channels {
-        1 => png::ColorType::Grayscale,
-        3 => png::ColorType::Rgb,
-        _ => png::ColorType::Rgba,
+        1 => ::png::ColorType::Grayscale,
+        3 => ::png::ColorType::Rgb,
+        _ => ::png::ColorType::Rgba,
     });
-    encoder.set_depth(if sixteen { png::BitDepth::Sixteen } else { png::BitDepth::Eight });
+    encoder.set_depth(if sixteen { ::png::BitDepth::Sixteen } else { ::png::BitDepth::Eight });
     let mut data = Vec::new();
     for (y, x) in (0..side).flat_map(|y| (0..side).map(move |x| (y, x))) {
         for c in 0..channels {
@@ -237,10 +237,11 @@ fn exr(width: usize, height: usize, sun: Vec3) -> Vec<u8> {
         let t = s.max(0.0);
         (0.55 - 0.4 * t + glow, 0.65 - 0.35 * t + glow, 0.75 - 0.1 * t + 0.8 * glow)
     };
-    let channels = exr::prelude::SpecificChannels::rgb(|at: exr::prelude::Vec2<usize>| pixel(at.x(), at.y()));
-    let image = exr::prelude::Image::from_channels((width, height), channels);
+    let channels =
+        ::exr::prelude::SpecificChannels::rgb(|at: ::exr::prelude::Vec2<usize>| pixel(at.x(), at.y()));
+    let image = ::exr::prelude::Image::from_channels((width, height), channels);
     let mut out = std::io::Cursor::new(Vec::new());
-    exr::prelude::WritableImage::write(&image).to_buffered(&mut out).unwrap();
+    ::exr::prelude::WritableImage::write(&image).to_buffered(&mut out).unwrap();
     out.into_inner()
 }
 

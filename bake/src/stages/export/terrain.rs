@@ -105,8 +105,7 @@ pub fn near_mesh(glb: &[u8]) -> Result<(Vec<[f32; 3]>, Vec<[u32; 3]>), ExportErr
     let float = |b: &[u8]| f32::from_le_bytes([b[0], b[1], b[2], b[3]]);
     let point = |v: &[u8]| [float(&v[0..4]), float(&v[4..8]), float(&v[8..12])];
     let stride = stride.unwrap_or(12).max(12);
-    let positions: Vec<_> =
-        data.chunks(stride).take(count).filter(|v| v.len() >= 12).map(point).collect();
+    let positions: Vec<_> = data.chunks(stride).take(count).filter(|v| v.len() >= 12).map(point).collect();
     let (data, _, count) = bytes(&primitive["indices"])?;
     let short = file.json["accessors"][number(&primitive["indices"])?]["componentType"] == UNSIGNED_SHORT;
     let indices: Vec<u32> = if short {
@@ -115,5 +114,9 @@ pub fn near_mesh(glb: &[u8]) -> Result<(Vec<[f32; 3]>, Vec<[u32; 3]>), ExportErr
         data.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).take(count).collect()
     };
     let triangles = indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
-    if indices.iter().any(|&i| i as usize >= positions.len()) { Err(bad()) } else { Ok((positions, triangles)) }
+    if indices.iter().any(|&i| i as usize >= positions.len()) {
+        Err(bad())
+    } else {
+        Ok((positions, triangles))
+    }
 }

@@ -7,8 +7,8 @@ use serde_json::Value;
 use super::svd::tests::{difference, product};
 use super::synthetic::*;
 use super::*;
-use crate::stages::start::start_view;
 use crate::model::{LevelledMesh, Material, Mesh};
+use crate::stages::start::start_view;
 
 fn gltf_of(glb: &[u8]) -> (gltf::Document, Vec<u8>) {
     let gltf = gltf::Gltf::from_slice(glb).expect("the gltf crate reads it");
@@ -320,7 +320,7 @@ fn foreign_materials_pass_through() {
     };
     assert_eq!(mime_type, "image/png");
     let png = std::io::Cursor::new(&bin[view.offset()..view.offset() + view.length()]);
-    assert_eq!(png::Decoder::new(png).read_info().unwrap().info().size(), (1, 1));
+    assert_eq!(::png::Decoder::new(png).read_info().unwrap().info().size(), (1, 1));
     let primitive = document.meshes().next().unwrap().primitives().next().unwrap();
     assert_eq!(primitive.material().name(), Some("b"));
 }

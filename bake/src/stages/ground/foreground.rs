@@ -67,7 +67,9 @@ fn corner(field: &Heightfield, view: &StartView) -> Option<Vec2> {
     }
     let along = Vec2::new(view.direction.x, view.direction.z).normalize_or_zero();
     let wanted = plan(view.position_m.to_array()) + along * AHEAD_M - 0.5 * SIDE_M + 0.5 * extent_m;
-    let blocks = (wanted / BLOCK_M + 0.5).floor().clamp(Vec2::ZERO, Vec2::splat((extent_m - SIDE_M) / BLOCK_M).floor());
+    let blocks = (wanted / BLOCK_M + 0.5)
+        .floor()
+        .clamp(Vec2::ZERO, Vec2::splat((extent_m - SIDE_M) / BLOCK_M).floor());
     Some(blocks * BLOCK_M - 0.5 * extent_m)
 }
 
@@ -124,7 +126,8 @@ impl MapWindow {
     /// Colour and parts at a point, as a viewer filters the map.
     pub fn at(&self, p: Vec2) -> [f32; TRAITS] {
         let cell = |m: f32, first: i32| {
-            let g = ((m + self.half_m) / self.texel_m - 0.5 - first as f32).clamp(0.0, (self.across - 1) as f32);
+            let g =
+                ((m + self.half_m) / self.texel_m - 0.5 - first as f32).clamp(0.0, (self.across - 1) as f32);
             let whole = (g as usize).min(self.across - 2);
             (whole, g - whole as f32)
         };

@@ -17,7 +17,7 @@ const TUFT_M: f32 = 0.3;
 /// Metres from the eye up to which they do.
 const DENSE_M: f32 = 5.0;
 /// Metres from the eye to the last tufts.
-const REACH_M: f32 = 34.0;
+const REACH_M: f32 = 42.0;
 /// Metres around the eye that stay free.
 const FREE_M: f32 = 0.9;
 /// Albedo of a vertex colour of 1: grass is dark, and bytes are few.
@@ -84,18 +84,19 @@ impl Meadow<'_> {
             return Vec::new();
         }
         let here = self.window.at(place);
-        let clump = gradient2(seed, place.x / 1.4, place.y / 1.4, 0) + 0.6 * gradient2(seed, place.x / 0.5, place.y / 0.5, 0);
+        let clump = gradient2(seed, place.x / 1.4, place.y / 1.4, 0)
+            + 0.6 * gradient2(seed, place.x / 0.5, place.y / 0.5, 0);
         let growth = (here[3] - 0.35) * 1.8 + 0.8 * clump + 0.3 * (dice(3) - 0.5);
         if growth < 0.05 || here[3] < 0.3 {
             return Vec::new();
         }
         let growth = growth.min(1.0);
-        let edge = ((REACH_M - distance) / 10.0).min(1.0);
+        let edge = ((REACH_M - distance) / 24.0).min(1.0);
         let tall = if dice(4) > 0.96 { 1.9 } else { 1.0 };
         let height = (0.05 + 0.13 * growth) * (0.7 + 0.6 * dice(5)) * tall * edge;
         let count = ((4.0 + 7.0 * growth) * (1.0 - 0.5 * (distance / REACH_M))) as i32;
         let color = self.window.grass(place);
-        let tone = 0.8 + 0.5 * dice(6);
+        let tone = 0.85 + 0.5 * dice(6);
         let color = color.map(|c| c * tone);
         (0..count).map(|b| self.blade(place, [i, j, b], height, distance, color)).collect()
     }
@@ -115,10 +116,10 @@ impl Meadow<'_> {
         let side = Vec3::new(to_eye.z, 0.0, -to_eye.x);
         let side = (side + to_eye * (1.2 * (dice(4) - 0.5))).normalize();
         let half = side * (0.0035 + 0.0025 * dice(5)) * (1.0 + 0.11 * distance).min(3.6);
-        let normal = (Vec3::Y + 0.5 * to_eye + 0.35 * Vec3::new(out.x, 0.0, out.y)).normalize();
+        let normal = (Vec3::Y + 0.3 * to_eye + 0.25 * Vec3::new(out.x, 0.0, out.y)).normalize();
         // Some blades are straw.
         let straw = if dice(6) > 0.86 { [1.9, 1.45, 1.2] } else { [1.0; 3] };
         let shade = |factor: f32| [0, 1, 2].map(|c| color[c] * straw[c] * factor);
-        Blade { points: [base - half, base + half, tip], normal, root: shade(0.55), tip: shade(1.5) }
+        Blade { points: [base - half, base + half, tip], normal, root: shade(0.9), tip: shade(2.0) }
     }
 }

@@ -21,8 +21,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::model::{GroundMaps, Image8, Landform};
 use cover::{Climate, Noise};
-use grain::Grain;
 pub use foreground::{BLOCK_M, foreground};
+use grain::Grain;
 pub use grass::BLADE_WHITE;
 pub use textures::{TEXTURES, textures, tile_srgb};
 use traits::{Patches, Traits, TraitsMap};
