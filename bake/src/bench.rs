@@ -42,11 +42,11 @@ pub fn bench(runs: u32, pool: &rayon::ThreadPool, resolution: Resolution) -> Res
         whole.add("unchanged", ms, built);
         for category in [Category::Tree, Category::Terrain, Category::Sky] {
             let mut changed = starter.clone();
-            *changed.individuals[0].genome.chromosome_mut(category) =
-                Population::random(&space, u64::from(runs), 0).individuals[0]
-                    .genome
-                    .chromosome(category)
-                    .clone();
+            *changed.individuals[0].genome.chromosome_mut(category) = Population::random(&space, u64::from(runs), 0)
+                .individuals[0]
+                .genome
+                .chromosome(category)
+                .clone();
             let (ms, built) = bench.bake(&changed, &Stages::default())?;
             whole.add(&format!("one {} chromosome changed", category.name()), ms, built);
         }
@@ -113,8 +113,7 @@ fn tree_costs(space: &Space, starter: &Population, runs: u32) -> Result<()> {
             one_core.install(|| -> Result<()> {
                 let template = samples.time("generating it", || tree::template(&params, index));
                 let options = lod::LodOptions::default();
-                let levels = samples
-                    .time("progressive mesh, levels, strips", || lod::levels(&template.mesh, &options));
+                let levels = samples.time("progressive mesh, levels, strips", || lod::levels(&template.mesh, &options));
                 samples.time("writing the file", || export::tree_glb("tree", &levels, &NO_PICTURES))?;
                 triangles += template.mesh.triangle_count();
                 trees += 1;

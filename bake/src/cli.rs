@@ -108,9 +108,7 @@ pub enum Command {
         world: WorldArgs,
     },
     /// Write a scene as one self-contained file.
-    #[command(
-        after_help = "Examples:\n  bake export 0 valley.glb\n  bake export world/baked/g0002/scene-1/scene.gltf alps.glb"
-    )]
+    #[command(after_help = "Examples:\n  bake export 0 valley.glb\n  bake export world/baked/g0002/scene-1/scene.gltf alps.glb")]
     Export {
         /// Scene 0 to 3 of the current generation, or the path of a scene.gltf.
         scene: String,
@@ -122,9 +120,7 @@ pub enum Command {
         world: WorldArgs,
     },
     /// Make a progressive mesh with distinguished meshes and geomorphs of anyone's glTF or OBJ file.
-    #[command(
-        after_help = "Example:\n  bake lod stanford-bunny.obj bunny.glb\n\nRepairs that the input needed are said, line by line."
-    )]
+    #[command(after_help = "Example:\n  bake lod stanford-bunny.obj bunny.glb\n\nRepairs that the input needed are said, line by line.")]
     Lod {
         /// A .glb, .gltf or .obj file.
         #[arg(value_name = "IN")]

@@ -160,12 +160,7 @@ impl Session {
         Ok(())
     }
 
-    fn run(
-        &self,
-        plan: &Plan,
-        file: &PopulationFile,
-        listener: &dyn Listener,
-    ) -> Result<Vec<Done>, RunError> {
+    fn run(&self, plan: &Plan, file: &PopulationFile, listener: &dyn Listener) -> Result<Vec<Done>, RunError> {
         let population = &file.loaded.population;
         let scene_ready = |scene: usize, blob: &genescape_cache::BlobRef| -> Result<()> {
             let json = || -> Result<Vec<u8>> {
@@ -251,8 +246,7 @@ fn bake(args: &BakeArgs) -> Result<()> {
         if !watch.wait(&|| INTERRUPTED.load(Ordering::SeqCst)) {
             return Ok(());
         }
-        last =
-            session.world.reload_space().and_then(|()| target(&session)).and_then(|p| session.bake_file(&p));
+        last = session.world.reload_space().and_then(|()| target(&session)).and_then(|p| session.bake_file(&p));
     }
 }
 
@@ -281,9 +275,8 @@ fn export(args: &WorldArgs, scene: &str, out: &Path) -> Result<()> {
     let json = std::fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
     let folder = path.parent().unwrap_or(Path::new("."));
     let read = |uri: &str| std::fs::read(folder.join(uri)).map_err(|error| error.to_string());
-    let glb = crate::stages::export::single_glb(&json, read).with_context(|| {
-        format!("{}: cannot be made one file; bake again if blobs are missing", path.display())
-    })?;
+    let glb = crate::stages::export::single_glb(&json, read)
+        .with_context(|| format!("{}: cannot be made one file; bake again if blobs are missing", path.display()))?;
     world::write_synced(out, &glb)?;
     println!("wrote {} ({:.1} MB)", out.display(), glb.len() as f64 / 1e6);
     Ok(())
@@ -397,19 +390,14 @@ fn gc(world: &World, cache: &Cache, max_size: u64) -> Result<()> {
         megabytes(report.bytes_of_roots),
     );
     if report.bytes_left > max_size {
-        println!(
-            "more is left than asked for: what current scenes use stays, and what was used within {grace_min} min"
-        );
+        println!("more is left than asked for: what current scenes use stays, and what was used within {grace_min} min");
     }
     let kept: Vec<PathBuf> = current.iter().flat_map(|c| &c.scenes).map(|s| world.root().join(s)).collect();
     for file in world.scene_files()?.into_iter().filter(|file| !kept.contains(file)) {
         if !world::is_whole(&file)? {
             // A scene with holes is worse than none; its population file makes it again.
             std::fs::remove_file(&file).with_context(|| format!("cannot remove {}", file.display()))?;
-            println!(
-                "removed {}: parts of it are gone; bake its population to have it again",
-                file.display()
-            );
+            println!("removed {}: parts of it are gone; bake its population to have it again", file.display());
         }
     }
     Ok(())

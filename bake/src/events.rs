@@ -98,10 +98,9 @@ impl Bar {
     /// A bar that stays hidden until there is something to compute, and where standard error is no terminal.
     pub fn new() -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
-        let style =
-            ProgressStyle::with_template("{bar:32.green/dim} {pos}/{len} {elapsed:.dim}  {wide_msg:.dim}")
-                .expect("a valid template")
-                .progress_chars("━━─");
+        let style = ProgressStyle::with_template("{bar:32.green/dim} {pos}/{len} {elapsed:.dim}  {wide_msg:.dim}")
+            .expect("a valid template")
+            .progress_chars("━━─");
         bar.set_style(style);
         Self { bar, running: Mutex::default() }
     }

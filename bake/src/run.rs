@@ -4,8 +4,8 @@
 //! pool that never takes a lock. Were both done by the same threads, a stage waiting for its inner loop could steal
 //! another action whose lock another process holds, while that process waits for ours.
 
-use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+use std::cmp::Reverse;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
@@ -105,9 +105,7 @@ impl Runner<'_> {
         loop {
             attempts -= 1;
             match self.attempt(plan) {
-                Err(RunError::Stage { source: StageError::InputLost, .. }) if attempts > 0 => {
-                    self.tell_notices()
-                }
+                Err(RunError::Stage { source: StageError::InputLost, .. }) if attempts > 0 => self.tell_notices(),
                 result => {
                     self.tell_notices();
                     return result;
@@ -196,12 +194,10 @@ fn named_fields(job: &Job) -> Vec<(String, String)> {
     fn flatten(name: &str, value: &serde_json::Value, into: &mut Vec<(String, String)>) {
         match value {
             serde_json::Value::Object(fields) => fields.iter().for_each(|(n, v)| flatten(n, v, into)),
-            serde_json::Value::Array(pairs) => {
-                pairs.iter().for_each(|pair| match pair.as_array().map(Vec::as_slice) {
-                    Some([serde_json::Value::String(n), v]) => into.push((n.clone(), v.to_string())),
-                    _ => into.push((name.to_owned(), pair.to_string())),
-                })
-            }
+            serde_json::Value::Array(pairs) => pairs.iter().for_each(|pair| match pair.as_array().map(Vec::as_slice) {
+                Some([serde_json::Value::String(n), v]) => into.push((n.clone(), v.to_string())),
+                _ => into.push((name.to_owned(), pair.to_string())),
+            }),
             other => into.push((name.to_owned(), other.to_string())),
         }
     }
@@ -259,8 +255,7 @@ impl Board {
             if let Some(Reverse(id)) = state.ready.pop() {
                 state.running += 1;
                 let inputs = plan.nodes[id].inputs.iter();
-                let inputs =
-                    inputs.map(|&(_, n)| state.done[n].clone().expect("inputs come first")).collect();
+                let inputs = inputs.map(|&(_, n)| state.done[n].clone().expect("inputs come first")).collect();
                 return Some((id, inputs));
             }
             if state.running == 0 {
@@ -282,9 +277,7 @@ impl Board {
                 for &(_, input) in &plan.nodes[id].inputs {
                     state.readers[input] -= 1;
                     // Memory holds only what someone may still read.
-                    if state.readers[input] == 0
-                        && let Some(done) = &mut state.done[input]
-                    {
+                    if state.readers[input] == 0 && let Some(done) = &mut state.done[input] {
                         done.bytes = None;
                     }
                 }

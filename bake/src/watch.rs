@@ -38,9 +38,7 @@ impl Watch {
         let on_events = move |result: DebounceEventResult| {
             // Errors (an overflowing queue, say) mean lost events, so they count as a change, too.
             let changed = match result {
-                Ok(events) => {
-                    events.iter().any(|e| e.need_rescan() || !matches!(e.kind, EventKind::Access(_)))
-                }
+                Ok(events) => events.iter().any(|e| e.need_rescan() || !matches!(e.kind, EventKind::Access(_))),
                 Err(_) => true,
             };
             if changed {

@@ -58,11 +58,7 @@ impl World {
     /// Opens the world in `root`, which must exist.
     pub fn open(root: &Path) -> Result<Self> {
         if !root.join(names::POPULATIONS).is_dir() {
-            bail!(
-                "{} is no world folder: it has no {}/; `bake` makes one",
-                root.display(),
-                names::POPULATIONS
-            );
+            bail!("{} is no world folder: it has no {}/; `bake` makes one", root.display(), names::POPULATIONS);
         }
         let mut world = Self { root: root.to_owned(), space: Space::builtin() };
         world.reload_space()?;
@@ -127,13 +123,7 @@ impl World {
     }
 
     /// Puts a scene's file in its place unless the very same is there. The file is always whole: it is renamed.
-    pub fn publish_scene(
-        &self,
-        generation: u32,
-        scene: usize,
-        digest: Digest,
-        json: &dyn Fn() -> Result<Vec<u8>>,
-    ) -> Result<()> {
+    pub fn publish_scene(&self, generation: u32, scene: usize, digest: Digest, json: &dyn Fn() -> Result<Vec<u8>>) -> Result<()> {
         let path = self.scene_path(generation, scene);
         if fs::read(&path).is_ok_and(|there| Digest::of(&there) == digest) {
             return Ok(());
@@ -209,9 +199,7 @@ fn uris(json: &serde_json::Value) -> Vec<&str> {
 fn read_dir_sorted(folder: &Path) -> Result<Vec<PathBuf>> {
     let entries = match fs::read_dir(folder) {
         Ok(entries) => entries,
-        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
-            return Ok(Vec::new());
-        }
+        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => return Ok(Vec::new()),
         Err(error) => return Err(error).with_context(|| format!("cannot read {}", folder.display())),
     };
     let mut paths = entries.map(|e| Ok(e?.path())).collect::<std::io::Result<Vec<_>>>()?;
@@ -240,9 +228,7 @@ fn create_unless_there(path: &Path, text: &str) -> Result<bool> {
 /// Writes a file that the person asked for (an export), replacing an older one, synced.
 pub fn write_synced(path: &Path, bytes: &[u8]) -> Result<()> {
     let file = draft(path, bytes, true)?;
-    file.persist(path)
-        .map_err(|error| error.error)
-        .with_context(|| format!("cannot write {}", path.display()))?;
+    file.persist(path).map_err(|error| error.error).with_context(|| format!("cannot write {}", path.display()))?;
     Ok(())
 }
 
@@ -252,9 +238,7 @@ fn replace(path: &Path, bytes: &[u8]) -> Result<()> {
         fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
     }
     let file = draft(path, bytes, false)?;
-    file.persist(path)
-        .map_err(|error| error.error)
-        .with_context(|| format!("cannot write {}", path.display()))?;
+    file.persist(path).map_err(|error| error.error).with_context(|| format!("cannot write {}", path.display()))?;
     Ok(())
 }
 
