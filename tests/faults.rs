@@ -137,7 +137,7 @@ fn two_bakes_of_one_world_share_the_work() {
     let all = built.len();
     built.dedup();
     assert_eq!(all, built.len(), "nothing was built twice");
-    assert_eq!(built.len(), 57);
+    assert_eq!(built.len(), 65);
 }
 
 #[test]

@@ -9,7 +9,10 @@ use rayon::prelude::*;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use crate::model::{GroundMaps, GroundTextures, Image8, Landform, Mesh, Placement, SkyLight, TreeTextures};
+use crate::model::{
+    Foreground, GroundMaps, GroundTextures, Image8, Landform, Mesh, Placement, SkyLight, StartView,
+    TreeTextures,
+};
 use crate::plan::{Job, TEMPLATES};
 use crate::run::Inputs;
 use crate::stages::export::{
@@ -18,7 +21,7 @@ use crate::stages::export::{
 };
 use crate::stages::ground::GroundParams;
 use crate::stages::placement::TreeFootprint;
-use crate::stages::{ground, land, light, lod, placement, sky, terrain_lod, tree};
+use crate::stages::{ground, land, light, lod, placement, sky, start, terrain_lod, tree};
 
 /// The scene stage's output: the text of `scene.gltf`.
 pub const SCENE: &str = "scene";
@@ -56,7 +59,8 @@ pub fn reads(job: &Job, name: &str, output: &str) -> bool {
     match job {
         Job::Placement { .. } if tree => output == "footprint",
         Job::LightMap { .. } if tree => output == "caster",
-        Job::LightMap { .. } if name == "placement" => output == "placement",
+        Job::LightMap { .. } | Job::Start if name == "placement" => output == "placement",
+        Job::Foreground { .. } if name == "terrain" => output == "mesh",
         Job::Tree { .. } => !output.contains("mip"),
         _ => true,
     }
@@ -76,6 +80,13 @@ fn dispatch(job: &Job, inputs: &Inputs<'_>) -> Result<Vec<Output>, StageError> {
     match job {
         Job::Landform { params, side } => Ok(vec![encode("landform", &land::landform(params, *side))]),
         Job::Terrain { params } => terrain(params, &read(inputs, "landform", "landform")?),
+        Job::Start => {
+            let land: Landform = read(inputs, "landform", "landform")?;
+            let sun = read::<SkyLight>(inputs, "sky light", "light")?.sun_direction;
+            let placed: Placement = read(inputs, "placement", "placement")?;
+            Ok(vec![encode("view", &start::start_view(&land.field, land.water_level_m, &placed, sun))])
+        }
+        Job::Foreground { params, map_px } => foreground(params, *map_px, inputs),
         Job::GroundMaps { params, side_px } => {
             let GroundMaps { color_srgb, weights } =
                 ground::maps(params, &read(inputs, "landform", "landform")?, *side_px);
@@ -142,7 +153,12 @@ fn terrain(params: &GroundParams, landform: &Landform) -> Result<Vec<Output>, St
         || {
             rayon::join(
                 || {
-                    let mesh = terrain_lod::mesh(landform, terrain_lod::default_error_m(field), &colors);
+                    let mesh = terrain_lod::mesh(
+                        landform,
+                        terrain_lod::default_error_m(field),
+                        ground::BLOCK_M,
+                        &colors,
+                    );
                     export::terrain_glb(&mesh)
                 },
                 || terrain_lod::encode(field, &terrain_lod::lod(field)),
@@ -163,6 +179,15 @@ fn terrain(params: &GroundParams, landform: &Landform) -> Result<Vec<Output>, St
     ])
 }
 
+fn foreground(params: &GroundParams, map_px: u32, inputs: &Inputs<'_>) -> Result<Vec<Output>, StageError> {
+    let land: Landform = read(inputs, "landform", "landform")?;
+    let view: StartView = read(inputs, "start", "view")?;
+    let (positions, triangles) = export::near_mesh(&inputs.bytes("terrain", "mesh")?)?;
+    let made: Foreground = ground::foreground(params, &land, map_px, &view, &positions, &triangles);
+    let glb = export::foreground_glb(&made, &ground::TEXTURES, ground::BLADE_WHITE)?;
+    Ok(vec![Output::new("mesh", "glb", glb)])
+}
+
 /// What is known of a texture besides its pictures.
 #[derive(Serialize, Deserialize)]
 struct GroundTextureIndex {
@@ -180,6 +205,11 @@ fn ground_textures(GroundTextures { textures }: &GroundTextures) -> Vec<Output> 
         ]
     });
     let mut outputs = pngs(images.collect());
+    let tiles: Vec<_> =
+        textures.iter().enumerate().map(|(k, t)| ground::tile_srgb(k, &t.detail_srgb)).collect();
+    outputs.extend(pngs(
+        textures.iter().zip(&tiles).map(|(t, tile)| (format!("{} tile", t.name), tile, true)).collect(),
+    ));
     outputs.push(encode("index", &index));
     outputs
 }
@@ -315,13 +345,15 @@ fn scene(name: &str, genes: &[(String, f32)], inputs: &Inputs<'_>) -> Result<Vec
     let placed: Placement = read(inputs, "placement", "placement")?;
     let sky_light: SkyLight = read(inputs, "sky light", "light")?;
     let terrain = inputs.bytes("terrain", "mesh")?;
+    let foreground = inputs.bytes("foreground", "mesh")?;
     let trees = for_trees(|tree| inputs.bytes(tree, "glb"))?;
 
     let index: Vec<GroundTextureIndex> = read(inputs, "ground textures", "index")?;
     let details = index.into_iter().map(|GroundTextureIndex { name, tile_m }| {
         let detail = blob("ground textures", &format!("{name} detail"))?;
         let normal = blob("ground textures", &format!("{name} normal"))?;
-        Ok(GroundDetailBlobs { name, detail, normal, tile_m })
+        let tile = blob("ground textures", &format!("{name} tile"))?;
+        Ok(GroundDetailBlobs { name, detail, normal, tile, tile_m })
     });
     let ground = GroundBlobs {
         color: blob("ground maps", "color")?,
@@ -338,6 +370,8 @@ fn scene(name: &str, genes: &[(String, f32)], inputs: &Inputs<'_>) -> Result<Vec
         genome: genes.iter().map(|(gene, value)| (gene.clone(), serde_json::Value::from(*value))).collect(),
         land: &land,
         terrain: GlbBlob { uri: uri(inputs.blob("terrain", "mesh")?), bytes: &terrain },
+        foreground: Some(GlbBlob { uri: uri(inputs.blob("foreground", "mesh")?), bytes: &foreground }),
+        view: read(inputs, "start", "view")?,
         heightfield: HeightfieldBlobs {
             heights_png: blob("terrain", "heights")?,
             range_m: land.field.range_m(),

@@ -5,6 +5,7 @@
 //!                             ├─► ground maps          ground textures (shared by every scene)
 //!  tree genes ─┬─► tree textures ─► tree 0…4 (template, levels, progressive mesh, file)
 //!              └──────────────┬─► placement ◄── landform, trees
+//!  landform, placement, sky light ─► start ─► foreground ◄── terrain files
 //!  sky genes ─► sky light ─┬─► sky pictures
 //!                          └─► light map ◄── landform, placement, trees
 //!                                                           all of them ─► scene
@@ -77,6 +78,15 @@ pub enum Job {
         /// Genes of the colours of the land beyond the field.
         params: GroundParams,
     },
+    /// Landform, placement, sun → where a person first stands.
+    Start,
+    /// Landform, near mesh, start → the ground around the start in finer triangles.
+    Foreground {
+        /// Genes of the colours.
+        params: GroundParams,
+        /// Pixels a side of the ground map, whose look it continues.
+        map_px: u32,
+    },
     /// Landform → albedo and blend weights.
     GroundMaps {
         /// Genes.
@@ -136,16 +146,18 @@ impl Job {
     pub fn stage(&self) -> (&'static str, u32) {
         match self {
             Job::Landform { .. } => ("landform", 1),
-            Job::Terrain { .. } => ("terrain", 1),
+            Job::Terrain { .. } => ("terrain", 2),
+            Job::Start => ("start", 1),
+            Job::Foreground { .. } => ("foreground", 1),
             Job::GroundMaps { .. } => ("ground maps", 1),
-            Job::GroundTextures => ("ground textures", 1),
+            Job::GroundTextures => ("ground textures", 2),
             Job::TreeTextures { .. } => ("tree textures", 1),
             Job::Tree { .. } => ("tree", 1),
             Job::SkyLight { .. } => ("sky light", 1),
             Job::SkyPictures { .. } => ("sky pictures", 1),
             Job::Placement { .. } => ("placement", 1),
             Job::LightMap { .. } => ("light map", 1),
-            Job::Scene { .. } => ("scene", 1),
+            Job::Scene { .. } => ("scene", 2),
         }
     }
 }
@@ -215,8 +227,11 @@ impl Plan {
             &[("sky light", sky_light)],
         );
         let terrain = self.add(scene, Job::Terrain { params: ground.clone() }, &[("landform", landform)]);
-        let ground_maps =
-            self.add(scene, Job::GroundMaps { params: ground, side_px: map_px }, &[("landform", landform)]);
+        let ground_maps = self.add(
+            scene,
+            Job::GroundMaps { params: ground.clone(), side_px: map_px },
+            &[("landform", landform)],
+        );
         let ground_textures = self.add(scene, Job::GroundTextures, &[]);
 
         let mut inputs = vec![("landform".to_owned(), landform)];
@@ -225,11 +240,23 @@ impl Plan {
 
         inputs.push(("placement".to_owned(), placement));
         inputs.push(("sky light".to_owned(), sky_light));
+        let start = self.add(
+            scene,
+            Job::Start,
+            &[("landform", landform), ("placement", placement), ("sky light", sky_light)],
+        );
+        let foreground = self.add(
+            scene,
+            Job::Foreground { params: ground, map_px },
+            &[("landform", landform), ("terrain", terrain), ("start", start)],
+        );
         let light_map = self.insert(scene, Job::LightMap { side_px: map_px }, inputs.clone());
 
         inputs.extend(
             [
                 ("light map", light_map),
+                ("start", start),
+                ("foreground", foreground),
                 ("terrain", terrain),
                 ("ground maps", ground_maps),
                 ("ground textures", ground_textures),

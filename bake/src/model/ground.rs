@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Image8;
+use super::{Image8, Mesh};
 
 /// Pictures that cover the field once: row 0 is its north edge (−z), column 0 its west edge (−x).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,4 +31,18 @@ pub struct GroundTexture {
 pub struct GroundTextures {
     /// The five textures.
     pub textures: Vec<GroundTexture>,
+}
+
+/// The ground around the start, finely meshed for tiling textures: core glTF cannot blend these by a map, so each
+/// kind of ground is a part of its own, `Material::Foreign(k)` for the kth of `GroundTextures`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Foreground {
+    /// Parts with vertices of their own; uvs count tiles; colours times the kind's tile give the albedo.
+    pub mesh: Mesh,
+    /// For each vertex its place on the maps over the whole field, as the uvs of `TerrainMesh::near`.
+    pub map_uvs: Vec<[f32; 2]>,
+    /// The triangles of `TerrainMesh::near` that it does not replace.
+    pub rest: Vec<[u32; 3]>,
+    /// Blades of grass that stand on it: no uvs, colours that are to be multiplied by `ground::BLADE_WHITE`.
+    pub grass: Mesh,
 }

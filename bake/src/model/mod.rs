@@ -10,10 +10,12 @@ mod light;
 mod mesh;
 mod terrain;
 mod tree;
+mod view;
 
-pub use ground::{GroundMaps, GroundTexture, GroundTextures};
+pub use ground::{Foreground, GroundMaps, GroundTexture, GroundTextures};
 pub use image::{Image8, ImageF16};
 pub use light::{CloudLayer, LightMap, SkyImages, SkyLight};
 pub use mesh::{Bounds, Material, Mesh, Part, PartKind};
 pub use terrain::{Heightfield, Landform, TerrainLod, TerrainMesh};
 pub use tree::{Instance, Level, LevelledMesh, Morph, Placement, TreeTemplate, TreeTextures};
+pub use view::{StartView, rotation_from_z};

@@ -8,5 +8,6 @@ pub mod light;
 pub mod lod;
 pub mod placement;
 pub mod sky;
+pub mod start;
 pub mod terrain_lod;
 pub mod tree;

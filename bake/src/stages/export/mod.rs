@@ -5,6 +5,7 @@
 
 mod document;
 pub mod exr;
+mod foreground;
 mod glb;
 mod levels;
 mod materials;
@@ -13,7 +14,6 @@ mod scene;
 mod scene_import;
 mod scene_trees;
 mod single;
-mod start;
 mod svd;
 #[cfg(test)]
 mod synthetic;
@@ -24,6 +24,7 @@ mod tests;
 
 use thiserror::Error;
 
+pub use foreground::foreground_glb;
 pub use levels::levelled_glb;
 pub use materials::{MaterialSet, Picture, TreeImages, tree_glb};
 pub use scene::{
@@ -31,8 +32,7 @@ pub use scene::{
     TreeTemplateBlob, instances_bin, scene_gltf,
 };
 pub use single::single_glb;
-pub use start::{StartView, start_view};
-pub use terrain::terrain_glb;
+pub use terrain::{near_mesh, terrain_glb};
 
 /// What `asset.generator` says.
 pub const GENERATOR: &str = concat!("Genescape ", env!("CARGO_PKG_VERSION"));

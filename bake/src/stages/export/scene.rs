@@ -10,12 +10,12 @@ use serde_json::{Value, json};
 
 use super::ExportError;
 use super::document::{Document, Node, push};
+use super::foreground::tiled_material;
 use super::materials::{CLAMPED, REPEATING, TreeImages, sampler};
 use super::scene_import::GlbImport;
 use super::scene_trees::add_trees;
-use super::start::{StartView, rotation_from_z, start_view};
 use super::terrain::{TERRAIN_MESHES, apron_material, ground_material, water_material};
-use crate::model::{Instance, Landform, Placement, SkyLight};
+use crate::model::{Instance, Landform, Placement, SkyLight, StartView, rotation_from_z};
 
 const PNG: &str = "image/png";
 const EXR: &str = "image/x-exr";
@@ -72,6 +72,8 @@ pub struct GroundDetailBlobs {
     pub detail: Blob,
     /// `GroundTexture::normal` as PNG.
     pub normal: Blob,
+    /// The detail as a base colour, see `ground::tile_srgb`, as PNG.
+    pub tile: Blob,
     /// Metres that one tile covers.
     pub tile_m: f32,
 }
@@ -122,6 +124,10 @@ pub struct SceneParts<'a> {
     pub land: &'a Landform,
     /// What [`super::terrain_glb`] made.
     pub terrain: GlbBlob<'a>,
+    /// What [`super::foreground_glb`] made of the ground around the start, if there is any.
+    pub foreground: Option<GlbBlob<'a>>,
+    /// Where a person first stands.
+    pub view: StartView,
     /// The heightfield's files.
     pub heightfield: HeightfieldBlobs,
     /// The ground's files.
@@ -155,8 +161,7 @@ pub fn instances_bin(placement: &Placement) -> Vec<u8> {
 /// # Errors
 /// When a .glb is none, or an instance is mirrored or of an unknown template.
 pub fn scene_gltf(parts: &SceneParts<'_>) -> Result<Vec<u8>, ExportError> {
-    let view =
-        start_view(&parts.land.field, parts.land.water_level_m, parts.placement, parts.light.sun_direction);
+    let view = parts.view;
     let mut document = Document::default();
     let mut roots = vec![add_camera(&mut document, &view), add_sun(&mut document, parts.light)];
     roots.extend(add_terrain(&mut document, parts)?);
@@ -209,19 +214,29 @@ fn add_sun(document: &mut Document, light: &SkyLight) -> usize {
 
 fn add_terrain(document: &mut Document, parts: &SceneParts<'_>) -> Result<Vec<usize>, ExportError> {
     let glb = GlbImport::open(document, &parts.terrain)?;
-    let first_material = document.materials.len();
     let names = glb.mesh_names();
+    let foreground = parts.foreground.as_ref().map(|blob| GlbImport::open(document, blob)).transpose()?;
+    let occurs = foreground.as_ref().map_or(Vec::new(), GlbImport::materials_in_use);
+    let ground = add_ground(document, parts, &occurs);
+    let first_material = document.materials.len();
     for name in &names {
-        let material = match name.as_str() {
+        document.materials.push(match name.as_str() {
             "apron" => apron_material(),
             "water" => water_material(),
-            _ => add_ground(document, parts),
-        };
-        document.materials.push(material);
+            _ => ground.far.clone(),
+        });
     }
     // The file has a material a mesh, in the same order.
     let first_mesh = glb.import_meshes(document, &|material| Some(first_material + material.index))?;
     let mut nodes = Vec::new();
+    if let Some(foreground) = &foreground {
+        let grass = add_foreground(document, foreground, first_mesh, &ground.near)?;
+        nodes.extend(
+            grass.map(|mesh| {
+                document.node(Node { name: "grass".into(), mesh: Some(mesh), ..Node::default() })
+            }),
+        );
+    }
     for (i, name) in names.into_iter().enumerate() {
         let mut node = Node { name, mesh: Some(first_mesh + i), ..Node::default() };
         if node.name == TERRAIN_MESHES[0] {
@@ -237,8 +252,41 @@ fn add_terrain(document: &mut Document, parts: &SceneParts<'_>) -> Result<Vec<us
     Ok(nodes)
 }
 
-/// The ground's textures, and its material.
-fn add_ground(document: &mut Document, parts: &SceneParts<'_>) -> Value {
+/// The cut-out piece becomes further primitives of the terrain mesh, whose first one loses the triangles under it.
+/// Gives the mesh of the grass that stands on it, if any does.
+fn add_foreground(
+    document: &mut Document,
+    glb: &GlbImport,
+    terrain: usize,
+    materials: &[Option<Value>],
+) -> Result<Option<usize>, ExportError> {
+    let rest = document.meshes[terrain]["primitives"][0]["indices"].as_u64().unwrap_or(0) as usize;
+    glb.replace_accessor(document, rest)?;
+    let mut places = Vec::new();
+    for material in materials {
+        places.push(material.as_ref().map(|material| push(&mut document.materials, material.clone())));
+    }
+    let blades = glb.material_json(materials.len());
+    places.push(blades.map(|material| push(&mut document.materials, material)));
+    let first = glb.import_meshes(document, &|material| places.get(material.index).copied().flatten())?;
+    let mut piece = document.meshes.remove(first);
+    if let (Some(all), Some(more)) =
+        (document.meshes[terrain]["primitives"].as_array_mut(), piece["primitives"].as_array_mut())
+    {
+        all.append(more);
+    }
+    Ok((document.meshes.len() > first).then_some(first))
+}
+
+/// The ground's materials.
+struct GroundMaterials {
+    far: Value,
+    /// For each texture one, if it is there to be seen.
+    near: Vec<Option<Value>>,
+}
+
+/// The ground's textures, and its materials; `occurs` lists the kinds of ground near the start.
+fn add_ground(document: &mut Document, parts: &SceneParts<'_>, occurs: &[usize]) -> GroundMaterials {
     let ground = &parts.ground;
     let clamped = push(&mut document.samplers, sampler(CLAMPED));
     let mut texture = |name: &str, blob: &Blob, sampler: usize| {
@@ -249,15 +297,24 @@ fn add_ground(document: &mut Document, parts: &SceneParts<'_>) -> Value {
     let color = texture("ground colour", &ground.color, clamped);
     let light = texture("light map", &ground.light, clamped);
     let repeating = clamped + 1;
-    let normal = ground.details.first().map(|grass| {
-        let repeats = parts.land.field.extent_m() / grass.tile_m;
-        (texture(&format!("{} normals", grass.name), &grass.normal, repeating), repeats)
-    });
-    if normal.is_some() {
+    let (mut grass_normal, mut near) = (None, Vec::new());
+    for (kind, detail) in ground.details.iter().enumerate() {
+        let here = occurs.contains(&kind);
+        let normal = (kind == 0 || here)
+            .then(|| texture(&format!("{} normals", detail.name), &detail.normal, repeating));
+        if let (0, Some(normal)) = (kind, normal) {
+            grass_normal = Some((normal, parts.land.field.extent_m() / detail.tile_m));
+        }
+        near.push(normal.filter(|_| here).map(|normal| {
+            let tile = texture(&detail.name, &detail.tile, repeating);
+            tiled_material(&detail.name, tile, normal, light)
+        }));
+    }
+    if grass_normal.is_some() {
         document.samplers.push(sampler(REPEATING));
         document.extensions_used.insert("KHR_texture_transform".into());
     }
-    ground_material(color, light, normal)
+    GroundMaterials { far: ground_material(color, light, grass_normal), near }
 }
 
 fn heightfield_extension(parts: &SceneParts<'_>) -> HeightfieldExtension {

@@ -48,6 +48,18 @@ impl GlbImport {
         self.list("materials").iter().map(|material| material["name"].as_str().unwrap_or_default())
     }
 
+    /// A material of the file as it is.
+    pub fn material_json(&self, index: usize) -> Option<Value> {
+        self.list("materials").get(index).cloned()
+    }
+
+    /// Numbers of the materials that its primitives have.
+    pub fn materials_in_use(&self) -> Vec<usize> {
+        let primitives =
+            self.list("meshes").iter().filter_map(|mesh| mesh["primitives"].as_array()).flatten();
+        primitives.filter_map(|p| p["material"].as_u64()).map(|m| m as usize).collect()
+    }
+
     fn material(&self, index: &Value) -> Option<FileMaterial<'_>> {
         let index = index.as_u64()? as usize;
         Some(FileMaterial { index, name: self.material_names().nth(index)? })
@@ -117,6 +129,20 @@ impl GlbImport {
             }
         }
         Ok(json!(typed))
+    }
+
+    /// Adds the last accessor and its view in place of an accessor and the view that only it uses.
+    pub fn replace_accessor(&self, document: &mut Document, index: usize) -> Result<(), ExportError> {
+        let last = self.list("accessors").len().wrapping_sub(1);
+        let mut accessor = self.item("accessors", &last.into())?.clone();
+        let mut view = self.item("bufferViews", &accessor["bufferView"])?.clone();
+        view["buffer"] = self.buffer.into();
+        view["byteOffset"] = (view["byteOffset"].as_u64().unwrap_or(0) as usize + self.glb.bin_offset).into();
+        let place = document.accessors[index]["bufferView"].as_u64().unwrap_or(0) as usize;
+        accessor["bufferView"] = place.into();
+        document.buffer_views[place] = view;
+        document.accessors[index] = accessor;
+        Ok(())
     }
 
     fn import_accessor(&self, document: &mut Document, index: &Value) -> Result<usize, ExportError> {

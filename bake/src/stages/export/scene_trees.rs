@@ -12,9 +12,8 @@ use super::ExportError;
 use super::document::{Document, Node, push};
 use super::scene::SceneParts;
 use super::scene_import::{FileMaterial, GlbImport};
-use super::start::StartView;
 use super::svd::{decompose, determinant};
-use crate::model::{Instance, Material};
+use crate::model::{Instance, Material, StartView};
 
 /// Triangles that any viewer opens quickly.
 pub const TRIANGLE_BUDGET: usize = 3_000_000;

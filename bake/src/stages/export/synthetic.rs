@@ -237,7 +237,8 @@ fn exr(width: usize, height: usize, sun: Vec3) -> Vec<u8> {
         let t = s.max(0.0);
         (0.55 - 0.4 * t + glow, 0.65 - 0.35 * t + glow, 0.75 - 0.1 * t + 0.8 * glow)
     };
-    let channels = ::exr::prelude::SpecificChannels::rgb(|at: ::exr::prelude::Vec2<usize>| pixel(at.x(), at.y()));
+    let channels =
+        ::exr::prelude::SpecificChannels::rgb(|at: ::exr::prelude::Vec2<usize>| pixel(at.x(), at.y()));
     let image = ::exr::prelude::Image::from_channels((width, height), channels);
     let mut out = std::io::Cursor::new(Vec::new());
     ::exr::prelude::WritableImage::write(&image).to_buffered(&mut out).unwrap();
@@ -344,6 +345,13 @@ impl Synthetic {
             genome: json!({ "height_m": 7.4, "relief_m": 120.0, "levels": 3 }),
             land: &self.land,
             terrain: GlbBlob { uri: "blobs/terrain.glb".into(), bytes: &self.terrain },
+            foreground: None,
+            view: crate::stages::start::start_view(
+                &self.land.field,
+                self.land.water_level_m,
+                &self.placement,
+                self.light.sun_direction,
+            ),
             heightfield: HeightfieldBlobs {
                 heights_png: self.blob("heights.png"),
                 range_m: self.land.field.range_m(),
@@ -357,6 +365,7 @@ impl Synthetic {
                     name: "grass".into(),
                     detail: self.blob("grass.png"),
                     normal: self.blob("grass-normal.png"),
+                    tile: self.blob("grass.png"),
                     tile_m: 4.0,
                 }],
             },

@@ -8,6 +8,7 @@ use super::svd::tests::{difference, product};
 use super::synthetic::*;
 use super::*;
 use crate::model::{LevelledMesh, Material, Mesh};
+use crate::stages::start::start_view;
 
 fn gltf_of(glb: &[u8]) -> (gltf::Document, Vec<u8>) {
     let gltf = gltf::Gltf::from_slice(glb).expect("the gltf crate reads it");

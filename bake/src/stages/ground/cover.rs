@@ -33,7 +33,17 @@ pub(super) struct Cover {
     mud: f32,
 }
 
+/// Grass, rock, scree, snow and mud.
+pub(super) const KINDS: usize = 5;
+
 impl Cover {
+    /// The part of each kind, grass first.
+    #[inline]
+    pub fn parts(&self) -> [f32; KINDS] {
+        let grass = 1.0 - self.rock - self.scree - self.snow - self.mud;
+        [grass, self.rock, self.scree, self.snow, self.mud]
+    }
+
     /// Blend weights as bytes: rock, scree, snow, mud; their sum is at most 255.
     #[inline]
     pub fn bytes(&self) -> [u8; 4] {
@@ -185,7 +195,7 @@ impl Climate {
 
     /// Grass: lusher where water gathers, drier on crests and high up, in large patches of its own.
     #[inline]
-    fn grass(&self, t: &Traits, n: &Noise) -> Rgb {
+    pub fn grass(&self, t: &Traits, n: &Noise) -> Rgb {
         let altitude = (t.height_m - self.lowest_m) / self.relief_m;
         let moist = 0.75 * t.flow + 0.35 * t.hollow + 0.12 * t.deposit;
         let dry = 0.7 + 2.9 * self.dryness + 1.0 * t.patch + 0.45 * t.tuft + 0.5 * altitude

@@ -7,7 +7,9 @@
 //! up by noise of several sizes.
 
 mod cover;
+mod foreground;
 mod grain;
+mod grass;
 mod patterns;
 #[cfg(test)]
 mod tests;
@@ -19,8 +21,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::model::{GroundMaps, Image8, Landform};
 use cover::{Climate, Noise};
+pub use foreground::{BLOCK_M, foreground};
 use grain::Grain;
-pub use textures::textures;
+pub use grass::BLADE_WHITE;
+pub use textures::{TEXTURES, textures, tile_srgb};
 use traits::{Patches, Traits, TraitsMap};
 
 /// The genes that colour the ground; names, ranges and meanings as in the parameter space.
@@ -38,7 +42,7 @@ pub struct GroundParams {
 pub fn maps(params: &GroundParams, land: &Landform, side_px: u32) -> GroundMaps {
     let side_px = side_px.max(1);
     let climate = Climate::new(params, land);
-    let traits = TraitsMap::new(&Patches::new(params.terrain_seed, land.field.extent_m()), land);
+    let traits = TraitsMap::new(&Patches::new(params.terrain_seed, land.field.extent_m()), land, 0.0..=1.0);
     let grain = Grain::new(params.terrain_seed, side_px);
     let encode = SrgbTable::new();
     let mut color_srgb = Image8::new(side_px, side_px, 3);

@@ -3,6 +3,7 @@
 use std::sync::LazyLock;
 
 use super::*;
+use crate::model::Material;
 use crate::stages::land::{LandParams, landform};
 
 /// An alpine land with snow, scree and a lake: everything that can cover the ground.
@@ -173,4 +174,102 @@ fn texture_pictures() {
         write_picture(&format!("{}-detail", t.name), 512, 512, &t.detail_srgb.data);
         write_picture(&format!("{}-normal", t.name), 512, 512, &t.normal.data);
     }
+}
+
+/// A near mesh of the land, and the piece cut out of it around a place.
+fn cut(east_m: f32, south_m: f32) -> (crate::model::Mesh, crate::model::Foreground) {
+    let near = crate::stages::terrain_lod::mesh(&LAND, 1.0, BLOCK_M, &[]).near;
+    let eye = glam::Vec3::new(east_m, LAND.field.height_m(east_m, south_m) + 1.6, south_m);
+    let view = crate::model::StartView { position_m: eye, direction: glam::Vec3::new(0.6, 0.0, -0.8) };
+    let made = foreground(&PARAMS, &LAND, 256, &view, &near.positions, &near.parts[0].triangles);
+    (near, made)
+}
+
+#[test]
+fn the_foreground_fills_its_hole_edge_by_edge() {
+    for (east_m, south_m) in [(10.0, -35.0), (-505.0, 500.0), (511.0, -511.0)] {
+        let (near, made) = cut(east_m, south_m);
+        let mut edges = std::collections::BTreeMap::new();
+        let mut area = 0.0;
+        let pieces = made.mesh.parts.iter().map(|part| (&made.mesh.positions, &part.triangles));
+        for (positions, triangles) in pieces.chain([(&near.positions, &made.rest)]) {
+            for triangle in triangles {
+                let [a, b, c] = triangle.map(|v| positions[v as usize]);
+                let [p, q, r] = [a, b, c].map(glam::Vec3::from_array);
+                let twice = (q - p).cross(r - p).y;
+                assert!(twice > 0.0, "{a:?} {b:?} {c:?} faces down");
+                area += f64::from(twice) * 0.5;
+                for edge in [[a, b], [b, c], [c, a]] {
+                    *edges.entry(edge.map(|end| end.map(f32::to_bits))).or_insert(0) += 1;
+                }
+            }
+        }
+        assert!((area - 1024.0 * 1024.0).abs() < 2.0, "{area}");
+        for (&[a, b], &count) in &edges {
+            let rim = |p: [u32; 3]| [p[0], p[2]].iter().any(|&m| f32::from_bits(m).abs() == 512.0);
+            assert!(
+                count == 1 && (edges.contains_key(&[b, a]) || rim(a) && rim(b)),
+                "a crack at {a:?} {b:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_foreground_looks_like_the_map_at_its_border() {
+    let (_, made) = cut(10.0, -35.0);
+    let map = maps(&PARAMS, &LAND, 256).color_srgb;
+    let bounds = made.mesh.bounds();
+    let (mut differences, mut count) = (0.0, 0.0);
+    for part in &made.mesh.parts {
+        let Material::Foreign(kind) = part.material else { panic!("a kind of ground") };
+        for &v in part.triangles.as_flattened() {
+            let ([x, _, z], uv) = (made.mesh.positions[v as usize], made.map_uvs[v as usize]);
+            let inside = (x - bounds.min.x).min(bounds.max.x - x).min(z - bounds.min.z).min(bounds.max.z - z);
+            if inside > 1.0 {
+                continue;
+            }
+            let own = f32::from(made.mesh.colors[v as usize][1]) / 255.0 * textures::TILE_MEAN[kind as usize];
+            let texel = map.pixel((uv[0] * 256.0) as u32, (uv[1] * 256.0) as u32)[1];
+            let own = 255.0 * srgb_from_linear(own);
+            (differences, count) = (differences + own - f32::from(texel), count + 1.0);
+        }
+    }
+    assert!(count > 100.0 && (differences / count as f32).abs() < 4.0, "{}", differences / count);
+}
+
+#[test]
+fn blades_stand_on_grass_alone() {
+    let mut blades = 0;
+    for (east_m, south_m) in [(10.0, -35.0), (200.0, 150.0), (-300.0, 100.0), (-100.0, -300.0)] {
+        let (_, made) = cut(east_m, south_m);
+        let weights = maps(&PARAMS, &LAND, 256).weights;
+        for triangle in &made.grass.parts[0].triangles {
+            let [root, _, tip] = triangle.map(|v| made.grass.positions[v as usize]);
+            assert!((root[1] - LAND.field.height_m(root[0], root[2])).abs() < 0.3 && tip[1] > root[1]);
+            let texel = |m: f32| ((m / 1024.0 + 0.5) * 256.0) as u32;
+            // The texels around a root.
+            let other = |dx: f32, dz: f32| -> u32 {
+                weights
+                    .pixel(texel(root[0] + dx).min(255), texel(root[2] + dz).min(255))
+                    .iter()
+                    .map(|&w| u32::from(w))
+                    .sum()
+            };
+            let least = [-2.3, 0.0, 2.3]
+                .map(|dx| [-2.3, 0.0, 2.3].map(|dz| other(dx, dz)))
+                .as_flattened()
+                .iter()
+                .copied()
+                .min();
+            assert!(least < Some(200), "a blade on {least:?}/255 of something else");
+            blades += 1;
+        }
+    }
+    assert!(blades > 1000, "{blades}");
+}
+
+#[test]
+fn the_foreground_is_the_same_on_any_number_of_threads() {
+    assert!(with_threads(1, || cut(10.0, -35.0).1) == with_threads(5, || cut(10.0, -35.0).1));
 }

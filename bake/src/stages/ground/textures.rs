@@ -6,24 +6,46 @@
 use rayon::prelude::*;
 
 use super::patterns::{self, Pattern};
+use super::{SrgbTable, cover::KINDS};
 use crate::model::{GroundTexture, GroundTextures, Image8};
 
 /// Texels a side.
 pub(super) const SIDE: usize = 512;
 
+/// Names of the textures, in order.
+pub const TEXTURES: [&str; KINDS] = ["grass", "rock", "scree", "snow", "mud"];
+
+/// Metres that a tile of each covers.
+pub(super) const TILE_M: [f32; KINDS] = [3.0, 6.0, 4.0, 5.0, 4.0];
+
+/// Mean linear value of each kind's [`tile_srgb`]: as bright as leaves room for its highlights, and for the brightest
+/// ground of the kind as a factor of at most 1.
+pub(super) const TILE_MEAN: [f32; KINDS] = [0.45, 0.45, 0.45, 0.86, 0.45];
+
+/// The detail of the kth texture as a base colour for core glTF, whose factors cannot exceed 1: its linear mean is
+/// `TILE_MEAN[k]`.
+pub fn tile_srgb(kind: usize, detail: &Image8) -> Image8 {
+    let encode = SrgbTable::new();
+    let mean = TILE_MEAN[kind.min(KINDS - 1)];
+    let table: Vec<u8> = (0..=255_u8).map(|byte| encode.byte(f32::from(byte) / 128.0 * mean)).collect();
+    let data = detail.data.iter().map(|&byte| table[usize::from(byte)]).collect();
+    Image8 { data, ..*detail }
+}
+
 /// Makes the five textures; they are the same for every scene.
 pub fn textures() -> GroundTextures {
     type Make = fn() -> Pattern;
-    let kinds: [(&str, f32, f32, Make); 5] = [
-        ("grass", 3.0, 2.2, patterns::grass),
-        ("rock", 6.0, 4.5, patterns::rock),
-        ("scree", 4.0, 3.0, patterns::scree),
-        ("snow", 5.0, 3.2, patterns::snow),
-        ("mud", 4.0, 2.4, patterns::mud),
+    let kinds: [(f32, Make); KINDS] = [
+        (2.2, patterns::grass),
+        (4.5, patterns::rock),
+        (3.0, patterns::scree),
+        (3.2, patterns::snow),
+        (2.4, patterns::mud),
     ];
     let textures = kinds
         .into_par_iter()
-        .map(|(name, tile_m, depth_px, make)| {
+        .zip(TEXTURES.into_par_iter().zip(TILE_M))
+        .map(|((depth_px, make), (name, tile_m))| {
             let pattern = make();
             let (detail_srgb, normal) = (detail(&pattern), normals(&pattern.height, depth_px));
             GroundTexture { name: name.into(), detail_srgb, normal, tile_m }

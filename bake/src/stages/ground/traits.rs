@@ -1,6 +1,8 @@
 //! What about a place decides its cover: height, slope, water, deposits and the patch it belongs to. Precomputed on
 //! the grid of the field (at most 513², 2 m apart) and read between samples.
 
+use std::ops::RangeInclusive;
+
 use rayon::prelude::*;
 
 use crate::model::{Heightfield, Landform};
@@ -52,11 +54,14 @@ fn stride(land: &Landform) -> u32 {
 }
 
 impl TraitsMap {
-    pub fn new(patches: &Patches, land: &Landform) -> Self {
+    /// Traits of the whole field, or only as far as rows between two v need them.
+    pub fn new(patches: &Patches, land: &Landform, v: RangeInclusive<f32>) -> Self {
         let step = stride(land);
         let side = (land.field.side - 1) / step + 1;
         let mut values = vec![[0.0; COUNT]; (side * side) as usize];
-        values.par_chunks_mut(side as usize).enumerate().for_each(|(j, row)| {
+        let (first, last) = (cell(*v.start(), side as usize).0, cell(*v.end(), side as usize).0 + 1);
+        let rows = values.par_chunks_mut(side as usize).enumerate().skip(first).take(last + 1 - first);
+        rows.for_each(|(j, row)| {
             for (i, v) in row.iter_mut().enumerate() {
                 *v = sample(patches, land, i as u32 * step, j as u32 * step, step);
             }

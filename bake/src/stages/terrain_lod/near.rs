@@ -26,11 +26,15 @@ const GOOD_AFTER: u8 = 4;
 /// The land as triangles. `near` lies within `max_error_m` metres (vertically) of the triangulation of all samples
 /// with diagonals as in the bintree; 0 or less keeps every sample. The true maximum, measured afterwards on the
 /// finished mesh at every sample, is `error_m`. `apron_colors` holds a linear RGB factor for each sample of the
-/// apron (missing ones are white). Triangles are in the order of Sierpiński's curve, so caches like them.
-pub fn mesh(land: &Landform, max_error_m: f32, apron_colors: &[[u8; 4]]) -> TerrainMesh {
+/// apron (missing ones are white). No triangle crosses the lines every `block_m` metres from the north-west corner
+/// (rounded down to cells that a block can have), so that scenes can cut out squares. Triangles are in the order of Sierpiński's curve, so caches like them.
+pub fn mesh(land: &Landform, max_error_m: f32, block_m: f32, apron_colors: &[[u8; 4]]) -> TerrainMesh {
     let field = &land.field;
     let mut refiner = Refiner::new(field, max_error_m);
     for sample in apron::border_samples(land) {
+        refiner.use_sample(sample);
+    }
+    for sample in block_corners(field, block_m) {
         refiner.use_sample(sample);
     }
     refiner.refine_all();
@@ -38,6 +42,15 @@ pub fn mesh(land: &Landform, max_error_m: f32, apron_colors: &[[u8; 4]]) -> Terr
     let error_m = self::max_error_m(field, &near);
     let used = |[i, j]: Sample| refiner.marks[(j * field.side + i) as usize] & USED != 0;
     TerrainMesh { error_m, apron: apron::ring(land, used, apron_colors), water: apron::water(land), near }
+}
+
+/// The corners of square blocks of 2^n cells, at most `block_m` wide but at least one cell. Where both ends of a
+/// block's sides and diagonal are vertices, bintree triangles are no larger than half a block.
+fn block_corners(field: &Heightfield, block_m: f32) -> impl Iterator<Item = Sample> {
+    let cells = (block_m / field.spacing_m).clamp(1.0, (field.side - 1) as f32) as u32;
+    let cells = 1 << cells.ilog2();
+    let across = (field.side - 1) / cells;
+    (0..=across).flat_map(move |j| (0..=across).map(move |i| [i * cells, j * cells]))
 }
 
 /// An error bound in metres that suits the land: 0.15 m, or on rough land more, namely the least that keeps the

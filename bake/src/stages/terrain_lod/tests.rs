@@ -194,7 +194,7 @@ proptest! {
         seed in 0_u32..1000, k in 1_u32..7, relief_m in 0.0_f32..400.0, bound_m in 0.0_f32..10.0,
     ) {
         let land = land((1 << k) + 1, seed, relief_m, None);
-        let built = mesh(&land, bound_m, &[]);
+        let built = mesh(&land, bound_m, f32::MAX, &[]);
         prop_assert!(built.error_m <= bound_m, "{} > {bound_m}", built.error_m);
         prop_assert_eq!(built.error_m, max_error_m(&land.field, &built.near));
         assert_faces_up(&built.near);
@@ -221,7 +221,7 @@ proptest! {
 #[test]
 fn the_verifier_sees_what_is_wrong() {
     let land = land(33, 1, 50.0, None);
-    let built = mesh(&land, 1.0, &[]).near;
+    let built = mesh(&land, 1.0, f32::MAX, &[]).near;
     let mut lifted = built.clone();
     lifted.positions[7][1] += 20.0;
     assert!(max_error_m(&land.field, &lifted) > 19.0);
@@ -238,7 +238,7 @@ fn the_apron_joins_the_near_mesh_edge_by_edge() {
     for (side, bound_m) in [(129, 0.3), (129, 50.0), (5, 0.0)] {
         let land = land(side, 4, 120.0, None);
         let colors: Vec<[u8; 4]> = (0..65 * 65).map(|k| [(k % 65) as u8, (k / 65) as u8, 9, 255]).collect();
-        let built = mesh(&land, bound_m, &colors);
+        let built = mesh(&land, bound_m, f32::MAX, &colors);
         assert_faces_up(&built.apron);
         let place = |mesh: &Mesh, edge: [u32; 2]| edge.map(|v| mesh.positions[v as usize].map(f32::to_bits));
         let mut near: Vec<_> =
@@ -261,10 +261,10 @@ fn the_apron_joins_the_near_mesh_edge_by_edge() {
 
 #[test]
 fn water_lies_at_its_level_or_nowhere() {
-    let wet = mesh(&land(17, 4, 120.0, Some(3.5)), 1.0, &[]).water;
+    let wet = mesh(&land(17, 4, 120.0, Some(3.5)), 1.0, f32::MAX, &[]).water;
     assert_faces_up(&wet);
     assert!(wet.positions.iter().all(|p| p[1] == 3.5 && p[0].abs() == 2048.0));
-    assert_eq!(mesh(&land(17, 4, 120.0, None), 1.0, &[]).water.triangle_count(), 0);
+    assert_eq!(mesh(&land(17, 4, 120.0, None), 1.0, f32::MAX, &[]).water.triangle_count(), 0);
 }
 
 /// Triangles of a mesh by Martini's rule (split where the deviation of the middle, or the greatest below, exceeds
@@ -291,7 +291,7 @@ fn fewer_triangles_than_martini_at_the_same_verified_bound() {
     land.apron.side = 2;
     land.apron.heights_m.truncate(4);
     let bound_m = 8.0;
-    let built = mesh(&land, bound_m, &[]);
+    let built = mesh(&land, bound_m, f32::MAX, &[]);
     let claims = (1..=16).rev().map(|part| martini(&land.field, bound_m * part as f32 / 16.0));
     let (martini, _) = claims.into_iter().find(|&(_, error_m)| error_m <= bound_m).unwrap();
     assert!(built.error_m <= bound_m && built.near.triangle_count() * 10 < martini * 9, "{martini}");
@@ -312,12 +312,12 @@ fn measure() {
             let bound = default_error_m(&land.field);
             let default_time = start.elapsed() - lod_time - encode_time;
             let start = std::time::Instant::now();
-            let built = mesh(&land, bound, &[]);
+            let built = mesh(&land, bound, f32::MAX, &[]);
             let mesh_time = start.elapsed();
             let start = std::time::Instant::now();
             max_error_m(&land.field, &built.near);
             let verify_time = start.elapsed();
-            let fine = mesh(&land, 0.15, &[]).near.triangle_count();
+            let fine = mesh(&land, 0.15, f32::MAX, &[]).near.triangle_count();
             let line = format!(
                 "{side} {relief}: lod {lod_time:?} encode {encode_time:?} {} default {bound} {default_time:?} mesh {mesh_time:?} \
                  (verify {verify_time:?}) {} tri, error {}, at 0.15: {fine}",

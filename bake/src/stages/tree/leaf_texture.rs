@@ -213,13 +213,13 @@ impl Brush {
 
     /// A flat spray of conifer twigs, needles all along.
     fn needles(&mut self, leaf: f32) {
-        let needle = (0.45 * leaf).clamp(0.06, 0.1);
+        let needle = (0.24 * leaf).clamp(0.034, 0.055);
         let mut twigs = vec![(Vec2::ZERO, 0.0, 0.93)];
-        for k in 0..9 {
-            let t = 0.07 + 0.088 * k as f32;
+        for k in 0..8 {
+            let t = 0.07 + 0.099 * k as f32;
             for sign in [-1.0, 1.0] {
                 let at = Vec2::new(0.0, 0.93 * (t + 0.02 * self.dice.signed()));
-                let length = (0.40 - 0.27 * t) * (1.0 + 0.15 * self.dice.signed());
+                let length = (0.46 - 0.30 * t) * (1.0 + 0.15 * self.dice.signed());
                 twigs.push((at, sign * (0.92 + 0.1 * self.dice.signed()), length));
             }
         }
@@ -227,7 +227,7 @@ impl Brush {
             self.canvas.stroke(at, at + towards(angle) * length, (0.007, 0.004), TWIG);
         }
         for &(at, angle, length) in twigs.iter().rev() {
-            let count = (length / 0.0125) as usize;
+            let count = (length / 0.0095) as usize;
             for k in 0..count {
                 let t = k as f32 / count as f32;
                 let base = at + towards(angle) * (length * t);
@@ -236,7 +236,7 @@ impl Brush {
                     let size = needle * (1.0 - 0.3 * t) * (0.9 + 0.2 * self.dice.signed());
                     let color = leaf_color(self.hue_deg + 8.0 * self.dice.signed());
                     let light = (0.8 + 0.35 * t) * (1.0 + 0.22 * self.dice.signed());
-                    self.canvas.stroke(base, base + towards(lean) * size, (0.0075, 0.0045), color * light);
+                    self.canvas.stroke(base, base + towards(lean) * size, (0.006, 0.0035), color * light);
                 }
             }
         }

@@ -1,0 +1,313 @@
+//! The near mesh and where one stands → a finer mesh of the ground around, whose vertices carry the colour of the
+//! map and whose parts carry tiling textures: what is within some 50 m needs centimetres, the map has metres.
+//!
+//! The piece is a square of the blocks that no triangle of the near mesh crosses. Its border has the vertices of the
+//! near mesh, bit by bit, so there is no crack; colour, relief and grain of its own fade towards the border, so
+//! there is no seam.
+
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+
+use super::GroundParams;
+use super::cover::{Climate, KINDS};
+use super::grain::Grain;
+use super::grass::grass;
+use super::textures::{TILE_M, TILE_MEAN};
+use super::traits::{Patches, TraitsMap};
+use crate::model::{Foreground, Heightfield, Landform, Material, Mesh, Part, PartKind, StartView};
+use crate::noise::{fbm2, gradient2};
+use crate::seed::noise_seed;
+
+/// Metres a side of the blocks that the near mesh is made of; the piece is a whole number of them.
+pub const BLOCK_M: f32 = 16.0;
+pub(super) const SIDE_M: f32 = 6.0 * BLOCK_M;
+/// Cells a side of the fine grid.
+const CELLS: usize = 128;
+const CELL_M: f32 = SIDE_M / CELLS as f32;
+/// Metres ahead of the eye where the middle of the piece should lie: what lies behind is seen by few.
+const AHEAD_M: f32 = 26.0;
+/// Metres over which the piece takes on the look of the land around it.
+const FADE_M: f32 = 14.0;
+/// Values of a texel: colour, parts, and the colour that grass has there.
+const TRAITS: usize = 6 + KINDS;
+/// Height in metres of the humps that the heightfield is too coarse for.
+const HUMPS_M: f32 = 0.07;
+
+/// Cuts the foreground out of a near mesh given as positions and triangles, made with blocks of `BLOCK_M`. Colours
+/// come from the painter of [`super::maps`] with `map_px` texels a side. Nothing is cut where the land is smaller.
+pub fn foreground(
+    params: &GroundParams,
+    land: &Landform,
+    map_px: u32,
+    view: &StartView,
+    positions: &[[f32; 3]],
+    triangles: &[[u32; 3]],
+) -> Foreground {
+    let field = &land.field;
+    let Some(corner) = corner(field, view) else {
+        return Foreground { rest: triangles.to_vec(), ..Foreground::default() };
+    };
+    let middle = |t: &[u32; 3]| t.iter().map(|&v| plan(positions[v as usize])).sum::<Vec2>() / 3.0 - corner;
+    let inside = |t: &[u32; 3]| middle(t).min_element() > 0.0 && middle(t).max_element() < SIDE_M;
+    let (cut, rest): (Vec<_>, Vec<_>) = triangles.iter().copied().partition(inside);
+    let patch = Patch { land, corner, seed: noise_seed(params.terrain_seed.into(), "foreground", 0) };
+    let window = MapWindow::new(params, land, map_px, corner);
+    let mut points = patch.points(&window);
+    let border = patch.border(positions, &cut, &mut points);
+    let shape = patch.triangles(&points, &border);
+    let (mesh, map_uvs) = by_kind(&points, &shape, field.extent_m());
+    Foreground { mesh, map_uvs, rest, grass: grass(&patch, &window, view) }
+}
+
+/// The north-west corner of the square of blocks that suits a view best.
+fn corner(field: &Heightfield, view: &StartView) -> Option<Vec2> {
+    let extent_m = field.extent_m();
+    if extent_m < SIDE_M || field.spacing_m > BLOCK_M {
+        return None;
+    }
+    let along = Vec2::new(view.direction.x, view.direction.z).normalize_or_zero();
+    let wanted = plan(view.position_m.to_array()) + along * AHEAD_M - 0.5 * SIDE_M + 0.5 * extent_m;
+    let blocks = (wanted / BLOCK_M + 0.5)
+        .floor()
+        .clamp(Vec2::ZERO, Vec2::splat((extent_m - SIDE_M) / BLOCK_M).floor());
+    Some(blocks * BLOCK_M - 0.5 * extent_m)
+}
+
+fn plan(p: [f32; 3]) -> Vec2 {
+    Vec2::new(p[0], p[2])
+}
+
+/// A vertex before it has a texture.
+#[derive(Clone, Copy, Default)]
+struct Point {
+    position: [f32; 3],
+    normal: [f32; 3],
+    /// Albedo, linear.
+    color: [f32; 3],
+    parts: [f32; KINDS],
+}
+
+/// The texels of the map around the piece, painted again.
+pub(super) struct MapWindow {
+    first: [i32; 2],
+    across: usize,
+    texel_m: f32,
+    half_m: f32,
+    values: Vec<[f32; TRAITS]>,
+}
+
+impl MapWindow {
+    fn new(params: &GroundParams, land: &Landform, map_px: u32, corner: Vec2) -> Self {
+        let extent_m = land.field.extent_m();
+        let texel_m = extent_m / map_px as f32;
+        let across = (SIDE_M / texel_m) as usize + 3;
+        let first = [corner.x, corner.y].map(|m| ((m + 0.5 * extent_m) / texel_m) as i32 - 1);
+        let climate = Climate::new(params, land);
+        let place = |k: i32| (k.clamp(0, map_px as i32 - 1) as f32 + 0.5) / map_px as f32;
+        let rows = place(first[1])..=place(first[1] + across as i32);
+        let traits = TraitsMap::new(&Patches::new(params.terrain_seed, extent_m), land, rows);
+        let grain = Grain::new(params.terrain_seed, map_px);
+        let mut values = vec![[0.0; TRAITS]; across * across];
+        values.par_chunks_mut(across).enumerate().for_each(|(j, row)| {
+            let j = (first[1] + j as i32).clamp(0, map_px as i32 - 1);
+            let traits = traits.row(place(j));
+            for (i, value) in row.iter_mut().enumerate() {
+                let i = (first[0] + i as i32).clamp(0, map_px as i32 - 1);
+                let (here, noise) = (traits.at(place(i)), grain.at(i as usize, j as usize));
+                let cover = climate.cover(&here, &noise);
+                value[..3].copy_from_slice(&climate.color(&here, &cover, &noise));
+                value[3..3 + KINDS].copy_from_slice(&cover.parts());
+                value[3 + KINDS..].copy_from_slice(&climate.grass(&here, &noise));
+            }
+        });
+        Self { first, across, texel_m, half_m: 0.5 * extent_m, values }
+    }
+
+    /// Colour and parts at a point, as a viewer filters the map.
+    pub fn at(&self, p: Vec2) -> [f32; TRAITS] {
+        let cell = |m: f32, first: i32| {
+            let g =
+                ((m + self.half_m) / self.texel_m - 0.5 - first as f32).clamp(0.0, (self.across - 1) as f32);
+            let whole = (g as usize).min(self.across - 2);
+            (whole, g - whole as f32)
+        };
+        let ((i, u), (j, v)) = (cell(p.x, self.first[0]), cell(p.y, self.first[1]));
+        let k = j * self.across + i;
+        let [a, b, c, d] = [k, k + 1, k + self.across, k + self.across + 1].map(|k| &self.values[k]);
+        std::array::from_fn(|n| (a[n] * (1.0 - u) + b[n] * u) * (1.0 - v) + (c[n] * (1.0 - u) + d[n] * u) * v)
+    }
+
+    /// The colour of grass at a point.
+    pub fn grass(&self, p: Vec2) -> [f32; 3] {
+        let value = self.at(p);
+        [value[3 + KINDS], value[4 + KINDS], value[5 + KINDS]]
+    }
+}
+
+/// The piece of land.
+pub(super) struct Patch<'a> {
+    land: &'a Landform,
+    pub corner: Vec2,
+    pub seed: u32,
+}
+
+impl Patch<'_> {
+    /// 0 on the border, 1 from `FADE_M` inside.
+    pub fn inward(&self, p: Vec2) -> f32 {
+        let from_border = (p - self.corner).min(self.corner + SIDE_M - p).min_element();
+        let t = (from_border / FADE_M).clamp(0.0, 1.0);
+        t * t * (3.0 - 2.0 * t)
+    }
+
+    pub fn height_m(&self, p: Vec2) -> f32 {
+        let inward = self.inward(p);
+        let humps = if inward > 0.0 { fbm2(self.seed, p.x / 2.6, p.y / 2.6, 2, 0.5, 0) } else { 0.0 };
+        self.land.field.height_m(p.x, p.y) + HUMPS_M * inward * humps
+    }
+
+    fn normal(&self, p: Vec2) -> Vec3 {
+        let (dx, dz) = (Vec2::new(CELL_M, 0.0), Vec2::new(0.0, CELL_M));
+        let slope = |step: Vec2| (self.height_m(p + step) - self.height_m(p - step)) / (2.0 * CELL_M);
+        Vec3::new(-slope(dx), 1.0, -slope(dz)).normalize()
+    }
+
+    /// Colour of the map, with growth that its texels are too large for.
+    fn painted(&self, window: &MapWindow, p: Vec2) -> ([f32; 3], [f32; KINDS]) {
+        let value = window.at(p);
+        let (inward, mut color, mut parts) = (self.inward(p), [0.0; 3], [0.0; KINDS]);
+        parts.copy_from_slice(&value[3..3 + KINDS]);
+        let tuft = fbm2(self.seed ^ 1, p.x / 1.9, p.y / 1.9, 2, 0.7, 0) * inward;
+        let hue = gradient2(self.seed ^ 2, p.x / 3.7, p.y / 3.7, 0) * inward;
+        // Snow is even; everything else is lush here and worn there.
+        let strength = 1.0 - 0.85 * parts[3];
+        let lush = [-0.16, 0.06, -0.30].map(|c| 1.0 + strength * parts[0] * c * hue * 1.6);
+        for c in 0..3 {
+            color[c] = value[c] * (1.0 + 0.42 * strength * tuft) * lush[c];
+        }
+        // Borders between kinds wander.
+        parts[0] += 0.35 * tuft;
+        (color, parts)
+    }
+
+    fn point(&self, window: &MapWindow, p: Vec2) -> Point {
+        let (color, parts) = self.painted(window, p);
+        Point { position: [p.x, self.height_m(p), p.y], normal: self.normal(p).to_array(), color, parts }
+    }
+
+    /// The grid's points but those of its border, row by row.
+    fn points(&self, window: &MapWindow) -> Vec<Point> {
+        let mut points = vec![Point::default(); (CELLS - 1) * (CELLS - 1)];
+        points.par_chunks_mut(CELLS - 1).enumerate().for_each(|(j, row)| {
+            for (i, point) in row.iter_mut().enumerate() {
+                let offset = Vec2::new((i + 1) as f32, (j + 1) as f32) * CELL_M;
+                *point = self.point(window, self.corner + offset);
+            }
+        });
+        points
+    }
+
+    /// Adds the vertices of the near mesh on the border; gives their numbers by side: north, south, west, east, each
+    /// towards east or south.
+    fn border(&self, positions: &[[f32; 3]], cut: &[[u32; 3]], points: &mut Vec<Point>) -> [Vec<u32>; 4] {
+        let mut used: Vec<u32> = cut.as_flattened().to_vec();
+        used.sort_unstable();
+        used.dedup();
+        let far = self.corner + SIDE_M;
+        let mut sides = [const { Vec::new() }; 4];
+        for position in used.into_iter().map(|v| positions[v as usize]) {
+            let p = plan(position);
+            let on = [p.y == self.corner.y, p.y == far.y, p.x == self.corner.x, p.x == far.x];
+            if on.iter().any(|&on| on) {
+                let number = points.len() as u32;
+                points.push(self.border_point(position, points));
+                (0..4).filter(|&side| on[side]).for_each(|side| sides[side].push(number));
+            }
+        }
+        for (side, numbers) in sides.iter_mut().enumerate() {
+            let along = |n: u32| plan(points[n as usize].position)[side / 2];
+            numbers.sort_by(|&a, &b| along(a).total_cmp(&along(b)));
+        }
+        sides
+    }
+
+    /// A vertex of the near mesh, with that mesh's normal and the colour of the nearest point of the grid, which has
+    /// hardly left the map's.
+    fn border_point(&self, position: [f32; 3], points: &[Point]) -> Point {
+        let field = &self.land.field;
+        let p = plan(position);
+        let sample = (p + 0.5 * field.extent_m()) / field.spacing_m;
+        let near = ((p - self.corner) / CELL_M - 0.5).clamp(Vec2::ZERO, Vec2::splat((CELLS - 2) as f32));
+        let near = points[near.y as usize * (CELLS - 1) + near.x as usize];
+        let normal = field.normal_at((sample.x + 0.5) as u32, (sample.y + 0.5) as u32).to_array();
+        Point { position, normal, ..near }
+    }
+
+    /// The grid's cells, and the strips between it and the border.
+    fn triangles(&self, points: &[Point], border: &[Vec<u32>; 4]) -> Vec<[u32; 3]> {
+        let n = CELLS as u32 - 1;
+        let mut out = Vec::with_capacity(2 * CELLS * CELLS);
+        for (j, i) in (0..n - 1).flat_map(|j| (0..n - 1).map(move |i| (j, i))) {
+            let [a, b, c, d] = [j * n + i, j * n + i + 1, (j + 1) * n + i, (j + 1) * n + i + 1];
+            out.extend(if (i + j) % 2 == 0 { [[a, c, d], [a, d, b]] } else { [[a, c, b], [b, c, d]] });
+        }
+        for (side, outer) in border.iter().enumerate() {
+            let inner: Vec<u32> = match side {
+                0 => (0..n).collect(),
+                1 => (n * (n - 1)..n * n).collect(),
+                2 => (0..n).map(|j| j * n).collect(),
+                _ => (0..n).map(|j| j * n + n - 1).collect(),
+            };
+            let along = |v: u32| plan(points[v as usize].position)[side / 2];
+            let (mut i, mut o) = (0, 0);
+            while i + 1 < inner.len() || o + 1 < outer.len() {
+                // The next vertex on either line, whichever comes first.
+                let next_inner = inner.get(i + 1).map_or(f32::MAX, |&v| along(v));
+                let next_outer = outer.get(o + 1).map_or(f32::MAX, |&v| along(v));
+                let third = if next_inner <= next_outer { inner[i + 1] } else { outer[o + 1] };
+                let [a, b, c] = [inner[i], outer[o], third].map(|v| plan(points[v as usize].position));
+                let up = (b - a).perp_dot(c - a) < 0.0;
+                out.push(if up { [inner[i], outer[o], third] } else { [outer[o], inner[i], third] });
+                if next_inner <= next_outer { i += 1 } else { o += 1 }
+            }
+        }
+        out
+    }
+}
+
+/// Each triangle goes to the kind that covers most of it.
+fn by_kind(points: &[Point], triangles: &[[u32; 3]], extent_m: f32) -> (Mesh, Vec<[f32; 2]>) {
+    let (mut mesh, mut map_uvs) = (Mesh::default(), Vec::new());
+    let kinds: Vec<usize> = triangles
+        .iter()
+        .map(|t| {
+            let part = |k: usize| t.iter().map(|&v| points[v as usize].parts[k]).sum::<f32>();
+            (1..KINDS).fold(0, |best, k| if part(k) > part(best) { k } else { best })
+        })
+        .collect();
+    for kind in 0..KINDS {
+        let mut numbers = vec![u32::MAX; points.len()];
+        let mut part = Vec::new();
+        for (triangle, _) in triangles.iter().zip(&kinds).filter(|(_, k)| **k == kind) {
+            part.push(triangle.map(|v| {
+                let number = &mut numbers[v as usize];
+                if *number == u32::MAX {
+                    *number = mesh.positions.len() as u32;
+                    push(&mut mesh, &points[v as usize], kind);
+                    map_uvs.push((plan(points[v as usize].position) / extent_m + 0.5).to_array());
+                }
+                *number
+            }));
+        }
+        let material = Material::Foreign(kind as u32);
+        mesh.parts.push(Part { material, kind: PartKind::Surface, triangles: part });
+    }
+    (mesh, map_uvs)
+}
+
+fn push(mesh: &mut Mesh, point: &Point, kind: usize) {
+    mesh.positions.push(point.position);
+    mesh.normals.push(point.normal);
+    mesh.uvs.push((plan(point.position) / TILE_M[kind]).to_array());
+    let [r, g, b] = point.color.map(|c| (c / TILE_MEAN[kind] * 255.0 + 0.5).clamp(0.0, 255.0) as u8);
+    mesh.colors.push([r, g, b, 255]);
+}
