@@ -25,11 +25,8 @@ pub fn foreground_glb(foreground: &Foreground, kinds: &[&str], white: f32) -> Re
             "its attribute lists differ in length",
         ));
     }
-    let mut document = Document::default();
-    document.materials = kinds
-        .iter()
-        .map(|kind| json!({ "name": kind, "pbrMetallicRoughness": { "metallicFactor": 0, "roughnessFactor": 0.95 } }))
-        .collect();
+    let material = |kind| json!({ "name": kind, "pbrMetallicRoughness": { "metallicFactor": 0, "roughnessFactor": 0.95 } });
+    let mut document = Document { materials: kinds.iter().map(material).collect(), ..Document::default() };
     let surface_of = |material| match material {
         Material::Foreign(k) => Surface { material: Some(k as usize), normal_map: true },
         _ => Surface::default(),

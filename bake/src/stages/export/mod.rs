@@ -32,7 +32,7 @@ pub use scene::{
     TreeTemplateBlob, instances_bin, scene_gltf,
 };
 pub use single::single_glb;
-pub use terrain::{near_mesh, terrain_glb};
+pub use terrain::{Triangles, near_mesh, terrain_glb};
 
 /// What `asset.generator` says.
 pub const GENERATOR: &str = concat!("Genescape ", env!("CARGO_PKG_VERSION"));

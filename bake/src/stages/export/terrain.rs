@@ -82,11 +82,14 @@ pub fn ground_material(color: usize, light: usize, normal: Option<(usize, f32)>)
     material
 }
 
+/// Vertices in metres, and triangles as indices into them.
+pub type Triangles = (Vec<[f32; 3]>, Vec<[u32; 3]>);
+
 /// Positions and triangles of the near mesh in a file that [`terrain_glb`] made.
 ///
 /// # Errors
 /// When it is no such file.
-pub fn near_mesh(glb: &[u8]) -> Result<(Vec<[f32; 3]>, Vec<[u32; 3]>), ExportError> {
+pub fn near_mesh(glb: &[u8]) -> Result<Triangles, ExportError> {
     let file = read_glb("the terrain", glb)?;
     let bad = || ExportError::NotGltf("the terrain".into(), "it has no near mesh".into());
     let number = |value: &Value| value.as_u64().map(|n| n as usize).ok_or_else(bad);

@@ -235,7 +235,7 @@ fn the_foreground_looks_like_the_map_at_its_border() {
             (differences, count) = (differences + own - f32::from(texel), count + 1.0);
         }
     }
-    assert!(count > 100.0 && (differences / count as f32).abs() < 4.0, "{}", differences / count);
+    assert!(count > 100.0 && (differences / count).abs() < 4.0, "{}", differences / count);
 }
 
 #[test]

@@ -38,7 +38,7 @@ pub fn turn(y: f32, x: f32) -> f32 {
     let series = 1.0
         + s * (-0.333_331_45
             + s * (0.199_935_51
-                + s * (-0.142_088_99
+                + s * (-0.142_089
                     + s * (0.106_562_64
                         + s * (-0.075_289_64
                             + s * (0.042_909_614 + s * (-0.016_165_737 + s * 0.002_866_226)))))));
@@ -90,7 +90,8 @@ pub fn henyey_greenstein(g: f32, cos_angle: f32) -> f32 {
 /// The bits of the half float nearest to a value in [0, 65504]; ties go to even, as IEEE 754 has it.
 #[inline]
 pub fn half_bits(value: f32) -> u16 {
-    let bits = value.max(0.0).min(65504.0).to_bits();
+    // Not `clamp`, which would let a NaN through.
+    let bits = if value > 0.0 { value.min(65504.0).to_bits() } else { 0 };
     // Below 2⁻¹⁴ the half is subnormal: adding ½ puts its ten bits at the end of the significand.
     let subnormal = (f32::from_bits(bits) + 0.5).to_bits().wrapping_sub(0.5f32.to_bits());
     let normal = bits.wrapping_sub(112 << 23).wrapping_add(0xFFF + ((bits >> 13) & 1)) >> 13;
