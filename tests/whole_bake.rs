@@ -238,6 +238,15 @@ impl Watching {
     }
 }
 
+impl Watching {
+    /// Stages built by the next bake that builds any: a save may be seen as more than one event, and the first bake
+    /// after it does the work.
+    fn work(&mut self) -> u64 {
+        let built = (0..5).map(|_| self.next(&["done"])["built"].as_u64().expect("a number"));
+        built.into_iter().find(|built| *built != 0).expect("a bake that does something")
+    }
+}
+
 impl Drop for Watching {
     fn drop(&mut self) {
         let _ = self.child.kill();

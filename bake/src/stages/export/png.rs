@@ -80,7 +80,7 @@ mod tests {
 
     #[test]
     fn heights_keep_all_sixteen_bits() {
-        let values: Vec<u16> = (0..65u32 * 33).map(|i| ((i * 2_654_435) >> 7) as u16).collect();
+        let values: Vec<u16> = (0..65u32 * 33).map(|i| (i.wrapping_mul(2_654_435) >> 7) as u16).collect();
         let (info, data, _) = decode(&encode_gray16(65, 33, &values));
         assert_eq!((info.width, info.height, info.bit_depth), (65, 33, BitDepth::Sixteen));
         let read: Vec<u16> = data.chunks_exact(2).map(|b| u16::from_be_bytes([b[0], b[1]])).collect();

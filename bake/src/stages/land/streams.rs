@@ -234,7 +234,7 @@ fn neighbours(n: usize, k: usize) -> impl Iterator<Item = (usize, usize)> {
     NEIGHBOURS.iter().enumerate().filter_map(move |(way, (dx, dy))| {
         let (x, y) = (x + dx, y + dy);
         let inside = x >= 0 && y >= 0 && x < n as i32 && y < n as i32;
-        inside.then_some((way, y as usize * n + x as usize))
+        inside.then(|| (way, y as usize * n + x as usize))
     })
 }
 
