@@ -220,9 +220,8 @@ fn bake(args: &BakeArgs) -> Result<()> {
         Some(path) => Ok(path.clone()),
         None => session.world.newest_population(),
     };
-    let first = target(&session).and_then(|path| session.bake_file(&path));
     if !args.watch {
-        return first;
+        return target(&session).and_then(|path| session.bake_file(&path));
     }
     let populations = session.world.root().join(names::POPULATIONS);
     let mut folders = vec![session.world.root().to_owned(), populations];
@@ -232,8 +231,9 @@ fn bake(args: &BakeArgs) -> Result<()> {
             folders.push(folder);
         }
     }
+    // From before the first bake on, lest a save during it be missed.
     let watch = Watch::new(&folders.iter().map(PathBuf::as_path).collect::<Vec<_>>(), args.poll)?;
-    let mut last = first;
+    let mut last = target(&session).and_then(|path| session.bake_file(&path));
     loop {
         if let Err(error) = &last {
             if matches!(error.downcast_ref(), Some(RunError::Cancelled)) {
