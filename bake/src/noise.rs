@@ -145,7 +145,50 @@ pub fn fbm2(seed: u32, x: f32, y: f32, octaves: u32, gain: f32, period: i32) -> 
     sum / total
 }
 
-/// The same in three dimensions.
+/// [`fbm2`] at the ascending points `xs` of one row, the same bit by bit at a third of the cost: points that share a
+/// cell share its corners. `out` is as long as `xs`.
+pub fn fbm2_row(seed: u32, xs: &[f32], y: f32, octaves: u32, gain: f32, period: i32, out: &mut [f32]) {
+    let (mut amplitude, mut total, mut frequency) = (1.0, 0.0, 1.0);
+    out.fill(0.0);
+    for octave in 0..octaves {
+        let wrapped = period << octave;
+        add_row(seed.wrapping_add(octave), xs, frequency, y * frequency, wrapped, amplitude, out);
+        total += amplitude;
+        amplitude *= gain;
+        frequency *= 2.0;
+    }
+    out.iter_mut().for_each(|value| *value /= total);
+}
+
+/// Adds amplitude × [`gradient2`] at (x · frequency, y) to each point of a row.
+fn add_row(seed: u32, xs: &[f32], frequency: f32, y: f32, period: i32, amplitude: f32, out: &mut [f32]) {
+    let iy = floor_i32(y);
+    let dy = y - iy as f32;
+    let (y0, y1, v) = (wrap(iy, period), wrap(iy + 1, period), fade(dy));
+    let corner = |x: i32, y: i32| GRADIENTS_2D[(hash(seed, x, y, 0) >> 28) as usize];
+    let end = xs.len().min(out.len());
+    let mut start = 0;
+    while start < end {
+        let ix = floor_i32(xs[start] * frequency);
+        let same = |x: &&f32| floor_i32(**x * frequency) == ix;
+        let stop = start + 1 + xs[start + 1..end].iter().take_while(same).count();
+        let (x0, x1) = (wrap(ix, period), wrap(ix + 1, period));
+        let (a, b, c, d) = (corner(x0, y0), corner(x1, y0), corner(x0, y1), corner(x1, y1));
+        for (value, x) in out[start..stop].iter_mut().zip(&xs[start..stop]) {
+            let dx = x * frequency - ix as f32;
+            let at = |g: [f32; 2], dx: f32, dy: f32| g[0] * dx + g[1] * dy;
+            let u = fade(dx);
+            let (north, south) = (
+                lerp(at(a, dx, dy), at(b, dx - 1.0, dy), u),
+                lerp(at(c, dx, dy - 1.0), at(d, dx - 1.0, dy - 1.0), u),
+            );
+            *value += amplitude * (lerp(north, south, v) * std::f32::consts::SQRT_2);
+        }
+        start = stop;
+    }
+}
+
+/// [`fbm2`] in three dimensions.
 pub fn fbm3(seed: u32, x: f32, y: f32, z: f32, octaves: u32, gain: f32, period: i32) -> f32 {
     let (mut sum, mut amplitude, mut total, mut frequency) = (0.0, 1.0, 0.0, 1.0);
     for octave in 0..octaves {
@@ -177,4 +220,22 @@ pub fn cellular2(seed: u32, x: f32, y: f32, period: i32) -> (f32, f32, u32) {
         }
     }
     (first.sqrt(), second.sqrt(), id)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_is_its_points_bit_by_bit() {
+        for (step, from, period) in [(0.043, 0.0, 9), (0.61, -20.0, 0), (1.7, 3.0, 5)] {
+            let xs: Vec<f32> = (0..300).map(|i| from + i as f32 * step).collect();
+            for y in [-3.3, 0.0, 8.99, 41.5] {
+                let mut row = vec![7.0; xs.len()];
+                fbm2_row(5, &xs, y, 3, 0.6, period, &mut row);
+                let points: Vec<f32> = xs.iter().map(|&x| fbm2(5, x, y, 3, 0.6, period)).collect();
+                assert!(row == points, "{step} {y} {period}");
+            }
+        }
+    }
 }

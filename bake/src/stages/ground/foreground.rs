@@ -105,7 +105,10 @@ impl MapWindow {
         let climate = Climate::new(params, land);
         let place = |k: i32| (k.clamp(0, map_px as i32 - 1) as f32 + 0.5) / map_px as f32;
         let rows = place(first[1])..=place(first[1] + across as i32);
-        let traits = TraitsMap::new(&Patches::new(params.terrain_seed, extent_m), land, rows);
+        // Traits are kept on a grid, so patches are needed as far as the samples around.
+        let apart = 2.0 / (land.field.side - 1).min(512) as f32;
+        let wider = (rows.start() - apart).max(0.0)..=(rows.end() + apart).min(1.0);
+        let traits = TraitsMap::new(&Patches::new(params.terrain_seed, extent_m, wider), land, rows);
         let grain = Grain::new(params.terrain_seed, map_px);
         let mut values = vec![[0.0; TRAITS]; across * across];
         values.par_chunks_mut(across).enumerate().for_each(|(j, row)| {

@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use super::cover::Noise;
-use crate::noise::{fbm2, hash01};
+use crate::noise::{fbm2_row, hash01};
 use crate::seed::noise_seed;
 
 /// Texels a side of the fine tile: 32 cells of 8 texels, in two octaves.
@@ -40,11 +40,11 @@ impl Grain {
 /// A fractal tile of `cells` cells a side, about [-1, 1].
 fn tile(seed: u32, side: usize, cells: i32, octaves: u32) -> Vec<f32> {
     let scale = cells as f32 / side as f32;
+    let xs: Vec<f32> = (0..side).map(|i| i as f32 * scale).collect();
     let mut values = vec![0.0; side * side];
     values.par_chunks_mut(side).enumerate().for_each(|(j, row)| {
-        for (i, v) in row.iter_mut().enumerate() {
-            *v = 1.8 * fbm2(seed, i as f32 * scale, j as f32 * scale, octaves, 0.65, cells);
-        }
+        fbm2_row(seed, &xs, j as f32 * scale, octaves, 0.65, cells, row);
+        row.iter_mut().for_each(|v| *v *= 1.8);
     });
     values
 }

@@ -42,7 +42,8 @@ pub struct GroundParams {
 pub fn maps(params: &GroundParams, land: &Landform, side_px: u32) -> GroundMaps {
     let side_px = side_px.max(1);
     let climate = Climate::new(params, land);
-    let traits = TraitsMap::new(&Patches::new(params.terrain_seed, land.field.extent_m()), land, 0.0..=1.0);
+    let traits =
+        TraitsMap::new(&Patches::new(params.terrain_seed, land.field.extent_m(), 0.0..=1.0), land, 0.0..=1.0);
     let grain = Grain::new(params.terrain_seed, side_px);
     let encode = SrgbTable::new();
     let mut color_srgb = Image8::new(side_px, side_px, 3);
@@ -67,7 +68,7 @@ pub fn maps(params: &GroundParams, land: &Landform, side_px: u32) -> GroundMaps 
 /// the field's border they are the mean of the map around.
 pub fn apron_colors(params: &GroundParams, land: &Landform) -> Vec<[u8; 4]> {
     let climate = Climate::new(params, land);
-    let patches = Patches::new(params.terrain_seed, land.field.extent_m());
+    let patches = Patches::new(params.terrain_seed, land.field.extent_m(), 0.0..=1.0);
     let apron = &land.apron;
     let half_m = 0.5 * land.field.extent_m();
     let place = |k: u32| (k as f32 - 0.5 * (apron.side - 1) as f32) * apron.spacing_m;

@@ -6,7 +6,7 @@
 use rayon::prelude::*;
 
 use super::textures::SIDE;
-use crate::noise::{cellular2, fbm2, gradient2, hash01};
+use crate::noise::{cellular2, fbm2_row, gradient2, hash01};
 
 /// Height and tone of each texel, row by row.
 pub(super) struct Pattern {
@@ -16,8 +16,8 @@ pub(super) struct Pattern {
 
 /// Blades of grass that lean in tufts over moss.
 pub(super) fn grass() -> Pattern {
-    let mut pattern = from_texels(|u, v| {
-        let moss = 0.5 + 0.5 * fbm2(11, u * 24.0, v * 24.0, 3, 0.6, 24);
+    let mut pattern = from_texels([waves(11, 24, 3, 0.6)], |_, _, [moss]| {
+        let moss = 0.5 + 0.5 * moss;
         let tone = 30.0 + 34.0 * moss;
         (0.16 * moss, [tone * 1.05, tone, tone * 0.9])
     });
@@ -90,8 +90,7 @@ impl Blade {
 
 /// Fractured rock: folds of sharp creases within folds, ledges, and a few open cracks.
 pub(super) fn rock() -> Pattern {
-    from_texels(|u, v| {
-        let a = fbm2(21, u * 5.0, v * 5.0, 2, 0.5, 5);
+    from_texels([waves(21, 5, 2, 0.5), waves(27, 90, 2, 0.7)], |u, v, [a, rough]| {
         let (wu, wv) = (u + 0.05 * a, v - 0.04 * a);
         // Each octave shifts the next, so that creases break off where they meet.
         let (mut relief, mut shift, mut amplitude) = (0.0, 0.0, 0.5);
@@ -102,7 +101,6 @@ pub(super) fn rock() -> Pattern {
             shift = 0.5 * n;
             amplitude *= 0.6;
         }
-        let rough = fbm2(27, u * 90.0, v * 90.0, 2, 0.7, 90);
         let open = gradient2(28, wu * 4.0 + 0.5 * relief, wv * 4.0, 4).abs();
         let crack = (open * 16.0 + 0.45 + 1.2 * a).clamp(0.0, 1.0);
         let ledge = relief * 5.0 + 1.5 * a;
@@ -116,8 +114,8 @@ pub(super) fn rock() -> Pattern {
 
 /// Stones of all sizes, the larger on top.
 pub(super) fn scree() -> Pattern {
-    let mut pattern = from_texels(|u, v| {
-        let grit = 0.5 + 0.5 * fbm2(31, u * 64.0, v * 64.0, 2, 0.7, 64);
+    let mut pattern = from_texels([waves(31, 64, 2, 0.7)], |_, _, [grit]| {
+        let grit = 0.5 + 0.5 * grit;
         let tone = 34.0 + 40.0 * grit;
         (0.10 * grit, [tone * 1.04, tone, tone * 0.95])
     });
@@ -208,13 +206,11 @@ impl Stone {
 
 /// Soft drifts, ripples that the wind left, and grain.
 pub(super) fn snow() -> Pattern {
-    from_texels(|u, v| {
-        let bend = fbm2(41, u * 6.0, v * 6.0, 2, 0.5, 6);
-        let drift = fbm2(42, u * 8.0, v * 8.0, 3, 0.5, 8);
+    let noise = [waves(41, 6, 2, 0.5), waves(42, 8, 3, 0.5), waves(44, 5, 1, 0.5), waves(45, 128, 2, 0.8)];
+    from_texels(noise, |u, v, [bend, drift, still, grain]| {
         // Ripples: the same noise drawn out across the wind, bent by it.
         let ripple = gradient2(43, u * 12.0 + 0.6 * bend, v * 48.0 + 3.0 * bend, 12);
-        let ripple = ripple * (0.5 + 0.5 * gradient2(44, u * 5.0, v * 5.0, 5));
-        let grain = fbm2(45, u * 128.0, v * 128.0, 2, 0.8, 128);
+        let ripple = ripple * (0.5 + 0.5 * still);
         let height = 0.5 + 0.55 * drift + 0.13 * ripple + 0.07 * grain;
         let tone = 128.0 * (1.0 + 0.08 * drift + 0.05 * ripple + 0.10 * grain);
         (height, [tone * (1.0 - 0.02 * drift), tone, tone * (1.0 + 0.03 * drift)])
@@ -239,8 +235,8 @@ fn plate(seed: u32, u: f32, v: f32, cells: i32) -> Plate {
 
 /// Mud that dried and cracked, with finer cracks inside its plates.
 pub(super) fn mud() -> Pattern {
-    from_texels(|u, v| {
-        let (a, b) = (fbm2(51, u * 9.0, v * 9.0, 2, 0.55, 9), fbm2(52, u * 9.0, v * 9.0, 2, 0.55, 9));
+    let noise = [waves(51, 9, 2, 0.55), waves(52, 9, 2, 0.55), waves(55, 70, 2, 0.65)];
+    from_texels(noise, |u, v, [a, b, silt]| {
         let plate_here = plate(53, u + 0.03 * a, v + 0.03 * b, 13);
         // Only some plates split again, and cracks close here and there.
         let split = if plate_here.shade > 0.45 {
@@ -250,7 +246,6 @@ pub(super) fn mud() -> Pattern {
         };
         let open = 0.55 + 0.45 * (2.5 * a).clamp(-1.0, 1.0);
         let crack = (1.0 - (1.0 - plate_here.crack) * open).min(split);
-        let silt = fbm2(55, u * 70.0, v * 70.0, 2, 0.65, 70);
         let height = crack * (0.62 + 0.16 * plate_here.shade + 0.10 * silt + 0.12 * a);
         let tone = (112.0 + 26.0 * plate_here.shade + 24.0 * a + 30.0 * silt) * (0.32 + 0.68 * crack);
         let warm = 0.03 * b;
@@ -258,16 +253,39 @@ pub(super) fn mud() -> Pattern {
     })
 }
 
-/// A pattern from each texel's (u, v) in 0..1.
-fn from_texels(texel: impl Fn(f32, f32) -> (f32, [f32; 3]) + Sync) -> Pattern {
-    let mut both = vec![(0.0, [0.0; 3]); SIDE * SIDE];
-    both.par_chunks_mut(SIDE).enumerate().for_each(|(j, row)| {
-        for (i, out) in row.iter_mut().enumerate() {
-            *out = texel(i as f32 / SIDE as f32, j as f32 / SIDE as f32);
+/// Fractal noise that tiles the pattern.
+struct Waves {
+    seed: u32,
+    cells: i32,
+    octaves: u32,
+    gain: f32,
+}
+
+fn waves(seed: u32, cells: i32, octaves: u32, gain: f32) -> Waves {
+    Waves { seed, cells, octaves, gain }
+}
+
+/// A pattern from each texel's (u, v) in 0..1 and the noise there.
+fn from_texels<const N: usize>(
+    noise: [Waves; N],
+    texel: impl Fn(f32, f32, [f32; N]) -> (f32, [f32; 3]) + Sync,
+) -> Pattern {
+    let part = |i: usize| i as f32 / SIDE as f32;
+    let xs: Vec<Vec<f32>> =
+        noise.iter().map(|w| (0..SIDE).map(|i| part(i) * w.cells as f32).collect()).collect();
+    let mut pattern = Pattern { height: vec![0.0; SIDE * SIDE], tone: vec![[0.0; 3]; SIDE * SIDE] };
+    let rows = pattern.height.par_chunks_mut(SIDE).zip(pattern.tone.par_chunks_mut(SIDE)).enumerate();
+    rows.for_each(|(j, (heights, tones))| {
+        let v = part(j);
+        let mut values = [[0.0; SIDE]; N];
+        for ((w, xs), values) in noise.iter().zip(&xs).zip(&mut values) {
+            fbm2_row(w.seed, xs, v * w.cells as f32, w.octaves, w.gain, w.cells, values);
+        }
+        for (i, (height, tone)) in heights.iter_mut().zip(tones).enumerate() {
+            (*height, *tone) = texel(part(i), v, std::array::from_fn(|k| values[k][i]));
         }
     });
-    let (height, tone) = both.into_iter().unzip();
-    Pattern { height, tone }
+    pattern
 }
 
 /// The index of a texel, wrapped around.

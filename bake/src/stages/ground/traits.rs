@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use rayon::prelude::*;
 
 use crate::model::{Heightfield, Landform};
-use crate::noise::fbm2;
+use crate::noise::{fbm2, fbm2_row};
 use crate::seed::noise_seed;
 
 /// Most samples a side that traits are kept for.
@@ -156,18 +156,24 @@ pub(super) struct Patches {
 impl Patches {
     const SIDE: usize = 129;
 
-    pub fn new(terrain_seed: u32, extent_m: f32) -> Self {
+    /// The layers of the whole field, or only as far as places between two v need them.
+    pub fn new(terrain_seed: u32, extent_m: f32, v: RangeInclusive<f32>) -> Self {
         let seed = |item| noise_seed(terrain_seed.into(), "ground", item);
         let seeds = [seed(0), seed(1), seed(2)];
         let spacing_m = extent_m / (Self::SIDE - 1) as f32;
+        // Wavelength in metres, octaves, gain, height.
+        let layers = [(170.0, 4, 0.55, 1.8), (46.0, 3, 0.6, 1.6), (80.0, 3, 0.6, 1.6)];
+        let place_m = |k: usize| k as f32 * spacing_m;
+        let xs = layers.map(|layer| (0..Self::SIDE).map(|i| place_m(i) / layer.0).collect::<Vec<f32>>());
         let mut values = vec![[0.0; 3]; Self::SIDE * Self::SIDE];
-        values.par_iter_mut().enumerate().for_each(|(k, v)| {
-            let (x, z) = ((k % Self::SIDE) as f32 * spacing_m, (k / Self::SIDE) as f32 * spacing_m);
-            *v = [
-                1.8 * fbm2(seeds[0], x / 170.0, z / 170.0, 4, 0.55, 0),
-                1.6 * fbm2(seeds[1], x / 46.0, z / 46.0, 3, 0.6, 0),
-                1.6 * fbm2(seeds[2], x / 80.0, z / 80.0, 3, 0.6, 0),
-            ];
+        let (first, last) = (cell(*v.start(), Self::SIDE).0, cell(*v.end(), Self::SIDE).0 + 1);
+        let rows = values.par_chunks_mut(Self::SIDE).enumerate().skip(first).take(last + 1 - first);
+        rows.for_each(|(j, row)| {
+            let mut line = [0.0; Self::SIDE];
+            for (k, (wavelength_m, octaves, gain, height)) in layers.into_iter().enumerate() {
+                fbm2_row(seeds[k], &xs[k], place_m(j) / wavelength_m, octaves, gain, 0, &mut line);
+                row.iter_mut().zip(&line).for_each(|(out, value)| out[k] = height * value);
+            }
         });
         Self { seeds, values }
     }
