@@ -69,7 +69,7 @@ fn tests() -> Result<()> {
 
 fn documentation() -> Result<()> {
     let arguments = ["doc", "--quiet", "--workspace", "--no-deps", "--document-private-items"];
-    execute(cargo(&arguments).env("RUSTDOCFLAGS", "-D warnings"))
+    execute(cargo(&arguments).env("RUSTDOCFLAGS", "-D warnings -A rustdoc::private-intra-doc-links"))
 }
 
 /// Where the checked bake goes.

@@ -14,6 +14,10 @@ pub fn run(samples: u32) -> Result<()> {
     setup::blender()?;
     let folder = root().join("target/interop/pictures");
     let world = folder.join("world");
+    if world.exists() {
+        // The starters may have changed since.
+        std::fs::remove_dir_all(&world).context("cannot remove the last pictures' world")?;
+    }
     let mut bake = cargo(&[
         "run",
         "--quiet",

@@ -2,7 +2,7 @@
 //!
 //! A strip goes on as a pure strip as far as it can, turns a corner by a degenerate triangle, and when it is stuck
 //! the next one starts beside the last triangle drawn that has a neighbour left; degenerate triangles join them.
-//! Triangle n of a strip s is (s[n], s[n+1], s[n+2]), the other way round where n is odd.
+//! Triangle n of a strip s is `(s[n], s[n+1], s[n+2])`, the other way round where n is odd.
 
 /// The strip of a list of triangles whose indices are less than `vertices`. Triangles that name a vertex twice
 /// are left out.
