@@ -133,7 +133,7 @@ pub enum Command {
         #[arg(value_name = "OUT")]
         out: PathBuf,
         /// Where faces meet at more than this angle and the file brings no normals, a crease is made.
-        #[arg(long, value_name = "DEG", default_value_t = 40.0)]
+        #[arg(long, value_name = "DEG", default_value_t = 60.0)]
         crease_deg: f32,
     },
     /// Look after the cache.
