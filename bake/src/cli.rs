@@ -171,7 +171,9 @@ pub enum CacheCommand {
         #[command(flatten)]
         world: WorldArgs,
     },
-    /// Remove what was used least recently, never anything that a baked scene still in the world uses.
+    /// Remove what was used least recently, never what the current scenes use nor what was used in the last ten minutes.
+    ///
+    /// A scene of an older generation that loses parts goes with them; baking its population brings it back.
     Gc {
         /// Size to shrink to, for example 500MB or 2GiB.
         #[arg(long, value_name = "SIZE", value_parser = parse_size)]

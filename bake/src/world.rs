@@ -10,8 +10,6 @@ use anyhow::{Context, Result, anyhow, bail};
 use genescape_cache::Digest;
 use genescape_schema::{Current, Loaded, Population, Space, names};
 
-/// The parameter space that new worlds get a copy of.
-const SPACE_RON: &str = include_str!("../../configs/space.ron");
 /// The landscapes that new worlds begin with.
 pub const STARTER_RON: &str = include_str!("../../configs/starter.ron");
 
@@ -42,7 +40,7 @@ impl World {
         })?;
         let space_path = root.join(names::SPACE);
         if !space_path.exists() {
-            create_unless_there(&space_path, SPACE_RON)?;
+            create_unless_there(&space_path, Space::BUILTIN)?;
         }
         Self::open(root)
     }
