@@ -1,0 +1,15 @@
+//! Shows four baked landscapes at once, walked through together and voted on.
+//!
+//! Data goes one way: files → [`load`] → [`scene`] (plain values) → `upload` (buffers and textures) → `passes`
+//! (pictures), with the person's wishes coming in as events.
+
+pub mod baker;
+pub mod camera;
+pub mod frame;
+pub mod input;
+pub mod lod;
+pub mod scene;
+pub mod settings;
+pub mod ui;
+pub mod walk;
+pub mod world_watch;

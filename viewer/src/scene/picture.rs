@@ -1,0 +1,30 @@
+//! Pictures in memory.
+
+use std::sync::Arc;
+
+/// An 8-bit picture, four channels, row 0 on top, with its coarser versions if the file brings them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Its blob's name: equal names are equal pictures.
+    pub name: String,
+    /// Width in pixels.
+    pub width_px: u32,
+    /// Height in pixels.
+    pub height_px: u32,
+    /// Levels from the finest on, each half as wide and high as the one before; 4 bytes a pixel. One level if the
+    /// file has no others.
+    pub levels: Vec<Arc<[u8]>>,
+}
+
+/// A picture of radiance: four half floats a pixel, row 0 on top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HdrPicture {
+    /// Its blob's name.
+    pub name: String,
+    /// Width in pixels.
+    pub width_px: u32,
+    /// Height in pixels.
+    pub height_px: u32,
+    /// 8 bytes a pixel.
+    pub pixels: Arc<[u8]>,
+}
