@@ -1,7 +1,7 @@
 //! Shows four baked landscapes at once, walked through together and voted on.
 //!
-//! Data goes one way: files → [`load`] → [`scene`] (plain values) → `upload` (buffers and textures) → `passes`
-//! (pictures), with the person's wishes coming in as events.
+//! Data goes one way: files → [`load`] → [`scene`] (plain values) → [`upload`] (buffers and textures) → [`passes`]
+//! (pictures, in a [`view`] each), with the person's wishes coming in as events.
 
 pub mod baker;
 pub mod camera;

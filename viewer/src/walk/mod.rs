@@ -1,1 +1,391 @@
-//! To be written.
+//! The camera that walks through four landscapes at once (thesis section 6): a person's wishes and the time that has
+//! passed → one place and one direction for all views. Metres, radians, seconds; knows no window, device or disk.
+//!
+//! What all views share, bit by bit: x, z, yaw and pitch. What each view has of its own: y, which follows its own
+//! ground. Walking keeps eyes 1.6 m above the bilinear ground and goes around trunks ([`steps`] says why around those of
+//! all four landscapes); flying keeps one altitude in all views ([`fly`]); orbiting circles a point on the ground
+//! ([`orbit`]).
+
+mod fly;
+mod land;
+mod orbit;
+mod start;
+mod steps;
+#[cfg(test)]
+mod testing;
+#[cfg(test)]
+mod tests;
+mod trunks;
+
+use std::f32::consts::{PI, TAU};
+
+use glam::{Vec2, Vec3};
+use serde::{Deserialize, Serialize};
+
+pub use land::{BODY_RADIUS_M, EDGE_M, EYE_HEIGHT_M, LEAST_HEIGHT_M, Land, WADING_DEPTH_M, reach_m, within};
+pub use start::start_pose;
+pub use steps::{advance, free, nearest_free};
+pub use trunks::{Trunk, Trunks};
+
+use crate::camera::Camera;
+use crate::input::Controls;
+
+/// Nobody looks straight up or down: there, left and right have no meaning.
+pub const MOST_PITCH_RAD: f32 = 89.0 * PI / 180.0;
+/// Of a longer frame the rest does not count: who comes back to a window that hung has not walked on meanwhile.
+pub const LONGEST_STEP_S: f32 = 0.25;
+/// A change of mode moves the eyes up or down in this time.
+const BLEND_S: f32 = 0.4;
+
+/// How the camera moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Mode {
+    /// On the ground, around trunks.
+    #[default]
+    Walk,
+    /// At one altitude in all views, through trees.
+    Fly,
+    /// In a circle around a point on the ground.
+    Orbit,
+}
+
+impl Mode {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Walk, Self::Fly, Self::Orbit];
+
+    /// The mode that the person gets who asks for another one.
+    pub fn next(self) -> Self {
+        match self {
+            Self::Walk => Self::Fly,
+            Self::Fly => Self::Orbit,
+            Self::Orbit => Self::Walk,
+        }
+    }
+
+    /// 1 for this mode, 0 for the others.
+    fn alone(self) -> [f32; 3] {
+        Self::ALL.map(|mode| if mode == self { 1.0 } else { 0.0 })
+    }
+}
+
+/// A place and direction that can be kept: a bookmark, a command line's camera. Nothing in it depends on a landscape.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Pose {
+    /// The eye, east of the middle of the land.
+    pub x_m: f32,
+    /// The eye, south of the middle of the land.
+    pub z_m: f32,
+    /// As in [`Camera::yaw_rad`].
+    pub yaw_rad: f32,
+    /// As in [`Camera::pitch_rad`].
+    pub pitch_rad: f32,
+    /// How it moves.
+    pub mode: Mode,
+    /// Height of the eye above zero when flying.
+    pub altitude_m: f32,
+    /// From the eye to the point that it circles when orbiting.
+    pub distance_m: f32,
+}
+
+impl Default for Pose {
+    fn default() -> Self {
+        Self {
+            x_m: 0.0,
+            z_m: 0.0,
+            yaw_rad: 0.0,
+            pitch_rad: 0.0,
+            mode: Mode::Walk,
+            altitude_m: 0.0,
+            distance_m: 30.0,
+        }
+    }
+}
+
+impl Pose {
+    /// (x, z).
+    pub fn place_m(&self) -> Vec2 {
+        Vec2::new(self.x_m, self.z_m)
+    }
+
+    /// Level unit vector (x, z) of the direction of view.
+    pub fn ahead(&self) -> Vec2 {
+        let (sin, cos) = libm::sincosf(self.yaw_rad);
+        Vec2::new(-sin, -cos)
+    }
+
+    /// Level unit vector (x, z) to the right.
+    pub fn right(&self) -> Vec2 {
+        let (sin, cos) = libm::sincosf(self.yaw_rad);
+        Vec2::new(cos, -sin)
+    }
+
+    fn put(&mut self, place_m: Vec2) {
+        (self.x_m, self.z_m) = (place_m.x, place_m.y);
+    }
+}
+
+/// How moving and looking feel: settings that a person may change.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Feel {
+    /// Walking speed in m/s.
+    pub walk_mps: f32,
+    /// Running and fast flying, as a multiple.
+    pub run_factor: f32,
+    /// Time in which a wish's speed is reached but for 1/e; 0 is at once.
+    pub smooth_s: f32,
+    /// Turn for one count of the mouse.
+    pub mouse_rad: f32,
+    /// Turn at full deflection of a stick, in rad/s.
+    pub stick_rad_per_s: f32,
+    /// Forward on the mouse or stick looks down.
+    pub invert: bool,
+}
+
+impl Default for Feel {
+    fn default() -> Self {
+        Self {
+            walk_mps: 3.0,
+            run_factor: 4.0,
+            smooth_s: 0.12,
+            mouse_rad: 0.0022,
+            stick_rad_per_s: 2.2,
+            invert: false,
+        }
+    }
+}
+
+/// The camera of all views: its pose and what moves it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rig {
+    pose: Pose,
+    /// What of the last frames' wishes still moves it; x, y, z.
+    velocity_mps: Vec3,
+    /// Set by the wheel.
+    fly_mps: f32,
+    /// What an orbit circles: (x, z).
+    target_m: Vec2,
+    /// Parts of walking, flying and orbiting in the eyes' height; their sum is 1, and soon the mode's own part is.
+    parts: [f32; 3],
+}
+
+impl Rig {
+    /// Begins at a pose. `lands`: those that are there yet, possibly none.
+    pub fn new(pose: Pose, lands: &[&Land]) -> Self {
+        let mut rig = Self {
+            pose: Pose::default(),
+            velocity_mps: Vec3::ZERO,
+            fly_mps: fly::SPEED_MPS,
+            target_m: Vec2::ZERO,
+            parts: Mode::Walk.alone(),
+        };
+        rig.go(pose, lands);
+        rig
+    }
+
+    /// Where it is: what a bookmark keeps.
+    pub fn pose(&self) -> Pose {
+        self.pose
+    }
+
+    /// How it moves.
+    pub fn mode(&self) -> Mode {
+        self.pose.mode
+    }
+
+    /// Speed of flying in m/s, as the wheel has set it.
+    pub fn fly_mps(&self) -> f32 {
+        self.fly_mps
+    }
+
+    /// Jumps to a pose. What no camera can have (not a number, off the land, inside a trunk) becomes the nearest that
+    /// it can.
+    pub fn go(&mut self, pose: Pose, lands: &[&Land]) {
+        let sound = |value: f32, otherwise: f32| if value.is_finite() { value } else { otherwise };
+        let usual = Pose::default();
+        self.pose = Pose {
+            x_m: sound(pose.x_m, 0.0),
+            z_m: sound(pose.z_m, 0.0),
+            yaw_rad: wrapped(sound(pose.yaw_rad, 0.0)),
+            pitch_rad: sound(pose.pitch_rad, 0.0).clamp(-MOST_PITCH_RAD, MOST_PITCH_RAD),
+            mode: pose.mode,
+            altitude_m: sound(pose.altitude_m, 0.0),
+            distance_m: orbit::distance(sound(pose.distance_m, usual.distance_m)),
+        };
+        (self.velocity_mps, self.parts) = (Vec3::ZERO, pose.mode.alone());
+        match pose.mode {
+            Mode::Walk => self.settle(lands),
+            Mode::Fly => fly::keep_above(&mut self.pose, lands),
+            Mode::Orbit => self.target_m = orbit::aim(&mut self.pose, lands),
+        }
+    }
+
+    /// Changes the mode where the camera is; the eyes move up or down in a moment, not at once.
+    pub fn set_mode(&mut self, mode: Mode, lands: &[&Land]) {
+        if mode == self.pose.mode {
+            return;
+        }
+        let heights_m: Vec<f32> = lands.iter().map(|land| self.height_m(land)).collect();
+        (self.pose.mode, self.velocity_mps) = (mode, Vec3::ZERO);
+        match mode {
+            Mode::Walk => self.settle(lands),
+            Mode::Fly => {
+                self.pose.put(within(lands, self.pose.place_m()));
+                // From the highest of the four, so that no view dives.
+                self.pose.altitude_m = heights_m.into_iter().fold(f32::NEG_INFINITY, f32::max);
+                if !self.pose.altitude_m.is_finite() {
+                    self.pose.altitude_m = EYE_HEIGHT_M;
+                }
+                fly::keep_above(&mut self.pose, lands);
+            }
+            Mode::Orbit => self.target_m = orbit::begin(&mut self.pose, lands, &heights_m),
+        }
+    }
+
+    /// Walk, fly, orbit, and around again.
+    pub fn cycle_mode(&mut self, lands: &[&Land]) {
+        self.set_mode(self.pose.mode.next(), lands);
+    }
+
+    /// Makes a walker's place a free one, after a landscape was swapped: the nearest, or the same if there is none.
+    pub fn settle(&mut self, lands: &[&Land]) {
+        let place_m = self.pose.place_m();
+        if self.pose.mode != Mode::Walk || (within(lands, place_m) == place_m && free(lands, place_m)) {
+            return;
+        }
+        match nearest_free(lands, place_m) {
+            Some(found_m) => self.pose.put(found_m),
+            None => self.pose.put(within(lands, place_m)),
+        }
+    }
+
+    /// Moves on by a frame. Frames of any length lead to the same place; see [`LONGEST_STEP_S`].
+    pub fn step(&mut self, dt_s: f32, controls: &Controls, feel: &Feel, lands: &[&Land]) {
+        let dt_s = if dt_s.is_finite() { dt_s.clamp(0.0, LONGEST_STEP_S) } else { 0.0 };
+        self.blend(dt_s);
+        self.turn(dt_s, controls, feel);
+        match self.pose.mode {
+            Mode::Walk => self.walk(dt_s, controls, feel, lands),
+            Mode::Fly => {
+                self.fly_mps = fly::speed_mps(self.fly_mps, controls.wheel);
+                let wish_mps = fly::wish(&self.pose, controls) * self.fly_mps * pace(controls, feel);
+                let moved_m = glide(&mut self.velocity_mps, wish_mps, dt_s, feel.smooth_s);
+                fly::advance(&mut self.pose, moved_m, lands);
+            }
+            Mode::Orbit => {
+                orbit::zoom(&mut self.pose, controls, dt_s);
+                let speed_mps = orbit::speed_mps(&self.pose, feel.walk_mps) * pace(controls, feel);
+                let wish_mps = level(level_wish(&self.pose, controls) * speed_mps);
+                let moved_m = glide(&mut self.velocity_mps, wish_mps, dt_s, feel.smooth_s);
+                self.target_m = within(lands, self.target_m + Vec2::new(moved_m.x, moved_m.z));
+                orbit::circle(&mut self.pose, self.target_m);
+            }
+        }
+    }
+
+    /// The camera of the view of one landscape.
+    pub fn camera(&self, land: &Land, fov_y_rad: f32) -> Camera {
+        Camera {
+            position_m: Vec3::new(self.pose.x_m, self.height_m(land), self.pose.z_m),
+            yaw_rad: self.pose.yaw_rad,
+            pitch_rad: self.pose.pitch_rad,
+            fov_y_rad,
+        }
+    }
+
+    /// Height of the eye in one landscape, in metres.
+    fn height_m(&self, land: &Land) -> f32 {
+        if self.parts == self.pose.mode.alone() {
+            return self.height_in(self.pose.mode, land);
+        }
+        Mode::ALL.into_iter().zip(self.parts).map(|(mode, part)| part * self.height_in(mode, land)).sum()
+    }
+
+    /// Takes from the parts of other modes what the mode gains; so a change amid a change goes on from there.
+    fn blend(&mut self, dt_s: f32) {
+        let own = self.parts[self.pose.mode as usize];
+        let grown = own + dt_s / BLEND_S;
+        if grown >= 1.0 - 1e-5 {
+            self.parts = self.pose.mode.alone();
+            return;
+        }
+        let others = (1.0 - grown) / (1.0 - own);
+        self.parts = self.parts.map(|part| part * others);
+        self.parts[self.pose.mode as usize] = grown;
+    }
+
+    fn height_in(&self, mode: Mode, land: &Land) -> f32 {
+        let place_m = self.pose.place_m();
+        match mode {
+            Mode::Walk => land.footing_m(place_m) + EYE_HEIGHT_M,
+            Mode::Fly => self.pose.altitude_m.max(land.floor_m(place_m)),
+            Mode::Orbit => orbit::height_m(&self.pose, self.target_m, land),
+        }
+    }
+
+    fn turn(&mut self, dt_s: f32, controls: &Controls, feel: &Feel) {
+        // To the right and up are positive here; yaw turns left.
+        let mouse = Vec2::new(controls.turn_px.x, -controls.turn_px.y) * feel.mouse_rad;
+        let stick = controls.turn_rate * (feel.stick_rad_per_s * dt_s);
+        let turn = mouse + stick;
+        if !turn.is_finite() {
+            return;
+        }
+        let up = if feel.invert { -turn.y } else { turn.y };
+        self.pose.yaw_rad = wrapped(self.pose.yaw_rad - turn.x);
+        self.pose.pitch_rad = (self.pose.pitch_rad + up).clamp(-MOST_PITCH_RAD, MOST_PITCH_RAD);
+    }
+
+    fn walk(&mut self, dt_s: f32, controls: &Controls, feel: &Feel, lands: &[&Land]) {
+        self.settle(lands);
+        let wish_mps = level(level_wish(&self.pose, controls) * feel.walk_mps * pace(controls, feel));
+        let moved_m = glide(&mut self.velocity_mps, wish_mps, dt_s, feel.smooth_s);
+        let from_m = self.pose.place_m();
+        self.pose.put(advance(lands, from_m, Vec2::new(moved_m.x, moved_m.z)));
+    }
+}
+
+fn pace(controls: &Controls, feel: &Feel) -> f32 {
+    if controls.run { feel.run_factor } else { 1.0 }
+}
+
+/// The level direction (x, z) of a wish, no longer than 1: two keys together are no faster than one.
+fn level_wish(pose: &Pose, controls: &Controls) -> Vec2 {
+    let wish = pose.ahead() * controls.forward + pose.right() * controls.right;
+    if wish.is_finite() { wish.clamp_length_max(1.0) } else { Vec2::ZERO }
+}
+
+fn level(wish: Vec2) -> Vec3 {
+    Vec3::new(wish.x, 0.0, wish.y)
+}
+
+/// Draws the velocity towards the wish, v' = (wish − v)/τ, and gives the way that this leads in dt, in metres: the
+/// exact integral, so that one long step and many short ones lead to the same place.
+fn glide(velocity_mps: &mut Vec3, wish_mps: Vec3, dt_s: f32, smooth_s: f32) -> Vec3 {
+    if !wish_mps.is_finite() {
+        return Vec3::ZERO;
+    }
+    if smooth_s.is_nan() || smooth_s < 1e-4 {
+        *velocity_mps = wish_mps;
+        return wish_mps * dt_s;
+    }
+    let lag_mps = *velocity_mps - wish_mps;
+    // 1 − e^(−dt/τ), exact for short frames too.
+    let passed = -libm::expm1f(-dt_s / smooth_s);
+    *velocity_mps = wish_mps + lag_mps * (1.0 - passed);
+    // Below a millimetre a second nothing is seen to move.
+    if wish_mps == Vec3::ZERO && velocity_mps.length_squared() < 1e-6 {
+        *velocity_mps = Vec3::ZERO;
+    }
+    wish_mps * dt_s + lag_mps * (smooth_s * passed)
+}
+
+/// The same angle within ±π.
+fn wrapped(angle_rad: f32) -> f32 {
+    if (-PI..=PI).contains(&angle_rad) {
+        return angle_rad;
+    }
+    let turned = angle_rad - TAU * (angle_rad / TAU).round();
+    turned.clamp(-PI, PI)
+}

@@ -1,0 +1,246 @@
+//! What holds for the camera of four views whatever the person does.
+
+use std::sync::LazyLock;
+
+use glam::Vec2;
+use proptest::prelude::*;
+
+use super::testing::{forest, hilly, land_with, trunk};
+use super::*;
+use crate::input::Controls;
+
+/// Four dense forests on four different lands, many times over.
+static FORESTS: LazyLock<Vec<[Land; 4]>> = LazyLock::new(|| {
+    (0..24)
+        .map(|set| {
+            // From open to nearly impassable: 150 to 1,000 trunks of all four on 60 m × 60 m.
+            let count = 40 + 10 * set as u32;
+            std::array::from_fn(|view| {
+                let seed = 4 * set + view as u64;
+                let extent_m = if set % 3 == 0 { 63.5 } else { 30.0 };
+                let mut land = hilly(seed, forest(seed, count, extent_m));
+                land.water_level_m = (view == 1).then_some(-5.0);
+                land
+            })
+        })
+        .collect()
+});
+
+fn borrowed(lands: &[Land; 4]) -> [&Land; 4] {
+    lands.each_ref()
+}
+
+prop_compose! {
+    fn controls()(forward in -1f32..=1., right in -1f32..=1., up in -1f32..=1., run: bool,
+                  turn in (-400f32..400., -200f32..200.), rate in (-1f32..=1., -1f32..=1.), wheel in -2f32..2.)
+        -> Controls {
+        Controls {
+            forward, right, up, run, wheel,
+            turn_px: Vec2::new(turn.0, turn.1),
+            turn_rate: Vec2::new(rate.0, rate.1),
+        }
+    }
+}
+
+/// A frame: its length, the wishes, and how many frames they last.
+fn frames() -> impl Strategy<Value = Vec<(f32, Controls, u8)>> {
+    let dt_s = prop_oneof![4 => 0.002f32..0.04, 1 => 0.04f32..2.0];
+    prop::collection::vec((dt_s, controls(), 1u8..4), 1..4)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 10_000, max_shrink_iters: 2000, ..ProptestConfig::default() })]
+    #[test]
+    fn ten_thousand_walks_end_outside_every_trunk_and_on_the_ground(
+        set in 0usize..24, x in -70f32..70., z in -70f32..70., yaw_rad in -9f32..9., speed in 0.5f32..40.,
+        frames in frames()
+    ) {
+        let lands = borrowed(&FORESTS[set]);
+        let feel = Feel { walk_mps: speed, ..Feel::default() };
+        let mut rig = Rig::new(Pose { x_m: x, z_m: z, yaw_rad, ..Pose::default() }, &lands);
+        for (dt_s, controls, times) in &frames {
+            for _ in 0..*times {
+                rig.step(*dt_s, controls, &feel, &lands);
+                let place = rig.pose().place_m();
+                for land in lands {
+                    // One by one, without the index.
+                    for trunk in land.trunks.iter() {
+                        prop_assert!(trunk.clears(place, BODY_RADIUS_M), "{place} is inside {trunk:?}");
+                    }
+                    let eye = rig.camera(land, 1.0).position_m;
+                    let feet = land.field.height_m(place.x, place.y).max(land.water_level_m.map_or(-1e9, |w| w - 1.2));
+                    prop_assert_eq!(eye.y, feet + 1.6);
+                }
+                prop_assert!(place.abs().max_element() <= 63.0, "off the land at {place}");
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(500))]
+    #[test]
+    fn all_views_look_from_one_place_in_one_direction_and_none_from_below_its_ground(
+        set in 0usize..24, frames in frames(), changes in prop::collection::vec(0u8..3, 4)
+    ) {
+        let lands = borrowed(&FORESTS[set]);
+        let mut rig = Rig::new(Pose::default(), &lands);
+        for ((dt_s, controls, _), changes) in frames.iter().zip(changes) {
+            for _ in 0..changes {
+                rig.cycle_mode(&lands);
+            }
+            rig.step(*dt_s, controls, &Feel::default(), &lands);
+            let cameras = lands.map(|land| rig.camera(land, 1.0));
+            let shared = |camera: &Camera| {
+                [camera.position_m.x, camera.position_m.z, camera.yaw_rad, camera.pitch_rad].map(f32::to_bits)
+            };
+            for (camera, land) in cameras.iter().zip(lands) {
+                prop_assert_eq!(shared(camera), shared(&cameras[0]));
+                prop_assert!(camera.pitch_rad.abs() <= MOST_PITCH_RAD);
+                let ground_m = land.field.height_m(camera.position_m.x, camera.position_m.z);
+                prop_assert!(camera.position_m.y >= ground_m + LEAST_HEIGHT_M - 1e-3, "{camera:?} {ground_m}");
+            }
+        }
+    }
+
+    #[test]
+    fn one_long_frame_leads_where_many_short_ones_do(
+        dt_s in 0.01f32..LONGEST_STEP_S, pieces in 2u32..40, mut wish in controls(), mode in 0u8..2,
+        before in (-8f32..8., -8f32..8.)
+    ) {
+        let land = land_with([]);
+        let mode = [Mode::Walk, Mode::Fly][mode as usize];
+        // The direction stays: who turns while walking walks an arc, and a long frame is its chord.
+        (wish.turn_px, wish.turn_rate, wish.wheel) = (Vec2::ZERO, Vec2::ZERO, 0.0);
+        let mut once = Rig::new(Pose { mode, altitude_m: 50.0, ..Pose::default() }, &[&land]);
+        once.velocity_mps = Vec3::new(before.0, 0.0, before.1);
+        let mut often = once.clone();
+        once.step(dt_s, &wish, &Feel::default(), &[&land]);
+        for _ in 0..pieces {
+            often.step(dt_s / pieces as f32, &wish, &Feel::default(), &[&land]);
+        }
+        prop_assert!(once.pose.place_m().distance(often.pose.place_m()) < 1e-3, "{once:?} {often:?}");
+        prop_assert!((once.pose.altitude_m - often.pose.altitude_m).abs() < 1e-3);
+        prop_assert!(once.velocity_mps.distance(often.velocity_mps) < 1e-3);
+    }
+
+    #[test]
+    fn a_mode_passed_through_keeps_the_place_and_no_eye_jumps(
+        set in 0usize..24, x in -40f32..40., z in -40f32..40., dt_s in 0f32..0.25
+    ) {
+        let lands = borrowed(&FORESTS[set]);
+        let mut rig = Rig::new(Pose { x_m: x, z_m: z, ..Pose::default() }, &lands);
+        let place = rig.pose().place_m();
+        for _ in 0..3 {
+            let before = lands.map(|land| rig.camera(land, 1.0).position_m);
+            rig.cycle_mode(&lands);
+            let after = lands.map(|land| rig.camera(land, 1.0).position_m);
+            for (before, after) in before.iter().zip(after) {
+                prop_assert!(before.distance(after) < 0.02, "from {before} to {after}");
+            }
+            rig.step(dt_s, &Controls::default(), &Feel::default(), &lands);
+        }
+        prop_assert_eq!(rig.mode(), Mode::Walk);
+        prop_assert!(rig.pose().place_m().distance(place) < 0.2);
+    }
+
+    #[test]
+    fn an_orbit_looks_at_its_point_from_its_distance(
+        frames in frames(), x in -40f32..40., z in -40f32..40.
+    ) {
+        let land = land_with([]);
+        let lands = [&land];
+        let mut rig = Rig::new(Pose { x_m: x, z_m: z, mode: Mode::Orbit, ..Pose::default() }, &lands);
+        for (dt_s, controls, _) in &frames {
+            rig.step(*dt_s, controls, &Feel::default(), &lands);
+            let camera = rig.camera(&land, 1.0);
+            let seen = camera.position_m + camera.forward() * rig.pose().distance_m;
+            // Low and near, the eye is lifted to keep off the ground.
+            let lifted = (LEAST_HEIGHT_M - rig.pose().distance_m * libm::sinf(-rig.pose().pitch_rad)).max(0.0);
+            prop_assert!((seen.y - lifted).abs() < 0.01 && within(&lands, rig.target_m) == rig.target_m);
+            prop_assert!(Vec2::new(seen.x, seen.z).distance(rig.target_m) < 0.01, "{seen} {}", rig.target_m);
+        }
+    }
+
+    #[test]
+    fn a_swapped_forest_moves_a_walker_out_of_its_trunks(set in 0usize..24, other in 0usize..24, x in -25f32..25., z in -25f32..25.) {
+        let (before, after) = (borrowed(&FORESTS[set]), borrowed(&FORESTS[other]));
+        let mut rig = Rig::new(Pose { x_m: x, z_m: z, ..Pose::default() }, &before);
+        let place = rig.pose().place_m();
+        rig.step(0.016, &Controls::default(), &Feel::default(), &after);
+        prop_assert!(free(&after, rig.pose().place_m()));
+        if free(&after, place) {
+            prop_assert_eq!(rig.pose().place_m(), place);
+        }
+    }
+}
+
+#[test]
+fn nothing_that_comes_in_is_bad_enough_to_panic() {
+    let bad = Pose {
+        x_m: f32::NAN,
+        z_m: f32::INFINITY,
+        yaw_rad: 1e30,
+        pitch_rad: -f32::INFINITY,
+        altitude_m: f32::NAN,
+        distance_m: f32::NAN,
+        ..Pose::default()
+    };
+    let full = land_with([trunk(Vec2::ZERO, 500.0)]);
+    let broken = Land { field: Default::default(), ..land_with([]) };
+    let wish = Controls {
+        forward: f32::NAN,
+        turn_px: Vec2::NAN,
+        wheel: f32::NAN,
+        up: f32::INFINITY,
+        ..Controls::default()
+    };
+    for mode in [Mode::Walk, Mode::Fly, Mode::Orbit] {
+        for lands in [&[][..], &[&full], &[&broken], &[&full, &broken]] {
+            let mut rig = Rig::new(Pose { mode, ..bad }, lands);
+            for dt_s in [0.016, f32::NAN, -1.0, 1e9, f32::INFINITY] {
+                rig.step(dt_s, &wish, &Feel::default(), lands);
+                rig.step(
+                    dt_s,
+                    &Controls { forward: 1.0, run: true, ..Controls::default() },
+                    &Feel::default(),
+                    lands,
+                );
+                assert!(rig.camera(&full, 1.0).position_m.is_finite(), "{rig:?}");
+                rig.cycle_mode(lands);
+            }
+        }
+    }
+}
+
+#[test]
+fn who_finds_no_free_place_stays() {
+    let full = land_with([trunk(Vec2::ZERO, 500.0)]);
+    let mut rig = Rig::new(Pose { x_m: 3.0, z_m: 4.0, ..Pose::default() }, &[&full]);
+    rig.step(0.1, &Controls { forward: 1.0, ..Controls::default() }, &Feel::default(), &[&full]);
+    assert_eq!(rig.pose().place_m(), Vec2::new(3.0, 4.0));
+}
+
+#[test]
+fn the_mouse_looks_where_it_moves() {
+    let look = |x: f32, y: f32, invert: bool| {
+        let mut rig = Rig::new(Pose::default(), &[]);
+        let turn = Controls { turn_px: Vec2::new(x, y), ..Controls::default() };
+        rig.step(0.016, &turn, &Feel { invert, ..Feel::default() }, &[]);
+        rig.pose()
+    };
+    assert!(look(10.0, 0.0, false).ahead().x > 0.0, "to the right is east, facing north");
+    assert!(look(0.0, -10.0, false).pitch_rad > 0.0, "up is up");
+    assert!(look(0.0, -10.0, true).pitch_rad < 0.0, "unless inverted");
+    assert_eq!(look(0.0, 1e6, false).pitch_rad, -MOST_PITCH_RAD);
+}
+
+#[test]
+fn a_lake_carries_and_does_not_drown() {
+    let mut lake = land_with([]);
+    lake.water_level_m = Some(10.0);
+    let rig = Rig::new(Pose::default(), &[&lake]);
+    assert_eq!(rig.camera(&lake, 1.0).position_m.y, 10.0 - WADING_DEPTH_M + EYE_HEIGHT_M);
+    lake.water_level_m = Some(0.5);
+    assert_eq!(rig.camera(&lake, 1.0).position_m.y, EYE_HEIGHT_M, "shallow water is waded through");
+}
