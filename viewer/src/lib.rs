@@ -6,6 +6,8 @@
 pub mod baker;
 pub mod camera;
 pub mod frame;
+#[cfg(feature = "gamepad")]
+pub mod gamepad;
 pub mod input;
 pub mod lod;
 pub mod scene;

@@ -1,6 +1,16 @@
 //! Keys, mouse and gamepad → what the person wishes: [`Controls`] that last as long as a key is held, and [`Action`]s
 //! that happen once. Which key means what is a table that the person may change ([`Bindings`]).
 
+mod action;
+mod bindings;
+mod chord;
+mod held;
+
+pub use action::{Action, BOOKMARKS, Group, VIEWS};
+pub use bindings::{Bindings, BindingsError, Conflict, HelpLine};
+pub use chord::{Chord, Input, Modifiers, inputs};
+pub use held::Held;
+
 use glam::Vec2;
 
 /// What lasts: one frame's wishes. All of it at rest by default.
@@ -20,4 +30,20 @@ pub struct Controls {
     pub turn_rate: Vec2,
     /// Lines of the wheel since the last frame; away from the person is positive.
     pub wheel: f32,
+}
+
+impl Controls {
+    /// The wishes of two hands at once, keyboard and gamepad. What exceeds full deflection is cut.
+    pub fn and(self, other: Self) -> Self {
+        let axis = |one: f32, other: f32| (one + other).clamp(-1.0, 1.0);
+        Self {
+            forward: axis(self.forward, other.forward),
+            right: axis(self.right, other.right),
+            up: axis(self.up, other.up),
+            run: self.run || other.run,
+            turn_px: self.turn_px + other.turn_px,
+            turn_rate: (self.turn_rate + other.turn_rate).clamp(Vec2::NEG_ONE, Vec2::ONE),
+            wheel: self.wheel + other.wheel,
+        }
+    }
 }

@@ -1,0 +1,174 @@
+//! A gamepad's sticks and buttons → the same [`Controls`] and [`Action`]s as keyboard and mouse give. With the cargo
+//! feature `gamepad`, and never in the way: without a gamepad, or where gamepads cannot be read, all is at rest.
+//!
+//! Left stick walks, right stick looks, triggers fly up and down, pressing the left stick runs. Four things stand in a
+//! diamond on the pad as they do in the window read row by row: up 1, right 2, left 3, down 4. The directional pad
+//! shows one landscape alone; the four buttons vote for one while a shoulder is held (left: trees, right: terrain,
+//! both: sky; the directional pad's down then says "none").
+
+use genescape_schema::Category;
+use gilrs::{Axis, Button, EventType, GamepadId, Gilrs};
+use glam::Vec2;
+
+use crate::input::{Action, Controls};
+
+/// Deflection of a stick that counts as none: worn sticks never quite come back.
+pub const DEAD_ZONE: f32 = 0.18;
+
+/// All gamepads; the one touched last steers.
+#[derive(Debug, Default)]
+pub struct Gamepads {
+    gilrs: Option<Gilrs>,
+    last: Option<GamepadId>,
+}
+
+impl Gamepads {
+    /// Begins to listen. The text says why no gamepad will be heard, where that is so.
+    pub fn open() -> (Self, Option<String>) {
+        match Gilrs::new() {
+            Ok(gilrs) => (Self { gilrs: Some(gilrs), last: None }, None),
+            Err(error) => (Self::default(), Some(format!("gamepads cannot be read: {error}"))),
+        }
+    }
+
+    /// What is held now, and what was asked for since the last call.
+    pub fn poll(&mut self) -> (Controls, Vec<Action>) {
+        let mut asked = Vec::new();
+        let Some(gilrs) = &mut self.gilrs else { return (Controls::default(), asked) };
+        while let Some(event) = gilrs.next_event() {
+            match event.event {
+                EventType::ButtonPressed(button, _) => {
+                    self.last = Some(event.id);
+                    let pad = gilrs.gamepad(event.id);
+                    let shoulders =
+                        [Button::LeftTrigger, Button::RightTrigger].map(|held| pad.is_pressed(held));
+                    asked.extend(action(button, shoulders));
+                }
+                EventType::AxisChanged(_, value, _) if value.abs() > 2.0 * DEAD_ZONE => {
+                    self.last = Some(event.id)
+                }
+                EventType::Disconnected if self.last == Some(event.id) => self.last = None,
+                _ => {}
+            }
+        }
+        let pad = self.last.and_then(|id| gilrs.connected_gamepad(id));
+        let controls = pad.map_or(Controls::default(), |pad| {
+            let pressed = |button| pad.button_data(button).map_or(0.0, |data| data.value());
+            let sticks = [
+                Vec2::new(pad.value(Axis::LeftStickX), pad.value(Axis::LeftStickY)),
+                Vec2::new(pad.value(Axis::RightStickX), pad.value(Axis::RightStickY)),
+            ];
+            let triggers = [pressed(Button::RightTrigger2), pressed(Button::LeftTrigger2)];
+            controls(sticks, triggers, pad.is_pressed(Button::LeftThumb))
+        });
+        (controls, asked)
+    }
+}
+
+/// A line of help for each part of the pad: (part, meaning).
+pub fn help() -> &'static [(&'static str, &'static str)] {
+    &[
+        ("left stick", "walk; pressed: run"),
+        ("right stick", "look; pressed: all four landscapes"),
+        ("triggers", "fly up, fly down"),
+        ("directional pad", "one landscape alone: up 1, right 2, left 3, down 4"),
+        ("left shoulder + X Y A B", "best trees: Y 1, B 2, X 3, A 4"),
+        ("right shoulder + X Y A B", "best terrain"),
+        ("both shoulders + X Y A B", "best sky"),
+        ("shoulder + directional pad down", "none of them is best"),
+        ("Y, X, B, A", "walk, fly or orbit; two side by side; undo; all four landscapes"),
+        ("start, select", "breed the next generation; help"),
+    ]
+}
+
+/// Sticks [left, right] with x to the right and y up; triggers [up, down], 0 to 1.
+fn controls(sticks: [Vec2; 2], triggers: [f32; 2], run: bool) -> Controls {
+    let [walk, look] = sticks.map(live);
+    let [up, down] = triggers.map(|trigger| live(Vec2::new(trigger, 0.0)).x);
+    // Squared, so that small deflections look finely.
+    let turn_rate = look * look.length();
+    Controls { forward: walk.y, right: walk.x, up: up - down, run, turn_rate, ..Controls::default() }
+}
+
+/// A deflection less the dead zone, from 0 just outside it to 1 at the rim; in the direction that it had.
+fn live(stick: Vec2) -> Vec2 {
+    let length = stick.length();
+    if !length.is_finite() || length <= DEAD_ZONE {
+        return Vec2::ZERO;
+    }
+    stick / length * ((length - DEAD_ZONE) / (1.0 - DEAD_ZONE)).min(1.0)
+}
+
+/// What a button asks for, while the shoulders [left, right] are held or not.
+fn action(button: Button, shoulders: [bool; 2]) -> Option<Action> {
+    use Button::*;
+    let category = match shoulders {
+        [true, false] => Some(Category::Tree),
+        [false, true] => Some(Category::Terrain),
+        [true, true] => Some(Category::Sky),
+        [false, false] => None,
+    };
+    if let Some(category) = category {
+        return match button {
+            North => Some(Action::Vote(category, Some(0))),
+            East => Some(Action::Vote(category, Some(1))),
+            West => Some(Action::Vote(category, Some(2))),
+            South => Some(Action::Vote(category, Some(3))),
+            DPadDown => Some(Action::Vote(category, None)),
+            _ => None,
+        };
+    }
+    match button {
+        DPadUp => Some(Action::Maximise(0)),
+        DPadRight => Some(Action::Maximise(1)),
+        DPadLeft => Some(Action::Maximise(2)),
+        DPadDown => Some(Action::Maximise(3)),
+        South | RightThumb => Some(Action::ShowAll),
+        West => Some(Action::CompareAB),
+        North => Some(Action::ToggleWalkFlyOrbit),
+        East => Some(Action::Undo),
+        Start => Some(Action::NextGeneration),
+        Select => Some(Action::ToggleHelp),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_stick_is_at_rest_near_its_middle_and_whole_at_its_rim(x in -1f32..1., y in -1f32..1.) {
+            let stick = Vec2::new(x, y);
+            let got = live(stick);
+            prop_assert!(got.length() <= 1.0 + 1e-6);
+            prop_assert_eq!(got == Vec2::ZERO, stick.length() <= DEAD_ZONE);
+            prop_assert!(got == Vec2::ZERO || got.normalize().distance(stick.normalize()) < 1e-5);
+            prop_assert!(live(stick.normalize_or(Vec2::X) * 1.01).length() > 0.9999);
+        }
+    }
+
+    #[test]
+    fn every_vote_can_be_cast() {
+        let shoulders = [[true, false], [false, true], [true, true]];
+        let cast: std::collections::BTreeSet<Action> = shoulders
+            .into_iter()
+            .flat_map(|held| {
+                [Button::North, Button::East, Button::South, Button::West, Button::DPadDown]
+                    .into_iter()
+                    .filter_map(move |button| action(button, held))
+            })
+            .collect();
+        let votes: std::collections::BTreeSet<Action> =
+            Action::all().filter(|action| matches!(action, Action::Vote(..))).collect();
+        assert_eq!(cast, votes);
+    }
+
+    #[test]
+    fn what_a_pad_that_is_not_there_does() {
+        assert_eq!(Gamepads::default().poll(), (Controls::default(), Vec::new()));
+        assert_eq!(controls([Vec2::NAN; 2], [f32::NAN; 2], false), Controls::default());
+    }
+}
