@@ -5,6 +5,7 @@
 
 pub mod baker;
 pub mod camera;
+pub mod event;
 pub mod frame;
 #[cfg(feature = "gamepad")]
 pub mod gamepad;

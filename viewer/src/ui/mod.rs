@@ -1,1 +1,159 @@
-//! To be written.
+//! The user interface as one pure function: plain values in, events and the rectangles of the pictures out. Nothing in
+//! here touches disk, GPU, window or clock; what a panel remembers between frames is in [`State`].
+
+pub mod arrange;
+mod bake_log;
+mod empty;
+mod gene_row;
+mod genome;
+mod help;
+pub mod icon;
+pub mod model;
+mod settings;
+pub mod stats;
+#[cfg(test)]
+mod testing;
+pub mod theme;
+mod top_bar;
+mod viewport;
+mod views;
+mod votes;
+mod widgets;
+
+use egui::{Rect, Ui};
+use egui_notify::{Anchor, Toasts};
+
+pub use views::Views;
+
+use crate::event::{Event, Panel};
+use model::Model;
+
+/// What the panels remember between frames.
+pub struct State {
+    /// The splitter.
+    pub views: views::State,
+    /// Search field and what is being dragged.
+    pub genome: genome::State,
+    toasts: Toasts,
+}
+
+impl Default for State {
+    fn default() -> Self {
+        let margin = egui::vec2(14.0, top_bar::HEIGHT + 12.0);
+        let toasts = Toasts::default().with_anchor(Anchor::TopLeft).with_margin(margin);
+        Self { views: views::State::default(), genome: genome::State::default(), toasts }
+    }
+}
+
+/// How a notice looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tone {
+    /// For information.
+    Info,
+    /// Something was done.
+    Success,
+    /// Something deserves attention.
+    Warning,
+    /// Something failed; stays longer.
+    Error,
+}
+
+impl State {
+    /// Shows a notice for some seconds.
+    pub fn notify(&mut self, tone: Tone, text: impl Into<String>) {
+        let text = text.into();
+        let (toast, seconds) = match tone {
+            Tone::Info => (self.toasts.info(text), 4),
+            Tone::Success => (self.toasts.success(text), 4),
+            Tone::Warning => (self.toasts.warning(text), 7),
+            Tone::Error => (self.toasts.error(text), 12),
+        };
+        toast.duration(std::time::Duration::from_secs(seconds)).show_progress_bar(false);
+    }
+}
+
+/// What the person wants, and what the application has to fill with pictures.
+#[derive(Clone, Debug, Default)]
+pub struct Output {
+    /// In the order in which they happened.
+    pub events: Vec<Event>,
+    /// The pictures on the screen; none while there is nothing to look at.
+    pub views: Views,
+    /// The keyboard is in a text field: keys are not commands.
+    pub typing: bool,
+}
+
+/// Draws everything into the window's root [`Ui`], as [`egui::Context::run_ui`] gives it. [`theme::install`] must have
+/// been called once, [`theme::follow`] in each frame before.
+pub fn show(ui: &mut Ui, model: &Model, state: &mut State) -> Output {
+    let mut output = Output::default();
+    let events = &mut output.events;
+    if !model.captured {
+        top_bar::show(ui, model, events);
+        if model.panels.genome {
+            genome::show(ui, model, &mut state.genome, events);
+        }
+    }
+    let area = ui.available_rect_before_wrap();
+    if !empty::show(ui, model, events) {
+        output.views = views::show(ui, model, &mut state.views, events);
+        banner(ui, model, area, events);
+    }
+    overlays(ui, model, area, events);
+    dropped(ui, events);
+    state.toasts.show(ui.ctx());
+    output.typing = ui.ctx().egui_wants_keyboard_input();
+    output
+}
+
+fn overlays(ui: &mut Ui, model: &Model, area: Rect, events: &mut Vec<Event>) {
+    if model.panels.stats {
+        stats::show(ui, &model.stats, area);
+    }
+    if model.captured {
+        return;
+    }
+    if model.panels.settings {
+        settings::show(ui, model, area, events);
+    }
+    if model.panels.help {
+        help::show(ui, model, events);
+    }
+    empty::drop_target(ui);
+}
+
+/// A line over the pictures while a file is broken and the panel that tells more is closed.
+fn banner(ui: &mut Ui, model: &Model, area: Rect, events: &mut Vec<Event>) {
+    let Some(error) = model.errors.first().filter(|_| !model.panels.genome && !model.captured) else { return };
+    egui::Area::new(egui::Id::unique("error banner"))
+        .pivot(egui::Align2::CENTER_BOTTOM)
+        .fixed_pos(area.center_bottom() - egui::vec2(0.0, 56.0))
+        .constrain_to(area)
+        .show(ui.ctx(), |ui| {
+            let palette = theme::Palette::of(ui.visuals());
+            let frame = egui::Frame::NONE
+                .fill(palette.raised)
+                .stroke(egui::Stroke::new(1.0, palette.danger))
+                .corner_radius(10)
+                .shadow(theme::card_shadow())
+                .inner_margin(egui::Margin::symmetric(12, 6));
+            frame.show(ui, |ui| {
+                ui.set_max_width(area.width() - 60.0);
+                ui.horizontal(|ui| {
+                    let (rect, _) = ui.allocate_exact_size(egui::vec2(16.0, 24.0), egui::Sense::hover());
+                    icon::Icon::Warning.paint(ui.painter(), rect, palette.danger);
+                    let text = format!("{} – the last good landscapes stay", error.title);
+                    ui.label(text);
+                    if ui.button("Show").clicked() {
+                        events.push(Event::Panel { panel: Panel::Genome, open: true });
+                    }
+                });
+            });
+        });
+}
+
+/// Folders that were dropped on the window.
+fn dropped(ui: &Ui, events: &mut Vec<Event>) {
+    let files = ui.input(|input| input.raw.dropped_files.clone());
+    events.extend(files.into_iter().map(|file| Event::OpenFolder(file.path().to_path_buf())));
+}

@@ -1,0 +1,106 @@
+//! What the last bake reused and what it built and why; and the full text of what is wrong with the person's files.
+
+use egui::{Align, CollapsingHeader, CornerRadius, Frame, Layout, Margin, RichText, ScrollArea, Sense, Stroke, Ui, vec2};
+
+use super::icon::Icon;
+use super::model::{FileError, StageEntry};
+use super::theme::{self, Palette};
+use super::widgets::{section, sized_icon_button};
+use crate::event::Event;
+
+/// Stages of the last bake; nothing if there was none.
+pub fn show(ui: &mut Ui, log: &[StageEntry]) {
+    if log.is_empty() {
+        return;
+    }
+    ui.add_space(10.0);
+    section(ui, "LAST BAKE");
+    let text = RichText::new(summary(log)).color(Palette::of(ui.visuals()).text);
+    CollapsingHeader::new(text).id_salt("last bake").default_open(false).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 3.0;
+        for entry in log {
+            row(ui, entry);
+        }
+    });
+}
+
+/// In one line: how many stages were reused, how many built, and how long that took.
+pub fn summary(log: &[StageEntry]) -> String {
+    let reused = log.iter().filter(|entry| entry.reused).count();
+    let ms: f64 = log.iter().map(|entry| entry.ms).sum();
+    format!("{reused} reused, {} built, {}", log.len() - reused, duration(ms))
+}
+
+/// Milliseconds for people: `4 ms`, `2.1 s`.
+fn duration(ms: f64) -> String {
+    if ms < 1000.0 { format!("{ms:.0} ms") } else { format!("{:.1} s", ms / 1000.0) }
+}
+
+fn row(ui: &mut Ui, entry: &StageEntry) {
+    let palette = Palette::of(ui.visuals());
+    ui.horizontal(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(10.0, 18.0), Sense::hover());
+        let color = if entry.reused { palette.line } else { palette.accent };
+        ui.painter().circle_filled(rect.center(), 3.5, color);
+        let scene = entry.scene.map_or(String::new(), |scene| format!("{} ", scene + 1));
+        let name = RichText::new(format!("{scene}{}", entry.stage)).color(palette.text);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let word = if entry.reused { "reused".to_owned() } else { duration(entry.ms) };
+            ui.label(RichText::new(word).small().color(palette.weak));
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                ui.add(egui::Label::new(name).truncate());
+            });
+        });
+    });
+    if !entry.reused && !entry.why.is_empty() {
+        ui.horizontal(|ui| {
+            ui.add_space(18.0);
+            ui.add(egui::Label::new(RichText::new(&entry.why).small().color(palette.weak)).wrap());
+        });
+    }
+}
+
+/// The faults of the person's files, in full.
+pub fn errors(ui: &mut Ui, errors: &[FileError], events: &mut Vec<Event>) {
+    for (index, error) in errors.iter().enumerate() {
+        let palette = Palette::of(ui.visuals());
+        let line = Stroke::new(1.0, palette.danger.gamma_multiply(0.6));
+        let frame = Frame::NONE
+            .fill(palette.sunken)
+            .stroke(line)
+            .corner_radius(CornerRadius::same(theme::RADIUS))
+            .inner_margin(Margin::same(8))
+            .outer_margin(Margin { top: 4, bottom: 4, left: 0, right: 0 });
+        frame.show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            ui.push_id(("error", index), |ui| one(ui, index, error, events));
+        });
+    }
+}
+
+fn one(ui: &mut Ui, index: usize, error: &FileError, events: &mut Vec<Event>) {
+    let palette = Palette::of(ui.visuals());
+    ui.horizontal(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(16.0, 24.0), Sense::hover());
+        Icon::Warning.paint(ui.painter(), rect, palette.danger);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.spacing_mut().item_spacing.x = 2.0;
+            let dismiss = format!("Dismiss: {}", error.title);
+            if sized_icon_button(ui, Icon::Close, &dismiss, false, 24.0).clicked() {
+                events.push(Event::DismissError(index));
+            }
+            let copy = format!("Copy: {}", error.title);
+            if sized_icon_button(ui, Icon::Copy, &copy, false, 24.0).clicked() {
+                ui.ctx().copy_text(error.report.clone());
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                ui.add(egui::Label::new(RichText::new(&error.title).strong()).truncate());
+            });
+        });
+    });
+    ScrollArea::both().id_salt("report").max_height(260.0).auto_shrink([false, true]).show(ui, |ui| {
+        let text = RichText::new(&error.report).monospace().color(palette.text);
+        ui.add(egui::Label::new(text).extend().selectable(true));
+    });
+    ui.label(RichText::new("The last good landscapes stay. Save the file again when it is mended.").small());
+}

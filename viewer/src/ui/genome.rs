@@ -1,0 +1,197 @@
+//! The genome panel: every gene of the chosen landscape by category, what the last bake reused, and what is wrong with
+//! the person's files.
+
+use egui::{Align, CornerRadius, Frame, Layout, Margin, Rect, RichText, ScrollArea, Sense, Ui, pos2, vec2};
+use genescape_schema::{Category, INDIVIDUALS};
+
+use super::icon::Icon;
+use super::model::{Genes, Model};
+use super::theme::{self, Palette};
+use super::widgets::{icon_button, segmented, sized_icon_button};
+use super::{bake_log, gene_row};
+use crate::event::{Event, Panel};
+
+/// Width of the panel at first, in points.
+const WIDTH: f32 = 340.0;
+
+/// What the panel remembers.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// What was typed into the search field.
+    pub search: String,
+    /// Only genes in which the four differ.
+    pub only_different: bool,
+    /// Categories whose genes are listed.
+    pub unfolded: [bool; 3],
+    /// What is being dragged or typed.
+    pub row: gene_row::State,
+}
+
+impl Default for State {
+    fn default() -> Self {
+        Self { search: String::new(), only_different: false, unfolded: [true; 3], row: gene_row::State::default() }
+    }
+}
+
+/// Draws it at the right of `ui`.
+pub fn show(ui: &mut Ui, model: &Model, state: &mut State, events: &mut Vec<Event>) {
+    let palette = Palette::of(ui.visuals());
+    let frame = Frame::NONE.fill(palette.panel).inner_margin(Margin { left: 14, right: 6, top: 4, bottom: 8 });
+    let widest = (ui.available_width() * 0.5).max(240.0);
+    egui::Panel::right("genome")
+        .default_size(WIDTH.min(widest))
+        .size_range(240.0f32.min(widest)..=widest.min(560.0))
+        .frame(frame)
+        .show_separator_line(false)
+        .show(ui, |ui| {
+            header(ui, model, events);
+            ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+                // Room for the scroll bar, so that it never lies on the locks.
+                ui.set_width(ui.available_width() - 10.0);
+                bake_log::errors(ui, &model.errors, events);
+                match &model.genes {
+                    Some(genes) => body(ui, genes, model.chosen.min(INDIVIDUALS - 1), state, events),
+                    None => {
+                        ui.add_space(20.0);
+                        ui.weak("Genes appear here as soon as a world is read.");
+                    }
+                }
+                bake_log::show(ui, &model.bake_log);
+                ui.add_space(12.0);
+            });
+        });
+}
+
+fn header(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
+    ui.horizontal(|ui| {
+        ui.set_min_height(34.0);
+        let chosen = model.chosen.min(INDIVIDUALS - 1);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if icon_button(ui, Icon::Close, "Close the genes", false).clicked() {
+                events.push(Event::Panel { panel: Panel::Genome, open: false });
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                ui.add(egui::Label::new(RichText::new(&model.views[chosen].name).heading()).truncate());
+            });
+        });
+    });
+    ui.scope(|ui| {
+        ui.set_width(ui.available_width() - 10.0);
+        let names = ["1", "2", "3", "4"];
+        let choices: [(usize, &str, &str); INDIVIDUALS] =
+            std::array::from_fn(|view| (view, names[view], model.views[view].name.as_str()));
+        if let Some(view) = segmented(ui, "Genes of", &choices, model.chosen) {
+            events.push(Event::Choose(view));
+        }
+    });
+    ui.add_space(4.0);
+}
+
+fn body(ui: &mut Ui, genes: &Genes, individual: usize, state: &mut State, events: &mut Vec<Event>) {
+    search(ui, state);
+    for category in Category::ALL {
+        let listed: Vec<_> =
+            gene_row::listed(genes, category, &state.search, state.only_different).cloned().collect();
+        if listed.is_empty() {
+            continue;
+        }
+        category_head(ui, genes, individual, category, state, events);
+        if !state.unfolded[category as usize] && state.search.is_empty() {
+            continue;
+        }
+        for parameter in &listed {
+            gene_row::show(ui, genes, individual, parameter, &mut state.row, events);
+        }
+    }
+    let any = Category::ALL
+        .into_iter()
+        .any(|category| gene_row::listed(genes, category, &state.search, state.only_different).next().is_some());
+    if !any {
+        ui.add_space(12.0);
+        ui.weak(match state.only_different {
+            true => "No gene that matches differs between the four.",
+            false => "No gene matches.",
+        });
+    }
+}
+
+fn search(ui: &mut Ui, state: &mut State) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let width = ui.available_width() - 106.0;
+        let field = egui::TextEdit::singleline(&mut state.search)
+            .hint_text("Search genes")
+            .margin(Margin::symmetric(8, 4))
+            .desired_width(width);
+        let _ = ui.add(field).accessible_name("Search genes");
+        let palette = Palette::of(ui.visuals());
+        let on = state.only_different;
+        let text = RichText::new("differing").color(if on { palette.on_accent } else { palette.text });
+        let fill = if on { palette.accent } else { palette.button };
+        let button = ui.add_sized([92.0, 26.0], egui::Button::new(text).fill(fill));
+        if button.on_hover_text("Only genes in which the four landscapes differ").clicked() {
+            state.only_different = !on;
+        }
+    });
+}
+
+fn category_head(
+    ui: &mut Ui,
+    genes: &Genes,
+    individual: usize,
+    category: Category,
+    state: &mut State,
+    events: &mut Vec<Event>,
+) {
+    let palette = Palette::of(ui.visuals());
+    let color = palette.category(category);
+    let locked = genes.locked_categories[category as usize];
+    ui.add_space(10.0);
+    let (_, rect) = ui.allocate_space(vec2(ui.available_width(), 30.0));
+    let fold = Rect::from_min_max(rect.min, pos2(rect.right() - 62.0, rect.bottom()));
+    let response = ui.interact(fold, ui.scope_id().with(("fold", category.name())), Sense::click());
+    let title = theme::title(category);
+    let unfolded = &mut state.unfolded[category as usize];
+    response.widget_info(|| {
+        egui::WidgetInfo::selected(egui::Role::Button, true, *unfolded, title)
+    });
+    if response.clicked() {
+        *unfolded = !*unfolded;
+    }
+    let fill = if response.hovered() { palette.hovered } else { color.gamma_multiply(0.16) };
+    ui.painter().rect_filled(rect, CornerRadius::same(theme::RADIUS), fill);
+    let icon_rect = Rect::from_center_size(pos2(rect.left() + 18.0, rect.center().y), vec2(17.0, 17.0));
+    Icon::from(category).paint(ui.painter(), icon_rect, color);
+    let font = egui::FontId::proportional(15.0);
+    let at = pos2(rect.left() + 34.0, rect.center().y);
+    ui.painter().text(at, egui::Align2::LEFT_CENTER, title, font, palette.text);
+    let mut corner = ui.new_child(
+        egui::UiBuilder::new().max_rect(rect.shrink(2.0)).layout(Layout::right_to_left(Align::Center)),
+    );
+    corner.spacing_mut().item_spacing.x = 2.0;
+    let (icon, verb) = if locked { (Icon::Locked, "Unlock all") } else { (Icon::Unlocked, "Lock all") };
+    let label = format!("{verb}: {}", title.to_lowercase());
+    if sized_icon_button(&mut corner, icon, &label, locked, 26.0).clicked() {
+        events.push(Event::LockCategory { category, locked: !locked });
+    }
+    reset_category(&mut corner, genes, individual, category, events);
+}
+
+fn reset_category(ui: &mut Ui, genes: &Genes, individual: usize, category: Category, events: &mut Vec<Event>) {
+    if genes.changed(individual, category) == 0 {
+        return;
+    }
+    let label = format!("Reset {} to how it was bred", theme::title(category).to_lowercase());
+    if sized_icon_button(ui, Icon::Reset, &label, false, 26.0).clicked() {
+        let (now, bred) = (&genes.now[individual], &genes.bred[individual]);
+        let changed = genes.space.category(category).filter(|gene| now.code(gene) != bred.code(gene));
+        let values = changed
+            .filter(|gene| !genes.is_locked(gene))
+            .map(|gene| (gene.name.clone(), gene.value(bred.code(gene))))
+            .collect();
+        events.push(Event::Genes { individual, values });
+    }
+    let count = genes.changed(individual, category);
+    let text = RichText::new(format!("{count} changed")).small().color(Palette::of(ui.visuals()).weak);
+    ui.add(egui::Label::new(text).selectable(false));
+}

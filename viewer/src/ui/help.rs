@@ -1,0 +1,127 @@
+//! The help: first steps in three lines, and what every key does, as the bindings say it.
+
+use egui::{Align2, Area, Color32, CornerRadius, Frame, Id, Margin, Order, Rect, RichText, ScrollArea, Sense, Ui, vec2};
+
+use super::icon::Icon;
+use super::model::{KeyGroup, Model};
+use super::theme::{self, Palette};
+use super::widgets::{icon_button, key_caps};
+use crate::event::{Event, Panel};
+
+/// What to do first.
+const FIRST_STEPS: [(&str, &str); 3] = [
+    ("Look", "Walk through all four landscapes at once: click a picture, then W A S D and the mouse."),
+    ("Choose", "On the pictures, say which has the best trees, the best terrain, the best sky."),
+    ("Breed", "Press “Next generation”: four new landscapes grow from what you chose."),
+];
+
+/// Draws it in the middle of the window, over a veil that closes it.
+pub fn show(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
+    let window = ui.ctx().content_rect();
+    let mut close = veil(ui, window);
+    let columns = if window.width() >= 900.0 { 2 } else { 1 };
+    let width = (380.0 * columns as f32 + 40.0).min(window.width() - 32.0);
+    Area::new(Id::unique("help"))
+        .order(Order::Foreground)
+        .pivot(Align2::CENTER_CENTER)
+        .fixed_pos(window.center())
+        .constrain_to(window.shrink(8.0))
+        .accessible_name("Help")
+        .show(ui.ctx(), |ui| {
+            let palette = Palette::of(ui.visuals());
+            let frame = Frame::NONE
+                .fill(palette.raised)
+                .corner_radius(CornerRadius::same(12))
+                .shadow(theme::card_shadow())
+                .inner_margin(Margin::same(20));
+            frame.show(ui, |ui| {
+                ui.set_width(width - 40.0);
+                close |= header(ui);
+                ScrollArea::vertical().max_height(window.height() - 130.0).auto_shrink([false, true]).show(ui, |ui| {
+                    first_steps(ui);
+                    ui.add_space(12.0);
+                    keys(ui, &model.keys, columns);
+                });
+            });
+        });
+    if close || ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+        events.push(Event::Panel { panel: Panel::Help, open: false });
+    }
+}
+
+/// Darkens the window; true if it was clicked.
+fn veil(ui: &Ui, window: Rect) -> bool {
+    let area = Area::new(Id::unique("help veil")).order(Order::Foreground).fixed_pos(window.min).interactable(true);
+    area.show(ui.ctx(), |ui| {
+        ui.painter().rect_filled(window, CornerRadius::ZERO, Color32::from_black_alpha(120));
+        ui.allocate_rect(window, Sense::click()).clicked()
+    })
+    .inner
+}
+
+/// Title and cross; true if the cross was pressed.
+fn header(ui: &mut Ui) -> bool {
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("Find a landscape by choosing").size(21.0));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            icon_button(ui, Icon::Close, "Close the help", false).clicked()
+        })
+        .inner
+    })
+    .inner
+}
+
+fn first_steps(ui: &mut Ui) {
+    let palette = Palette::of(ui.visuals());
+    ui.add_space(6.0);
+    for (at, (word, text)) in FIRST_STEPS.into_iter().enumerate() {
+        ui.horizontal_top(|ui| {
+            let (rect, _) = ui.allocate_exact_size(vec2(24.0, 24.0), Sense::hover());
+            ui.painter().circle_filled(rect.center(), 11.0, palette.accent);
+            let font = egui::FontId::proportional(13.0);
+            ui.painter().text(rect.center(), Align2::CENTER_CENTER, at + 1, font, palette.on_accent);
+            ui.vertical(|ui| {
+                ui.add_space(3.0);
+                ui.horizontal_wrapped(|ui| {
+                    ui.label(RichText::new(word).strong());
+                    ui.label(text);
+                });
+            });
+        });
+    }
+}
+
+/// The groups, shared out over columns of about equal length.
+fn keys(ui: &mut Ui, groups: &[KeyGroup], columns: usize) {
+    let all: usize = groups.iter().map(|group| group.keys.len() + 2).sum();
+    let mut column_of = Vec::with_capacity(groups.len());
+    let mut before = 0;
+    for group in groups {
+        column_of.push((before * columns / all.max(1)).min(columns - 1));
+        before += group.keys.len() + 2;
+    }
+    ui.columns(columns, |uis| {
+        for (group, column) in groups.iter().zip(column_of) {
+            key_group(&mut uis[column], group);
+        }
+    });
+}
+
+fn key_group(ui: &mut Ui, group: &KeyGroup) {
+    let palette = Palette::of(ui.visuals());
+    ui.add_space(8.0);
+    ui.label(RichText::new(&group.title).size(15.0).color(palette.accent));
+    ui.add_space(2.0);
+    ui.spacing_mut().item_spacing.y = 3.0;
+    for (keys, meaning) in &group.keys {
+        ui.horizontal(|ui| {
+            let caps = ui.allocate_ui(vec2(132.0, 22.0), |ui| {
+                ui.set_min_width(132.0);
+                key_caps(ui, keys);
+            });
+            let used = caps.response.rect.width();
+            ui.add_space((132.0 - used).max(0.0));
+            ui.add(egui::Label::new(meaning).wrap());
+        });
+    }
+}

@@ -1,0 +1,239 @@
+//! What the user interface shows, as plain values: filled by the application once a frame, read by the panels. No
+//! handle to a device, a file or a clock; a picture is an [`egui::TextureId`], which only names it.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use egui::TextureId;
+use genescape_schema::{Category, Genome, INDIVIDUALS, Parameter, Space};
+
+use crate::event::{Arrangement, Ballots, Comfort, Panel};
+use crate::frame::Options;
+
+/// Everything that is on the screen.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Whether there is anything to look at.
+    pub situation: Situation,
+    /// The generation that is shown.
+    pub generation: u32,
+    /// All generations that exist as files, rising.
+    pub generations: Vec<u32>,
+    /// What is being baked, if anything.
+    pub baking: Option<Baking>,
+    /// The step that [`crate::event::Event::Undo`] would take back, in a few words: "vote on trees".
+    pub undo: Option<String>,
+    /// The four landscapes.
+    pub views: [ViewModel; INDIVIDUALS],
+    /// What was voted so far.
+    pub ballots: Ballots,
+    /// How the four share the window.
+    pub arrangement: Arrangement,
+    /// The landscape that the genome panel is about.
+    pub chosen: usize,
+    /// Genes of all four; `None` until a world is read.
+    pub genes: Option<Genes>,
+    /// What the last bake reused, in the order of its stages.
+    pub bake_log: Vec<StageEntry>,
+    /// Faults of the person's files.
+    pub errors: Vec<FileError>,
+    /// Times and counts of the last frames.
+    pub stats: Stats,
+    /// What the keys do, in groups.
+    pub keys: Vec<KeyGroup>,
+    /// What is drawn, and how.
+    pub options: Options,
+    /// How the program feels in the hand.
+    pub comfort: Comfort,
+    /// The panels that are shown.
+    pub panels: Panels,
+    /// The pointer is locked into the picture: nothing reacts to it.
+    pub captured: bool,
+}
+
+/// Whether there is anything to look at, and if not, why.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Situation {
+    /// Four views, each in its own state.
+    Ready,
+    /// No scene exists yet and none of the views has anything to show.
+    Growing,
+    /// Nothing can be shown until the person does something.
+    Stuck {
+        /// In a few words: "No graphics adapter".
+        title: String,
+        /// What was tried and what it said.
+        what: String,
+        /// What the person should do.
+        remedy: String,
+    },
+}
+
+/// One landscape's picture and state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ViewModel {
+    /// The individual's name.
+    pub name: String,
+    /// The last good picture, if there ever was one. It fills the view.
+    pub picture: Option<TextureId>,
+    /// Whether that picture is the current generation's.
+    pub state: ViewState,
+}
+
+/// Whether a view shows what it should.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ViewState {
+    /// The picture is right.
+    Ready,
+    /// The scene is being baked.
+    Baking {
+        /// Stages that are finished.
+        done: usize,
+        /// All of its stages; 0 while that is not known.
+        total: usize,
+        /// What is being computed now: "terrain: erosion"; may be empty.
+        stage: String,
+    },
+    /// Baking or reading failed; the picture, if any, is the last good one.
+    Failed {
+        /// What went wrong.
+        what: String,
+        /// What the person should do.
+        remedy: String,
+    },
+}
+
+/// Progress of the bake of a whole generation.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Baking {
+    /// Which generation.
+    pub generation: u32,
+    /// Stages that are finished, of all four scenes.
+    pub done: usize,
+    /// All stages; 0 while that is not known.
+    pub total: usize,
+}
+
+/// Genes of the four landscapes.
+#[derive(Clone, Debug)]
+pub struct Genes {
+    /// Which genes exist.
+    pub space: Arc<Space>,
+    /// As they are now, including a change that was not baked yet.
+    pub now: [Genome; INDIVIDUALS],
+    /// As the generation was bred or loaded: what "reset" returns to.
+    pub bred: [Genome; INDIVIDUALS],
+    /// Names of genes that are kept.
+    pub locked: BTreeSet<String>,
+    /// Categories that are kept as a whole, as in [`Category::ALL`].
+    pub locked_categories: [bool; 3],
+}
+
+impl Genes {
+    /// Whether a gene may not change: by itself or with its category.
+    pub fn is_locked(&self, parameter: &Parameter) -> bool {
+        self.locked_categories[parameter.category as usize] || self.locked.contains(&parameter.name)
+    }
+
+    /// How many genes of a category are not as they were bred.
+    pub fn changed(&self, individual: usize, category: Category) -> usize {
+        let (now, bred) = (&self.now[individual], &self.bred[individual]);
+        self.space.category(category).filter(|gene| now.code(gene) != bred.code(gene)).count()
+    }
+}
+
+/// What became of one stage in the last bake.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StageEntry {
+    /// Its name.
+    pub stage: String,
+    /// Which landscape it was for; `None` if for several.
+    pub scene: Option<usize>,
+    /// True: taken from the cache.
+    pub reused: bool,
+    /// Time that it took, in milliseconds.
+    pub ms: f64,
+    /// Why it was built: which input differed. Empty if reused.
+    pub why: String,
+}
+
+/// A fault of a file that the person can mend.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FileError {
+    /// In a few words: "population/g0003.ron: 2 errors".
+    pub title: String,
+    /// The whole report, as `genescape_schema::Report` prints it.
+    pub report: String,
+}
+
+/// Times and counts of the last frames.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Stats {
+    /// Durations of the last frames, oldest first, in milliseconds.
+    pub frames_ms: Vec<f32>,
+    /// Time on the GPU: pass by pass, for each view; empty where the adapter has no timestamps.
+    pub gpu: Vec<PassTime>,
+    /// Time on the CPU to record one frame of all views, in milliseconds.
+    pub cpu_record_ms: f32,
+    /// Triangles drawn, by view.
+    pub triangles: [u64; INDIVIDUALS],
+    /// Draw calls, by view.
+    pub draws: [u32; INDIVIDUALS],
+    /// Trees drawn at each level, finest first, all views together.
+    pub trees_per_level: Vec<u32>,
+    /// Name of the adapter.
+    pub adapter: String,
+}
+
+/// Time of one pass on the GPU.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PassTime {
+    /// The pass.
+    pub name: String,
+    /// In milliseconds, by view.
+    pub ms: [f32; INDIVIDUALS],
+}
+
+/// Keys that belong together.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct KeyGroup {
+    /// "Walking".
+    pub title: String,
+    /// Keys ("W A S D") and what they do ("walk").
+    pub keys: Vec<(String, String)>,
+}
+
+/// Which panels are shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Panels {
+    /// Genes of the chosen landscape.
+    pub genome: bool,
+    /// Frame times and counts.
+    pub stats: bool,
+    /// Keys.
+    pub help: bool,
+    /// Options and comfort.
+    pub settings: bool,
+}
+
+impl Panels {
+    /// Whether a panel is shown.
+    pub fn is_open(&self, panel: Panel) -> bool {
+        match panel {
+            Panel::Genome => self.genome,
+            Panel::Stats => self.stats,
+            Panel::Help => self.help,
+            Panel::Settings => self.settings,
+        }
+    }
+
+    /// Shows or hides a panel.
+    pub fn set(&mut self, panel: Panel, open: bool) {
+        match panel {
+            Panel::Genome => self.genome = open,
+            Panel::Stats => self.stats = open,
+            Panel::Help => self.help = open,
+            Panel::Settings => self.settings = open,
+        }
+    }
+}

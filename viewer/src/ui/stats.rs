@@ -1,0 +1,231 @@
+//! Frame times and counts as a card over the pictures: a graph of the last frames, where the GPU's time goes pass by
+//! pass and view by view, what was drawn, and how many trees stand at each level of detail.
+
+use egui::{Align, Align2, Color32, CornerRadius, FontId, Frame, Layout, Margin, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+
+use super::model::Stats;
+use super::theme;
+use super::widgets::section;
+
+/// Width of the card, in points.
+const WIDTH: f32 = 300.0;
+/// Frames of 60 Hz take so long, in milliseconds.
+const SMOOTH_MS: f32 = 1000.0 / 60.0;
+
+/// Median and 99th percentile of times in milliseconds; zeros if there are none. The percentile is the least time that
+/// at least 99 % of the frames do not exceed.
+pub fn median_and_p99(frames_ms: &[f32]) -> (f32, f32) {
+    let mut sorted: Vec<f32> = frames_ms.iter().copied().filter(|ms| ms.is_finite()).collect();
+    sorted.sort_by(f32::total_cmp);
+    let rank = |part: f32| {
+        let at = ((part * sorted.len() as f32).ceil() as usize).max(1) - 1;
+        sorted.get(at.min(sorted.len().saturating_sub(1))).copied().unwrap_or(0.0)
+    };
+    (rank(0.5), rank(0.99))
+}
+
+/// Draws the card at the lower left of `area`.
+pub fn show(ui: &mut Ui, stats: &Stats, area: Rect) {
+    let width = WIDTH.min(area.width() - 24.0);
+    egui::Area::new(egui::Id::unique("stats"))
+        .fixed_pos(area.left_bottom() + vec2(12.0, -12.0))
+        .pivot(Align2::LEFT_BOTTOM)
+        .constrain_to(area)
+        .interactable(false)
+        .accessible_name("Frame times")
+        .show(ui.ctx(), |ui| {
+            // The card is dark in both themes, as everything that lies on pictures.
+            ui.set_style(ui.ctx().style_of(egui::Theme::Dark));
+            let frame = Frame::NONE
+                .fill(Color32::from_rgba_unmultiplied(17, 19, 19, 232))
+                .corner_radius(CornerRadius::same(10))
+                .inner_margin(Margin::same(12));
+            frame.show(ui, |ui| {
+                ui.set_width(width - 24.0);
+                ui.spacing_mut().item_spacing.y = 3.0;
+                body(ui, stats, area.height() - 60.0);
+            });
+        });
+}
+
+fn body(ui: &mut Ui, stats: &Stats, room: f32) {
+    frames(ui, stats);
+    let triangles: u64 = stats.triangles.iter().sum();
+    line(ui, "CPU to record", &format!("{:.2} ms", stats.cpu_record_ms));
+    line(ui, "Triangles", &thousands(triangles));
+    let draws = stats.draws.iter().sum::<u32>();
+    let most = stats.draws.iter().max().copied().unwrap_or(0);
+    line(ui, "Draws", &format!("{draws} (at most {most} a view)"));
+    if room > 330.0 {
+        gpu(ui, stats);
+    }
+    if room > 420.0 {
+        levels(ui, &stats.trees_per_level);
+    }
+    if !stats.adapter.is_empty() {
+        let text = egui::RichText::new(&stats.adapter).small().color(theme::DARK.weak);
+        ui.add(egui::Label::new(text).truncate());
+    }
+}
+
+fn line(ui: &mut Ui, name: &str, value: &str) {
+    ui.horizontal(|ui| {
+        ui.label(egui::RichText::new(name).color(theme::DARK.weak));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(value));
+    });
+}
+
+fn frames(ui: &mut Ui, stats: &Stats) {
+    let (median, p99) = median_and_p99(&stats.frames_ms);
+    ui.horizontal(|ui| {
+        let fps = if median > 0.0 { 1000.0 / median } else { 0.0 };
+        ui.label(egui::RichText::new(format!("{fps:.0}")).size(24.0));
+        ui.label(egui::RichText::new("fps").color(theme::DARK.weak));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.label(egui::RichText::new(format!("median {median:.1} · p99 {p99:.1} ms")).color(theme::DARK.weak));
+        });
+    });
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 54.0), Sense::hover());
+    graph(ui, rect, &stats.frames_ms, p99);
+}
+
+/// One bar a frame; the line is 60 Hz.
+fn graph(ui: &Ui, rect: Rect, frames_ms: &[f32], p99: f32) {
+    let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
+    painter.rect_filled(rect, CornerRadius::same(4), Color32::from_black_alpha(110));
+    let top = (p99 * 1.25).max(1.3 * SMOOTH_MS);
+    let height = |ms: f32| rect.height() * (ms / top).clamp(0.0, 1.0);
+    let shown = &frames_ms[frames_ms.len().saturating_sub(rect.width() as usize)..];
+    let step = rect.width() / shown.len().max(60) as f32;
+    for (at, &ms) in shown.iter().rev().enumerate() {
+        let right = rect.right() - at as f32 * step;
+        let bar = Rect::from_min_max(pos2(right - step, rect.bottom() - height(ms)), pos2(right, rect.bottom()));
+        let color = if ms > 2.0 * SMOOTH_MS {
+            theme::DARK.danger
+        } else if ms > 1.05 * SMOOTH_MS {
+            theme::DARK.warning
+        } else {
+            theme::DARK.accent
+        };
+        painter.rect_filled(bar, CornerRadius::ZERO, color);
+    }
+    let y = rect.bottom() - height(SMOOTH_MS);
+    let dash = Stroke::new(1.0, Color32::from_white_alpha(110));
+    painter.extend(Shape::dashed_line(&[pos2(rect.left(), y), pos2(rect.right(), y)], dash, 3.0, 3.0));
+    let font = FontId::proportional(10.0);
+    painter.text(pos2(rect.left() + 4.0, y), Align2::LEFT_BOTTOM, "60 Hz", font, theme::DARK.weak);
+}
+
+/// A row for each pass: its name, the four views' shares as a stacked bar, and their sum.
+fn gpu(ui: &mut Ui, stats: &Stats) {
+    let total: f32 = stats.gpu.iter().flat_map(|pass| pass.ms).sum();
+    section(ui, "GPU");
+    if stats.gpu.is_empty() {
+        ui.label(egui::RichText::new("This adapter tells no times.").color(theme::DARK.weak));
+        return;
+    }
+    line(ui, "All passes, all views", &format!("{total:.2} ms"));
+    for pass in &stats.gpu {
+        let sum: f32 = pass.ms.iter().sum();
+        let (_, rect) = ui.allocate_space(vec2(ui.available_width(), 17.0));
+        let font = FontId::proportional(12.5);
+        let painter = ui.painter();
+        let mut x = rect.left() + 96.0;
+        let room = (rect.width() - 96.0 - 58.0).max(10.0);
+        for (view, &ms) in pass.ms.iter().enumerate() {
+            let width = room * (ms / total.max(1e-6)).clamp(0.0, 1.0);
+            let bar = Rect::from_min_size(pos2(x, rect.top() + 4.0), vec2(width, 9.0));
+            let shade = 1.0 - 0.17 * view as f32;
+            painter.rect_filled(bar, CornerRadius::ZERO, theme::bright(genescape_schema::Category::Sky).gamma_multiply(shade));
+            x += width;
+        }
+        painter.text(rect.left_center(), Align2::LEFT_CENTER, &pass.name, font.clone(), theme::DARK.text);
+        let value = format!("{sum:.2} ms");
+        painter.text(rect.right_center(), Align2::RIGHT_CENTER, value, font, theme::DARK.text);
+    }
+}
+
+/// A bar for each level of detail, finest at the left, with the number of trees above.
+fn levels(ui: &mut Ui, trees_per_level: &[u32]) {
+    let all: u32 = trees_per_level.iter().sum();
+    if trees_per_level.is_empty() {
+        return;
+    }
+    section(ui, "TREES BY LEVEL, FINEST FIRST");
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 46.0), Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{all} trees")));
+    let most = trees_per_level.iter().max().copied().unwrap_or(1).max(1) as f32;
+    let step = rect.width() / trees_per_level.len() as f32;
+    for (level, &trees) in trees_per_level.iter().enumerate() {
+        let height = (rect.height() - 14.0) * trees as f32 / most;
+        let left = rect.left() + level as f32 * step;
+        let bar = Rect::from_min_max(pos2(left + 1.0, rect.bottom() - height), pos2(left + step - 1.0, rect.bottom()));
+        ui.painter().rect_filled(bar, CornerRadius::same(2), theme::bright(genescape_schema::Category::Tree));
+        let place = pos2(bar.center().x, bar.top() - 1.0);
+        let font = FontId::proportional(10.0);
+        if step > 22.0 && trees > 0 {
+            ui.painter().text(place, Align2::CENTER_BOTTOM, short(u64::from(trees)), font, theme::DARK.weak);
+        }
+    }
+    line(ui, "Trees drawn", &thousands(u64::from(all)));
+}
+
+/// Between groups of three digits: a space that does not break.
+const SPACE: char = '\u{a0}';
+
+/// 1234567 → "1 234 567".
+pub fn thousands(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (at, digit) in digits.chars().enumerate() {
+        if at > 0 && (digits.len() - at) % 3 == 0 {
+            text.push(SPACE);
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// 12345 → "12k".
+fn short(number: u64) -> String {
+    match number {
+        0..1000 => number.to_string(),
+        1000..10_000 => format!("{:.1}k", number as f64 / 1e3),
+        10_000..1_000_000 => format!("{}k", number / 1000),
+        _ => format!("{:.1}M", number as f64 / 1e6),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn half_of_the_frames_are_within_the_median_and_99_percent_within_p99(
+            frames in proptest::collection::vec(0.1f32..100.0, 1..300)
+        ) {
+            let (median, p99) = median_and_p99(&frames);
+            let within = |limit: f32| frames.iter().filter(|&&ms| ms <= limit).count() as f32;
+            let below = |limit: f32| frames.iter().filter(|&&ms| ms < limit).count() as f32;
+            let count = frames.len() as f32;
+            prop_assert!(within(median) >= 0.5 * count && below(median) <= 0.5 * count);
+            prop_assert!(within(p99) >= 0.989 * count && below(p99) <= 0.991 * count);
+        }
+
+        #[test]
+        fn thousands_only_adds_spaces(number in any::<u64>()) {
+            let text = thousands(number);
+            prop_assert_eq!(text.replace(SPACE, ""), number.to_string());
+            let whole = text.split(SPACE).skip(1).all(|group| group.len() == 3);
+            prop_assert!(whole, "{}", text);
+        }
+    }
+
+    #[test]
+    fn no_frames_are_no_fault() {
+        assert_eq!(median_and_p99(&[]), (0.0, 0.0));
+        assert_eq!(median_and_p99(&[f32::NAN]), (0.0, 0.0));
+    }
+}

@@ -1,0 +1,175 @@
+//! The slim bar on top: the line of generations, undo and the way on at the left; progress in the middle; arrangement,
+//! screenshot and panels at the right.
+
+use egui::{Align, Color32, CornerRadius, Frame, Layout, Margin, Rect, Sense, Stroke, TextStyle, Ui, vec2};
+
+use super::icon::Icon;
+use super::model::Model;
+use super::theme::{self, Palette};
+use super::votes;
+use super::widgets::{ICON_BUTTON, icon_button, name_button, primary_button, progress_bar};
+use crate::event::{Arrangement, Event, Panel};
+
+/// Height of the bar, in points.
+pub const HEIGHT: f32 = 40.0;
+/// A window narrower than this gets no words in the bar, in points.
+const WORDS_FROM: f32 = 940.0;
+
+/// Draws it across the top of `ui`.
+pub fn show(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
+    let palette = Palette::of(ui.visuals());
+    let frame = Frame::NONE.fill(palette.panel).inner_margin(Margin::symmetric(8, 0));
+    egui::Panel::top("top bar").exact_size(HEIGHT).frame(frame).show_separator_line(false).show(ui, |ui| {
+        let words = ui.available_width() >= WORDS_FROM;
+        ui.spacing_mut().item_spacing.x = 4.0;
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            panels(ui, model, events);
+            arrangements(ui, model, events);
+            ui.add_space(4.0);
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                generations(ui, model, words, events);
+            });
+        });
+    });
+}
+
+fn panels(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
+    let all = [
+        (Panel::Help, Icon::Help, "Help and keys"),
+        (Panel::Settings, Icon::Settings, "Settings"),
+        (Panel::Stats, Icon::Stats, "Frame times"),
+        (Panel::Genome, Icon::Genome, "Genes"),
+    ];
+    for (panel, icon, label) in all {
+        let open = model.panels.is_open(panel);
+        let response = icon_button(ui, icon, label, open);
+        if panel == Panel::Genome && !model.errors.is_empty() {
+            let center = response.rect.right_top() + vec2(-6.0, 6.0);
+            ui.painter().circle_filled(center, 4.0, Palette::of(ui.visuals()).danger);
+        }
+        if response.clicked() {
+            events.push(Event::Panel { panel, open: !open });
+        }
+    }
+    divider(ui);
+    if icon_button(ui, Icon::Camera, "Save a screenshot", false).clicked() {
+        events.push(Event::Screenshot);
+    }
+}
+
+fn arrangements(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
+    divider(ui);
+    let (left, right) = (model.chosen, (model.chosen + 1) % model.views.len());
+    let all = [
+        (Arrangement::Compare { left, right }, Icon::Compare, "Compare two"),
+        (Arrangement::One(model.chosen), Icon::Single, "One alone"),
+        (Arrangement::Grid, Icon::Grid, "All four"),
+    ];
+    for (arrangement, icon, label) in all {
+        let same = std::mem::discriminant(&arrangement) == std::mem::discriminant(&model.arrangement);
+        if icon_button(ui, icon, label, same).clicked() && !same {
+            events.push(Event::Arrange(arrangement));
+        }
+    }
+}
+
+fn divider(ui: &mut Ui) {
+    let (rect, _) = ui.allocate_exact_size(vec2(9.0, 18.0), Sense::hover());
+    let line = Stroke::new(1.0, Palette::of(ui.visuals()).line);
+    ui.painter().vline(rect.center().x, rect.y_range(), line);
+}
+
+fn generations(ui: &mut Ui, model: &Model, words: bool, events: &mut Vec<Event>) {
+    let undo = match &model.undo {
+        Some(step) => format!("Undo: {step}"),
+        None => "Nothing to undo".to_owned(),
+    };
+    let can_undo = model.undo.is_some();
+    if ui.add_enabled_ui(can_undo, |ui| icon_button(ui, Icon::Undo, &undo, false)).inner.clicked() {
+        events.push(Event::Undo);
+    }
+    divider(ui);
+    let way_on = if words { 330.0 } else { 36.0 };
+    strip(ui, model, (ui.available_width() - way_on).max(40.0), events);
+    next(ui, model, words, events);
+    if words && let Some(baking) = &model.baking {
+        ui.add_space(6.0);
+        let part = baking.done as f32 / baking.total.max(1) as f32;
+        let (rect, response) = ui.allocate_exact_size(vec2(90.0, 18.0), Sense::hover());
+        let bar = Rect::from_center_size(rect.center(), vec2(90.0, 5.0));
+        let palette = Palette::of(ui.visuals());
+        progress_bar(ui.painter(), bar, part, palette.accent, palette.button);
+        let text = format!("Growing generation {}: {} of {} stages", baking.generation, baking.done, baking.total);
+        response.on_hover_text(text);
+        ui.small(format!("g{} {}%", baking.generation, (part * 100.0) as u32));
+    }
+}
+
+/// The line of generations, the newest at the right; scrolls when it is longer than `room`.
+fn strip(ui: &mut Ui, model: &Model, room: f32, events: &mut Vec<Event>) {
+    let wanted = model.generations.len() as f32 * 44.0;
+    let size = vec2(room.min(wanted.max(40.0)), ICON_BUTTON);
+    ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+        let area = egui::ScrollArea::horizontal()
+            .id_salt("generations")
+            .scroll_bar_visibility(egui::scroll_area::ScrollBarVisibility::AlwaysHidden)
+            .stick_to_right(true)
+            .max_width(size.x)
+            .auto_shrink([true, true]);
+        area.show(ui, |ui| {
+            ui.horizontal(|ui| {
+                ui.spacing_mut().item_spacing.x = 2.0;
+                for &generation in &model.generations {
+                    generation_tab(ui, model, generation, events);
+                }
+            });
+        });
+    });
+}
+
+fn generation_tab(ui: &mut Ui, model: &Model, generation: u32, events: &mut Vec<Event>) {
+    let palette = Palette::of(ui.visuals());
+    let current = generation == model.generation;
+    let text = format!("g{generation}");
+    let color = if current { palette.text } else { palette.weak };
+    let galley = ui.painter().layout_no_wrap(text, TextStyle::Button.resolve(ui.style()), color);
+    let size = vec2(galley.size().x + 16.0, ICON_BUTTON);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    let fill = match (current, response.hovered() || response.has_focus()) {
+        (_, true) => palette.hovered,
+        (true, false) => palette.button,
+        (false, false) => Color32::TRANSPARENT,
+    };
+    ui.painter().rect_filled(rect, CornerRadius::same(theme::RADIUS), fill);
+    ui.painter().galley(rect.center() - 0.5 * galley.size(), galley, color);
+    if current {
+        let y = rect.bottom() - 2.5;
+        ui.painter().hline(rect.x_range().shrink(8.0), y, Stroke::new(2.0, palette.accent));
+    }
+    name_button(ui, &response, &format!("Generation {generation}"), current);
+    if response.clicked() && !current {
+        events.push(Event::GoToGeneration(generation));
+    }
+    response.on_hover_text(match current {
+        true => format!("Generation {generation}, shown now"),
+        false => format!("Go to generation {generation}"),
+    });
+}
+
+fn next(ui: &mut Ui, model: &Model, words: bool, events: &mut Vec<Event>) {
+    ui.add_space(4.0);
+    let hindrance = votes::hindrance(model);
+    let response = ui
+        .add_enabled_ui(hindrance.is_none(), |ui| match words {
+            true => primary_button(ui, "Next generation", Icon::Next),
+            false => icon_button(ui, Icon::Next, "Next generation", true),
+        })
+        .inner;
+    if response.clicked() {
+        events.push(Event::NextGeneration);
+    }
+    match hindrance {
+        Some(text) => response.on_disabled_hover_text(text),
+        None => response.on_hover_text("Breed four new landscapes from what you chose"),
+    };
+}

@@ -1,0 +1,217 @@
+//! The four pictures: two by two, one alone, or two over each other with a splitter; on each its name, its state and
+//! its vote buttons. Says which rectangles the renderer has to fill and where the pointer is.
+
+use egui::{Color32, CornerRadius, CursorIcon, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};
+
+use super::arrange::{Slot, slots};
+use super::model::{Model, ViewState};
+use super::theme::{self, Palette};
+use super::{viewport, votes};
+use crate::event::{Arrangement, Event};
+
+/// Splitter and what else the views remember.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// Where the splitter is, as a part of the width.
+    pub split: f32,
+}
+
+impl Default for State {
+    fn default() -> Self {
+        Self { split: 0.5 }
+    }
+}
+
+/// What the application has to know about the views.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Views {
+    /// The views that are on the screen, with the size of their render targets.
+    pub slots: Vec<Slot>,
+    /// The landscape under the pointer, whatever lies on it.
+    pub pointed: Option<usize>,
+    /// Nothing lies between the pointer and that picture: wheel and drags are the camera's.
+    pub free: bool,
+    /// The pointer was pressed on a picture and moved so far in this frame, in points.
+    pub dragged: Vec2,
+    /// A press on a picture began in this frame.
+    pub pressed: bool,
+}
+
+/// Draws them into what is left of `ui`.
+pub fn show(ui: &mut Ui, model: &Model, state: &mut State, events: &mut Vec<Event>) -> Views {
+    let area = ui.available_rect_before_wrap();
+    ui.allocate_rect(area, Sense::hover());
+    ui.painter().rect_filled(area, CornerRadius::ZERO, Palette::of(ui.visuals()).ground);
+    let slots = slots(area.shrink(4.0), model.arrangement, ui.pixels_per_point());
+    let mut views = Views::default();
+    match model.arrangement {
+        Arrangement::Compare { .. } if slots.len() == 2 => {
+            compare(ui, model, [slots[0], slots[1]], state, &mut views, events);
+        }
+        _ => {
+            for slot in &slots {
+                let response = picture(ui, model, slot.view, slot.rect, slot.rect, &mut views, events);
+                let lively = !model.captured && response.contains_pointer();
+                frame(ui, model, slot, lively);
+                viewport::show(ui, model, slot.view, slot.rect, lively, events);
+                vote_bar(ui, model, slot.view, slot.rect, lively, events);
+            }
+        }
+    }
+    if !model.captured {
+        votes::hub(ui, model, hub_center(model, area, &slots), hub_room(model, area), events);
+    }
+    views.slots = slots;
+    views
+}
+
+fn hub_center(model: &Model, area: Rect, slots: &[Slot]) -> egui::Pos2 {
+    match (model.arrangement, slots) {
+        (Arrangement::Grid, [first, .., last]) => {
+            let between = first.rect.max + 0.5 * (last.rect.min - first.rect.max);
+            // Above the middle the vote buttons of the upper pictures would lie under it.
+            pos2(between.x, between.y)
+        }
+        _ => pos2(area.center().x, area.top() + 30.0),
+    }
+}
+
+/// Width that the hub may take without covering vote buttons.
+fn hub_room(model: &Model, area: Rect) -> f32 {
+    match model.arrangement {
+        Arrangement::Grid => area.width() * 0.5,
+        _ => area.width(),
+    }
+}
+
+/// Paints one picture, cut to `clip`, and listens to the pointer there.
+fn picture(
+    ui: &mut Ui,
+    model: &Model,
+    view: usize,
+    rect: Rect,
+    clip: Rect,
+    views: &mut Views,
+    events: &mut Vec<Event>,
+) -> Response {
+    let response = ui.interact(clip, ui.scope_id().with(("picture", view)), Sense::click_and_drag());
+    paint_picture(ui, model, view, rect, clip);
+    let name = format!("Landscape {}: {}", view + 1, model.views[view].name);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &name));
+    if response.contains_pointer() {
+        views.pointed = Some(view);
+        views.free = response.hovered();
+    }
+    if response.dragged() {
+        views.dragged += response.drag_delta();
+        views.free = true;
+    }
+    views.pressed |= response.drag_started();
+    if response.double_clicked() {
+        let arrangement = match model.arrangement {
+            Arrangement::Grid => Arrangement::One(view),
+            _ => Arrangement::Grid,
+        };
+        events.push(Event::Arrange(arrangement));
+    } else if response.clicked() && model.chosen != view {
+        events.push(Event::Choose(view));
+    }
+    response.on_hover_cursor(CursorIcon::Default)
+}
+
+fn paint_picture(ui: &Ui, model: &Model, view: usize, rect: Rect, clip: Rect) {
+    let corner = CornerRadius::same(theme::RADIUS);
+    let painter = ui.painter().with_clip_rect(clip.intersect(ui.clip_rect()));
+    match model.views[view].picture {
+        Some(texture) => {
+            let tint = match model.views[view].state {
+                ViewState::Ready => Color32::WHITE,
+                _ => Color32::from_gray(110),
+            };
+            let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+            let shape = egui::epaint::RectShape::filled(rect, corner, tint).with_texture(texture, whole);
+            painter.add(shape.with_round_to_pixels(false));
+        }
+        None => {
+            painter.rect_filled(rect, corner, Color32::from_rgb(30, 34, 33));
+        }
+    }
+}
+
+/// A line around the chosen picture while the genome panel is open, and around the one under the pointer.
+fn frame(ui: &Ui, model: &Model, slot: &Slot, lively: bool) {
+    let chosen = model.panels.genome && model.chosen == slot.view;
+    let color = match (chosen, lively) {
+        (true, _) => Palette::of(ui.visuals()).accent,
+        (false, true) => Color32::from_white_alpha(110),
+        (false, false) => return,
+    };
+    let corner = CornerRadius::same(theme::RADIUS);
+    ui.painter().rect_stroke(slot.rect, corner, Stroke::new(2.0, color), StrokeKind::Inside);
+}
+
+fn vote_bar(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool, events: &mut Vec<Event>) {
+    let seen = model.views[view].picture.is_some();
+    if seen && matches!(model.views[view].state, ViewState::Ready) {
+        votes::bar(ui, model, view, rect, lively, events);
+    }
+}
+
+/// Two pictures of the whole area over each other; the splitter says where one ends and the other begins.
+fn compare(
+    ui: &mut Ui,
+    model: &Model,
+    [left, right]: [Slot; 2],
+    state: &mut State,
+    views: &mut Views,
+    events: &mut Vec<Event>,
+) {
+    let rect = left.rect;
+    let split_x = egui::lerp(rect.x_range(), state.split);
+    let (mut left_part, mut right_part) = (rect, rect);
+    left_part.set_right(split_x);
+    right_part.set_left(split_x);
+    let mut lively = [false; 2];
+    for (side, (slot, part)) in [(left, left_part), (right, right_part)].into_iter().enumerate() {
+        let response = ui
+            .push_id(("side", side), |ui| picture(ui, model, slot.view, rect, part, views, events))
+            .inner;
+        lively[side] = !model.captured && response.contains_pointer();
+    }
+    // Names and votes keep to their half however far the splitter is moved.
+    let halves = rect.split_left_right_at_fraction(0.5);
+    for (side, (slot, half)) in [(left, halves.0), (right, halves.1)].into_iter().enumerate() {
+        ui.push_id(("half", side), |ui| {
+            viewport::show(ui, model, slot.view, half, lively[side], events);
+            if !model.captured {
+                viewport::choose_side(ui, model, side, half, events);
+            }
+            vote_bar(ui, model, slot.view, half, lively[side], events);
+        });
+    }
+    splitter(ui, rect, split_x, state);
+}
+
+fn splitter(ui: &mut Ui, rect: Rect, split_x: f32, state: &mut State) {
+    let grip = Rect::from_center_size(pos2(split_x, rect.center().y), vec2(14.0, rect.height()));
+    let response = ui.interact(grip, ui.scope_id().with("splitter"), Sense::drag());
+    if let Some(pointer) = response.interact_pointer_pos()
+        && response.dragged()
+    {
+        state.split = ((pointer.x - rect.left()) / rect.width()).clamp(0.02, 0.98);
+    }
+    let (enabled, value) = (ui.is_enabled(), f64::from(state.split));
+    response.widget_info(|| egui::WidgetInfo::slider(enabled, value, "Splitter"));
+    let lit = response.hovered() || response.dragged();
+    let line = Stroke::new(if lit { 3.0 } else { 2.0 }, Color32::from_white_alpha(230));
+    ui.painter().vline(split_x, rect.y_range(), Stroke::new(line.width + 2.0, Color32::from_black_alpha(90)));
+    ui.painter().vline(split_x, rect.y_range(), line);
+    let knob = Rect::from_center_size(pos2(split_x, rect.center().y), vec2(22.0, 34.0));
+    ui.painter().add(theme::card_shadow().as_shape(knob, CornerRadius::same(11)));
+    ui.painter().rect_filled(knob, CornerRadius::same(11), Color32::WHITE);
+    for offset in [-3.0, 3.0] {
+        let x = split_x + offset;
+        ui.painter().vline(x, knob.center().y - 6.0..=knob.center().y + 6.0, Stroke::new(1.5, Color32::from_gray(90)));
+    }
+    response.on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
+}

@@ -1,0 +1,227 @@
+//! Voting: three buttons on each picture, and the hub between the pictures, which shows how far the vote is and leads
+//! to the next generation. Colour says which category; a filled button is a vote that was won here.
+
+use egui::{Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui, pos2, vec2};
+use genescape_schema::Category;
+
+use super::icon::Icon;
+use super::model::Model;
+use super::theme;
+use super::widgets::{name_button, progress_ring};
+use crate::event::{Ballot, Event};
+
+/// Height of a vote button, in points.
+const PILL: f32 = 28.0;
+/// A picture narrower than this shows pictograms without words, in points.
+const WORDS_FROM: f32 = 330.0;
+/// Side of a ballot in the hub, in points.
+const CHIP: f32 = 26.0;
+
+/// Which way a vote button looks.
+#[derive(Clone, Copy, PartialEq)]
+enum Standing {
+    /// Nothing was voted yet.
+    Open,
+    /// This picture won.
+    Won,
+    /// Another won, or none pleases.
+    Lost,
+}
+
+/// The vote buttons of one picture, centred at `bottom`; `lively` when the pointer is over the picture.
+pub fn bar(ui: &mut Ui, model: &Model, view: usize, within: Rect, lively: bool, events: &mut Vec<Event>) {
+    let words = within.width() >= WORDS_FROM;
+    let widths = Category::ALL.map(|category| if words { pill_width(ui, category) } else { 36.0 });
+    let total = widths.iter().sum::<f32>() + 12.0;
+    let mut x = within.center().x - 0.5 * total;
+    let y = within.bottom() - PILL - 10.0;
+    shade_bottom(ui.painter(), within, lively);
+    for (category, width) in Category::ALL.into_iter().zip(widths) {
+        let rect = Rect::from_min_size(pos2(x, y), vec2(width, PILL));
+        pill(ui, model, view, category, rect, words, events);
+        x += width + 6.0;
+    }
+}
+
+/// A gradient under the buttons, stronger under the pointer.
+fn shade_bottom(painter: &Painter, within: Rect, lively: bool) {
+    let height = 72.0f32.min(within.height());
+    let rect = Rect::from_min_max(pos2(within.left(), within.bottom() - height), within.max);
+    let dark = Color32::from_black_alpha(if lively { 150 } else { 80 });
+    painter.add(Shape::gradient_rect(rect, egui::Direction::TopDown, [Color32::TRANSPARENT, dark]));
+}
+
+fn pill_width(ui: &Ui, category: Category) -> f32 {
+    let galley = ui.painter().layout_no_wrap(theme::title(category).to_owned(), word_font(), Color32::WHITE);
+    galley.size().x + 44.0
+}
+
+fn word_font() -> FontId {
+    FontId::proportional(14.0)
+}
+
+fn pill(
+    ui: &mut Ui,
+    model: &Model,
+    view: usize,
+    category: Category,
+    rect: Rect,
+    words: bool,
+    events: &mut Vec<Event>,
+) {
+    let standing = match model.ballots.get(category) {
+        Ballot::Open => Standing::Open,
+        Ballot::For(best) if best == view => Standing::Won,
+        _ => Standing::Lost,
+    };
+    let response = ui.interact(rect, ui.scope_id().with(("vote", view, category.name())), Sense::click());
+    let won = standing == Standing::Won;
+    let label = format!("{}: best in {}", theme::title(category), view + 1);
+    name_button(ui, &response, &label, won);
+    if response.clicked() {
+        let ballot = if won { Ballot::Open } else { Ballot::For(view) };
+        events.push(Event::Vote { category, ballot });
+    }
+    paint_pill(ui.painter(), rect, category, standing, response.hovered() || response.has_focus(), words);
+    response.on_hover_text(if won {
+        format!("{} is best here. Click to take the vote back.", theme::title(category))
+    } else {
+        format!("Vote: “{}” has the best {}", model.views[view].name, theme::title(category).to_lowercase())
+    });
+}
+
+fn paint_pill(painter: &Painter, rect: Rect, category: Category, standing: Standing, hovered: bool, words: bool) {
+    let bright = theme::bright(category);
+    let (fill, picture, word) = match (standing, hovered) {
+        (Standing::Won, false) => (bright, theme::ON_BRIGHT, theme::ON_BRIGHT),
+        (Standing::Won, true) => (bright.lerp_to_gamma(Color32::WHITE, 0.25), theme::ON_BRIGHT, theme::ON_BRIGHT),
+        (_, true) => (theme::SCRIM_HOVERED, bright, theme::ON_SCRIM),
+        (Standing::Open, false) => (theme::SCRIM, bright, theme::ON_SCRIM),
+        (Standing::Lost, false) => {
+            (Color32::from_black_alpha(110), Color32::from_white_alpha(120), Color32::from_white_alpha(150))
+        }
+    };
+    let line = if hovered && standing != Standing::Won { bright } else { Color32::TRANSPARENT };
+    painter.rect(rect, CornerRadius::same(14), fill, Stroke::new(1.5, line), StrokeKind::Inside);
+    let icon_center = if words { pos2(rect.left() + 18.0, rect.center().y) } else { rect.center() };
+    let icon_rect = Rect::from_center_size(icon_center, vec2(16.0, 16.0));
+    Icon::from(category).paint(painter, icon_rect, picture);
+    if words {
+        let at = pos2(rect.left() + 32.0, rect.center().y);
+        painter.text(at, Align2::LEFT_CENTER, theme::title(category), word_font(), word);
+    }
+}
+
+/// Why the next generation cannot be bred now; `None` if it can.
+pub fn hindrance(model: &Model) -> Option<String> {
+    if let Some(baking) = &model.baking {
+        return Some(format!("Wait until generation {} has grown", baking.generation));
+    }
+    let open = Category::ALL.into_iter().filter(|&category| model.ballots.get(category) == Ballot::Open);
+    let names: Vec<String> = open.map(|category| theme::title(category).to_lowercase()).collect();
+    (!names.is_empty()).then(|| format!("Still to vote on: {}", names.join(", ")))
+}
+
+/// The hub between the pictures: three ballots, and the way on. `room` is the width that it may take.
+pub fn hub(ui: &mut Ui, model: &Model, center: Pos2, room: f32, events: &mut Vec<Event>) {
+    let hindrance = hindrance(model);
+    let ready = hindrance.is_none();
+    let words = room >= 420.0;
+    let way_on = match (ready, words) {
+        (true, true) => 158.0,
+        (true, false) => 34.0,
+        (false, _) if model.baking.is_some() => 30.0,
+        (false, _) => 0.0,
+    };
+    let chips = 3.0 * CHIP + 8.0;
+    let width = chips + 12.0 + if way_on > 0.0 { way_on + 6.0 } else { 0.0 };
+    let rect = Rect::from_center_size(center, vec2(width, 38.0));
+    // The hub takes clicks itself, so that none falls through to a picture.
+    ui.interact(rect, ui.scope_id().with("hub"), Sense::click());
+    ui.painter().add(theme::card_shadow().as_shape(rect, CornerRadius::same(19)));
+    let line = Stroke::new(1.0, Color32::from_white_alpha(40));
+    let fill = Color32::from_rgba_unmultiplied(20, 23, 22, 244);
+    ui.painter().rect(rect, CornerRadius::same(19), fill, line, StrokeKind::Inside);
+    for (at, category) in Category::ALL.into_iter().enumerate() {
+        let left = rect.left() + 6.0 + at as f32 * (CHIP + 4.0);
+        let chip_rect = Rect::from_min_size(pos2(left, center.y - 0.5 * CHIP), vec2(CHIP, CHIP));
+        chip(ui, model, category, chip_rect, events);
+    }
+    let rest = Rect::from_min_max(pos2(rect.left() + 12.0 + chips, rect.top() + 5.0), rect.max - vec2(6.0, 5.0));
+    match (&model.baking, hindrance) {
+        (_, None) => next_button(ui, rest, words, events),
+        (Some(baking), Some(text)) => {
+            let part = baking.done as f32 / baking.total.max(1) as f32;
+            let rest_color = Color32::from_white_alpha(45);
+            progress_ring(ui.painter(), rest.center(), 9.0, part, DARK_ACCENT, rest_color);
+            ui.interact(rest, ui.scope_id().with("hub baking"), Sense::hover()).on_hover_text(text);
+        }
+        (None, Some(_)) => {}
+    }
+}
+
+/// The hub is dark in both themes, as everything that lies on pictures.
+const DARK_ACCENT: Color32 = theme::DARK.accent;
+
+fn next_button(ui: &mut Ui, rect: Rect, words: bool, events: &mut Vec<Event>) {
+    let response = ui.interact(rect, ui.scope_id().with("next generation"), Sense::click());
+    name_button(ui, &response, "Next generation (hub)", false);
+    let lit = response.hovered() || response.has_focus();
+    let fill = if lit { DARK_ACCENT.lerp_to_gamma(Color32::WHITE, 0.3) } else { DARK_ACCENT };
+    ui.painter().rect_filled(rect, CornerRadius::same(14), fill);
+    let ink = theme::DARK.on_accent;
+    let icon_center = if words { pos2(rect.right() - 17.0, rect.center().y) } else { rect.center() };
+    Icon::Next.paint(ui.painter(), Rect::from_center_size(icon_center, vec2(13.0, 13.0)), ink);
+    if words {
+        let at = pos2(rect.left() + 14.0, rect.center().y);
+        ui.painter().text(at, Align2::LEFT_CENTER, "Next generation", word_font(), ink);
+    }
+    if response.clicked() {
+        events.push(Event::NextGeneration);
+    }
+    response.on_hover_text("Breed four new landscapes from what you chose");
+}
+
+/// One category's ballot: who won, or that none pleases; a click says "none", a second takes that back.
+fn chip(ui: &mut Ui, model: &Model, category: Category, rect: Rect, events: &mut Vec<Event>) {
+    let ballot = model.ballots.get(category);
+    let title = theme::title(category);
+    let response = ui.interact(rect, ui.scope_id().with(("ballot", category.name())), Sense::click());
+    name_button(ui, &response, &format!("{title}: none of the four"), ballot == Ballot::Nobody);
+    if response.clicked() {
+        let ballot = if ballot == Ballot::Nobody { Ballot::Open } else { Ballot::Nobody };
+        events.push(Event::Vote { category, ballot });
+    }
+    let bright = theme::bright(category);
+    let painter = ui.painter();
+    let icon_rect = Rect::from_center_size(rect.center(), vec2(14.0, 14.0));
+    let lit = response.hovered() || response.has_focus();
+    let line = Stroke::new(1.5, if lit { Color32::WHITE } else { bright.gamma_multiply(0.55) });
+    match ballot {
+        Ballot::For(best) => {
+            painter.circle_filled(rect.center(), 0.5 * CHIP, bright);
+            let font = FontId::proportional(15.0);
+            painter.text(rect.center(), Align2::CENTER_CENTER, best + 1, font, theme::ON_BRIGHT);
+            if lit {
+                painter.circle_stroke(rect.center(), 0.5 * CHIP, line);
+            }
+        }
+        Ballot::Nobody => {
+            painter.circle_filled(rect.center(), 0.5 * CHIP, Color32::from_white_alpha(28));
+            Icon::from(category).paint(painter, icon_rect, Color32::from_white_alpha(110));
+            let slash = vec2(8.0, -8.0);
+            painter.line_segment([rect.center() - slash, rect.center() + slash], Stroke::new(2.0, bright));
+        }
+        Ballot::Open => {
+            painter.circle_stroke(rect.center(), 0.5 * CHIP - 1.0, line);
+            Icon::from(category).paint(painter, icon_rect, bright);
+        }
+    }
+    response.on_hover_text(match ballot {
+        Ballot::Open => format!("{title}: not voted yet. Click if none of the four pleases."),
+        Ballot::Nobody => format!("{title}: none of the four. Click to take that back."),
+        Ballot::For(best) => {
+            format!("{title}: {} “{}”. Click if none of the four pleases.", best + 1, model.views[best].name)
+        }
+    });
+}
