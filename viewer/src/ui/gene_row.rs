@@ -42,8 +42,9 @@ pub fn show(
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 ui.spacing_mut().item_spacing.x = 2.0;
                 lock(ui, genes, parameter, events);
-                if code != bred {
-                    reset(ui, individual, parameter, bred, locked, events);
+                match code != bred {
+                    true => reset(ui, individual, parameter, bred, locked, events),
+                    false => ui.add_space(26.0),
                 }
                 value(ui, individual, parameter, code, locked, state, events);
             });
@@ -71,7 +72,7 @@ fn name(ui: &mut Ui, parameter: &Parameter, changed: bool) {
     let palette = Palette::of(ui.visuals());
     let text = egui::RichText::new(spoken(parameter)).color(palette.text);
     let label = egui::Label::new(text).truncate().sense(Sense::hover());
-    let room = (ui.available_width() - 150.0).max(40.0);
+    let room = (ui.available_width() - 170.0).max(40.0);
     let response = ui.scope(|ui| { ui.set_max_width(room); ui.add(label) }).inner;
     if changed {
         let dot = pos2(response.rect.left() - 6.0, response.rect.center().y);
@@ -128,11 +129,9 @@ fn value(
     events: &mut Vec<Event>,
 ) {
     let palette = Palette::of(ui.visuals());
-    ui.spacing_mut().item_spacing.x = 3.0;
-    let unit = egui::RichText::new(&parameter.unit).small().color(palette.weak);
-    let unit_width = 26.0;
-    let (rect, _) = ui.allocate_exact_size(vec2(unit_width, 22.0), Sense::hover());
-    ui.put(rect, egui::Label::new(unit));
+    let (rect, _) = ui.allocate_exact_size(vec2(30.0, 22.0), Sense::hover());
+    let unit = if parameter.unit == "deg" { "°" } else { &parameter.unit };
+    ui.painter().text(rect.left_center(), Align2::LEFT_CENTER, unit, FontId::proportional(12.0), palette.weak);
     let mine = matches!(&state.typed, Some((of, name, _)) if *of == individual && *name == parameter.name);
     let mut text = match &state.typed {
         Some((_, _, text)) if mine => text.clone(),

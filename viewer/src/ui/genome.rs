@@ -118,7 +118,7 @@ fn body(ui: &mut Ui, genes: &Genes, individual: usize, state: &mut State, events
 fn search(ui: &mut Ui, state: &mut State) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        let width = ui.available_width() - 106.0;
+        let width = ui.available_width() - 96.0;
         let field = egui::TextEdit::singleline(&mut state.search)
             .hint_text("Search genes")
             .margin(Margin::symmetric(8, 4))

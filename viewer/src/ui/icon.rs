@@ -68,11 +68,13 @@ enum Part {
     Line(&'static [(f32, f32)]),
     /// A filled circle.
     Dot((f32, f32), f32),
+    /// A ring of twice the usual weight.
+    Bold((f32, f32), f32),
     /// Part of a circle, from and to in degrees, clockwise from the right.
     Arc((f32, f32), f32, f32, f32),
 }
 
-use Part::{Arc, Dot, Fill, Line};
+use Part::{Arc, Bold, Dot, Fill, Line};
 
 /// Segments of a full circle.
 const SEGMENTS: f32 = 28.0;
@@ -93,6 +95,9 @@ impl Icon {
                 }
                 Line(points) => Shape::line(points.iter().map(at).collect(), stroke),
                 Dot(center, radius) => Shape::circle_filled(at(center), radius * side, color),
+                Bold(center, radius) => {
+                    Shape::circle_stroke(at(center), radius * side, Stroke::new(0.17 * side, color))
+                }
                 Arc(center, radius, from, to) => Shape::line(arc(at(center), radius * side, *from, *to), stroke),
             });
         }
@@ -152,14 +157,13 @@ impl Icon {
                 Fill(&[(0.73, 0.36), (0.9, 0.36), (0.9, 0.9), (0.73, 0.9)]),
             ],
             Self::Settings => &[
-                Arc((0.5, 0.5), 0.27, 0.0, 360.0),
-                Dot((0.5, 0.5), 0.1),
-                Line(&[(0.5, 0.04), (0.5, 0.22)]),
-                Line(&[(0.5, 0.78), (0.5, 0.96)]),
-                Line(&[(0.102, 0.27), (0.258, 0.36)]),
-                Line(&[(0.742, 0.64), (0.898, 0.73)]),
-                Line(&[(0.102, 0.73), (0.258, 0.64)]),
-                Line(&[(0.742, 0.36), (0.898, 0.27)]),
+                Bold((0.5, 0.5), 0.26),
+                Fill(&[(0.4, 0.02), (0.6, 0.02), (0.63, 0.25), (0.37, 0.25)]),
+                Fill(&[(0.37, 0.75), (0.63, 0.75), (0.6, 0.98), (0.4, 0.98)]),
+                Fill(&[(0.034, 0.347), (0.134, 0.173), (0.349, 0.262), (0.219, 0.488)]),
+                Fill(&[(0.651, 0.738), (0.781, 0.512), (0.966, 0.653), (0.866, 0.827)]),
+                Fill(&[(0.134, 0.827), (0.034, 0.653), (0.219, 0.512), (0.349, 0.738)]),
+                Fill(&[(0.781, 0.488), (0.651, 0.262), (0.866, 0.173), (0.966, 0.347)]),
             ],
             Self::Help => &[
                 Arc((0.5, 0.5), 0.43, 0.0, 360.0),

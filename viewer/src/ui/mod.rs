@@ -88,16 +88,18 @@ pub struct Output {
 pub fn show(ui: &mut Ui, model: &Model, state: &mut State) -> Output {
     let mut output = Output::default();
     let events = &mut output.events;
-    if !model.captured {
-        top_bar::show(ui, model, events);
-        if model.panels.genome {
-            genome::show(ui, model, &mut state.genome, events);
-        }
+    top_bar::show(ui, model, events);
+    if model.panels.genome {
+        genome::show(ui, model, &mut state.genome, events);
     }
+    let docked = model.panels.stats && stats::show_docked(ui, &model.stats);
     let area = ui.available_rect_before_wrap();
     if !empty::show(ui, model, events) {
         output.views = views::show(ui, model, &mut state.views, events);
         banner(ui, model, area, events);
+    }
+    if model.panels.stats && !docked {
+        stats::show_card(ui, &model.stats, area);
     }
     overlays(ui, model, area, events);
     dropped(ui, events);
@@ -107,12 +109,6 @@ pub fn show(ui: &mut Ui, model: &Model, state: &mut State) -> Output {
 }
 
 fn overlays(ui: &mut Ui, model: &Model, area: Rect, events: &mut Vec<Event>) {
-    if model.panels.stats {
-        stats::show(ui, &model.stats, area);
-    }
-    if model.captured {
-        return;
-    }
     if model.panels.settings {
         settings::show(ui, model, area, events);
     }
@@ -124,7 +120,7 @@ fn overlays(ui: &mut Ui, model: &Model, area: Rect, events: &mut Vec<Event>) {
 
 /// A line over the pictures while a file is broken and the panel that tells more is closed.
 fn banner(ui: &mut Ui, model: &Model, area: Rect, events: &mut Vec<Event>) {
-    let Some(error) = model.errors.first().filter(|_| !model.panels.genome && !model.captured) else { return };
+    let Some(error) = model.errors.first().filter(|_| !model.panels.genome) else { return };
     egui::Area::new(egui::Id::unique("error banner"))
         .pivot(egui::Align2::CENTER_BOTTOM)
         .fixed_pos(area.center_bottom() - egui::vec2(0.0, 56.0))

@@ -21,6 +21,7 @@ pub fn show(ui: &mut Ui, model: &Model, area: Rect, events: &mut Vec<Event>) {
         .pivot(Align2::RIGHT_TOP)
         .fixed_pos(area.right_top() + vec2(-12.0, 12.0))
         .constrain_to(area)
+        .default_size(vec2(width, area.height() - 24.0))
         .accessible_name("Settings")
         .show(ui.ctx(), |ui| {
             let palette = Palette::of(ui.visuals());

@@ -1,4 +1,4 @@
-//! Frame times and counts as a card over the pictures: a graph of the last frames, where the GPU's time goes pass by
+//! Frame times and counts, beside the pictures or, in a small window, over them: a graph of the last frames, where the GPU's time goes pass by
 //! pass and view by view, what was drawn, and how many trees stand at each level of detail.
 
 use egui::{Align, Align2, Color32, CornerRadius, FontId, Frame, Layout, Margin, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
@@ -7,8 +7,10 @@ use super::model::Stats;
 use super::theme;
 use super::widgets::section;
 
-/// Width of the card, in points.
-const WIDTH: f32 = 300.0;
+/// Width of the panel or card, in points.
+const WIDTH: f32 = 284.0;
+/// With less room than this the panel becomes a card over the pictures, in points.
+const DOCKED_FROM: f32 = 860.0;
 /// Frames of 60 Hz take so long, in milliseconds.
 const SMOOTH_MS: f32 = 1000.0 / 60.0;
 
@@ -24,8 +26,25 @@ pub fn median_and_p99(frames_ms: &[f32]) -> (f32, f32) {
     (rank(0.5), rank(0.99))
 }
 
-/// Draws the card at the lower left of `area`.
-pub fn show(ui: &mut Ui, stats: &Stats, area: Rect) {
+/// Draws it as a panel at the left of `ui` if there is room; false if not, and nothing was drawn.
+pub fn show_docked(ui: &mut Ui, stats: &Stats) -> bool {
+    if ui.available_width() < DOCKED_FROM {
+        return false;
+    }
+    let frame = Frame::NONE.fill(theme::DARK.panel).inner_margin(Margin::same(12));
+    egui::Panel::left("stats").exact_size(WIDTH).resizable(false).frame(frame).show_separator_line(false).show(
+        ui,
+        |ui| {
+            ui.set_style(ui.ctx().style_of(egui::Theme::Dark));
+            let room = ui.available_height();
+            body(ui, stats, room);
+        },
+    );
+    true
+}
+
+/// Draws the card over the lower left of `area`.
+pub fn show_card(ui: &mut Ui, stats: &Stats, area: Rect) {
     let width = WIDTH.min(area.width() - 24.0);
     egui::Area::new(egui::Id::unique("stats"))
         .fixed_pos(area.left_bottom() + vec2(12.0, -12.0))
@@ -42,13 +61,14 @@ pub fn show(ui: &mut Ui, stats: &Stats, area: Rect) {
                 .inner_margin(Margin::same(12));
             frame.show(ui, |ui| {
                 ui.set_width(width - 24.0);
-                ui.spacing_mut().item_spacing.y = 3.0;
                 body(ui, stats, area.height() - 60.0);
             });
         });
 }
 
 fn body(ui: &mut Ui, stats: &Stats, room: f32) {
+    ui.spacing_mut().item_spacing.y = 2.0;
+    ui.spacing_mut().interact_size.y = 18.0;
     frames(ui, stats);
     let triangles: u64 = stats.triangles.iter().sum();
     line(ui, "CPU to record", &format!("{:.2} ms", stats.cpu_record_ms));

@@ -123,7 +123,7 @@ fn failed(ui: &mut Ui, view: usize, rect: Rect, what: &str, remedy: &str, events
     let mut job = LayoutJob::default();
     let format = |size, color| TextFormat { font_id: FontId::proportional(size), color, ..Default::default() };
     job.append(what, 0.0, format(14.0, theme::ON_SCRIM));
-    job.append("\n", 0.0, format(6.0, theme::ON_SCRIM));
+    job.append("\n\n", 0.0, format(5.0, theme::ON_SCRIM));
     job.append(remedy, 0.0, format(13.0, theme::ON_SCRIM_WEAK));
     job.wrap = TextWrapping { max_width: width - 52.0, max_rows: 7, ..Default::default() };
     let galley = ui.painter().layout_job(job);

@@ -58,9 +58,7 @@ pub fn show(ui: &mut Ui, model: &Model, state: &mut State, events: &mut Vec<Even
             }
         }
     }
-    if !model.captured {
-        votes::hub(ui, model, hub_center(model, area, &slots), hub_room(model, area), events);
-    }
+    votes::hub(ui, model, hub_center(model, area, &slots), hub_room(model, area), events);
     views.slots = slots;
     views
 }
@@ -69,8 +67,8 @@ fn hub_center(model: &Model, area: Rect, slots: &[Slot]) -> egui::Pos2 {
     match (model.arrangement, slots) {
         (Arrangement::Grid, [first, .., last]) => {
             let between = first.rect.max + 0.5 * (last.rect.min - first.rect.max);
-            // Above the middle the vote buttons of the upper pictures would lie under it.
-            pos2(between.x, between.y)
+            // A little above the crossing: the name of the lower right picture begins just below it.
+            pos2(between.x, between.y - 15.0)
         }
         _ => pos2(area.center().x, area.top() + 30.0),
     }
@@ -183,9 +181,7 @@ fn compare(
     for (side, (slot, half)) in [(left, halves.0), (right, halves.1)].into_iter().enumerate() {
         ui.push_id(("half", side), |ui| {
             viewport::show(ui, model, slot.view, half, lively[side], events);
-            if !model.captured {
-                viewport::choose_side(ui, model, side, half, events);
-            }
+            viewport::choose_side(ui, model, side, half, events);
             vote_bar(ui, model, slot.view, half, lively[side], events);
         });
     }

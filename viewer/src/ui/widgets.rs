@@ -46,15 +46,16 @@ pub fn primary_button(ui: &mut Ui, text: &str, icon: Icon) -> Response {
     let galley = ui.painter().layout_no_wrap(text.to_owned(), font, palette.on_accent);
     let size = vec2(galley.size().x + 42.0, ICON_BUTTON);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-    let fill = match response.hovered() || response.has_focus() {
-        true => palette.accent.lerp_to_gamma(palette.text, 0.25),
-        false => palette.accent,
+    let (fill, ink) = match (ui.is_enabled(), response.hovered() || response.has_focus()) {
+        (false, _) => (palette.button, palette.text),
+        (true, true) => (palette.accent.lerp_to_gamma(palette.text, 0.25), palette.on_accent),
+        (true, false) => (palette.accent, palette.on_accent),
     };
     ui.painter().rect_filled(rect, CornerRadius::same(14), fill);
     let at = Pos2::new(rect.left() + 14.0, rect.center().y - 0.5 * galley.size().y);
-    ui.painter().galley(at, galley, palette.on_accent);
+    ui.painter().galley_with_override_text_color(at, galley, ink);
     let icon_rect = Rect::from_center_size(Pos2::new(rect.right() - 18.0, rect.center().y), vec2(12.0, 12.0));
-    icon.paint(ui.painter(), icon_rect, palette.on_accent);
+    icon.paint(ui.painter(), icon_rect, ink);
     name_button(ui, &response, text, false);
     response
 }

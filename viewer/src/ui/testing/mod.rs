@@ -36,7 +36,11 @@ impl Bench {
         for (view, texture) in self.model.views.iter_mut().zip(&self.textures) {
             view.picture = view.picture.map(|_| texture.id());
         }
-        self.output = super::show(ui, &self.model, &mut self.state);
+        // The harness puts a margin around; the window has none.
+        let window = ui.ctx().content_rect();
+        let mut root = ui.new_child(egui::UiBuilder::new().max_rect(window));
+        root.set_clip_rect(window);
+        self.output = super::show(&mut root, &self.model, &mut self.state);
         self.events.append(&mut self.output.events);
     }
 }
