@@ -1,6 +1,9 @@
 //! What the last bake reused and what it built and why; and the full text of what is wrong with the person's files.
 
-use egui::{Align, CollapsingHeader, CornerRadius, Frame, Layout, Margin, RichText, ScrollArea, Sense, Stroke, Ui, vec2};
+use egui::{
+    Align, CollapsingHeader, CornerRadius, Frame, Layout, Margin, RichText, ScrollArea, Sense, Stroke, Ui,
+    vec2,
+};
 
 use super::icon::Icon;
 use super::model::{FileError, StageEntry};

@@ -1,7 +1,9 @@
 //! One gene of the genome panel: name, value that can be typed, lock, reset, and a slider over the gene's codes (so it
 //! snaps by itself, and is linear or logarithmic as declared), with marks where the other landscapes stand.
 
-use egui::{Align, Align2, Color32, CornerRadius, FontId, Layout, Rect, Response, Sense, Stroke, Ui, pos2, vec2};
+use egui::{
+    Align, Align2, Color32, CornerRadius, FontId, Layout, Rect, Response, Sense, Stroke, Ui, pos2, vec2,
+};
 use genescape_schema::{Category, Genome, INDIVIDUALS, Parameter};
 
 use super::icon::Icon;
@@ -73,7 +75,12 @@ fn name(ui: &mut Ui, parameter: &Parameter, changed: bool) {
     let text = egui::RichText::new(spoken(parameter)).color(palette.text);
     let label = egui::Label::new(text).truncate().sense(Sense::hover());
     let room = (ui.available_width() - 170.0).max(40.0);
-    let response = ui.scope(|ui| { ui.set_max_width(room); ui.add(label) }).inner;
+    let response = ui
+        .scope(|ui| {
+            ui.set_max_width(room);
+            ui.add(label)
+        })
+        .inner;
     if changed {
         let dot = pos2(response.rect.left() - 6.0, response.rect.center().y);
         ui.painter().circle_filled(dot, 2.5, palette.category(parameter.category));
@@ -96,7 +103,8 @@ fn lock(ui: &mut Ui, genes: &Genes, parameter: &Parameter, events: &mut Vec<Even
         if !locked {
             ui.multiply_opacity(0.5);
         }
-        let response = ui.add_enabled_ui(!by_category, |ui| sized_icon_button(ui, icon, &label, locked, 24.0)).inner;
+        let response =
+            ui.add_enabled_ui(!by_category, |ui| sized_icon_button(ui, icon, &label, locked, 24.0)).inner;
         if response.clicked() {
             events.push(Event::LockGene { name: parameter.name.clone(), locked: !locked });
         }
@@ -106,9 +114,17 @@ fn lock(ui: &mut Ui, genes: &Genes, parameter: &Parameter, events: &mut Vec<Even
     });
 }
 
-fn reset(ui: &mut Ui, individual: usize, parameter: &Parameter, bred: u32, locked: bool, events: &mut Vec<Event>) {
+fn reset(
+    ui: &mut Ui,
+    individual: usize,
+    parameter: &Parameter,
+    bred: u32,
+    locked: bool,
+    events: &mut Vec<Event>,
+) {
     let label = format!("Reset {} to {} {}", parameter.name, parameter.text(bred), parameter.unit);
-    let response = ui.add_enabled_ui(!locked, |ui| sized_icon_button(ui, Icon::Reset, label.trim_end(), false, 24.0));
+    let response =
+        ui.add_enabled_ui(!locked, |ui| sized_icon_button(ui, Icon::Reset, label.trim_end(), false, 24.0));
     if response.inner.clicked() {
         events.push(gene(individual, parameter, bred, Phase::Committed));
     }
@@ -131,7 +147,13 @@ fn value(
     let palette = Palette::of(ui.visuals());
     let (rect, _) = ui.allocate_exact_size(vec2(30.0, 22.0), Sense::hover());
     let unit = if parameter.unit == "deg" { "°" } else { &parameter.unit };
-    ui.painter().text(rect.left_center(), Align2::LEFT_CENTER, unit, FontId::proportional(12.0), palette.weak);
+    ui.painter().text(
+        rect.left_center(),
+        Align2::LEFT_CENTER,
+        unit,
+        FontId::proportional(12.0),
+        palette.weak,
+    );
     let mine = matches!(&state.typed, Some((of, name, _)) if *of == individual && *name == parameter.name);
     let mut text = match &state.typed {
         Some((_, _, text)) if mine => text.clone(),

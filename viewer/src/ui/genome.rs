@@ -29,14 +29,20 @@ pub struct State {
 
 impl Default for State {
     fn default() -> Self {
-        Self { search: String::new(), only_different: false, unfolded: [true; 3], row: gene_row::State::default() }
+        Self {
+            search: String::new(),
+            only_different: false,
+            unfolded: [true; 3],
+            row: gene_row::State::default(),
+        }
     }
 }
 
 /// Draws it at the right of `ui`.
 pub fn show(ui: &mut Ui, model: &Model, state: &mut State, events: &mut Vec<Event>) {
     let palette = Palette::of(ui.visuals());
-    let frame = Frame::NONE.fill(palette.panel).inner_margin(Margin { left: 14, right: 6, top: 4, bottom: 8 });
+    let frame =
+        Frame::NONE.fill(palette.panel).inner_margin(Margin { left: 14, right: 6, top: 4, bottom: 8 });
     let widest = (ui.available_width() * 0.5).max(240.0);
     egui::Panel::right("genome")
         .default_size(WIDTH.min(widest))
@@ -103,9 +109,9 @@ fn body(ui: &mut Ui, genes: &Genes, individual: usize, state: &mut State, events
             gene_row::show(ui, genes, individual, parameter, &mut state.row, events);
         }
     }
-    let any = Category::ALL
-        .into_iter()
-        .any(|category| gene_row::listed(genes, category, &state.search, state.only_different).next().is_some());
+    let any = Category::ALL.into_iter().any(|category| {
+        gene_row::listed(genes, category, &state.search, state.only_different).next().is_some()
+    });
     if !any {
         ui.add_space(12.0);
         ui.weak(match state.only_different {
@@ -152,9 +158,7 @@ fn category_head(
     let response = ui.interact(fold, ui.scope_id().with(("fold", category.name())), Sense::click());
     let title = theme::title(category);
     let unfolded = &mut state.unfolded[category as usize];
-    response.widget_info(|| {
-        egui::WidgetInfo::selected(egui::Role::Button, true, *unfolded, title)
-    });
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, *unfolded, title));
     if response.clicked() {
         *unfolded = !*unfolded;
     }
@@ -177,7 +181,13 @@ fn category_head(
     reset_category(&mut corner, genes, individual, category, events);
 }
 
-fn reset_category(ui: &mut Ui, genes: &Genes, individual: usize, category: Category, events: &mut Vec<Event>) {
+fn reset_category(
+    ui: &mut Ui,
+    genes: &Genes,
+    individual: usize,
+    category: Category,
+    events: &mut Vec<Event>,
+) {
     if genes.changed(individual, category) == 0 {
         return;
     }

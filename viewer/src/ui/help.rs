@@ -1,6 +1,9 @@
 //! The help: first steps in three lines, and what every key does, as the bindings say it.
 
-use egui::{Align2, Area, Color32, CornerRadius, Frame, Id, Margin, Order, Rect, RichText, ScrollArea, Sense, Ui, vec2};
+use egui::{
+    Align2, Area, Color32, CornerRadius, Frame, Id, Margin, Order, Rect, RichText, ScrollArea, Sense, Ui,
+    vec2,
+};
 
 use super::icon::Icon;
 use super::model::{KeyGroup, Model};
@@ -26,6 +29,7 @@ pub fn show(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
         .pivot(Align2::CENTER_CENTER)
         .fixed_pos(window.center())
         .constrain_to(window.shrink(8.0))
+        .default_size(window.size() - vec2(32.0, 32.0))
         .accessible_name("Help")
         .show(ui.ctx(), |ui| {
             let palette = Palette::of(ui.visuals());
@@ -37,11 +41,14 @@ pub fn show(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
             frame.show(ui, |ui| {
                 ui.set_width(width - 40.0);
                 close |= header(ui);
-                ScrollArea::vertical().max_height(window.height() - 130.0).auto_shrink([false, true]).show(ui, |ui| {
-                    first_steps(ui);
-                    ui.add_space(12.0);
-                    keys(ui, &model.keys, columns);
-                });
+                ScrollArea::vertical().max_height(window.height() - 130.0).auto_shrink([false, true]).show(
+                    ui,
+                    |ui| {
+                        first_steps(ui);
+                        ui.add_space(12.0);
+                        keys(ui, &model.keys, columns);
+                    },
+                );
             });
         });
     if close || ui.input(|input| input.key_pressed(egui::Key::Escape)) {
@@ -51,7 +58,8 @@ pub fn show(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
 
 /// Darkens the window; true if it was clicked.
 fn veil(ui: &Ui, window: Rect) -> bool {
-    let area = Area::new(Id::unique("help veil")).order(Order::Foreground).fixed_pos(window.min).interactable(true);
+    let area =
+        Area::new(Id::unique("help veil")).order(Order::Foreground).fixed_pos(window.min).interactable(true);
     area.show(ui.ctx(), |ui| {
         ui.painter().rect_filled(window, CornerRadius::ZERO, Color32::from_black_alpha(120));
         ui.allocate_rect(window, Sense::click()).clicked()
@@ -76,12 +84,11 @@ fn first_steps(ui: &mut Ui) {
     ui.add_space(6.0);
     for (at, (word, text)) in FIRST_STEPS.into_iter().enumerate() {
         ui.horizontal_top(|ui| {
-            let (rect, _) = ui.allocate_exact_size(vec2(24.0, 24.0), Sense::hover());
+            let (rect, _) = ui.allocate_exact_size(vec2(24.0, 26.0), Sense::hover());
             ui.painter().circle_filled(rect.center(), 11.0, palette.accent);
             let font = egui::FontId::proportional(13.0);
             ui.painter().text(rect.center(), Align2::CENTER_CENTER, at + 1, font, palette.on_accent);
             ui.vertical(|ui| {
-                ui.add_space(3.0);
                 ui.horizontal_wrapped(|ui| {
                     ui.label(RichText::new(word).strong());
                     ui.label(text);
@@ -97,8 +104,9 @@ fn keys(ui: &mut Ui, groups: &[KeyGroup], columns: usize) {
     let mut column_of = Vec::with_capacity(groups.len());
     let mut before = 0;
     for group in groups {
-        column_of.push((before * columns / all.max(1)).min(columns - 1));
-        before += group.keys.len() + 2;
+        let length = group.keys.len() + 2;
+        column_of.push(((2 * before + length) * columns / (2 * all.max(1))).min(columns - 1));
+        before += length;
     }
     ui.columns(columns, |uis| {
         for (group, column) in groups.iter().zip(column_of) {
@@ -113,6 +121,7 @@ fn key_group(ui: &mut Ui, group: &KeyGroup) {
     ui.label(RichText::new(&group.title).size(15.0).color(palette.accent));
     ui.add_space(2.0);
     ui.spacing_mut().item_spacing.y = 3.0;
+    ui.spacing_mut().interact_size.y = 21.0;
     for (keys, meaning) in &group.keys {
         ui.horizontal(|ui| {
             let caps = ui.allocate_ui(vec2(132.0, 22.0), |ui| {

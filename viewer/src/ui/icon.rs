@@ -85,9 +85,8 @@ impl Icon {
         let side = rect.width().min(rect.height());
         let square = Rect::from_center_size(rect.center(), egui::Vec2::splat(side));
         let stroke = Stroke::new((side * 0.095).max(1.2), color);
-        let at = |&(x, y): &(f32, f32)| -> Pos2 {
-            pos2(lerp(square.x_range(), x), lerp(square.y_range(), y))
-        };
+        let at =
+            |&(x, y): &(f32, f32)| -> Pos2 { pos2(lerp(square.x_range(), x), lerp(square.y_range(), y)) };
         for part in self.parts() {
             painter.add(match part {
                 Fill(points) => {
@@ -98,7 +97,9 @@ impl Icon {
                 Bold(center, radius) => {
                     Shape::circle_stroke(at(center), radius * side, Stroke::new(0.17 * side, color))
                 }
-                Arc(center, radius, from, to) => Shape::line(arc(at(center), radius * side, *from, *to), stroke),
+                Arc(center, radius, from, to) => {
+                    Shape::line(arc(at(center), radius * side, *from, *to), stroke)
+                }
             });
         }
     }
@@ -184,8 +185,15 @@ impl Icon {
             ],
             Self::Camera => &[
                 Line(&[
-                    (0.06, 0.28), (0.3, 0.28), (0.38, 0.14), (0.62, 0.14), (0.7, 0.28), (0.94, 0.28),
-                    (0.94, 0.84), (0.06, 0.84), (0.06, 0.23),
+                    (0.06, 0.28),
+                    (0.3, 0.28),
+                    (0.38, 0.14),
+                    (0.62, 0.14),
+                    (0.7, 0.28),
+                    (0.94, 0.28),
+                    (0.94, 0.84),
+                    (0.06, 0.84),
+                    (0.06, 0.23),
                 ]),
                 Arc((0.5, 0.55), 0.16, 0.0, 360.0),
             ],
@@ -196,10 +204,9 @@ impl Icon {
                 Line(&[(0.12, 0.88), (0.42, 0.58)]),
             ],
             Self::Close => &[Line(&[(0.2, 0.2), (0.8, 0.8)]), Line(&[(0.8, 0.2), (0.2, 0.8)])],
-            Self::Reset => &[
-                Arc((0.5, 0.54), 0.34, -40.0, 240.0),
-                Line(&[(0.28, 0.02), (0.33, 0.25), (0.1, 0.31)]),
-            ],
+            Self::Reset => {
+                &[Arc((0.5, 0.54), 0.34, -40.0, 240.0), Line(&[(0.28, 0.02), (0.33, 0.25), (0.1, 0.31)])]
+            }
             Self::Search => &[Arc((0.42, 0.42), 0.3, 0.0, 360.0), Line(&[(0.64, 0.64), (0.92, 0.92)])],
             Self::Warning => &[
                 Line(&[(0.5, 0.1), (0.95, 0.88), (0.05, 0.88), (0.5, 0.1), (0.55, 0.19)]),

@@ -39,8 +39,7 @@ pub struct State {
 
 impl Default for State {
     fn default() -> Self {
-        let margin = egui::vec2(14.0, top_bar::HEIGHT + 12.0);
-        let toasts = Toasts::default().with_anchor(Anchor::TopLeft).with_margin(margin);
+        let toasts = Toasts::default().with_anchor(Anchor::BottomLeft).with_margin(egui::vec2(14.0, 14.0));
         Self { views: views::State::default(), genome: genome::State::default(), toasts }
     }
 }

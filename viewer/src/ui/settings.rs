@@ -1,7 +1,9 @@
 //! The settings: what is drawn and how, and how the program feels in the hand. Each change is one event with the whole
 //! new value.
 
-use egui::{Align2, Area, CornerRadius, Frame, Id, Margin, Order, Rect, RichText, ScrollArea, Slider, Ui, vec2};
+use egui::{
+    Align2, Area, CornerRadius, Frame, Id, Margin, Order, Rect, RichText, ScrollArea, Slider, Ui, vec2,
+};
 
 use super::icon::Icon;
 use super::model::Model;
@@ -33,11 +35,14 @@ pub fn show(ui: &mut Ui, model: &Model, area: Rect, events: &mut Vec<Event>) {
             frame.show(ui, |ui| {
                 ui.set_width(width - 22.0);
                 header(ui, events);
-                ScrollArea::vertical().max_height(area.height() - 100.0).auto_shrink([false, true]).show(ui, |ui| {
-                    ui.set_width(ui.available_width() - 10.0);
-                    options(ui, &model.options, events);
-                    comfort(ui, &model.comfort, events);
-                });
+                ScrollArea::vertical().max_height(area.height() - 100.0).auto_shrink([false, true]).show(
+                    ui,
+                    |ui| {
+                        ui.set_width(ui.available_width() - 10.0);
+                        options(ui, &model.options, events);
+                        comfort(ui, &model.comfort, events);
+                    },
+                );
             });
         });
 }
@@ -84,7 +89,12 @@ fn options(ui: &mut Ui, current: &Options, events: &mut Vec<Event>) {
     number(ui, &mut options.terrain_error_px, 0.1..=16.0, "Error allowed on terrain", " px", true);
     switch(ui, &mut options.tint_levels, "Colour by level", "Colours say the level of detail");
     switch(ui, &mut options.wireframe, "Wireframe", "Edges of triangles only");
-    switch(ui, &mut options.overhead, "From above", "The land from above, with the detail chosen for your place");
+    switch(
+        ui,
+        &mut options.overhead,
+        "From above",
+        "The land from above, with the detail chosen for your place",
+    );
     section(ui, "PICTURE");
     switch(ui, &mut options.draw_trees, "Trees", "");
     switch(ui, &mut options.draw_terrain, "Terrain", "");
@@ -112,7 +122,8 @@ fn comfort(ui: &mut Ui, current: &Comfort, events: &mut Vec<Event>) {
         comfort.theme = theme;
     }
     ui.label("Scale of the interface");
-    let scales = [(0.8, "80 %", ""), (1.0, "100 %", ""), (1.25, "125 %", ""), (1.5, "150 %", ""), (2.0, "200 %", "")];
+    let scales =
+        [(0.8, "80 %", ""), (1.0, "100 %", ""), (1.25, "125 %", ""), (1.5, "150 %", ""), (2.0, "200 %", "")];
     if let Some(scale) = segmented(ui, "Scale", &scales, comfort.ui_scale) {
         comfort.ui_scale = scale;
     }

@@ -1,7 +1,10 @@
 //! Frame times and counts, beside the pictures or, in a small window, over them: a graph of the last frames, where the GPU's time goes pass by
 //! pass and view by view, what was drawn, and how many trees stand at each level of detail.
 
-use egui::{Align, Align2, Color32, CornerRadius, FontId, Frame, Layout, Margin, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+use egui::{
+    Align, Align2, Color32, CornerRadius, FontId, Frame, Layout, Margin, Rect, Sense, Shape, Stroke, Ui,
+    pos2, vec2,
+};
 
 use super::model::Stats;
 use super::theme;
@@ -32,14 +35,16 @@ pub fn show_docked(ui: &mut Ui, stats: &Stats) -> bool {
         return false;
     }
     let frame = Frame::NONE.fill(theme::DARK.panel).inner_margin(Margin::same(12));
-    egui::Panel::left("stats").exact_size(WIDTH).resizable(false).frame(frame).show_separator_line(false).show(
-        ui,
-        |ui| {
+    egui::Panel::left("stats")
+        .exact_size(WIDTH)
+        .resizable(false)
+        .frame(frame)
+        .show_separator_line(false)
+        .show(ui, |ui| {
             ui.set_style(ui.ctx().style_of(egui::Theme::Dark));
             let room = ui.available_height();
             body(ui, stats, room);
-        },
-    );
+        });
     true
 }
 
@@ -102,7 +107,9 @@ fn frames(ui: &mut Ui, stats: &Stats) {
         ui.label(egui::RichText::new(format!("{fps:.0}")).size(24.0));
         ui.label(egui::RichText::new("fps").color(theme::DARK.weak));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.label(egui::RichText::new(format!("median {median:.1} · p99 {p99:.1} ms")).color(theme::DARK.weak));
+            ui.label(
+                egui::RichText::new(format!("median {median:.1} · p99 {p99:.1} ms")).color(theme::DARK.weak),
+            );
         });
     });
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 54.0), Sense::hover());
@@ -119,7 +126,8 @@ fn graph(ui: &Ui, rect: Rect, frames_ms: &[f32], p99: f32) {
     let step = rect.width() / shown.len().max(60) as f32;
     for (at, &ms) in shown.iter().rev().enumerate() {
         let right = rect.right() - at as f32 * step;
-        let bar = Rect::from_min_max(pos2(right - step, rect.bottom() - height(ms)), pos2(right, rect.bottom()));
+        let bar =
+            Rect::from_min_max(pos2(right - step, rect.bottom() - height(ms)), pos2(right, rect.bottom()));
         let color = if ms > 2.0 * SMOOTH_MS {
             theme::DARK.danger
         } else if ms > 1.05 * SMOOTH_MS {
@@ -156,7 +164,11 @@ fn gpu(ui: &mut Ui, stats: &Stats) {
             let width = room * (ms / total.max(1e-6)).clamp(0.0, 1.0);
             let bar = Rect::from_min_size(pos2(x, rect.top() + 4.0), vec2(width, 9.0));
             let shade = 1.0 - 0.17 * view as f32;
-            painter.rect_filled(bar, CornerRadius::ZERO, theme::bright(genescape_schema::Category::Sky).gamma_multiply(shade));
+            painter.rect_filled(
+                bar,
+                CornerRadius::ZERO,
+                theme::bright(genescape_schema::Category::Sky).gamma_multiply(shade),
+            );
             x += width;
         }
         painter.text(rect.left_center(), Align2::LEFT_CENTER, &pass.name, font.clone(), theme::DARK.text);
@@ -179,7 +191,10 @@ fn levels(ui: &mut Ui, trees_per_level: &[u32]) {
     for (level, &trees) in trees_per_level.iter().enumerate() {
         let height = (rect.height() - 14.0) * trees as f32 / most;
         let left = rect.left() + level as f32 * step;
-        let bar = Rect::from_min_max(pos2(left + 1.0, rect.bottom() - height), pos2(left + step - 1.0, rect.bottom()));
+        let bar = Rect::from_min_max(
+            pos2(left + 1.0, rect.bottom() - height),
+            pos2(left + step - 1.0, rect.bottom()),
+        );
         ui.painter().rect_filled(bar, CornerRadius::same(2), theme::bright(genescape_schema::Category::Tree));
         let place = pos2(bar.center().x, bar.top() - 1.0);
         let font = FontId::proportional(10.0);

@@ -5,7 +5,9 @@
 use std::collections::BTreeMap;
 
 use egui::style::{HandleShape, ScrollStyle, Selection, WidgetVisuals, Widgets};
-use egui::{Color32, Context, CornerRadius, FontFamily, FontId, Margin, Shadow, Stroke, Style, TextStyle, Visuals};
+use egui::{
+    Color32, Context, CornerRadius, FontFamily, FontId, Margin, Shadow, Stroke, Style, TextStyle, Visuals,
+};
 use egui::{epaint, vec2};
 use genescape_schema::Category;
 
@@ -250,8 +252,7 @@ mod tests {
     #[test]
     fn text_is_readable_on_every_ground_of_both_themes() {
         for palette in [DARK, LIGHT] {
-            let grounds =
-                [palette.panel, palette.raised, palette.sunken, palette.button, palette.hovered];
+            let grounds = [palette.panel, palette.raised, palette.sunken, palette.button, palette.hovered];
             for ground in grounds {
                 assert!(contrast(palette.text, ground) > 7.0, "text on {ground:?}");
             }

@@ -11,7 +11,7 @@ use super::widgets::{ICON_BUTTON, icon_button, name_button, primary_button, prog
 use crate::event::{Arrangement, Event, Panel};
 
 /// Height of the bar, in points.
-pub const HEIGHT: f32 = 40.0;
+const HEIGHT: f32 = 40.0;
 /// A window narrower than this gets no words in the bar, in points.
 const WORDS_FROM: f32 = 940.0;
 
@@ -99,7 +99,8 @@ fn generations(ui: &mut Ui, model: &Model, words: bool, events: &mut Vec<Event>)
         let bar = Rect::from_center_size(rect.center(), vec2(90.0, 5.0));
         let palette = Palette::of(ui.visuals());
         progress_bar(ui.painter(), bar, part, palette.accent, palette.button);
-        let text = format!("Growing generation {}: {} of {} stages", baking.generation, baking.done, baking.total);
+        let text =
+            format!("Growing generation {}: {} of {} stages", baking.generation, baking.done, baking.total);
         response.on_hover_text(text);
         ui.small(format!("g{} {}%", baking.generation, (part * 100.0) as u32));
     }

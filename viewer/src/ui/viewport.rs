@@ -25,7 +25,8 @@ pub fn show(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool, e
     }
     if lively && model.arrangement == Arrangement::Grid {
         let right = pos2(rect.right() - 10.0 - BUTTON, rect.top() + 10.0);
-        let button = |at: f32| Rect::from_min_size(right - vec2(at * (BUTTON + 4.0), 0.0), vec2(BUTTON, BUTTON));
+        let button =
+            |at: f32| Rect::from_min_size(right - vec2(at * (BUTTON + 4.0), 0.0), vec2(BUTTON, BUTTON));
         if tool(ui, view, button(0.0), Icon::Maximise, "Show this one alone") {
             events.push(Event::Arrange(Arrangement::One(view)));
         }
@@ -121,7 +122,8 @@ fn baking(ui: &Ui, rect: Rect, done: usize, total: usize, stage: &str) {
 fn failed(ui: &mut Ui, view: usize, rect: Rect, what: &str, remedy: &str, events: &mut Vec<Event>) {
     let width = (rect.width() - 40.0).clamp(80.0, 420.0);
     let mut job = LayoutJob::default();
-    let format = |size, color| TextFormat { font_id: FontId::proportional(size), color, ..Default::default() };
+    let format =
+        |size, color| TextFormat { font_id: FontId::proportional(size), color, ..Default::default() };
     job.append(what, 0.0, format(14.0, theme::ON_SCRIM));
     job.append("\n\n", 0.0, format(5.0, theme::ON_SCRIM));
     job.append(remedy, 0.0, format(13.0, theme::ON_SCRIM_WEAK));

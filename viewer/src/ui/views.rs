@@ -1,7 +1,9 @@
 //! The four pictures: two by two, one alone, or two over each other with a splitter; on each its name, its state and
 //! its vote buttons. Says which rectangles the renderer has to fill and where the pointer is.
 
-use egui::{Color32, CornerRadius, CursorIcon, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};
+use egui::{
+    Color32, CornerRadius, CursorIcon, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2, pos2, vec2,
+};
 
 use super::arrange::{Slot, slots};
 use super::model::{Model, ViewState};
@@ -58,26 +60,29 @@ pub fn show(ui: &mut Ui, model: &Model, state: &mut State, events: &mut Vec<Even
             }
         }
     }
-    votes::hub(ui, model, hub_center(model, area, &slots), hub_room(model, area), events);
+    votes::hub(ui, model, hub_anchor(model, area, &slots), beside_hub(model, &slots, area), events);
     views.slots = slots;
     views
 }
 
-fn hub_center(model: &Model, area: Rect, slots: &[Slot]) -> egui::Pos2 {
+/// The middle of the hub's lower edge.
+fn hub_anchor(model: &Model, area: Rect, slots: &[Slot]) -> egui::Pos2 {
     match (model.arrangement, slots) {
+        // Just below the crossing, where the name of the lower right picture begins.
         (Arrangement::Grid, [first, .., last]) => {
-            let between = first.rect.max + 0.5 * (last.rect.min - first.rect.max);
-            // A little above the crossing: the name of the lower right picture begins just below it.
-            pos2(between.x, between.y - 15.0)
+            pos2(0.5 * (first.rect.right() + last.rect.left()), last.rect.top() + 2.0)
         }
-        _ => pos2(area.center().x, area.top() + 30.0),
+        // Between the vote buttons of the two halves.
+        (Arrangement::Compare { .. }, _) => pos2(area.center().x, area.bottom() - 9.0),
+        _ => pos2(area.center().x, area.top() + 50.0),
     }
 }
 
-/// Width that the hub may take without covering vote buttons.
-fn hub_room(model: &Model, area: Rect) -> f32 {
-    match model.arrangement {
-        Arrangement::Grid => area.width() * 0.5,
+/// Width of the pictures whose vote buttons are beside the hub.
+fn beside_hub(model: &Model, slots: &[Slot], area: Rect) -> f32 {
+    match (model.arrangement, slots) {
+        (Arrangement::Compare { .. }, _) => 0.5 * area.width(),
+        (_, [first, ..]) => first.rect.width(),
         _ => area.width(),
     }
 }
@@ -171,9 +176,8 @@ fn compare(
     right_part.set_left(split_x);
     let mut lively = [false; 2];
     for (side, (slot, part)) in [(left, left_part), (right, right_part)].into_iter().enumerate() {
-        let response = ui
-            .push_id(("side", side), |ui| picture(ui, model, slot.view, rect, part, views, events))
-            .inner;
+        let response =
+            ui.push_id(("side", side), |ui| picture(ui, model, slot.view, rect, part, views, events)).inner;
         lively[side] = !model.captured && response.contains_pointer();
     }
     // Names and votes keep to their half however far the splitter is moved.
@@ -207,7 +211,11 @@ fn splitter(ui: &mut Ui, rect: Rect, split_x: f32, state: &mut State) {
     ui.painter().rect_filled(knob, CornerRadius::same(11), Color32::WHITE);
     for offset in [-3.0, 3.0] {
         let x = split_x + offset;
-        ui.painter().vline(x, knob.center().y - 6.0..=knob.center().y + 6.0, Stroke::new(1.5, Color32::from_gray(90)));
+        ui.painter().vline(
+            x,
+            knob.center().y - 6.0..=knob.center().y + 6.0,
+            Stroke::new(1.5, Color32::from_gray(90)),
+        );
     }
     response.on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
 }

@@ -1,7 +1,10 @@
 //! Voting: three buttons on each picture, and the hub between the pictures, which shows how far the vote is and leads
 //! to the next generation. Colour says which category; a filled button is a vote that was won here.
 
-use egui::{Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui, pos2, vec2};
+use egui::{
+    Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui, pos2,
+    vec2,
+};
 use genescape_schema::Category;
 
 use super::icon::Icon;
@@ -13,9 +16,11 @@ use crate::event::{Ballot, Event};
 /// Height of a vote button, in points.
 const PILL: f32 = 28.0;
 /// A picture narrower than this shows pictograms without words, in points.
-const WORDS_FROM: f32 = 330.0;
+const WORDS_FROM: f32 = 400.0;
 /// Side of a ballot in the hub, in points.
 const CHIP: f32 = 26.0;
+/// The hub's shorter side, in points.
+const HUB: f32 = 38.0;
 
 /// Which way a vote button looks.
 #[derive(Clone, Copy, PartialEq)]
@@ -90,11 +95,20 @@ fn pill(
     });
 }
 
-fn paint_pill(painter: &Painter, rect: Rect, category: Category, standing: Standing, hovered: bool, words: bool) {
+fn paint_pill(
+    painter: &Painter,
+    rect: Rect,
+    category: Category,
+    standing: Standing,
+    hovered: bool,
+    words: bool,
+) {
     let bright = theme::bright(category);
     let (fill, picture, word) = match (standing, hovered) {
         (Standing::Won, false) => (bright, theme::ON_BRIGHT, theme::ON_BRIGHT),
-        (Standing::Won, true) => (bright.lerp_to_gamma(Color32::WHITE, 0.25), theme::ON_BRIGHT, theme::ON_BRIGHT),
+        (Standing::Won, true) => {
+            (bright.lerp_to_gamma(Color32::WHITE, 0.25), theme::ON_BRIGHT, theme::ON_BRIGHT)
+        }
         (_, true) => (theme::SCRIM_HOVERED, bright, theme::ON_SCRIM),
         (Standing::Open, false) => (theme::SCRIM, bright, theme::ON_SCRIM),
         (Standing::Lost, false) => {
@@ -122,34 +136,62 @@ pub fn hindrance(model: &Model) -> Option<String> {
     (!names.is_empty()).then(|| format!("Still to vote on: {}", names.join(", ")))
 }
 
-/// The hub between the pictures: three ballots, and the way on. `room` is the width that it may take.
-pub fn hub(ui: &mut Ui, model: &Model, center: Pos2, room: f32, events: &mut Vec<Event>) {
+/// How the hub fits between the vote buttons of the pictures beside it.
+#[derive(Clone, Copy, PartialEq)]
+enum Form {
+    /// In a row, with words.
+    Words,
+    /// In a row.
+    Row,
+    /// In a column, where pictures are narrow.
+    Column,
+}
+
+impl Form {
+    /// The widest that leaves the vote buttons of pictures of that width free.
+    fn of(picture_width: f32) -> Self {
+        match picture_width {
+            520.0.. => Self::Words,
+            300.0.. => Self::Row,
+            _ => Self::Column,
+        }
+    }
+
+    /// Length of what leads on, after the ballots.
+    fn way_on(self, model: &Model, ready: bool) -> f32 {
+        match (self, ready, &model.baking) {
+            (Self::Words, true, _) => 164.0,
+            (_, true, _) => 38.0,
+            (_, false, Some(_)) => 34.0,
+            (_, false, None) => 0.0,
+        }
+    }
+}
+
+/// The hub between the pictures: three ballots, and the way on. `anchor` is the middle of its lower edge.
+pub fn hub(ui: &mut Ui, model: &Model, anchor: Pos2, picture_width: f32, events: &mut Vec<Event>) {
     let hindrance = hindrance(model);
-    let ready = hindrance.is_none();
-    let words = room >= 420.0;
-    let way_on = match (ready, words) {
-        (true, true) => 158.0,
-        (true, false) => 34.0,
-        (false, _) if model.baking.is_some() => 30.0,
-        (false, _) => 0.0,
+    let form = Form::of(picture_width);
+    let length = 3.0 * CHIP + 20.0 + form.way_on(model, hindrance.is_none());
+    let (size, step) = match form {
+        Form::Column => (vec2(HUB, length), vec2(0.0, CHIP + 4.0)),
+        _ => (vec2(length, HUB), vec2(CHIP + 4.0, 0.0)),
     };
-    let chips = 3.0 * CHIP + 8.0;
-    let width = chips + 12.0 + if way_on > 0.0 { way_on + 6.0 } else { 0.0 };
-    let rect = Rect::from_center_size(center, vec2(width, 38.0));
+    let rect = Rect::from_min_size(anchor - vec2(0.5 * size.x, size.y), size);
     // The hub takes clicks itself, so that none falls through to a picture.
     ui.interact(rect, ui.scope_id().with("hub"), Sense::click());
     ui.painter().add(theme::card_shadow().as_shape(rect, CornerRadius::same(19)));
     let line = Stroke::new(1.0, Color32::from_white_alpha(40));
     let fill = Color32::from_rgba_unmultiplied(20, 23, 22, 244);
     ui.painter().rect(rect, CornerRadius::same(19), fill, line, StrokeKind::Inside);
+    let first = Rect::from_min_size(rect.min + vec2(6.0, 6.0), vec2(CHIP, CHIP));
     for (at, category) in Category::ALL.into_iter().enumerate() {
-        let left = rect.left() + 6.0 + at as f32 * (CHIP + 4.0);
-        let chip_rect = Rect::from_min_size(pos2(left, center.y - 0.5 * CHIP), vec2(CHIP, CHIP));
-        chip(ui, model, category, chip_rect, events);
+        chip(ui, model, category, first.translate(step * at as f32), events);
     }
-    let rest = Rect::from_min_max(pos2(rect.left() + 12.0 + chips, rect.top() + 5.0), rect.max - vec2(6.0, 5.0));
+    let rest =
+        Rect::from_min_max(first.min + 3.0 * step + step.normalized() * 2.0, rect.max - vec2(6.0, 6.0));
     match (&model.baking, hindrance) {
-        (_, None) => next_button(ui, rest, words, events),
+        (_, None) => next_button(ui, rest, form == Form::Words, events),
         (Some(baking), Some(text)) => {
             let part = baking.done as f32 / baking.total.max(1) as f32;
             let rest_color = Color32::from_white_alpha(45);

@@ -2,8 +2,8 @@
 //! Each has a name for those who use a screen reader (and for the tests).
 
 use egui::{
-    Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, StrokeKind,
-    TextStyle, Ui, WidgetInfo, Role, vec2,
+    Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Response, Role, Sense, Shape, Stroke,
+    StrokeKind, TextStyle, Ui, WidgetInfo, vec2,
 };
 
 use super::icon::{Icon, arc};

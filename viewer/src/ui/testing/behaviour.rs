@@ -1,1 +1,357 @@
-//! x
+//! What is pressed, dragged and typed gives exactly its event, and nothing else.
+
+use egui::accesskit::Role;
+use egui::{Key, pos2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use genescape_schema::Category;
+
+use super::*;
+use crate::event::{Ballot, Panel, Phase, Theme};
+use crate::ui::theme::title;
+
+const WINDOW: [f32; 2] = [1280.0, 800.0];
+
+fn taken(harness: &mut Harness<'static, Bench>) -> Vec<Event> {
+    std::mem::take(&mut harness.state_mut().events)
+}
+
+/// Presses what has that name; what was asked by it.
+fn press(harness: &mut Harness<'static, Bench>, label: &str) -> Vec<Event> {
+    harness.state_mut().events.clear();
+    harness.get_by_label(label).click();
+    harness.run();
+    taken(harness)
+}
+
+fn all_voted() -> Model {
+    let mut model = model();
+    for category in Category::ALL {
+        model.ballots.set(category, Ballot::For(category as usize));
+    }
+    model
+}
+
+fn with_genome(change: impl FnOnce(&mut Genes)) -> Model {
+    let mut model = model();
+    model.panels.genome = true;
+    change(model.genes.as_mut().expect("the model has genes"));
+    model
+}
+
+#[test]
+fn each_vote_button_gives_its_vote_and_takes_it_back_where_it_won() {
+    let mut harness = bench(model(), WINDOW, 1.0);
+    for category in Category::ALL {
+        for view in 0..4 {
+            let label = format!("{}: best in {}", title(category), view + 1);
+            let vote = |ballot| vec![Event::Vote { category, ballot }];
+            assert_eq!(press(&mut harness, &label), vote(Ballot::For(view)));
+            harness.state_mut().model.ballots.set(category, Ballot::For(view));
+            harness.run();
+            assert_eq!(press(&mut harness, &label), vote(Ballot::Open));
+        }
+        let none = format!("{}: none of the four", title(category));
+        assert_eq!(press(&mut harness, &none), [Event::Vote { category, ballot: Ballot::Nobody }]);
+        harness.state_mut().model.ballots.set(category, Ballot::Nobody);
+        harness.run();
+        assert_eq!(press(&mut harness, &none), [Event::Vote { category, ballot: Ballot::Open }]);
+    }
+}
+
+#[test]
+fn the_next_generation_is_offered_exactly_when_all_is_voted_and_nothing_is_baked() {
+    let mut harness = bench(model(), WINDOW, 1.0);
+    assert!(press(&mut harness, "Next generation").is_empty(), "not voted yet");
+    assert!(harness.query_by_label("Next generation (hub)").is_none());
+    harness.state_mut().model = all_voted();
+    harness.run();
+    assert_eq!(press(&mut harness, "Next generation"), [Event::NextGeneration]);
+    assert_eq!(press(&mut harness, "Next generation (hub)"), [Event::NextGeneration]);
+    harness.state_mut().model.baking = baking();
+    harness.run();
+    assert!(press(&mut harness, "Next generation").is_empty(), "still baking");
+    assert!(harness.query_by_label("Next generation (hub)").is_none());
+}
+
+#[test]
+fn the_bar_leads_back_in_time_and_undoes() {
+    let mut harness = bench(model(), WINDOW, 1.0);
+    assert_eq!(press(&mut harness, "Generation 1"), [Event::GoToGeneration(1)]);
+    assert!(press(&mut harness, "Generation 3").is_empty(), "it is shown already");
+    assert_eq!(press(&mut harness, "Undo: vote on trees"), [Event::Undo]);
+    harness.state_mut().model.undo = None;
+    harness.run();
+    assert!(press(&mut harness, "Nothing to undo").is_empty());
+    let panels = [
+        ("Genes", Panel::Genome),
+        ("Frame times", Panel::Stats),
+        ("Settings", Panel::Settings),
+        ("Help and keys", Panel::Help),
+    ];
+    for (label, panel) in panels {
+        assert_eq!(press(&mut harness, label), [Event::Panel { panel, open: true }]);
+    }
+    assert_eq!(press(&mut harness, "Save a screenshot"), [Event::Screenshot]);
+}
+
+#[test]
+fn pictures_are_chosen_maximised_and_compared() {
+    let mut harness = bench(model(), WINDOW, 1.0);
+    assert_eq!(press(&mut harness, "Landscape 2: Birches by the lake"), [Event::Choose(1)]);
+    harness.hover_at(pos2(900.0, 200.0));
+    harness.run();
+    let output = &harness.state().output;
+    assert_eq!((output.views.pointed, output.views.free), (Some(1), true));
+    assert_eq!(press(&mut harness, "Show this one alone: 2"), [Event::Arrange(Arrangement::One(1))]);
+    let compare = Arrangement::Compare { left: 1, right: 2 };
+    assert_eq!(press(&mut harness, "Compare with another: 2"), [Event::Arrange(compare)]);
+    harness.state_mut().model.arrangement = compare;
+    harness.run();
+    assert_eq!(
+        press(&mut harness, "Show 4 on the left"),
+        [Event::Arrange(Arrangement::Compare { left: 3, right: 2 })]
+    );
+    assert_eq!(
+        press(&mut harness, "Show 1 on the right"),
+        [Event::Arrange(Arrangement::Compare { left: 1, right: 0 })]
+    );
+    assert_eq!(press(&mut harness, "All four"), [Event::Arrange(Arrangement::Grid)]);
+}
+
+#[test]
+fn the_splitter_follows_the_pointer_and_stays_inside() {
+    let mut model = model();
+    model.arrangement = Arrangement::Compare { left: 0, right: 2 };
+    let mut harness = bench(model, WINDOW, 1.0);
+    let mut drag = |to: f32| {
+        let from = harness.get_by_label("Splitter").rect().center();
+        harness.drag_at(from);
+        harness.run();
+        harness.hover_at(pos2(to, from.y));
+        harness.run();
+        harness.drop_at(pos2(to, from.y));
+        harness.run();
+        (harness.state().state.views.split, harness.get_by_label("Splitter").rect().center().x)
+    };
+    let (split, x) = drag(320.0);
+    assert!((x - 320.0).abs() < 1.0 && (split - 0.2475).abs() < 0.01, "{x} {split}");
+    let (split, x) = drag(-500.0);
+    assert!(split > 0.0 && x > 4.0);
+    assert!(drag(5000.0).0 < 1.0);
+    let slots = &harness.state().output.views.slots;
+    assert_eq!(slots.iter().map(|slot| slot.view).collect::<Vec<_>>(), [0, 2]);
+    assert_eq!(slots[0].rect, slots[1].rect, "both pictures cover the whole area");
+    assert!(taken(&mut harness).is_empty());
+}
+
+#[test]
+fn a_drag_on_a_picture_turns_the_camera_and_chooses_nothing() {
+    let mut harness = bench(model(), WINDOW, 1.0);
+    harness.drag_at(pos2(300.0, 200.0));
+    harness.run();
+    harness.hover_at(pos2(340.0, 220.0));
+    harness.step();
+    assert_eq!(harness.state().output.views.dragged, vec2(40.0, 20.0));
+    harness.drop_at(pos2(340.0, 220.0));
+    harness.run();
+    assert!(taken(&mut harness).is_empty());
+}
+
+fn slider<'h>(harness: &'h Harness<'static, Bench>, name: &'h str) -> egui_kittest::Node<'h> {
+    harness.get_by_role_and_label(Role::Slider, name)
+}
+
+#[test]
+fn a_dragged_gene_is_shown_while_it_moves_and_written_when_it_is_let_go() {
+    for name in ["height_m", "radius_ratio", "primary_branches"] {
+        let mut harness = bench(with_genome(|_| {}), [1280.0, 1600.0], 1.0);
+        let rect = slider(&harness, name).rect();
+        harness.drag_at(rect.left_center() + vec2(20.0, 0.0));
+        harness.run();
+        harness.hover_at(rect.left_center() + vec2(150.0, 0.0));
+        harness.run();
+        let moving = taken(&mut harness);
+        assert!(!moving.is_empty());
+        for event in &moving {
+            assert!(matches!(event, Event::Gene { individual: 0, phase: Phase::Dragging, .. }), "{event:?}");
+        }
+        harness.drop_at(rect.left_center() + vec2(150.0, 0.0));
+        harness.run();
+        let [Event::Gene { individual: 0, name: written, value, phase: Phase::Committed }] =
+            &taken(&mut harness)[..]
+        else {
+            panic!("one final value");
+        };
+        assert_eq!(written, name);
+        let space = Space::builtin();
+        let parameter = space.find(name).expect("the space has the gene");
+        assert_eq!(*value, parameter.value(parameter.snap(*value)), "the value is snapped");
+        let part = f64::from(parameter.snap(*value)) / f64::from(parameter.last_code());
+        let at = f64::from((150.0 - rect.height() / 2.5) / (rect.width() - 2.0 * rect.height() / 2.5));
+        assert!((part - at).abs() <= 0.6 / f64::from(parameter.last_code()), "{part} at {at}");
+    }
+}
+
+#[test]
+fn an_arrow_key_changes_a_gene_by_one_code_for_good() {
+    let mut harness = bench(with_genome(|_| {}), [1280.0, 1600.0], 1.0);
+    let genes = harness.state().model.genes.clone().expect("the model has genes");
+    let parameter = genes.space.find("crown_shape").expect("the space has the gene");
+    slider(&harness, "crown_shape").focus();
+    harness.run();
+    harness.key_press(Key::ArrowRight);
+    harness.run();
+    let value = parameter.value(genes.now[0].code(parameter) + 1);
+    let name = parameter.name.clone();
+    assert_eq!(taken(&mut harness), [Event::Gene { individual: 0, name, value, phase: Phase::Committed }]);
+}
+
+#[test]
+fn a_typed_value_is_snapped_and_nonsense_changes_nothing() {
+    let typed = |text: &str| {
+        let mut harness = bench(with_genome(|_| {}), [1280.0, 1600.0], 1.0);
+        harness.get_by_label("Value of height_m").focus();
+        harness.run();
+        harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::A);
+        harness.run();
+        harness.get_by_label("Value of height_m").type_text(text);
+        harness.run();
+        harness.key_press(Key::Enter);
+        harness.run();
+        taken(&mut harness)
+    };
+    let space = Space::builtin();
+    let parameter = space.find("height_m").expect("the space has the gene");
+    let value = parameter.value(parameter.snap(7.4));
+    for text in ["7.4", " 7,4 m"] {
+        let name = "height_m".to_owned();
+        assert_eq!(typed(text), [Event::Gene { individual: 0, name, value, phase: Phase::Committed }]);
+    }
+    for text in ["tall", "-3", "1e9", ""] {
+        assert!(typed(text).is_empty(), "{text:?}");
+    }
+}
+
+#[test]
+fn what_is_locked_does_not_move() {
+    let by_itself = with_genome(|genes| {
+        genes.locked.insert("height_m".to_owned());
+    });
+    let with_its_category = with_genome(|genes| genes.locked_categories[Category::Tree as usize] = true);
+    for model in [by_itself, with_its_category] {
+        let mut harness = bench(model, [1280.0, 1600.0], 1.0);
+        let rect = slider(&harness, "height_m").rect();
+        assert!(slider(&harness, "height_m").accesskit_node().is_disabled());
+        harness.drag_at(rect.left_center() + vec2(20.0, 0.0));
+        harness.run();
+        harness.hover_at(rect.left_center() + vec2(90.0, 0.0));
+        harness.run();
+        harness.drop_at(rect.left_center() + vec2(90.0, 0.0));
+        harness.run();
+        assert!(taken(&mut harness).is_empty());
+    }
+}
+
+#[test]
+fn locks_resets_and_search_work_on_genes() {
+    let mut harness = bench(
+        with_genome(|genes| {
+            let space = genes.space.clone();
+            let parameter = space.find("height_m").expect("the space has the gene");
+            let code = genes.now[0].code(parameter);
+            genes.now[0].set_code(parameter, code ^ 1);
+            genes.locked.insert("levels".to_owned());
+        }),
+        [1280.0, 1600.0],
+        1.0,
+    );
+    let lock = |name: &str, locked| vec![Event::LockGene { name: name.to_owned(), locked }];
+    assert_eq!(press(&mut harness, "Lock height_m"), lock("height_m", true));
+    assert_eq!(press(&mut harness, "Unlock levels"), lock("levels", false));
+    let category = Category::Tree;
+    assert_eq!(press(&mut harness, "Lock all: trees"), [Event::LockCategory { category, locked: true }]);
+    let genes = harness.state().model.genes.clone().expect("the model has genes");
+    let parameter = genes.space.find("height_m").expect("the space has the gene");
+    let bred = parameter.value(genes.bred[0].code(parameter));
+    let values = vec![("height_m".to_owned(), bred)];
+    assert_eq!(
+        press(&mut harness, "Reset trees to how it was bred"),
+        [Event::Genes { individual: 0, values }]
+    );
+    harness.state_mut().state.genome.search = "birch".to_owned();
+    harness.run();
+    assert!(harness.query_by_label("Value of bark_tone").is_some(), "its help tells of birches");
+    assert!(harness.query_by_label("Value of height_m").is_none());
+    assert_eq!(press(&mut harness, "Genes of: 3"), [Event::Choose(2)]);
+}
+
+#[test]
+fn settings_give_the_whole_new_value() {
+    let mut model = model();
+    model.panels.settings = true;
+    let mut harness = bench(model, [1280.0, 1400.0], 1.0);
+    let options = Options { wireframe: true, ..Options::default() };
+    assert_eq!(press(&mut harness, "Wireframe"), [Event::Options(options)]);
+    let options = Options { tree_scheme: crate::frame::TreeScheme::Simple, ..Options::default() };
+    assert_eq!(press(&mut harness, "Tree detail: Simple"), [Event::Options(options)]);
+    let comfort = Comfort { theme: Theme::Dark, ..Comfort::default() };
+    assert_eq!(press(&mut harness, "Theme: Dark"), [Event::Comfort(comfort)]);
+    assert_eq!(press(&mut harness, "Reset all settings"), [Event::ResetSettings]);
+    let closed = Event::Panel { panel: Panel::Settings, open: false };
+    assert_eq!(press(&mut harness, "Close the settings"), [closed]);
+}
+
+#[test]
+fn help_lists_every_binding_that_it_is_given() {
+    let mut model = model();
+    model.panels.help = true;
+    let keys = model.keys.clone();
+    let mut harness = bench(model, [1280.0, 1200.0], 1.0);
+    for group in &keys {
+        assert!(harness.query_by_label(&group.title).is_some(), "{}", group.title);
+        for (keys, meaning) in &group.keys {
+            assert!(harness.query_all_by_label(meaning).next().is_some(), "{meaning}");
+            for key in keys.split_whitespace() {
+                assert!(harness.query_all_by_label(key).next().is_some(), "{key}");
+            }
+        }
+    }
+    harness.key_press(Key::Escape);
+    harness.run();
+    assert_eq!(taken(&mut harness), [Event::Panel { panel: Panel::Help, open: false }]);
+}
+
+#[test]
+fn an_error_is_told_in_full_and_can_be_dismissed() {
+    let mut model = model();
+    let error = file_error();
+    assert!(error.report.lines().count() > 10);
+    model.errors = vec![error.clone()];
+    let mut harness = bench(model, WINDOW, 1.0);
+    assert_eq!(press(&mut harness, "Show"), [Event::Panel { panel: Panel::Genome, open: true }]);
+    harness.state_mut().model.panels.genome = true;
+    harness.run();
+    assert!(harness.query_by_label(&error.report).is_some());
+    assert_eq!(press(&mut harness, &format!("Dismiss: {}", error.title)), [Event::DismissError(0)]);
+}
+
+#[test]
+fn a_view_that_failed_says_what_to_do_and_can_be_tried_again() {
+    let mut model = model();
+    let (what, remedy) = ("The blob ab12 is missing.".to_owned(), "Bake again.".to_owned());
+    model.views[2].state = ViewState::Failed { what, remedy };
+    let mut harness = bench(model, WINDOW, 1.0);
+    assert!(harness.query_by_label("The blob ab12 is missing.\nBake again.").is_some());
+    assert!(harness.query_by_label("Trees: best in 3").is_none(), "what is not shown is not voted for");
+    assert_eq!(press(&mut harness, "Try again: 3"), [Event::Retry]);
+    harness.state_mut().model.situation = Situation::Stuck {
+        title: "No graphics adapter".to_owned(),
+        what: "wgpu found none.".to_owned(),
+        remedy: "Install mesa-vulkan-drivers.".to_owned(),
+    };
+    harness.run();
+    assert!(harness.query_by_label("Install mesa-vulkan-drivers.").is_some());
+    assert!(harness.state().output.views.slots.is_empty());
+    assert_eq!(press(&mut harness, "Try again"), [Event::Retry]);
+}

@@ -11,7 +11,9 @@ use egui::{Color32, ColorImage, TextureHandle, TextureOptions, Vec2};
 use egui_kittest::{Harness, HarnessBuilder};
 use genescape_schema::{Population, Space};
 
-use super::model::{Baking, FileError, Genes, KeyGroup, Model, Panels, PassTime, Situation, StageEntry, Stats};
+use super::model::{
+    Baking, FileError, Genes, KeyGroup, Model, Panels, PassTime, Situation, StageEntry, Stats,
+};
 use super::model::{ViewModel, ViewState};
 use super::{Output, State, theme};
 use crate::event::{Arrangement, Ballots, Comfort, Event};
@@ -87,7 +89,13 @@ pub fn model() -> Model {
         ballots: Ballots::default(),
         arrangement: Arrangement::Grid,
         chosen: 0,
-        genes: Some(Genes { space, bred: now.clone(), now, locked: BTreeSet::new(), locked_categories: [false; 3] }),
+        genes: Some(Genes {
+            space,
+            bred: now.clone(),
+            now,
+            locked: BTreeSet::new(),
+            locked_categories: [false; 3],
+        }),
         bake_log: bake_log(),
         errors: Vec::new(),
         stats: stats(),
@@ -132,10 +140,17 @@ fn bake_log() -> Vec<StageEntry> {
 
 fn stats() -> Stats {
     let frame = |at: u32| 7.5 + f32::from((at * 7 % 5) as u8) * 0.4 + if at % 41 == 0 { 14.0 } else { 0.0 };
-    let pass = |name: &str, ms: f32| PassTime { name: name.to_owned(), ms: [ms, ms * 1.1, ms * 0.8, ms * 1.2] };
+    let pass =
+        |name: &str, ms: f32| PassTime { name: name.to_owned(), ms: [ms, ms * 1.1, ms * 0.8, ms * 1.2] };
     Stats {
         frames_ms: (0..240).map(frame).collect(),
-        gpu: vec![pass("cull", 0.08), pass("terrain", 0.55), pass("trees", 0.92), pass("sky", 0.2), pass("tone", 0.1)],
+        gpu: vec![
+            pass("cull", 0.08),
+            pass("terrain", 0.55),
+            pass("trees", 0.92),
+            pass("sky", 0.2),
+            pass("tone", 0.1),
+        ],
         cpu_record_ms: 0.84,
         triangles: [312_441, 280_112, 401_223, 298_001],
         draws: [8, 8, 9, 8],
@@ -150,10 +165,36 @@ fn keys() -> Vec<KeyGroup> {
         keys: keys.iter().map(|&(key, meaning)| (key.to_owned(), meaning.to_owned())).collect(),
     };
     vec![
-        group("Walking", &[("W A S D", "walk"), ("Shift", "run"), ("F", "walk, fly or orbit"), ("Home", "back to the start")]),
+        group(
+            "Walking",
+            &[
+                ("W A S D", "walk"),
+                ("Shift", "run"),
+                ("F", "walk, fly or orbit"),
+                ("Home", "back to the start"),
+            ],
+        ),
         group("Looking", &[("1 2 3 4", "one landscape alone"), ("0", "all four"), ("C", "compare two")]),
-        group("Voting", &[("T", "trees: this one"), ("G", "terrain: this one"), ("B", "sky: this one"), ("Enter", "next generation"), ("Ctrl Z", "undo")]),
-        group("Program", &[("F1", "help"), ("F2", "genes"), ("F3", "frame times"), ("F12", "screenshot"), ("Ctrl Q", "quit")]),
+        group(
+            "Voting",
+            &[
+                ("T", "trees: this one"),
+                ("G", "terrain: this one"),
+                ("B", "sky: this one"),
+                ("Enter", "next generation"),
+                ("Ctrl Z", "undo"),
+            ],
+        ),
+        group(
+            "Program",
+            &[
+                ("F1", "help"),
+                ("F2", "genes"),
+                ("F3", "frame times"),
+                ("F12", "screenshot"),
+                ("Ctrl Q", "quit"),
+            ],
+        ),
     ]
 }
 
@@ -168,7 +209,9 @@ fn landscape(ctx: &egui::Context, view: usize) -> TextureHandle {
     };
     let hill = |x: f32, layer: f32| {
         let phase = view as f32 * 1.7 + layer * 2.1;
-        0.38 + 0.16 * layer + 0.07 * libm::sinf(x * (5.0 + layer) + phase) + 0.03 * libm::sinf(x * 17.0 + phase)
+        0.38 + 0.16 * layer
+            + 0.07 * libm::sinf(x * (5.0 + layer) + phase)
+            + 0.03 * libm::sinf(x * 17.0 + phase)
     };
     let pixel = |index: usize| {
         let (x, y) = ((index % size[0]) as f32 / size[0] as f32, (index / size[0]) as f32 / size[1] as f32);

@@ -75,7 +75,10 @@ fn paint(gpu: &Gpu, harness: &Harness<'_, Bench>, deltas: &Deltas) -> (Vec<u8>, 
                     view: &view,
                     depth_slice: None,
                     resolve_target: None,
-                    ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                        store: wgpu::StoreOp::Store,
+                    },
                 })],
                 ..Default::default()
             })
@@ -110,7 +113,10 @@ fn save(path: &Path, pixels: &[u8], [width, height]: [u32; 2]) {
     let mut encoder = png::Encoder::new(file, width, height);
     encoder.set_color(png::ColorType::Rgba);
     encoder.set_compression(png::Compression::Fast);
-    encoder.write_header().and_then(|mut writer| writer.write_image_data(pixels)).expect("the file can be written");
+    encoder
+        .write_header()
+        .and_then(|mut writer| writer.write_image_data(pixels))
+        .expect("the file can be written");
 }
 
 type Prepare = fn(&mut Model);
@@ -138,33 +144,115 @@ fn edited(model: &mut Model) {
 
 /// Name, window in points, scale, theme, and how the world differs from the usual one.
 const SCENES: [(&str, [f32; 2], f32, egui::Theme, Prepare, Act); 14] = [
-    ("grid", [1280.0, 800.0], 1.0, egui::Theme::Dark, |_| {}, |harness| harness.hover_at(egui::pos2(300.0, 250.0))),
-    ("grid-light", [1280.0, 800.0], 1.0, egui::Theme::Light, voted, |harness| harness.hover_at(egui::pos2(400.0, 400.0))),
-    ("voted", [1920.0, 1080.0], 1.0, egui::Theme::Dark, voted, nothing),
-    ("small", [800.0, 600.0], 1.0, egui::Theme::Dark, |model| { voted(model); model.panels.genome = true; }, nothing),
-    ("genome", [1280.0, 800.0], 1.0, egui::Theme::Dark, edited, nothing),
-    ("genome-light-2x", [900.0, 700.0], 2.0, egui::Theme::Light, edited, |harness| harness.hover_at(egui::pos2(640.0, 250.0))),
-    ("error", [1280.0, 800.0], 1.0, egui::Theme::Dark, |model| { model.panels.genome = true; model.errors = vec![file_error()]; }, nothing),
-    ("banner", [1280.0, 800.0], 1.0, egui::Theme::Dark, |model| {
-        model.errors = vec![file_error()];
-        model.baking = baking();
-        model.views[1].state = ViewState::Baking { done: 7, total: 19, stage: "terrain: erosion".to_owned() };
-        model.views[2].picture = None;
-        model.views[2].state = ViewState::Baking { done: 0, total: 0, stage: String::new() };
-        model.views[3].state = ViewState::Failed {
-            what: "scene-3/scene.gltf names a blob that is missing: blobs/ab/ab12….png".to_owned(),
-            remedy: "Bake this generation again; what is intact is reused.".to_owned(),
-        };
-    }, nothing),
-    ("stats", [1280.0, 800.0], 1.0, egui::Theme::Dark, |model| { model.panels.stats = true; model.panels.settings = true; }, nothing),
-    ("settings-light", [1280.0, 900.0], 1.0, egui::Theme::Light, |model| { model.panels.settings = true; model.panels.stats = true; }, |harness| {
-        harness.state_mut().state.notify(super::super::Tone::Success, "Screenshot saved: world/screenshots/g0003.png");
-        harness.state_mut().state.notify(super::super::Tone::Error, "space.ron: 2 errors");
+    (
+        "grid",
+        [1280.0, 800.0],
+        1.0,
+        egui::Theme::Dark,
+        |_| {},
+        |harness| harness.hover_at(egui::pos2(300.0, 250.0)),
+    ),
+    ("grid-light", [1280.0, 800.0], 1.0, egui::Theme::Light, voted, |harness| {
+        harness.hover_at(egui::pos2(400.0, 400.0))
     }),
+    ("voted", [1920.0, 1080.0], 1.0, egui::Theme::Dark, voted, nothing),
+    (
+        "small",
+        [800.0, 600.0],
+        1.0,
+        egui::Theme::Dark,
+        |model| {
+            voted(model);
+            model.panels.genome = true;
+        },
+        nothing,
+    ),
+    ("genome", [1280.0, 800.0], 1.0, egui::Theme::Dark, edited, nothing),
+    ("genome-light-2x", [900.0, 700.0], 2.0, egui::Theme::Light, edited, |harness| {
+        harness.hover_at(egui::pos2(640.0, 250.0))
+    }),
+    (
+        "error",
+        [1280.0, 800.0],
+        1.0,
+        egui::Theme::Dark,
+        |model| {
+            model.panels.genome = true;
+            model.errors = vec![file_error()];
+        },
+        nothing,
+    ),
+    (
+        "banner",
+        [1280.0, 800.0],
+        1.0,
+        egui::Theme::Dark,
+        |model| {
+            model.errors = vec![file_error()];
+            model.baking = baking();
+            model.views[1].state =
+                ViewState::Baking { done: 7, total: 19, stage: "terrain: erosion".to_owned() };
+            model.views[2].picture = None;
+            model.views[2].state = ViewState::Baking { done: 0, total: 0, stage: String::new() };
+            model.views[3].state = ViewState::Failed {
+                what: "scene-3/scene.gltf names a blob that is missing: blobs/ab/ab12….png".to_owned(),
+                remedy: "Bake this generation again; what is intact is reused.".to_owned(),
+            };
+        },
+        nothing,
+    ),
+    (
+        "stats",
+        [1280.0, 800.0],
+        1.0,
+        egui::Theme::Dark,
+        |model| {
+            model.panels.stats = true;
+            model.panels.settings = true;
+        },
+        nothing,
+    ),
+    (
+        "settings-light",
+        [1280.0, 900.0],
+        1.0,
+        egui::Theme::Light,
+        |model| {
+            model.panels.settings = true;
+            model.panels.stats = true;
+        },
+        |harness| {
+            harness
+                .state_mut()
+                .state
+                .notify(super::super::Tone::Success, "Screenshot saved: world/screenshots/g0003.png");
+            harness.state_mut().state.notify(super::super::Tone::Error, "space.ron: 2 errors");
+        },
+    ),
     ("help", [1280.0, 800.0], 1.0, egui::Theme::Dark, |model| model.panels.help = true, nothing),
     ("help-light", [800.0, 600.0], 1.0, egui::Theme::Light, |model| model.panels.help = true, nothing),
-    ("compare", [1280.0, 800.0], 1.0, egui::Theme::Dark, |model| { voted(model); model.arrangement = Arrangement::Compare { left: 0, right: 2 }; }, nothing),
-    ("growing", [1280.0, 800.0], 1.0, egui::Theme::Light, |model| { model.situation = Situation::Growing; model.baking = baking(); }, nothing),
+    (
+        "compare",
+        [1280.0, 800.0],
+        1.0,
+        egui::Theme::Dark,
+        |model| {
+            voted(model);
+            model.arrangement = Arrangement::Compare { left: 0, right: 2 };
+        },
+        nothing,
+    ),
+    (
+        "growing",
+        [1280.0, 800.0],
+        1.0,
+        egui::Theme::Light,
+        |model| {
+            model.situation = Situation::Growing;
+            model.baking = baking();
+        },
+        nothing,
+    ),
 ];
 
 #[test]
