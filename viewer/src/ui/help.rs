@@ -29,7 +29,6 @@ pub fn show(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
         .pivot(Align2::CENTER_CENTER)
         .fixed_pos(window.center())
         .constrain_to(window.shrink(8.0))
-        .default_size(window.size() - vec2(32.0, 32.0))
         .accessible_name("Help")
         .show(ui.ctx(), |ui| {
             let palette = Palette::of(ui.visuals());
@@ -41,14 +40,17 @@ pub fn show(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
             frame.show(ui, |ui| {
                 ui.set_width(width - 40.0);
                 close |= header(ui);
-                ScrollArea::vertical().max_height(window.height() - 130.0).auto_shrink([false, true]).show(
-                    ui,
-                    |ui| {
+                // An area offers no more than it had; so the list says itself how high it may be.
+                let room = window.height() - 130.0;
+                ScrollArea::vertical()
+                    .max_height(room)
+                    .min_scrolled_height(room)
+                    .auto_shrink([false, true])
+                    .show(ui, |ui| {
                         first_steps(ui);
                         ui.add_space(12.0);
                         keys(ui, &model.keys, columns);
-                    },
-                );
+                    });
             });
         });
     if close || ui.input(|input| input.key_pressed(egui::Key::Escape)) {

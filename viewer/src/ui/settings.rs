@@ -23,7 +23,6 @@ pub fn show(ui: &mut Ui, model: &Model, area: Rect, events: &mut Vec<Event>) {
         .pivot(Align2::RIGHT_TOP)
         .fixed_pos(area.right_top() + vec2(-12.0, 12.0))
         .constrain_to(area)
-        .default_size(vec2(width, area.height() - 24.0))
         .accessible_name("Settings")
         .show(ui.ctx(), |ui| {
             let palette = Palette::of(ui.visuals());
@@ -35,14 +34,16 @@ pub fn show(ui: &mut Ui, model: &Model, area: Rect, events: &mut Vec<Event>) {
             frame.show(ui, |ui| {
                 ui.set_width(width - 22.0);
                 header(ui, events);
-                ScrollArea::vertical().max_height(area.height() - 100.0).auto_shrink([false, true]).show(
-                    ui,
-                    |ui| {
+                let room = area.height() - 80.0;
+                ScrollArea::vertical()
+                    .max_height(room)
+                    .min_scrolled_height(room)
+                    .auto_shrink([false, true])
+                    .show(ui, |ui| {
                         ui.set_width(ui.available_width() - 10.0);
                         options(ui, &model.options, events);
                         comfort(ui, &model.comfort, events);
-                    },
-                );
+                    });
             });
         });
 }

@@ -5,9 +5,10 @@ use egui::{
     Align, Align2, Color32, CornerRadius, FontId, Frame, Layout, Margin, Rect, Sense, Shape, Stroke, Ui,
     pos2, vec2,
 };
+use genescape_schema::Category;
 
 use super::model::Stats;
-use super::theme;
+use super::theme::Palette;
 use super::widgets::section;
 
 /// Width of the panel or card, in points.
@@ -34,14 +35,13 @@ pub fn show_docked(ui: &mut Ui, stats: &Stats) -> bool {
     if ui.available_width() < DOCKED_FROM {
         return false;
     }
-    let frame = Frame::NONE.fill(theme::DARK.panel).inner_margin(Margin::same(12));
+    let frame = Frame::NONE.fill(Palette::of(ui.visuals()).panel).inner_margin(Margin::same(12));
     egui::Panel::left("stats")
         .exact_size(WIDTH)
         .resizable(false)
         .frame(frame)
         .show_separator_line(false)
         .show(ui, |ui| {
-            ui.set_style(ui.ctx().style_of(egui::Theme::Dark));
             let room = ui.available_height();
             body(ui, stats, room);
         });
@@ -72,6 +72,7 @@ pub fn show_card(ui: &mut Ui, stats: &Stats, area: Rect) {
 }
 
 fn body(ui: &mut Ui, stats: &Stats, room: f32) {
+    let palette = Palette::of(ui.visuals());
     ui.spacing_mut().item_spacing.y = 2.0;
     ui.spacing_mut().interact_size.y = 18.0;
     frames(ui, stats);
@@ -88,27 +89,29 @@ fn body(ui: &mut Ui, stats: &Stats, room: f32) {
         levels(ui, &stats.trees_per_level);
     }
     if !stats.adapter.is_empty() {
-        let text = egui::RichText::new(&stats.adapter).small().color(theme::DARK.weak);
+        let text = egui::RichText::new(&stats.adapter).small().color(palette.weak);
         ui.add(egui::Label::new(text).truncate());
     }
 }
 
 fn line(ui: &mut Ui, name: &str, value: &str) {
+    let palette = Palette::of(ui.visuals());
     ui.horizontal(|ui| {
-        ui.label(egui::RichText::new(name).color(theme::DARK.weak));
+        ui.label(egui::RichText::new(name).color(palette.weak));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(value));
     });
 }
 
 fn frames(ui: &mut Ui, stats: &Stats) {
+    let palette = Palette::of(ui.visuals());
     let (median, p99) = median_and_p99(&stats.frames_ms);
     ui.horizontal(|ui| {
         let fps = if median > 0.0 { 1000.0 / median } else { 0.0 };
         ui.label(egui::RichText::new(format!("{fps:.0}")).size(24.0));
-        ui.label(egui::RichText::new("fps").color(theme::DARK.weak));
+        ui.label(egui::RichText::new("fps").color(palette.weak));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.label(
-                egui::RichText::new(format!("median {median:.1} · p99 {p99:.1} ms")).color(theme::DARK.weak),
+                egui::RichText::new(format!("median {median:.1} · p99 {p99:.1} ms")).color(palette.weak),
             );
         });
     });
@@ -118,8 +121,9 @@ fn frames(ui: &mut Ui, stats: &Stats) {
 
 /// One bar a frame; the line is 60 Hz.
 fn graph(ui: &Ui, rect: Rect, frames_ms: &[f32], p99: f32) {
+    let palette = Palette::of(ui.visuals());
     let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
-    painter.rect_filled(rect, CornerRadius::same(4), Color32::from_black_alpha(110));
+    painter.rect_filled(rect, CornerRadius::same(4), palette.sunken);
     let top = (p99 * 1.25).max(1.3 * SMOOTH_MS);
     let height = |ms: f32| rect.height() * (ms / top).clamp(0.0, 1.0);
     let shown = &frames_ms[frames_ms.len().saturating_sub(rect.width() as usize)..];
@@ -129,27 +133,28 @@ fn graph(ui: &Ui, rect: Rect, frames_ms: &[f32], p99: f32) {
         let bar =
             Rect::from_min_max(pos2(right - step, rect.bottom() - height(ms)), pos2(right, rect.bottom()));
         let color = if ms > 2.0 * SMOOTH_MS {
-            theme::DARK.danger
+            palette.danger
         } else if ms > 1.05 * SMOOTH_MS {
-            theme::DARK.warning
+            palette.warning
         } else {
-            theme::DARK.accent
+            palette.accent
         };
         painter.rect_filled(bar, CornerRadius::ZERO, color);
     }
     let y = rect.bottom() - height(SMOOTH_MS);
-    let dash = Stroke::new(1.0, Color32::from_white_alpha(110));
+    let dash = Stroke::new(1.0, palette.weak);
     painter.extend(Shape::dashed_line(&[pos2(rect.left(), y), pos2(rect.right(), y)], dash, 3.0, 3.0));
     let font = FontId::proportional(10.0);
-    painter.text(pos2(rect.left() + 4.0, y), Align2::LEFT_BOTTOM, "60 Hz", font, theme::DARK.weak);
+    painter.text(pos2(rect.left() + 4.0, y), Align2::LEFT_BOTTOM, "60 Hz", font, palette.weak);
 }
 
 /// A row for each pass: its name, the four views' shares as a stacked bar, and their sum.
 fn gpu(ui: &mut Ui, stats: &Stats) {
+    let palette = Palette::of(ui.visuals());
     let total: f32 = stats.gpu.iter().flat_map(|pass| pass.ms).sum();
     section(ui, "GPU");
     if stats.gpu.is_empty() {
-        ui.label(egui::RichText::new("This adapter tells no times.").color(theme::DARK.weak));
+        ui.label(egui::RichText::new("This adapter tells no times.").color(palette.weak));
         return;
     }
     line(ui, "All passes, all views", &format!("{total:.2} ms"));
@@ -167,18 +172,19 @@ fn gpu(ui: &mut Ui, stats: &Stats) {
             painter.rect_filled(
                 bar,
                 CornerRadius::ZERO,
-                theme::bright(genescape_schema::Category::Sky).gamma_multiply(shade),
+                palette.category(Category::Sky).gamma_multiply(shade),
             );
             x += width;
         }
-        painter.text(rect.left_center(), Align2::LEFT_CENTER, &pass.name, font.clone(), theme::DARK.text);
+        painter.text(rect.left_center(), Align2::LEFT_CENTER, &pass.name, font.clone(), palette.text);
         let value = format!("{sum:.2} ms");
-        painter.text(rect.right_center(), Align2::RIGHT_CENTER, value, font, theme::DARK.text);
+        painter.text(rect.right_center(), Align2::RIGHT_CENTER, value, font, palette.text);
     }
 }
 
 /// A bar for each level of detail, finest at the left, with the number of trees above.
 fn levels(ui: &mut Ui, trees_per_level: &[u32]) {
+    let palette = Palette::of(ui.visuals());
     let all: u32 = trees_per_level.iter().sum();
     if trees_per_level.is_empty() {
         return;
@@ -195,11 +201,11 @@ fn levels(ui: &mut Ui, trees_per_level: &[u32]) {
             pos2(left + 1.0, rect.bottom() - height),
             pos2(left + step - 1.0, rect.bottom()),
         );
-        ui.painter().rect_filled(bar, CornerRadius::same(2), theme::bright(genescape_schema::Category::Tree));
+        ui.painter().rect_filled(bar, CornerRadius::same(2), palette.category(Category::Tree));
         let place = pos2(bar.center().x, bar.top() - 1.0);
         let font = FontId::proportional(10.0);
         if step > 22.0 && trees > 0 {
-            ui.painter().text(place, Align2::CENTER_BOTTOM, short(u64::from(trees)), font, theme::DARK.weak);
+            ui.painter().text(place, Align2::CENTER_BOTTOM, short(u64::from(trees)), font, palette.weak);
         }
     }
     line(ui, "Trees drawn", &thousands(u64::from(all)));
@@ -213,7 +219,7 @@ pub fn thousands(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();
     for (at, digit) in digits.chars().enumerate() {
-        if at > 0 && (digits.len() - at) % 3 == 0 {
+        if at > 0 && (digits.len() - at).is_multiple_of(3) {
             text.push(SPACE);
         }
         text.push(digit);

@@ -139,7 +139,8 @@ fn bake_log() -> Vec<StageEntry> {
 }
 
 fn stats() -> Stats {
-    let frame = |at: u32| 7.5 + f32::from((at * 7 % 5) as u8) * 0.4 + if at % 41 == 0 { 14.0 } else { 0.0 };
+    let frame =
+        |at: u32| 7.5 + f32::from((at * 7 % 5) as u8) * 0.4 + if at.is_multiple_of(41) { 14.0 } else { 0.0 };
     let pass =
         |name: &str, ms: f32| PassTime { name: name.to_owned(), ms: [ms, ms * 1.1, ms * 0.8, ms * 1.2] };
     Stats {

@@ -142,8 +142,10 @@ fn edited(model: &mut Model) {
     }
 }
 
-/// Name, window in points, scale, theme, and how the world differs from the usual one.
-const SCENES: [(&str, [f32; 2], f32, egui::Theme, Prepare, Act); 14] = [
+type Scene = (&'static str, [f32; 2], f32, egui::Theme, Prepare, Act);
+
+/// Name, window in points, scale, theme, how the world differs from the usual one, and what is done to it.
+const SCENES: [Scene; 14] = [
     (
         "grid",
         [1280.0, 800.0],
