@@ -8,8 +8,7 @@ use super::*;
 use crate::event::Ballot;
 use genescape_schema::Category;
 
-const WINDOWS: [([f32; 2], f32); 4] =
-    [([800.0, 600.0], 1.0), ([1920.0, 1080.0], 1.0), ([960.0, 540.0], 2.0), ([1280.0, 720.0], 1.5)];
+const WINDOWS: [([f32; 2], f32); 3] = [([800.0, 600.0], 1.0), ([1920.0, 1080.0], 1.0), ([960.0, 540.0], 2.0)];
 
 fn worlds() -> Vec<(&'static str, Model)> {
     let change = |change: fn(&mut Model)| {

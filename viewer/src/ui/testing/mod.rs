@@ -28,12 +28,14 @@ pub struct Bench {
     /// Of the last frame.
     pub output: Output,
     textures: Vec<TextureHandle>,
+    /// Of the pictures, in pixels.
+    picture_size: [usize; 2],
 }
 
 impl Bench {
     fn frame(&mut self, ui: &mut egui::Ui) {
         if self.textures.is_empty() {
-            self.textures = (0..4).map(|view| landscape(ui.ctx(), view)).collect();
+            self.textures = (0..4).map(|view| landscape(ui.ctx(), view, self.picture_size)).collect();
         }
         for (view, texture) in self.model.views.iter_mut().zip(&self.textures) {
             view.picture = view.picture.map(|_| texture.id());
@@ -49,7 +51,7 @@ impl Bench {
 
 /// A window of `size` points.
 pub fn bench(model: Model, size: [f32; 2], pixels_per_point: f32) -> Harness<'static, Bench> {
-    build(model, size, pixels_per_point, egui::Theme::Dark, Harness::builder())
+    build(model, size, pixels_per_point, egui::Theme::Dark, [8, 5], Harness::builder())
 }
 
 fn build(
@@ -57,10 +59,11 @@ fn build(
     size: [f32; 2],
     pixels_per_point: f32,
     theme: egui::Theme,
+    picture_size: [usize; 2],
     builder: HarnessBuilder<Bench>,
 ) -> Harness<'static, Bench> {
     let (state, output) = (State::default(), Output::default());
-    let bench = Bench { model, state, events: Vec::new(), output, textures: Vec::new() };
+    let bench = Bench { model, state, events: Vec::new(), output, textures: Vec::new(), picture_size };
     builder
         .with_size(Vec2::from(size))
         .with_pixels_per_point(pixels_per_point)
@@ -200,8 +203,7 @@ fn keys() -> Vec<KeyGroup> {
 }
 
 /// A picture that looks enough like a landscape: sky, hills, dots for trees.
-fn landscape(ctx: &egui::Context, view: usize) -> TextureHandle {
-    let size = [640, 400];
+fn landscape(ctx: &egui::Context, view: usize, size: [usize; 2]) -> TextureHandle {
     let sky = [[112, 160, 216], [236, 226, 206], [214, 120, 84], [150, 178, 200]][view];
     let land = [[72, 104, 48], [96, 128, 92], [134, 96, 58], [58, 84, 66]][view];
     let mix = |color: [u8; 3], other: [u8; 3], part: f32| {

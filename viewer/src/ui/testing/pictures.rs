@@ -266,7 +266,7 @@ fn pictures_for_people() {
         prepare(&mut model);
         let deltas = Deltas::default();
         let builder = Harness::builder().renderer(deltas.clone());
-        let mut harness = build(model, size, scale, theme, builder);
+        let mut harness = build(model, size, scale, theme, [960, 600], builder);
         act(&mut harness);
         harness.run_steps(40);
         let (pixels, size_px) = paint(&gpu, &harness, &deltas);
