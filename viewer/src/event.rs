@@ -22,6 +22,8 @@ pub enum Event {
     NextGeneration,
     /// Take back the latest step: a vote, a changed gene, a generation.
     Undo,
+    /// Do again what was taken back.
+    Redo,
     /// Look at an earlier generation again (or at a later one that exists already).
     GoToGeneration(u32),
     /// How the four landscapes share the window.
@@ -87,7 +89,7 @@ pub enum Event {
     Retry,
     /// The error of that index in [`crate::ui::model::Model::errors`] was read.
     DismissError(usize),
-    /// The pointer was given to the picture (true: hidden and locked) or taken back.
+    /// Give the pointer to the camera (true: hidden and locked) or take it back.
     Capture(bool),
     /// End the program.
     Quit,

@@ -223,8 +223,10 @@ fn slider(
     }
     let moving = response.dragged() || response.is_pointer_button_down_on();
     if response.drag_stopped() {
-        state.dragged = None;
-        events.push(gene(individual, parameter, chosen, Phase::Committed));
+        // A press that moved nothing asks for nothing.
+        if state.dragged.take().is_some() || chosen != code {
+            events.push(gene(individual, parameter, chosen, Phase::Committed));
+        }
     } else if chosen != code {
         let phase = if moving { Phase::Dragging } else { Phase::Committed };
         state.dragged = moving.then(|| (individual, parameter.name.clone(), chosen));

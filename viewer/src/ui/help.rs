@@ -13,7 +13,7 @@ use crate::event::{Event, Panel};
 
 /// What to do first.
 const FIRST_STEPS: [(&str, &str); 3] = [
-    ("Look", "Walk through all four landscapes at once: click a picture, then W A S D and the mouse."),
+    ("Look", "Walk through all four landscapes at once: W A S D, and drag in a picture to look around."),
     ("Choose", "On the pictures, say which has the best trees, the best terrain, the best sky."),
     ("Breed", "Press “Next generation”: four new landscapes grow from what you chose."),
 ];

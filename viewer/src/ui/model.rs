@@ -23,6 +23,8 @@ pub struct Model {
     pub baking: Option<Baking>,
     /// The step that [`crate::event::Event::Undo`] would take back, in a few words: "vote on trees".
     pub undo: Option<String>,
+    /// The step that [`crate::event::Event::Redo`] would do again.
+    pub redo: Option<String>,
     /// The four landscapes.
     pub views: [ViewModel; INDIVIDUALS],
     /// What was voted so far.

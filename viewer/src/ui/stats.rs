@@ -261,6 +261,8 @@ mod tests {
             prop_assert_eq!(text.replace(SPACE, ""), number.to_string());
             let whole = text.split(SPACE).skip(1).all(|group| group.len() == 3);
             prop_assert!(whole, "{}", text);
+            let digits = number.to_string().len();
+            prop_assert_eq!(text.split(SPACE).count(), digits.div_ceil(3));
         }
     }
 

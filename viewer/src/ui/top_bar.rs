@@ -80,13 +80,9 @@ fn divider(ui: &mut Ui) {
 }
 
 fn generations(ui: &mut Ui, model: &Model, words: bool, events: &mut Vec<Event>) {
-    let undo = match &model.undo {
-        Some(step) => format!("Undo: {step}"),
-        None => "Nothing to undo".to_owned(),
-    };
-    let can_undo = model.undo.is_some();
-    if ui.add_enabled_ui(can_undo, |ui| icon_button(ui, Icon::Undo, &undo, false)).inner.clicked() {
-        events.push(Event::Undo);
+    step(ui, Icon::Undo, "Undo", model.undo.as_deref(), Event::Undo, events);
+    if model.redo.is_some() {
+        step(ui, Icon::Redo, "Redo", model.redo.as_deref(), Event::Redo, events);
     }
     divider(ui);
     let way_on = if words { 330.0 } else { 36.0 };
@@ -103,6 +99,17 @@ fn generations(ui: &mut Ui, model: &Model, words: bool, events: &mut Vec<Event>)
             format!("Growing generation {}: {} of {} stages", baking.generation, baking.done, baking.total);
         response.on_hover_text(text);
         ui.small(format!("g{} {}%", baking.generation, (part * 100.0) as u32));
+    }
+}
+
+/// Takes a step back or does it again; `what` says which, `None` that there is none.
+fn step(ui: &mut Ui, icon: Icon, verb: &str, what: Option<&str>, event: Event, events: &mut Vec<Event>) {
+    let label = match what {
+        Some(what) => format!("{verb}: {what}"),
+        None => format!("Nothing to {}", verb.to_lowercase()),
+    };
+    if ui.add_enabled_ui(what.is_some(), |ui| icon_button(ui, icon, &label, false)).inner.clicked() {
+        events.push(event);
     }
 }
 

@@ -118,6 +118,8 @@ fn picture(
         events.push(Event::Arrange(arrangement));
     } else if response.clicked() && model.chosen != view {
         events.push(Event::Choose(view));
+    } else if response.secondary_clicked() {
+        events.push(Event::Capture(true));
     }
     response.on_hover_cursor(CursorIcon::Default)
 }

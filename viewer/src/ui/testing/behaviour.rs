@@ -83,6 +83,9 @@ fn the_bar_leads_back_in_time_and_undoes() {
     harness.state_mut().model.undo = None;
     harness.run();
     assert!(press(&mut harness, "Nothing to undo").is_empty());
+    harness.state_mut().model.redo = Some("vote on sky".to_owned());
+    harness.run();
+    assert_eq!(press(&mut harness, "Redo: vote on sky"), [Event::Redo]);
     let panels = [
         ("Genes", Panel::Genome),
         ("Frame times", Panel::Stats),
@@ -99,6 +102,9 @@ fn the_bar_leads_back_in_time_and_undoes() {
 fn pictures_are_chosen_maximised_and_compared() {
     let mut harness = bench(model(), WINDOW, 1.0);
     assert_eq!(press(&mut harness, "Landscape 2: Birches by the lake"), [Event::Choose(1)]);
+    harness.get_by_label("Landscape 2: Birches by the lake").click_secondary();
+    harness.run();
+    assert_eq!(taken(&mut harness), [Event::Capture(true)]);
     harness.hover_at(pos2(900.0, 200.0));
     harness.run();
     let output = &harness.state().output;
@@ -191,6 +197,22 @@ fn a_dragged_gene_is_shown_while_it_moves_and_written_when_it_is_let_go() {
         let at = f64::from((150.0 - rect.height() / 2.5) / (rect.width() - 2.0 * rect.height() / 2.5));
         assert!((part - at).abs() <= 0.6 / f64::from(parameter.last_code()), "{part} at {at}");
     }
+}
+
+#[test]
+fn a_press_that_moves_no_slider_asks_for_nothing() {
+    let mut harness = bench(with_genome(|_| {}), [1280.0, 1600.0], 1.0);
+    let genes = harness.state().model.genes.clone().expect("the model has genes");
+    let parameter = genes.space.find("crown_shape").expect("the space has the gene");
+    let rect = slider(&harness, "crown_shape").rect();
+    let radius = rect.height() / 2.5;
+    let part = genes.now[0].code(parameter) as f32 / parameter.last_code() as f32;
+    let handle = pos2(egui::lerp(rect.x_range().shrink(radius), part), rect.center().y);
+    harness.drag_at(handle);
+    harness.run();
+    harness.drop_at(handle);
+    harness.run();
+    assert!(taken(&mut harness).is_empty());
 }
 
 #[test]

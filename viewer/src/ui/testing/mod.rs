@@ -84,6 +84,7 @@ pub fn model() -> Model {
         generations: (0..=3).collect(),
         baking: None,
         undo: Some("vote on trees".to_owned()),
+        redo: None,
         views: names.map(|name| ViewModel {
             name: name.to_owned(),
             picture: Some(egui::TextureId::default()),
