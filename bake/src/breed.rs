@@ -4,7 +4,7 @@
 //! Child 0 unites the favourites. Children 1, 2 and 3 keep the favourite trees, terrain and sky respectively and
 //! vary the other two categories, so each shows what a change does beside something known, and the cache has it.
 
-use genescape_schema::{Category, Chromosome, Genome, INDIVIDUALS, Individual, Population, Space};
+use genescape_schema::{Category, Chromosome, Genome, INDIVIDUALS, Individual, Parent, Population, Space};
 use rand::Rng;
 use rand_pcg::Pcg64Mcg;
 
@@ -39,14 +39,14 @@ pub enum BreedError {
     },
 }
 
-/// The next generation: the same for the same seed, generation, genes and votes.
+/// Generation `next` from the votes on `parents`: the same genes for the same seed, generation, genes and votes of
+/// the parents.
 ///
 /// # Errors
 /// When votes are `None`.
-pub fn breed(space: &Space, parents: &Population) -> Result<Population, BreedError> {
+pub fn breed(space: &Space, parents: &Population, next: u32) -> Result<Population, BreedError> {
     let generation = parents.generation;
     let votes = parents.votes.ok_or(BreedError::NoVotes { generation })?;
-    let next = generation.checked_add(1).ok_or(BreedError::LastGeneration { generation })?;
     let mut rng = seed::rng(parents.seed, "breed", u64::from(generation));
     let litters = Category::ALL.map(|category| {
         // A vote for nobody (the loader lets none pass) counts as none.
@@ -67,7 +67,8 @@ pub fn breed(space: &Space, parents: &Population) -> Result<Population, BreedErr
         let name = format!("{next}.{child}: {}", origins.join(", "));
         Individual { name, genome: Genome { chromosomes } }
     });
-    Ok(Population { generation: next, seed: parents.seed, individuals, votes: None })
+    let parent = Some(Parent { generation, votes });
+    Ok(Population { generation: next, seed: parents.seed, parent, individuals, votes: None })
 }
 
 /// One category's chromosomes in the making, each with a word on where it comes from.
@@ -185,10 +186,9 @@ mod tests {
     #[test]
     fn without_votes_there_is_a_helpful_error() {
         let space = Space::builtin();
-        let error = breed(&space, &Population::random(&space, 1, 3)).expect_err("nobody voted");
+        let error = breed(&space, &Population::random(&space, 1, 3), 4).expect_err("nobody voted");
         assert_eq!(error, BreedError::NoVotes { generation: 3 });
         assert!(error.to_string().contains("votes: Some((tree: Some(0)"));
-        assert!(breed(&space, &voted(&space, 1, u32::MAX, [None; 3])).is_err());
     }
 
     #[test]
@@ -199,7 +199,7 @@ mod tests {
         for seed in 0..200 {
             let parents = voted(&space, seed, 0, [Some(0); 3]);
             let code = parents.individuals[0].genome.code(gene);
-            let child = breed(&space, &parents).expect("votes").individuals[2].genome.code(gene);
+            let child = breed(&space, &parents, 1).expect("votes").individuals[2].genome.code(gene);
             distances[code.abs_diff(child) as usize] += 1;
         }
         let (near, far): (u32, u32) = (distances[1..=7].iter().sum(), distances[8..].iter().sum());
@@ -211,13 +211,15 @@ mod tests {
 
         #[test]
         fn favourites_live_on_and_everything_else_is_new(
-            seed: u64, generation in 0..99u32, tree in 0..4usize, terrain in prop::option::of(0..4usize), sky in 0..4usize,
+            seed: u64, generation in 0..99u32, later in 1..9u32, tree in 0..4usize, terrain in prop::option::of(0..4usize), sky in 0..4usize,
         ) {
             let space = Space::builtin();
             let parents = voted(&space, seed, generation, [Some(tree), terrain, Some(sky)]);
-            let children = breed(&space, &parents).expect("votes");
-            prop_assert_eq!(&breed(&space, &parents).expect("votes"), &children);
-            prop_assert_eq!((children.generation, children.votes, children.seed), (generation + 1, None, seed));
+            let next = generation + later;
+            let children = breed(&space, &parents, next).expect("votes");
+            prop_assert_eq!(&breed(&space, &parents, next).expect("votes"), &children);
+            prop_assert_eq!((children.generation, children.votes, children.seed), (next, None, seed));
+            prop_assert_eq!(children.parent, parents.votes.map(|votes| Parent { generation, votes }));
             for (category, vote) in Category::ALL.into_iter().zip([Some(tree), terrain, Some(sky)]) {
                 let kept: Vec<bool> = children.individuals.iter().map(|child| {
                     let genes = child.genome.chromosome(category);

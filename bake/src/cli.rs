@@ -8,7 +8,7 @@ const EXAMPLES: &str = "\
 Examples:
   bake                                   bake the newest population of ./world (made from the starters if absent)
   bake world/population/g0003.ron        bake this population
-  bake --watch                           bake again whenever a population file is saved
+  bake --watch                           bake whenever a population file is saved, breed whenever one is voted on
   bake random --seed 7                   make a population of four random genomes, and bake it
   bake next                              breed the next population from the votes, and bake it
   bake export 2 alps.glb                 one self-contained file of scene 2, to send to somebody
@@ -63,7 +63,10 @@ pub struct BakeArgs {
     /// How to bake.
     #[command(flatten)]
     pub run: RunArgs,
-    /// Stay, and bake again whenever a population file or space.ron changes.
+    /// Stay, and bake again whenever a population file or space.ron changes, even in the midst of a bake.
+    ///
+    /// Votes written into any of the world's population files are answered with a new generation bred from them, as
+    /// `bake next` would, unless there is one already.
     #[arg(long)]
     pub watch: bool,
     /// With --watch: look every half second, for network folders that send no events.
@@ -84,8 +87,11 @@ pub enum Command {
         #[command(flatten)]
         run: RunArgs,
     },
-    /// Breed the next population from the newest one's votes and bake it.
+    /// Breed the next population from votes and bake it.
     Next {
+        /// The generation that was voted on [default: the newest]. The child gets the next free number.
+        #[arg(long, value_name = "N")]
+        from: Option<u32>,
         /// How to bake.
         #[command(flatten)]
         run: RunArgs,

@@ -2,19 +2,19 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
 
-use anyhow::{Context, Result, anyhow, bail};
-use genescape_cache::{Cache, GcOptions, How};
+use anyhow::{Context, Result, bail};
+use genescape_cache::{Cache, GcOptions};
 use genescape_schema::{Population, Report, Space, names};
 
 use crate::cli::{BakeArgs, CacheCommand, Cli, Command, RunArgs, WorldArgs};
 use crate::events::{Bar, Event, JsonLines, Listener};
-use crate::plan::{Plan, Resolution};
-use crate::run::{Done, RunError, Runner};
+use crate::follow::{self, Audience};
+use crate::plan::Resolution;
+use crate::run::RunError;
 use crate::say;
-use crate::watch::Watch;
-use crate::world::{self, PopulationFile, World};
+use crate::session::{Baked, Session, scope};
+use crate::world::{self, World};
 use crate::{bench, breed, lod_file};
 
 /// Set by Ctrl-C.
@@ -51,7 +51,7 @@ pub fn run(cli: Cli) -> u8 {
 fn is_json(cli: &Cli) -> bool {
     match &cli.command {
         None => cli.bake.run.json,
-        Some(Command::Random { run, .. } | Command::Next { run }) => run.json,
+        Some(Command::Random { run, .. } | Command::Next { run, .. }) => run.json,
         Some(_) => false,
     }
 }
@@ -72,18 +72,8 @@ pub struct BadInput(pub String);
 fn dispatch(cli: Cli) -> Result<()> {
     match cli.command {
         None => bake(&cli.bake),
-        Some(Command::Random { seed, run }) => {
-            let session = Session::new(&run)?;
-            let generation = session.world.newest_generation()?.map_or(0, |newest| newest + 1);
-            let population = Population::random(session.world.space(), seed, generation);
-            session.bake_new(&population)
-        }
-        Some(Command::Next { run }) => {
-            let session = Session::new(&run)?;
-            let newest = session.world.load_population(&session.world.newest_population()?)?;
-            let children = breed::breed(session.world.space(), &newest.loaded.population)?;
-            session.bake_new(&children)
-        }
+        Some(Command::Random { seed, run }) => random(seed, &run),
+        Some(Command::Next { from, run }) => next(from, &run),
         Some(Command::Params { markdown, world }) => params(&world, markdown),
         Some(Command::Explain { scene, world }) => explain(&world, scene),
         Some(Command::Export { scene, out, world }) => export(&world, &scene, &out),
@@ -107,152 +97,115 @@ fn resolution(size: u32) -> Result<Resolution> {
     Resolution::of_side(size).map_err(|text| BadInput(text).into())
 }
 
-/// All that bakes of one world share.
-struct Session {
-    world: World,
-    cache: Cache,
-    pool: rayon::ThreadPool,
-    resolution: Resolution,
-    json: bool,
+fn session(args: &RunArgs) -> Result<Session> {
+    let resolution = resolution(args.size)?;
+    Session::new(World::open_or_create(&args.world.world)?, pool(args.threads)?, resolution)
 }
 
-impl Session {
-    fn new(args: &RunArgs) -> Result<Self> {
-        let resolution = resolution(args.size)?;
-        let world = World::open_or_create(&args.world.world)?;
-        let cache = Cache::open(world.root().join(names::BAKED))?;
-        Ok(Self { world, cache, pool: pool(args.threads)?, resolution, json: args.json })
+/// Tells a person, or a program, how bakes go.
+struct Console {
+    json: bool,
+    root: PathBuf,
+}
+
+impl Console {
+    fn new(args: &RunArgs) -> Self {
+        Self { json: args.json, root: args.world.world.clone() }
     }
 
-    fn bake_new(&self, population: &Population) -> Result<()> {
-        let path = self.world.save_population(population)?;
+    fn made(&self, path: &Path) {
         if !self.json {
             say!("made {}", path.display());
         }
-        self.bake_file(&path)
     }
 
     /// Bakes one population file and tells the outcome.
-    fn bake_file(&self, path: &Path) -> Result<()> {
-        let start = Instant::now();
-        let file = self.world.load_population(path)?;
-        let listener: Box<dyn Listener> = if self.json { Box::new(JsonLines) } else { Box::new(Bar::new()) };
-        for snap in &file.loaded.snaps {
-            listener.tell(&Event::Notice { message: snap.to_string() });
-        }
-        let plan = Plan::new(self.world.space(), &file.loaded.population, self.resolution)?;
-        let generation = file.loaded.population.generation;
-        listener.tell(&Event::Planned { generation, stages: plan.nodes.len() });
-        let result = self.run(&plan, &file, &*listener);
-        // The bar must not stand between the person and the message.
-        listener.end();
-        let done = result?;
-        self.world.publish_current(&file)?;
-        self.remember(&plan, &done, generation)?;
-
-        let built = done.iter().filter(|d| d.how == How::Built).count();
-        let ms = start.elapsed().as_secs_f64() * 1e3;
-        listener.tell(&Event::Done { built, reused: done.len() - built, ms });
-        if !self.json {
-            self.summary(&file, built, done.len() - built, ms);
-        }
+    fn bake(&self, session: &Session, path: &Path) -> Result<()> {
+        self.baked(&session.bake_file(path, &*self.listener(), &|| self.stopped())?);
         Ok(())
-    }
-
-    fn run(
-        &self,
-        plan: &Plan,
-        file: &PopulationFile,
-        listener: &dyn Listener,
-    ) -> Result<Vec<Done>, RunError> {
-        let population = &file.loaded.population;
-        let scene_ready = |scene: usize, blob: &genescape_cache::BlobRef| -> Result<()> {
-            let json = || -> Result<Vec<u8>> {
-                let bytes = self.cache.get_blob(blob)?;
-                Ok(bytes.ok_or_else(|| anyhow!("the scene vanished from the cache; bake again"))?.to_vec())
-            };
-            self.world.publish_scene(population.generation, scene, blob.digest, &json)?;
-            listener.tell(&Event::SceneReady {
-                scene,
-                name: population.individuals[scene].name.clone(),
-                path: self.world.scene_path(population.generation, scene).display().to_string(),
-            });
-            Ok(())
-        };
-        let cancelled = || INTERRUPTED.load(Ordering::SeqCst);
-        let runner = Runner {
-            cache: &self.cache,
-            pool: &self.pool,
-            listener,
-            cancelled: &cancelled,
-            scene_ready: &scene_ready,
-        };
-        runner.run(plan)
-    }
-
-    fn summary(&self, file: &PopulationFile, built: usize, reused: usize, ms: f64) {
-        let Population { generation, individuals, .. } = &file.loaded.population;
-        if built == 0 {
-            say!("nothing to do: all {reused} stages are up to date ({ms:.0} ms)");
-        } else {
-            say!("four landscapes in {:.2} s: {built} stages built, {reused} reused", ms / 1e3);
-        }
-        let width = individuals.iter().map(|i| i.name.chars().count()).max().unwrap_or(0);
-        for (scene, individual) in individuals.iter().enumerate() {
-            let path = self.world.scene_path(*generation, scene);
-            say!("  {scene}  {:width$}  {}", individual.name, path.display());
-        }
-        say!(
-            "Look at them: import a scene.gltf in Blender, or drop it on any glTF viewer;\n\
-             `bake export 0 scene.glb` makes one self-contained file of scene 0.\n\
-             Change them: edit {} and bake again.",
-            file.path.display()
-        );
     }
 }
 
+impl Audience for Console {
+    fn listener(&self) -> Box<dyn Listener + '_> {
+        if self.json { Box::new(JsonLines) } else { Box::new(Bar::new()) }
+    }
+
+    fn stopped(&self) -> bool {
+        INTERRUPTED.load(Ordering::SeqCst)
+    }
+
+    fn baked(&self, baked: &Baked) {
+        if !self.json {
+            summary(baked);
+        }
+    }
+
+    fn failed(&self, error: &anyhow::Error) {
+        if self.json {
+            JsonLines.tell(&Event::Failed { message: format!("{error:#}") });
+        }
+        eprintln!("error: {error:#}");
+    }
+
+    fn waiting(&self) {
+        if !self.json {
+            say!("watching {} (Ctrl-C ends)", self.root.display());
+        }
+    }
+}
+
+fn summary(baked: &Baked) {
+    let Baked { file, scenes, built, reused, ms } = baked;
+    if *built == 0 {
+        say!("nothing to do: all {reused} stages are up to date ({ms:.0} ms)");
+    } else {
+        say!("four landscapes in {:.2} s: {built} stages built, {reused} reused", ms / 1e3);
+    }
+    let individuals = &file.loaded.population.individuals;
+    let width = individuals.iter().map(|i| i.name.chars().count()).max().unwrap_or(0);
+    for (scene, (individual, path)) in individuals.iter().zip(scenes).enumerate() {
+        say!("  {scene}  {:width$}  {}", individual.name, path.display());
+    }
+    say!(
+        "Look at them: import a scene.gltf in Blender, or drop it on any glTF viewer;\n\
+         `bake export 0 scene.glb` makes one self-contained file of scene 0.\n\
+         Change them: edit {} and bake again.",
+        file.path.display()
+    );
+}
+
 fn bake(args: &BakeArgs) -> Result<()> {
-    let mut session = Session::new(&args.run)?;
-    if args.population.is_none() && session.world.begin()? && !session.json {
-        say!("made {} from the starter landscapes", session.world.root().display());
+    let (mut session, console) = (session(&args.run)?, Console::new(&args.run));
+    if args.population.is_none() && session.world().begin()? && !args.run.json {
+        say!("made {} from the starter landscapes", session.world().root().display());
     }
-    let target = |session: &Session| match &args.population {
-        Some(path) => Ok(path.clone()),
-        None => session.world.newest_population(),
+    if args.watch {
+        let options = follow::Options { population: args.population.clone(), poll: args.poll };
+        return follow::follow(&mut session, &options, &console);
+    }
+    let path = args.population.clone().map_or_else(|| session.world().newest_population(), Ok)?;
+    console.bake(&session, &path)
+}
+
+fn random(seed: u64, args: &RunArgs) -> Result<()> {
+    let (session, console) = (session(args)?, Console::new(args));
+    let world = session.world();
+    let path = world.save_population(&Population::random(world.space(), seed, world.next_generation()?))?;
+    console.made(&path);
+    console.bake(&session, &path)
+}
+
+fn next(from: Option<u32>, args: &RunArgs) -> Result<()> {
+    let (session, console) = (session(args)?, Console::new(args));
+    let world = session.world();
+    let parents = match from {
+        Some(generation) => world.root().join(names::population(generation)),
+        None => world.newest_population()?,
     };
-    if !args.watch {
-        return target(&session).and_then(|path| session.bake_file(&path));
-    }
-    let populations = session.world.root().join(names::POPULATIONS);
-    let mut folders = vec![session.world.root().to_owned(), populations];
-    if let Some(folder) = args.population.as_ref().and_then(|path| path.parent()) {
-        let folder = if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder.to_owned() };
-        if !folders.contains(&folder) {
-            folders.push(folder);
-        }
-    }
-    // From before the first bake on, lest a save during it be missed.
-    let watch = Watch::new(&folders.iter().map(PathBuf::as_path).collect::<Vec<_>>(), args.poll)?;
-    let mut last = target(&session).and_then(|path| session.bake_file(&path));
-    loop {
-        if let Err(error) = &last {
-            if matches!(error.downcast_ref(), Some(RunError::Cancelled)) {
-                return last;
-            }
-            if session.json {
-                JsonLines.tell(&Event::Failed { message: format!("{error:#}") });
-            }
-            eprintln!("error: {error:#}");
-        }
-        if !session.json {
-            say!("watching {} (Ctrl-C ends)", session.world.root().display());
-        }
-        if !watch.wait(&|| INTERRUPTED.load(Ordering::SeqCst)) {
-            return Ok(());
-        }
-        last =
-            session.world.reload_space().and_then(|()| target(&session)).and_then(|p| session.bake_file(&p));
-    }
+    let path = session.breed_file(&parents)?;
+    console.made(&path);
+    console.bake(&session, &path)
 }
 
 fn params(args: &WorldArgs, markdown: bool) -> Result<()> {
@@ -292,30 +245,6 @@ fn open_cache(args: &WorldArgs) -> Result<(World, Cache)> {
     let world = World::open(&args.world)?;
     let cache = Cache::open(world.root().join(names::BAKED))?;
     Ok((world, cache))
-}
-
-/// What `explain` calls a scene.
-fn scope(generation: u32, scene: usize) -> String {
-    format!("g{generation:04}-scene-{scene}")
-}
-
-impl Session {
-    /// Notes for `explain` what became of each stage of each scene.
-    fn remember(&self, plan: &Plan, done: &[Done], generation: u32) -> Result<()> {
-        for scene in 0..plan.scenes.len() {
-            let mut history = self.cache.history(&scope(generation, scene))?;
-            if let Some(parent) = generation.checked_sub(1) {
-                history.inherit(&self.cache.history(&scope(parent, scene))?);
-            }
-            let nodes = || plan.nodes.iter().zip(done).filter(|(node, _)| node.scenes.contains(&scene));
-            for (node, done) in nodes() {
-                history.note(&node.label, &done.key, done.how);
-            }
-            history.retain(|item| nodes().any(|(node, _)| node.label == item));
-            self.cache.save_history(&history)?;
-        }
-        Ok(())
-    }
 }
 
 fn explain(args: &WorldArgs, scene: Option<usize>) -> Result<()> {

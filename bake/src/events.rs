@@ -58,6 +58,15 @@ pub enum Event {
         /// Its scene.gltf.
         path: String,
     },
+    /// Votes were answered with a new population file.
+    Bred {
+        /// The generation that was voted on.
+        parent: u32,
+        /// The new file.
+        path: String,
+    },
+    /// Something newer was saved: the bake that was going on ends early, and another one begins.
+    Superseded,
     /// All is done.
     Done {
         /// Stages computed.
@@ -152,7 +161,10 @@ impl Listener for Bar {
                 self.bar.inc(1);
             }
             Event::Notice { message } => self.bar.suspend(|| eprintln!("note: {message}")),
-            Event::SceneReady { .. } | Event::Done { .. } | Event::Failed { .. } => {}
+            Event::Bred { parent, path } => {
+                self.bar.suspend(|| eprintln!("bred {path} from the votes on generation {parent}"));
+            }
+            Event::SceneReady { .. } | Event::Superseded | Event::Done { .. } | Event::Failed { .. } => {}
         }
     }
 

@@ -1,11 +1,10 @@
 //! Waits until something that a person edits in the world folder has changed.
 //!
 //! Folders are watched, never files: an editor's atomic save replaces the file, and a watch on it would end there.
-//! What changed is not trusted either, for an event can be lost: any event means "look at everything again", which
-//! costs a bake where nothing changed, a few milliseconds.
+//! What changed is not trusted either, for an event can be lost: any event means "look at everything again".
 
 use std::path::Path;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use anyhow::{Context, Result};
@@ -16,10 +15,12 @@ use notify_debouncer_full::{DebounceEventResult, Debouncer, NoCache, new_debounc
 const SETTLE: Duration = Duration::from_millis(60);
 /// How often a folder that sends no events (a network share) is looked at.
 const POLL: Duration = Duration::from_millis(500);
+/// How often a waiting thread looks up to see whether it should stop.
+const LOOK_UP: Duration = Duration::from_millis(100);
 
 /// The watch; ends when dropped.
 pub struct Watch {
-    changes: Receiver<()>,
+    signal: Arc<Signal>,
     _watcher: Keep,
 }
 
@@ -34,7 +35,8 @@ impl Watch {
     /// Watches the folders `dirs` (not what lies deeper). With `poll`, looks at them every half second instead of
     /// waiting for the system's events, for file systems that send none.
     pub fn new(dirs: &[&Path], poll: bool) -> Result<Self> {
-        let (sender, changes) = channel();
+        let signal = Arc::new(Signal::default());
+        let heard = Arc::clone(&signal);
         let on_events = move |result: DebounceEventResult| {
             // Errors (an overflowing queue, say) mean lost events, so they count as a change, too.
             let changed = match result {
@@ -44,8 +46,8 @@ impl Watch {
                 Err(_) => true,
             };
             if changed {
-                // The receiver is gone only when the watch is being dropped.
-                let _ = sender.send(());
+                *heard.lock() += 1;
+                heard.changed.notify_all();
             }
         };
         let no_watch = |dir: &Path| format!("cannot watch {}; try --poll", dir.display());
@@ -63,22 +65,38 @@ impl Watch {
             }
             Keep::Events(debouncer)
         };
-        Ok(Self { changes, _watcher: watcher })
+        Ok(Self { signal, _watcher: watcher })
     }
 
-    /// Blocks until something changed, or `stopped` says so; false then.
-    pub fn wait(&self, stopped: &dyn Fn() -> bool) -> bool {
-        loop {
-            match self.changes.recv_timeout(Duration::from_millis(100)) {
-                Ok(()) => {
-                    while self.changes.try_recv().is_ok() {}
-                    return true;
-                }
-                Err(RecvTimeoutError::Timeout) if stopped() => return false,
-                Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => return false,
+    /// How many times something changed since the watch began.
+    pub fn count(&self) -> u64 {
+        *self.signal.lock()
+    }
+
+    /// Blocks until [`Watch::count`] is not `seen`, or `stopped` says so; false then.
+    pub fn wait_beyond(&self, seen: u64, stopped: &dyn Fn() -> bool) -> bool {
+        let mut count = self.signal.lock();
+        while *count == seen {
+            if stopped() {
+                return false;
             }
+            let waited = self.signal.changed.wait_timeout(count, LOOK_UP);
+            count = waited.unwrap_or_else(PoisonError::into_inner).0;
         }
+        true
+    }
+}
+
+/// A number that can be waited for.
+#[derive(Default)]
+struct Signal {
+    count: Mutex<u64>,
+    changed: Condvar,
+}
+
+impl Signal {
+    fn lock(&self) -> MutexGuard<'_, u64> {
+        self.count.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -94,8 +112,9 @@ mod tests {
         for text in ["new", "newer still"] {
             let draft = dir.path().join("draft~");
             std::fs::write(&draft, text).expect("written");
+            let seen = watch.count();
             std::fs::rename(&draft, &file).expect("renamed");
-            assert!(watch.wait(&|| false), "every save is seen, not only the first");
+            assert!(watch.wait_beyond(seen, &|| false), "every save is seen, not only the first");
         }
     }
 

@@ -10,6 +10,8 @@ use anyhow::{Context, Result, anyhow, bail};
 use genescape_cache::Digest;
 use genescape_schema::{Current, Loaded, Population, Space, names};
 
+use crate::breed::BreedError;
+
 /// The landscapes that new worlds begin with.
 pub const STARTER_RON: &str = include_str!("../../configs/starter.ron");
 
@@ -105,6 +107,12 @@ impl World {
             anyhow!("{} holds no population; `bake random --seed 1` makes one", self.root.display())
         })?;
         Ok(self.root.join(names::population(generation)))
+    }
+
+    /// The number of the next population to be made, whatever it is made of.
+    pub fn next_generation(&self) -> Result<u32> {
+        let Some(newest) = self.newest_generation()? else { return Ok(0) };
+        Ok(newest.checked_add(1).ok_or(BreedError::LastGeneration { generation: newest })?)
     }
 
     /// Reads and checks a population file.

@@ -8,6 +8,7 @@ mod check;
 pub mod edit;
 mod genome;
 pub mod gltf;
+mod lineage;
 mod load;
 pub mod names;
 mod parameter;
@@ -19,6 +20,7 @@ mod table;
 mod write;
 
 pub use genome::{Chromosome, Genome, GenomeError};
+pub use lineage::{Lineage, Parent, unanswered};
 pub use names::Current;
 pub use parameter::{Category, Parameter, Scale};
 pub use population::{INDIVIDUALS, Individual, Loaded, LoadedPreset, Population, Snap, TreePreset, Votes};

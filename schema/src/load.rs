@@ -2,8 +2,9 @@
 
 use crate::check::{Checker, did_you_mean, given};
 use crate::genome::{Chromosome, Genome};
+use crate::lineage::{read_parent, read_votes};
 use crate::parameter::{Category, Parameter};
-use crate::population::{INDIVIDUALS, Individual, Loaded, LoadedPreset, Population, Snap, TreePreset, Votes};
+use crate::population::{INDIVIDUALS, Individual, Loaded, LoadedPreset, Population, Snap, TreePreset};
 use crate::report::Report;
 use crate::ron_tree::{Node, Value, prepare};
 use crate::space::Space;
@@ -50,14 +51,16 @@ struct Loader<'a> {
 impl<'a> Loader<'a> {
     fn population(&mut self, root: &Node<'a>) -> Option<Population> {
         const WHAT: &str = "Population";
-        let fields = self.checker.root(root, WHAT, &["generation", "seed", "votes", "individuals"])?;
+        let fields =
+            self.checker.root(root, WHAT, &["generation", "seed", "parent", "votes", "individuals"])?;
         let generation = self.checker.need(&fields, root, WHAT, "generation");
         let generation = generation.and_then(|node| self.checker.whole(node, "generation", u32::MAX));
         let seed = self.checker.need(&fields, root, WHAT, "seed");
         let seed = seed.and_then(|node| self.checker.whole(node, "seed", u64::MAX));
-        // A file without the line is one on which nobody voted.
-        let votes =
-            fields.iter().find(|field| field.name == "votes").and_then(|field| self.votes(&field.node));
+        // A file without these lines is one that was not bred, one on which nobody voted.
+        let optional = |name| fields.iter().find(|field| field.name == name).map(|field| &field.node);
+        let parent = optional("parent").and_then(|node| read_parent(&mut self.checker, node));
+        let votes = optional("votes").and_then(|node| read_votes(&mut self.checker, node));
         let list = self.checker.need(&fields, root, WHAT, "individuals")?;
         let nodes = self.checker.list(list, "individuals")?;
         if nodes.len() != INDIVIDUALS {
@@ -71,7 +74,7 @@ impl<'a> Loader<'a> {
         let individuals: Vec<_> =
             nodes.iter().enumerate().filter_map(|(index, node)| self.individual(index, node)).collect();
         let individuals = individuals.try_into().ok()?;
-        Some(Population { generation: generation?, seed: seed?, individuals, votes })
+        Some(Population { generation: generation?, seed: seed?, parent, individuals, votes })
     }
 
     fn individual(&mut self, index: usize, node: &Node<'a>) -> Option<Individual> {
@@ -147,44 +150,6 @@ impl<'a> Loader<'a> {
             });
         }
         Some(code)
-    }
-
-    fn votes(&mut self, node: &Node<'a>) -> Option<Votes> {
-        let cast = match &node.value {
-            Value::None => return None,
-            Value::Some(cast) => cast,
-            _ => node,
-        };
-        let names = Category::ALL.map(Category::name);
-        let mut votes = Votes::default();
-        for field in self.checker.record(cast, "votes", &names)? {
-            if let Some(category) = Category::from_name(field.name) {
-                let vote = self.vote(category, &field.node);
-                votes.set(category, vote);
-            }
-        }
-        Some(votes)
-    }
-
-    fn vote(&mut self, category: Category, node: &Node<'a>) -> Option<usize> {
-        let number = match &node.value {
-            Value::None => return None,
-            Value::Some(number) => number,
-            _ => node,
-        };
-        match number.value {
-            Value::Number(vote) if vote.fract() == 0.0 && (0.0..INDIVIDUALS as f64).contains(&vote) => {
-                return Some(vote as usize);
-            }
-            Value::Number(_) => {
-                let last = INDIVIDUALS - 1;
-                let message =
-                    format!("votes: {category}: {} is none of the individuals 0 … {last}", given(number));
-                self.checker.error(number.span(), message);
-            }
-            _ => self.checker.wrong_kind(number, &format!("votes: {category}"), "None or Some(0) … Some(3)"),
-        }
-        None
     }
 }
 

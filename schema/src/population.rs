@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::genome::{Chromosome, Genome};
+use crate::lineage::Parent;
 use crate::parameter::Category;
 use crate::space::Space;
 
@@ -56,6 +57,8 @@ pub struct Population {
     pub generation: u32,
     /// What chance depends on when the next generation is bred.
     pub seed: u64,
+    /// What it was bred from; `None` for one that was made otherwise.
+    pub parent: Option<Parent>,
     /// Four landscapes.
     pub individuals: [Individual; INDIVIDUALS],
     /// `None` until they are cast.
@@ -73,7 +76,7 @@ impl Population {
             }
             Individual { name: format!("Random {seed}.{index}"), genome }
         });
-        Self { generation, seed, individuals, votes: None }
+        Self { generation, seed, parent: None, individuals, votes: None }
     }
 }
 

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use crate::genome::Chromosome;
+use crate::lineage::Parent;
 use crate::parameter::Category;
 use crate::population::{Population, TreePreset, Votes};
 use crate::space::Space;
@@ -19,6 +20,10 @@ impl Population {
         let votes = votes_text(self.votes.as_ref());
         put(&mut out, 1, &format!("generation: {generation},"));
         put(&mut out, 1, &format!("seed: {seed},"));
+        if let Some(Parent { generation, votes }) = &self.parent {
+            let votes = cast_text(votes);
+            put(&mut out, 1, &format!("parent: Some((generation: {generation}, votes: {votes})),"));
+        }
         put(
             &mut out,
             1,
@@ -53,9 +58,12 @@ impl TreePreset {
 
 /// Votes as RON.
 pub(crate) fn votes_text(votes: Option<&Votes>) -> String {
-    let Some(votes) = votes else { return "None".into() };
+    votes.map_or("None".into(), |votes| format!("Some({})", cast_text(votes)))
+}
+
+fn cast_text(votes: &Votes) -> String {
     let votes = Category::ALL.map(|category| format!("{category}: {}", vote_text(votes.get(category))));
-    format!("Some(({}))", votes.join(", "))
+    format!("({})", votes.join(", "))
 }
 
 /// One category's vote as RON.

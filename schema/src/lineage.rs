@@ -1,0 +1,168 @@
+//! Which generation comes from which: the record of a parent that a bred population carries, and the few fields of a
+//! population file that say who descends from whom, readable even when its genes are not.
+
+use crate::check::{Checker, given};
+use crate::parameter::Category;
+use crate::population::{INDIVIDUALS, Votes};
+use crate::report::Report;
+use crate::ron_tree::{Node, Value, prepare};
+
+/// What a population was bred from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Parent {
+    /// The parents' generation.
+    pub generation: u32,
+    /// The votes on them at that time. They may be changed later; then another child is wanted.
+    pub votes: Votes,
+}
+
+/// A population file without its genes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lineage {
+    /// The population's number.
+    pub generation: u32,
+    /// What it was bred from; `None` for one that was made otherwise.
+    pub parent: Option<Parent>,
+    /// The votes on it.
+    pub votes: Option<Votes>,
+}
+
+impl Lineage {
+    /// Reads these fields and no others, whatever the genes are like: a change of the space must not make children
+    /// unknown to their parents.
+    ///
+    /// # Errors
+    /// What is wrong with these fields.
+    pub fn read(file: &str, text: &str) -> Result<Self, Report> {
+        let text = prepare(text);
+        let mut checker = Checker::new(file, &text);
+        let root = checker.parse()?;
+        let lineage = lineage(&mut checker, &root);
+        checker.finish(lineage)
+    }
+
+    /// The record that a child bred now would carry; `None` while nobody has voted.
+    pub fn wanted(&self) -> Option<Parent> {
+        self.votes.map(|votes| Parent { generation: self.generation, votes })
+    }
+}
+
+/// The children that are wanted and not there: one for each population with votes that no population says it was
+/// bred from. In the order of generations.
+pub fn unanswered(lineages: &[Lineage]) -> Vec<Parent> {
+    let mut wanted: Vec<Parent> = lineages.iter().filter_map(Lineage::wanted).collect();
+    wanted.retain(|wanted| !lineages.iter().any(|child| child.parent.as_ref() == Some(wanted)));
+    wanted.sort_by_key(|parent| parent.generation);
+    wanted.dedup();
+    wanted
+}
+
+fn lineage(checker: &mut Checker<'_>, root: &Node<'_>) -> Option<Lineage> {
+    const KNOWN: [&str; 5] = ["generation", "seed", "parent", "votes", "individuals"];
+    let fields = checker.root(root, "Population", &KNOWN)?;
+    let generation = checker.need(&fields, root, "Population", "generation")?;
+    let generation = checker.whole(generation, "generation", u32::MAX)?;
+    let field = |name| fields.iter().find(|field| field.name == name).map(|field| &field.node);
+    let parent = field("parent").and_then(|node| read_parent(checker, node));
+    let votes = field("votes").and_then(|node| read_votes(checker, node));
+    Some(Lineage { generation, parent, votes })
+}
+
+/// `Some((generation: 3, votes: (…)))`, with or without the `Some`, or `None`.
+pub(crate) fn read_parent(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<Parent> {
+    let node = optional(node)?;
+    let fields = checker.record(node, "parent", &["generation", "votes"])?;
+    let generation = checker.need(&fields, node, "parent", "generation");
+    let generation = generation.and_then(|node| checker.whole(node, "parent: generation", u32::MAX));
+    let votes = checker.need(&fields, node, "parent", "votes");
+    let votes = votes.and_then(|node| read_votes(checker, node)).unwrap_or_default();
+    Some(Parent { generation: generation?, votes })
+}
+
+/// `Some((tree: Some(0), …))`, with or without each `Some`, or `None`.
+pub(crate) fn read_votes(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<Votes> {
+    let names = Category::ALL.map(Category::name);
+    let mut votes = Votes::default();
+    for field in checker.record(optional(node)?, "votes", &names)? {
+        if let Some(category) = Category::from_name(field.name) {
+            votes.set(category, read_vote(checker, category, &field.node));
+        }
+    }
+    Some(votes)
+}
+
+fn read_vote(checker: &mut Checker<'_>, category: Category, node: &Node<'_>) -> Option<usize> {
+    let number = optional(node)?;
+    match number.value {
+        Value::Number(vote) if vote.fract() == 0.0 && (0.0..INDIVIDUALS as f64).contains(&vote) => {
+            return Some(vote as usize);
+        }
+        Value::Number(_) => {
+            let last = INDIVIDUALS - 1;
+            let message =
+                format!("votes: {category}: {} is none of the individuals 0 … {last}", given(number));
+            checker.error(number.span(), message);
+        }
+        _ => checker.wrong_kind(number, &format!("votes: {category}"), "None or Some(0) … Some(3)"),
+    }
+    None
+}
+
+/// What is in a `Some`; a value that stands without one; nothing for `None`.
+fn optional<'n, 'a>(node: &'n Node<'a>) -> Option<&'n Node<'a>> {
+    match &node.value {
+        Value::None => None,
+        Value::Some(value) => Some(value),
+        _ => Some(node),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn lineage(generation: u32, parent: Option<Parent>, votes: Option<Votes>) -> Lineage {
+        Lineage { generation, parent, votes }
+    }
+
+    fn votes() -> impl Strategy<Value = Votes> {
+        let vote = || prop::option::of(0..INDIVIDUALS);
+        (vote(), vote(), vote()).prop_map(|(tree, terrain, sky)| Votes { tree, terrain, sky })
+    }
+
+    proptest! {
+        #[test]
+        fn once_every_wish_has_its_child_nothing_more_is_wanted(
+            cast in prop::collection::vec(prop::option::of(votes()), 1..6)
+        ) {
+            let mut all: Vec<Lineage> =
+                cast.iter().zip(0..).map(|(&votes, generation)| lineage(generation, None, votes)).collect();
+            let wanted = unanswered(&all);
+            prop_assert_eq!(wanted.len(), cast.iter().flatten().count());
+            for (number, parent) in (all.len() as u32..).zip(wanted) {
+                all.push(lineage(number, Some(parent), None));
+            }
+            prop_assert_eq!(unanswered(&all), []);
+        }
+
+        #[test]
+        fn other_votes_on_an_old_generation_want_another_child(old in votes(), new in votes()) {
+            let child = lineage(1, Some(Parent { generation: 0, votes: old }), None);
+            let wanted = unanswered(&[lineage(0, None, Some(new)), child]);
+            prop_assert_eq!(wanted.is_empty(), old == new);
+        }
+    }
+
+    #[test]
+    fn lineage_is_read_from_a_file_whose_genes_are_wrong() {
+        let text = "Population(generation: 4, seed: 1, individuals: [(tree: (height: 1))],
+            parent: Some((generation: 2, votes: (tree: Some(1), sky: 3))), votes: None)";
+        let votes = Votes { tree: Some(1), terrain: None, sky: Some(3) };
+        let expected = lineage(4, Some(Parent { generation: 2, votes }), None);
+        assert_eq!(Lineage::read("p.ron", text), Ok(expected));
+        let error =
+            Lineage::read("p.ron", "(generation: 4, parent: (generaton: 3))").expect_err("a typing error");
+        assert!(error.to_string().contains("did you mean generation?"), "{error}");
+    }
+}
