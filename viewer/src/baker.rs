@@ -1,1 +1,261 @@
-//! To be written.
+//! Starts the bake in the background: a thread that follows the world folder as `bake --watch` does, with less right
+//! to the processor than whoever draws. The only file of the viewer that knows the bake; what comes of it is in the
+//! world's files, and what it tells on the way comes as [`Event`]s.
+//!
+//! Whatever happens in here ends nothing: a mistake in a file, a full disk, even a panic is told as
+//! [`Event::Failed`], and the following begins again.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender, TryIter, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, anyhow};
+use genescape_bake::events::Listener;
+use genescape_bake::follow::{self, Audience};
+use genescape_bake::plan::Resolution;
+use genescape_bake::session::Session;
+use genescape_bake::world::World;
+use thread_priority::{ThreadPriority, set_current_thread_priority};
+
+pub use genescape_bake::events::Event;
+
+/// Priority of the bake's threads from 0 to 99: half way down. At the very bottom it would never get on where the
+/// pictures are drawn by the processor, too.
+const PRIORITY: u8 = 25;
+/// Until the first new attempt after a failure; each further pause is twice as long.
+const FIRST_PAUSE: Duration = Duration::from_millis(250);
+/// The longest of these pauses. An attempt that lasted longer was a good one.
+const LONGEST_PAUSE: Duration = Duration::from_secs(8);
+/// How long closing the window may wait for the bake: it ends after the stages that it is at. Whatever is left ends
+/// with the process, and the cache doesn't mind.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// How to bake.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BakerOptions {
+    /// Threads that compute; `None` leaves one core to the viewer.
+    pub threads: Option<usize>,
+    /// Samples a side of the heightfield: 65, 129, 257, 513, 1025 or 2049.
+    pub side: u32,
+    /// Look every half second, for network folders that send no events.
+    pub poll: bool,
+}
+
+impl Default for BakerOptions {
+    fn default() -> Self {
+        Self { threads: None, side: Resolution::DEFAULT_SIDE, poll: false }
+    }
+}
+
+/// A bake in the background. Dropped, it ends.
+pub struct Baker {
+    events: Receiver<Event>,
+    stop: Arc<AtomicBool>,
+    /// Nothing ever comes; it closes when the thread ends.
+    ended: Receiver<()>,
+}
+
+impl Baker {
+    /// Follows the world in `root`, which is made from the starter landscapes if there is none. `wake` is called
+    /// after each event, from any thread: somebody should look at [`Baker::events`].
+    ///
+    /// # Errors
+    /// If the system gives no thread.
+    pub fn start(
+        root: &Path,
+        options: BakerOptions,
+        wake: impl Fn() + Send + Sync + 'static,
+    ) -> std::io::Result<Self> {
+        let (sender, events) = channel();
+        let (alive, ended) = channel();
+        let stop = Arc::new(AtomicBool::new(false));
+        let teller = Teller { sender, wake: Box::new(wake), stop: Arc::clone(&stop) };
+        let root = root.to_owned();
+        thread::Builder::new().name("baker".into()).spawn(move || {
+            let _alive: Sender<()> = alive;
+            // Without this right it is merely less polite.
+            let _ = lower_priority();
+            let attempt = || bake(&root, &options, &teller);
+            supervise(attempt, |message| teller.tell(&Event::Failed { message }), &|| teller.stopped());
+        })?;
+        Ok(Self { events, stop, ended })
+    }
+
+    /// What happened since the last call. Never waits.
+    pub fn events(&self) -> TryIter<'_, Event> {
+        self.events.try_iter()
+    }
+}
+
+impl Drop for Baker {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::SeqCst);
+        let _ = self.ended.recv_timeout(PATIENCE);
+    }
+}
+
+/// Follows until told to stop, or until it can't go on.
+fn bake(root: &Path, options: &BakerOptions, teller: &Teller) -> Result<()> {
+    let resolution = Resolution::of_side(options.side).map_err(|text| anyhow!(text))?;
+    let world = World::open_or_create(root)?;
+    world.begin()?;
+    let mut session = Session::new(world, pool(options.threads)?, resolution)?;
+    let options = follow::Options { population: None, poll: options.poll };
+    follow::follow(&mut session, &options, teller)
+}
+
+fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
+    let cores = || thread::available_parallelism().map_or(1, |cores| cores.get());
+    let threads = threads.unwrap_or_else(|| cores() - 1).max(1);
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .thread_name(|index| format!("baker {index}"))
+        .start_handler(|_| {
+            let _ = lower_priority();
+        })
+        .build()
+        .context("cannot start threads")
+}
+
+fn lower_priority() -> Result<()> {
+    let priority = PRIORITY.try_into().map_err(|error| anyhow!("{error}"))?;
+    set_current_thread_priority(ThreadPriority::Crossplatform(priority)).map_err(|error| anyhow!("{error:?}"))
+}
+
+/// Sends what the bake tells to whoever holds the [`Baker`].
+struct Teller {
+    sender: Sender<Event>,
+    wake: Box<dyn Fn() + Send + Sync>,
+    stop: Arc<AtomicBool>,
+}
+
+impl Listener for Teller {
+    fn tell(&self, event: &Event) {
+        // The baker is gone only when this thread is to end.
+        if self.sender.send(event.clone()).is_ok() {
+            (self.wake)();
+        }
+    }
+}
+
+/// The same teller for each bake.
+struct Borrowed<'a>(&'a Teller);
+
+impl Listener for Borrowed<'_> {
+    fn tell(&self, event: &Event) {
+        self.0.tell(event);
+    }
+}
+
+impl Audience for Teller {
+    fn listener(&self) -> Box<dyn Listener + '_> {
+        Box::new(Borrowed(self))
+    }
+
+    fn stopped(&self) -> bool {
+        self.stop.load(Ordering::SeqCst)
+    }
+
+    fn failed(&self, error: &anyhow::Error) {
+        self.tell(&Event::Failed { message: format!("{error:#}") });
+    }
+}
+
+/// Runs `attempt` again and again until it ends by itself or `stopped` says so, with growing pauses. The same failure
+/// is told once.
+fn supervise(mut attempt: impl FnMut() -> Result<()>, tell: impl Fn(String), stopped: &dyn Fn() -> bool) {
+    let (mut told, mut pause) = (None, FIRST_PAUSE);
+    while !stopped() {
+        let start = Instant::now();
+        let message = match catch_unwind(AssertUnwindSafe(&mut attempt)) {
+            Ok(Ok(())) => return,
+            Ok(Err(_)) if stopped() => return,
+            Ok(Err(error)) => format!("{error:#}"),
+            Err(panic) => format!(
+                "the bake stumbled over a bug in Genescape and starts again; please report it: {}",
+                panic_text(&*panic)
+            ),
+        };
+        if start.elapsed() > LONGEST_PAUSE {
+            (told, pause) = (None, FIRST_PAUSE);
+        }
+        if told.as_ref() != Some(&message) {
+            tell(message.clone());
+            told = Some(message);
+        }
+        rest(pause, stopped);
+        pause = (2 * pause).min(LONGEST_PAUSE);
+    }
+}
+
+fn panic_text(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("no reason given")
+}
+
+fn rest(pause: Duration, stopped: &dyn Fn() -> bool) {
+    let end = Instant::now() + pause;
+    while Instant::now() < end && !stopped() {
+        thread::sleep(Duration::from_millis(20).min(pause));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::{Cell, RefCell};
+
+    /// Runs attempts that go as told by number, and stops before attempt `last`; what was told.
+    fn supervised(last: u32, how: impl Fn(u32) -> Result<()>) -> Vec<String> {
+        let (count, told) = (Cell::new(0), RefCell::new(Vec::new()));
+        let attempt = || {
+            count.set(count.get() + 1);
+            how(count.get())
+        };
+        supervise(attempt, |message| told.borrow_mut().push(message), &|| count.get() >= last);
+        assert_eq!(count.get(), last);
+        told.into_inner()
+    }
+
+    #[test]
+    fn a_panic_is_told_and_the_bake_starts_again() {
+        let told = supervised(2, |attempt| {
+            assert!(attempt > 1, "a stage's bug");
+            Ok(())
+        });
+        assert!(told.len() == 1 && told[0].contains("a stage's bug"), "{told:?}");
+    }
+
+    #[test]
+    fn the_same_failure_is_told_once_and_another_again() {
+        let told = supervised(4, |attempt| Err(anyhow!(if attempt < 3 { "no disk" } else { "no folder" })));
+        assert_eq!(told, ["no disk", "no folder"]);
+    }
+
+    fn wait_for(baker: &Baker, what: impl Fn(&Event) -> bool) -> Event {
+        loop {
+            let event = baker.events.recv_timeout(Duration::from_secs(60)).expect("the baker goes on");
+            if what(&event) {
+                return event;
+            }
+        }
+    }
+
+    #[test]
+    fn a_broken_space_is_told_and_its_repair_seen() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let space = folder.path().join("space.ron");
+        std::fs::write(&space, "Space(").expect("written");
+        let options = BakerOptions { threads: Some(1), side: 65, poll: false };
+        let baker = Baker::start(folder.path(), options, || {}).expect("a thread");
+        let failed = wait_for(&baker, |event| matches!(event, Event::Failed { .. }));
+        assert!(matches!(failed, Event::Failed { message } if message.contains("space.ron:1:")));
+        std::fs::write(&space, genescape_schema::Space::BUILTIN).expect("written");
+        wait_for(&baker, |event| matches!(event, Event::Planned { generation: 0, .. }));
+    }
+}

@@ -9,10 +9,13 @@ pub mod event;
 pub mod frame;
 #[cfg(feature = "gamepad")]
 pub mod gamepad;
+pub mod history;
 pub mod input;
 pub mod lod;
+pub mod save;
 pub mod scene;
 pub mod settings;
 pub mod ui;
 pub mod walk;
+pub mod world_files;
 pub mod world_watch;
