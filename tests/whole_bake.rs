@@ -220,7 +220,7 @@ struct Watching {
 
 impl Watching {
     fn new(world: &World) -> Self {
-        let mut command = world.command(&["--watch", "--size", "65", "--json"]);
+        let mut command = world.command(&["--watch", "--size", "65", "--json", "--threads", "1"]);
         let mut child = command.stdout(std::process::Stdio::piped()).spawn().expect("bake runs");
         let lines = std::io::BufRead::lines(std::io::BufReader::new(child.stdout.take().expect("piped")));
         Self { child, lines }
@@ -268,4 +268,83 @@ fn watch_bakes_what_is_saved_and_outlives_mistakes() {
     fs::write(world.population(0), good.replacen("cloud_cover: 0.6", "cloud_cover: 0.8", 1))
         .expect("written");
     assert!(watching.work() <= most);
+}
+
+fn vote(world: &World, generation: u32, votes: &str) {
+    world.edit(generation, |text| {
+        let (before, after) = text.split_once("    votes: ").expect("votes");
+        let (_, after) = after.split_once(",\n").expect("the end of the line");
+        format!("{before}    votes: {votes},\n{after}")
+    });
+}
+
+/// `current.ron` shows this generation, as its file is now.
+fn is_shown(world: &World, generation: u32) -> bool {
+    let text = fs::read_to_string(world.file("baked/current.ron")).expect("something was baked");
+    let current = genescape_schema::Current::load("current.ron", &text).expect("valid");
+    let bytes = fs::read(world.population(generation)).expect("a population");
+    (current.generation, current.population) == (generation, blake3::hash(&bytes).to_hex().to_string())
+}
+
+#[test]
+fn watch_answers_votes_once_and_on_old_generations_too() {
+    let world = World::new();
+    let mut watching = Watching::new(&world);
+    watching.next(&["done"]);
+    let ballots = [
+        (0, "Some((tree: Some(0), terrain: Some(1), sky: Some(2)))"),
+        (1, "Some((tree: None, terrain: Some(3), sky: Some(0)))"),
+        // Another choice on an old generation: nothing that came of it is overwritten.
+        (0, "Some((tree: Some(3), terrain: Some(1), sky: Some(2)))"),
+    ];
+    let mut before = Vec::new();
+    for (child, (parent, votes)) in (1..).zip(ballots) {
+        vote(&world, parent, votes);
+        assert_eq!(watching.next(&["bred"])["parent"], parent);
+        assert_eq!(watching.next(&["planned"])["generation"], child, "the child comes first");
+        watching.next(&["done"]);
+        assert!(is_shown(&world, child));
+        let text = fs::read_to_string(world.population(child)).expect("a new file");
+        assert!(text.contains(&format!("parent: Some((generation: {parent},")), "{text}");
+        for (generation, text) in &before {
+            assert_eq!(&fs::read_to_string(world.population(*generation)).expect("kept"), text);
+        }
+        before.push((child, text));
+        before.retain(|(generation, _)| ballots.get(child as usize).is_none_or(|next| next.0 != *generation));
+    }
+    // The same votes again, in other words; and somebody who comes later: no child is missing.
+    vote(&world, 0, "Some((sky: Some(2), terrain: Some(1), tree: Some(3)))");
+    watching.next(&["done"]);
+    drop(watching);
+    let mut late = Watching::new(&world);
+    assert_eq!(late.next(&["bred", "planned"])["generation"], 3);
+    late.next(&["done"]);
+    assert!(!world.population(4).exists());
+}
+
+#[test]
+fn a_save_during_a_bake_ends_it_and_what_was_saved_last_is_shown() {
+    let world = World::new();
+    let mut watching = Watching::new(&world);
+    watching.next(&["started"]);
+    world.edit(0, |text| set_gene(&text, 1, "turbidity", "6"));
+    assert_eq!(watching.next(&["superseded", "done"])["event"], "superseded");
+    assert_eq!(watching.next(&["superseded", "done", "failed"])["event"], "done");
+    assert!(is_shown(&world, 0));
+}
+
+#[test]
+fn to_save_a_file_is_to_ask_for_its_scenes() {
+    let world = World::new();
+    world.bake(&[]).ok();
+    world.bake(&["random", "--seed", "5"]).ok();
+    let mut watching = Watching::new(&world);
+    assert_eq!(watching.next(&["done"])["built"], 0);
+    assert!(is_shown(&world, 1));
+    fs::remove_dir_all(world.file("baked/g0000")).expect("evicted");
+    world.edit(0, |text| text);
+    assert_eq!(watching.next(&["planned"])["generation"], 0);
+    watching.next(&["done"]);
+    assert!(is_shown(&world, 0));
+    assert!(world.file("baked/g0000/scene-3/scene.gltf").is_file());
 }

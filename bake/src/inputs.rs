@@ -93,3 +93,63 @@ fn read(path: &Path) -> Result<Option<(Vec<u8>, Option<SystemTime>)>> {
         Err(error) => Err(error).with_context(|| format!("cannot read {}", path.display())),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    fn world() -> tempfile::TempDir {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        fs::create_dir(folder.path().join(names::POPULATIONS)).expect("a folder");
+        for generation in [0, 3] {
+            fs::write(path(&folder, generation), format!("(generation: {generation})")).expect("written");
+        }
+        fs::write(folder.path().join(names::POPULATIONS).join("g0003.ron~"), "an editor's").expect("written");
+        folder
+    }
+
+    fn path(folder: &tempfile::TempDir, generation: u32) -> PathBuf {
+        folder.path().join(names::population(generation))
+    }
+
+    fn look(folder: &tempfile::TempDir, before: &Inputs) -> Inputs {
+        Inputs::read(folder.path(), None, before).expect("readable")
+    }
+
+    fn saved(folder: &tempfile::TempDir, before: &Inputs) -> Vec<PathBuf> {
+        look(folder, before).saved_since(before).cloned().collect()
+    }
+
+    #[test]
+    fn every_save_is_seen_even_within_one_tick_or_without_a_change() {
+        let folder = world();
+        let before = look(&folder, &Inputs::default());
+        assert_eq!(before.lineages().iter().map(|l| l.generation).collect::<Vec<_>>(), [0, 3]);
+        assert!(saved(&folder, &before).is_empty());
+        let file =
+            |generation| fs::File::options().append(true).open(path(&folder, generation)).expect("there");
+        let time = fs::metadata(path(&folder, 3)).and_then(|data| data.modified()).expect("a time");
+
+        fs::write(path(&folder, 3), "(generation: 8)").expect("written");
+        file(3).set_modified(time).expect("set");
+        assert_eq!(saved(&folder, &before), [path(&folder, 3)], "another text, the same time");
+
+        let before = look(&folder, &before);
+        file(0).set_modified(time + Duration::from_secs(9)).expect("set");
+        let now = look(&folder, &before);
+        assert_eq!(now.saved_since(&before).collect::<Vec<_>>(), [&path(&folder, 0)], "the same text");
+        assert!(now.age(&path(&folder, 0)) > now.age(&path(&folder, 3)), "saved later");
+    }
+
+    #[test]
+    fn one_file_alone_may_matter() {
+        let folder = world();
+        let only = path(&folder, 0);
+        let inputs = Inputs::read(folder.path(), Some(&only), &Inputs::default()).expect("readable");
+        assert_eq!(inputs.populations.keys().collect::<Vec<_>>(), [&only]);
+        fs::remove_file(&only).expect("removed");
+        let gone = Inputs::read(folder.path(), Some(&only), &inputs).expect("readable");
+        assert!(gone.populations.is_empty() && gone != inputs);
+    }
+}

@@ -68,9 +68,7 @@ impl Session {
         listener: &dyn Listener,
         cancelled: &(dyn Fn() -> bool + Sync),
     ) -> Result<Baked> {
-        let baked = self.bake_aside(path, listener, cancelled)?;
-        self.world.publish_current(&baked.file)?;
-        Ok(baked)
+        self.bake(path, true, listener, cancelled)
     }
 
     /// The same, but `current.ron` stays as it is.
@@ -80,6 +78,16 @@ impl Session {
     pub fn bake_aside(
         &self,
         path: &Path,
+        listener: &dyn Listener,
+        cancelled: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Baked> {
+        self.bake(path, false, listener, cancelled)
+    }
+
+    fn bake(
+        &self,
+        path: &Path,
+        shows: bool,
         listener: &dyn Listener,
         cancelled: &(dyn Fn() -> bool + Sync),
     ) -> Result<Baked> {
@@ -96,6 +104,9 @@ impl Session {
         // The bar must not stand between the person and the message.
         listener.end();
         let done = result?;
+        if shows {
+            self.world.publish_current(&file)?;
+        }
         self.remember(&plan, &done, population)?;
 
         let built = done.iter().filter(|d| d.how == How::Built).count();
