@@ -237,6 +237,19 @@ mod tests {
         assert_eq!(told, ["no disk", "no folder"]);
     }
 
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn the_bakes_threads_step_back_and_nobody_elses() {
+        let nice = || {
+            let stat = std::fs::read_to_string("/proc/thread-self/stat").expect("Linux tells");
+            let (_, fields) = stat.rsplit_once(')').expect("after the name");
+            fields.split_whitespace().nth(16).expect("nice").parse::<i32>().expect("a number")
+        };
+        let (before, of_the_bake) = (nice(), pool(Some(1)).expect("threads").install(nice));
+        assert!(of_the_bake > before, "{of_the_bake} > {before}");
+        assert_eq!(nice(), before);
+    }
+
     fn wait_for(baker: &Baker, what: impl Fn(&Event) -> bool) -> Event {
         loop {
             let event = baker.events.recv_timeout(Duration::from_secs(60)).expect("the baker goes on");
