@@ -9,7 +9,7 @@
 pub mod bintree;
 pub mod morph;
 pub mod quadtree;
-
+pub mod roam;
 pub mod tree;
 
 #[cfg(test)]

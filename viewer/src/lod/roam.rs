@@ -1,0 +1,277 @@
+//! A view of a heightfield → one generalised triangle strip of sample numbers (thesis 3.2, the ROAM-based algorithm).
+//! Metres, pixels.
+//!
+//! Every frame anew from the two root triangles down (Duchaineau et al., "ROAMing terrain", 1997, without its queues):
+//! a triangle is split while a vertical segment through its wedgie may look longer than the bound. A split first splits
+//! whatever it depends on, so that no T-junction appears. The land and the triangle drawn for it both lie in the slab of
+//! some triangle that passed, 2w thick; so nowhere do they look farther apart than the bound. Triangles out of sight are
+//! kept, but not refined, so the mesh always covers the square, and a walk of the hierarchy visits all triangles each
+//! across an edge of the one before: one strip (Lindstrom et al., "Real-time, continuous level of detail rendering of
+//! height fields", 1996), where a corner is turned by repeating a vertex.
+
+use glam::Vec3;
+
+use super::bintree::{Sample, needs};
+use super::morph::sample_m;
+use crate::camera::{Camera, Frustum};
+use crate::scene::Heightfield;
+
+/// All planes of a frustum still to be tested.
+const ALL_PLANES: u32 = (1 << 5) - 1;
+
+/// The flags that say which samples are in use, kept between frames.
+#[derive(Clone, Debug, Default)]
+pub struct Roam {
+    /// In use if equal to the nonce; so one increment clears all.
+    flags: Vec<u32>,
+    nonce: u32,
+}
+
+/// What a triangulation amounts to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stats {
+    /// Triangles that are not degenerate.
+    pub triangles: u32,
+    /// Numbers in the strip.
+    pub strip: u32,
+    /// Samples in use, the corners not counted.
+    pub splits: u32,
+}
+
+impl Roam {
+    /// Replaces `strip` by a triangle strip over the whole field: entries of its arrays, front faces counter-clockwise
+    /// from above with the first triangle as written. `aspect` is the picture's width over its height, `height_px` its
+    /// height; `error_px` is how far land and mesh may be apart in the picture: 0 uses every sample in sight that is not
+    /// on the plane around it.
+    pub fn triangulate(
+        &mut self,
+        field: &Heightfield,
+        camera: &Camera,
+        (aspect, height_px): (f32, f32),
+        error_px: f32,
+        strip: &mut Vec<u32>,
+    ) -> Stats {
+        strip.clear();
+        if field.side < 2 {
+            return Stats::default();
+        }
+        self.begin(field.heights_m.len());
+        let last = field.side - 1;
+        let roots = [[[last, last], [0, 0], [0, last]], [[0, 0], [last, last], [last, 0]]];
+        let mut marks = Marks { flags: &mut self.flags, nonce: self.nonce, side: field.side, splits: 0 };
+        let metric = Metric::new(field, camera, (aspect, height_px), error_px);
+        for root in roots {
+            refine(&metric, &mut marks, root.map(|sample| metric.corner(sample)), ALL_PLANES);
+        }
+        let mut walk = Walk { marks: &marks, strip, triangles: 0 };
+        for root in roots {
+            walk.visit(root, true);
+        }
+        let triangles = walk.triangles;
+        Stats { triangles, strip: strip.len() as u32, splits: marks.splits }
+    }
+
+    /// Clears all flags.
+    fn begin(&mut self, samples: usize) {
+        if self.flags.len() != samples || self.nonce == u32::MAX {
+            self.flags.clear();
+            self.flags.resize(samples, 0);
+            self.nonce = 0;
+        }
+        self.nonce += 1;
+    }
+}
+
+/// The middle of the hypotenuse a–b; `None` for half a cell.
+#[inline]
+fn middle(a: Sample, b: Sample) -> Option<Sample> {
+    let sum = [a[0] + b[0], a[1] + b[1]];
+    ((sum[0] | sum[1]) & 1 == 0).then_some([sum[0] / 2, sum[1] / 2])
+}
+
+/// Which samples are in use.
+struct Marks<'a> {
+    flags: &'a mut [u32],
+    nonce: u32,
+    side: u32,
+    splits: u32,
+}
+
+impl Marks<'_> {
+    #[inline]
+    fn entry(&self, [i, j]: Sample) -> usize {
+        (j * self.side + i) as usize
+    }
+
+    #[inline]
+    fn uses(&self, sample: Sample) -> bool {
+        self.flags[self.entry(sample)] == self.nonce
+    }
+
+    /// Uses a sample (no corner of the field), and first what it depends on.
+    fn enable(&mut self, sample: Sample) {
+        let entry = self.entry(sample);
+        if self.flags[entry] == self.nonce {
+            return;
+        }
+        self.flags[entry] = self.nonce;
+        self.splits += 1;
+        let last = self.side - 1;
+        for needed in needs(sample, last).into_iter().flatten() {
+            // The field's corners are always in use.
+            if !(needed[0] % last == 0 && needed[1] % last == 0) {
+                self.enable(needed);
+            }
+        }
+    }
+}
+
+/// A sample with its place in the world and as the camera sees it.
+#[derive(Clone, Copy)]
+struct Corner {
+    sample: Sample,
+    world_m: Vec3,
+    /// Right, up, and ahead of the eye.
+    eye_m: Vec3,
+}
+
+/// The bound on the screen, ready for tests without roots or divisions.
+struct Metric<'a> {
+    field: &'a Heightfield,
+    frustum: Frustum,
+    position_m: Vec3,
+    /// Rows: right, up, ahead.
+    axes: [Vec3; 3],
+    /// The world's vertical in these axes.
+    vertical: Vec3,
+    /// (error_px / (2·focal_px))².
+    bound: f32,
+}
+
+impl<'a> Metric<'a> {
+    fn new(field: &'a Heightfield, camera: &Camera, (aspect, height_px): (f32, f32), error_px: f32) -> Self {
+        let (right, ahead) = (camera.right(), camera.forward());
+        let axes = [right, right.cross(ahead), ahead];
+        let focal_px = 0.5 * height_px / libm::tanf(0.5 * camera.fov_y_rad);
+        let half = 0.5 * error_px.max(0.0) / focal_px;
+        Self {
+            field,
+            frustum: camera.frustum(aspect),
+            position_m: camera.position_m,
+            axes,
+            vertical: Vec3::new(axes[0].y, axes[1].y, axes[2].y),
+            bound: half * half,
+        }
+    }
+
+    fn corner(&self, sample: Sample) -> Corner {
+        let world_m = sample_m(self.field, sample);
+        let from_eye_m = world_m - self.position_m;
+        Corner { sample, world_m, eye_m: Vec3::from_array(self.axes.map(|axis| axis.dot(from_eye_m))) }
+    }
+
+    /// Of `planes` those that cut the slab; `None` if it lies outside one.
+    fn cutting(&self, corners: &[Corner; 3], half_m: f32, planes: u32) -> Option<u32> {
+        let mut cutting = planes;
+        for (number, plane) in self.frustum.planes.iter().enumerate() {
+            if planes >> number & 1 == 0 {
+                continue;
+            }
+            let spread = plane.y.abs() * half_m;
+            let inside = corners.map(|corner| plane.truncate().dot(corner.world_m) + plane.w);
+            if inside.iter().all(|&inside| inside < -spread) {
+                return None;
+            }
+            if inside.iter().all(|&inside| inside >= spread) {
+                cutting &= !(1 << number);
+            }
+        }
+        Some(cutting)
+    }
+
+    /// Whether a vertical segment of ±`half_m` within the slab may look longer than the bound. For a segment around
+    /// (p, q, r), half of it (a, b, c), that length is 2·√((ar − cp)² + (br − cq)²) / (r² − c²); over the slab the
+    /// greatest numerator and the least denominator are found at corners.
+    fn exceeds(&self, corners: &[Corner; 3], half_m: f32) -> bool {
+        if half_m <= 0.0 {
+            return false;
+        }
+        let half = self.vertical * half_m;
+        let depth_m = corners.iter().fold(f32::MAX, |least, corner| least.min(corner.eye_m.z));
+        if depth_m <= half.z.abs() {
+            return true;
+        }
+        let numerator = corners.iter().fold(0.0f32, |greatest, corner| {
+            let (x, y) =
+                (half.x * corner.eye_m.z - half.z * corner.eye_m.x, half.y * corner.eye_m.z - half.z * corner.eye_m.y);
+            greatest.max(x * x + y * y)
+        });
+        let denominator = depth_m * depth_m - half.z * half.z;
+        numerator > self.bound * denominator * denominator
+    }
+}
+
+/// Splits a triangle (ends of the hypotenuse, apex) and its halves as far as the metric asks for.
+fn refine(metric: &Metric<'_>, marks: &mut Marks<'_>, corners: [Corner; 3], planes: u32) {
+    let [a, b, apex] = corners;
+    let Some(sample) = middle(a.sample, b.sample) else { return };
+    let half_m = metric.field.wedgies_m[marks.entry(sample)];
+    let Some(planes) = metric.cutting(&corners, half_m, planes) else { return };
+    if !metric.exceeds(&corners, half_m) {
+        return;
+    }
+    marks.enable(sample);
+    let middle = metric.corner(sample);
+    refine(metric, marks, [apex, a, middle], planes);
+    refine(metric, marks, [b, apex, middle], planes);
+}
+
+/// Writes the strip.
+struct Walk<'a> {
+    marks: &'a Marks<'a>,
+    strip: &'a mut Vec<u32>,
+    triangles: u32,
+}
+
+impl Walk<'_> {
+    /// The triangles within one (start, end of the hypotenuse, apex) on the way from start to end. Comes in across an
+    /// edge at the start; leaves across the hypotenuse or across the edge from apex to end. The halves are crossed by
+    /// way of the apex; the first leaves for the second across their common edge, a leg of both.
+    fn visit(&mut self, [start, end, apex]: [Sample; 3], leaves_by_hypotenuse: bool) {
+        match middle(start, end).filter(|&sample| self.marks.uses(sample)) {
+            Some(middle) => {
+                self.visit([start, apex, middle], false);
+                self.visit([apex, end, middle], !leaves_by_hypotenuse);
+            }
+            None => self.leaf([start, end, apex], leaves_by_hypotenuse),
+        }
+    }
+
+    fn leaf(&mut self, corners: [Sample; 3], leaves_by_hypotenuse: bool) {
+        self.triangles += 1;
+        let [start, end, apex] = corners.map(|sample| self.marks.entry(sample) as u32);
+        let dropped = if leaves_by_hypotenuse { apex } else { start };
+        let &[.., older, newer] = self.strip.as_slice() else {
+            let kept = if leaves_by_hypotenuse { [start, end] } else { [end, apex] };
+            return self.begin(corners, [dropped, kept[0], kept[1]]);
+        };
+        let new = [start, end, apex].into_iter().find(|&vertex| vertex != older && vertex != newer);
+        if newer == dropped {
+            // The older one must stay: turn the corner.
+            self.strip.push(older);
+        }
+        self.strip.extend(new);
+    }
+
+    /// The first triangle, any edge of which may be the one it was entered by; its first vertex twice if it would be
+    /// clockwise otherwise. (start, end, apex) has the sense of (`dropped`, `kept`), a rotation of it.
+    fn begin(&mut self, [start, end, apex]: [Sample; 3], triangle: [u32; 3]) {
+        let along = |from: Sample, to: Sample, axis: usize| i64::from(to[axis]) - i64::from(from[axis]);
+        // j runs south: from above, with x to the right and z towards us, counter-clockwise is negative.
+        let turn = along(start, end, 0) * along(start, apex, 1) - along(start, end, 1) * along(start, apex, 0);
+        if turn > 0 {
+            self.strip.push(triangle[0]);
+        }
+        self.strip.extend(triangle);
+    }
+}
