@@ -71,6 +71,12 @@ impl Roam {
         Stats { triangles, strip: strip.len() as u32, splits: marks.splits }
     }
 
+    /// As after 2³²−2 frames.
+    #[cfg(test)]
+    pub(super) fn wear(&mut self) {
+        self.nonce = u32::MAX - 1;
+    }
+
     /// Clears all flags.
     fn begin(&mut self, samples: usize) {
         if self.flags.len() != samples || self.nonce == u32::MAX {
@@ -202,8 +208,10 @@ impl<'a> Metric<'a> {
             return true;
         }
         let numerator = corners.iter().fold(0.0f32, |greatest, corner| {
-            let (x, y) =
-                (half.x * corner.eye_m.z - half.z * corner.eye_m.x, half.y * corner.eye_m.z - half.z * corner.eye_m.y);
+            let (x, y) = (
+                half.x * corner.eye_m.z - half.z * corner.eye_m.x,
+                half.y * corner.eye_m.z - half.z * corner.eye_m.y,
+            );
             greatest.max(x * x + y * y)
         });
         let denominator = depth_m * depth_m - half.z * half.z;
@@ -268,7 +276,8 @@ impl Walk<'_> {
     fn begin(&mut self, [start, end, apex]: [Sample; 3], triangle: [u32; 3]) {
         let along = |from: Sample, to: Sample, axis: usize| i64::from(to[axis]) - i64::from(from[axis]);
         // j runs south: from above, with x to the right and z towards us, counter-clockwise is negative.
-        let turn = along(start, end, 0) * along(start, apex, 1) - along(start, end, 1) * along(start, apex, 0);
+        let turn =
+            along(start, end, 0) * along(start, apex, 1) - along(start, end, 1) * along(start, apex, 0);
         if turn > 0 {
             self.strip.push(triangle[0]);
         }

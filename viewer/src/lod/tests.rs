@@ -4,11 +4,10 @@ use std::collections::HashMap;
 
 use genescape_bake::model;
 use genescape_bake::stages::terrain_lod;
-use glam::{Mat4, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 use proptest::prelude::*;
 
-use super::bintree::Sample;
-use super::morph::{Detail, LEAST_UNIT_CELLS, sample_m};
+use super::morph::{Detail, sample_m};
 use super::quadtree::{self, Block, Errors, block_cells, block_indices};
 use super::roam::Roam;
 use crate::camera::Camera;
@@ -17,12 +16,14 @@ use crate::scene::Heightfield;
 /// Rough land of a given side: waves and noise from a seed, `relief_m` high.
 fn land(side: u32, spacing_m: f32, relief_m: f32, seed: u32) -> Heightfield {
     let noise = |i: u32, j: u32| {
-        let mixed = (i.wrapping_mul(0x9e37_79b9) ^ j.wrapping_mul(0x85eb_ca6b) ^ seed).wrapping_mul(0xc2b2_ae35);
+        let mixed =
+            (i.wrapping_mul(0x9e37_79b9) ^ j.wrapping_mul(0x85eb_ca6b) ^ seed).wrapping_mul(0xc2b2_ae35);
         ((mixed ^ mixed >> 15).wrapping_mul(0x27d4_eb2f) >> 8) as f32 / (1 << 24) as f32
     };
     let height = |i: u32, j: u32| {
         let (x, z, turn) = (i as f32 / side as f32, j as f32 / side as f32, seed as f32);
-        let waves = libm::sinf(7.0 * x + turn) * libm::cosf(5.0 * z - turn) + 0.4 * libm::sinf(23.0 * (x + z));
+        let waves =
+            libm::sinf(7.0 * x + turn) * libm::cosf(5.0 * z - turn) + 0.4 * libm::sinf(23.0 * (x + z));
         relief_m * (0.5 * waves + 0.05 * noise(i, j))
     };
     let heights_m = (0..side * side).map(|n| height(n % side, n / side)).collect();
@@ -140,4 +141,193 @@ proptest! {
             prop_assert!(lambda >= level - 1e-4 && lambda <= level + 2.0 + 1e-4, "{lambda} in {block:?}");
         }
     }
+}
+
+/// Height of a mesh at (x, z), by the triangle that holds it.
+fn height_in(triangles: &[Triangle], at: Vec2) -> Option<f32> {
+    triangles.iter().find_map(|t| {
+        let [a, b, c] = t.map(|v| Vec2::new(v.x, v.z));
+        let whole = (b - a).perp_dot(c - a);
+        let weights = [(b - at).perp_dot(c - at), (c - at).perp_dot(a - at), (a - at).perp_dot(b - at)];
+        let inside = whole != 0.0 && weights.iter().all(|w| w / whole >= -1e-5);
+        inside.then(|| (weights[0] * t[0].y + weights[1] * t[1].y + weights[2] * t[2].y) / whole)
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    /// Over the whole walk blocks change their levels many times; a pop would be as high as a displacement, metres here.
+    #[test]
+    fn land_moves_little_when_the_eye_does(eye in eye(), x in -0.4f32..0.4, z in -0.4f32..0.4, seed in 0u32..99) {
+        let field = land(65, 1.0, 30.0, seed);
+        let steepest = (0..64).flat_map(|j| (0..64).map(move |i| (i, j))).fold(0f32, |most, (i, j)| {
+            let here = field.at(i, j);
+            most.max((field.at(i + 1, j) - here).abs()).max((field.at(i, j + 1) - here).abs())
+        });
+        let start = eye * field.extent_m();
+        let step_m = 0.02;
+        let at = Vec2::new(x, z) * field.extent_m();
+        let mut blocks = Vec::new();
+        let mut height = |eye_m: Vec3| {
+            let detail = detail_at(&field, eye_m, 1.0);
+            quadtree::select(&field, &detail, None, &mut blocks);
+            height_in(&drawn(&field, &detail, &blocks), at)
+        };
+        let mut before = height(start);
+        for step in 1..40 {
+            let now = height(start + Vec3::new(0.6, 0.0, 0.8) * (step_m * step as f32));
+            let moved = (now.expect("the mesh covers the square") - before.expect("as before")).abs();
+            prop_assert!(moved < 2.0 * steepest * step_m, "{moved} m, slope {steepest}");
+            before = now;
+        }
+    }
+
+    #[test]
+    fn blocks_look_as_near_to_the_land_as_asked(
+        eye in eye(), relief in 1f32..20., error_px in 0.5f32..8., seed in 0u32..99
+    ) {
+        let field = land(129, 1.0, relief, seed);
+        let eye_m = eye * field.extent_m();
+        let detail = quadtree::detail(&field, &Errors::of(&field), eye_m, 300.0, error_px, f32::MAX);
+        let mut blocks = Vec::new();
+        quadtree::select(&field, &detail, None, &mut blocks);
+        let mesh = drawn(&field, &detail, &blocks);
+        for n in 0..40u32 {
+            let land_m = sample_m(&field, [n * 37 % 129, n * 53 % 129]);
+            let height = height_in(&mesh, Vec2::new(land_m.x, land_m.z)).expect("the mesh covers the square");
+            let seen_px = (height - land_m.y).abs() * 300.0 / detail.distance_squared_m2(Vec2::new(land_m.x, land_m.z)).sqrt();
+            prop_assert!(seen_px <= error_px * 1.01, "{seen_px} of {error_px} px");
+        }
+    }
+}
+
+/// Triangles of a strip without the degenerate ones, the odd ones turned.
+fn strip_triangles(field: &Heightfield, strip: &[u32]) -> Vec<Triangle> {
+    let place = |entry: u32| sample_m(field, [entry % field.side, entry / field.side]);
+    let corners = strip.windows(3).enumerate();
+    let turned = corners.map(|(n, t)| if n % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] });
+    turned.filter(|[a, b, c]| a != b && b != c && c != a).map(|t| t.map(place)).collect()
+}
+
+prop_compose! {
+    /// A camera on or above a field of extent 1.
+    fn camera()(x in -0.6f32..0.6, y in -0.02f32..0.3, z in -0.6f32..0.6, yaw in -4f32..4., pitch in -1.5f32..0.7)
+        -> Camera {
+        Camera { position_m: Vec3::new(x, y, z), yaw_rad: yaw, pitch_rad: pitch, fov_y_rad: 1.0 }
+    }
+}
+
+const PICTURE: (f32, f32) = (1.5, 400.0);
+
+/// Pixels of a point, from the middle of the picture; `None` behind the near plane.
+fn project_px(camera: &Camera, point_m: Vec3) -> Option<Vec2> {
+    let clip = camera.clip_from_world(PICTURE.0) * point_m.extend(1.0);
+    (clip.w > 0.1).then(|| Vec2::new(clip.x / clip.w * PICTURE.0, clip.y / clip.w) * (0.5 * PICTURE.1))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    #[test]
+    fn strip_is_a_closed_mesh_near_the_land(
+        depth in 1u32..7, mut camera in camera(), relief in 0f32..20., error_px in 0.3f32..20., seed in 0u32..99
+    ) {
+        let field = land((1 << depth) + 1, 1.0, relief, seed);
+        camera.position_m *= field.extent_m();
+        let (mut roam, mut strip) = (Roam::default(), Vec::new());
+        let stats = roam.triangulate(&field, &camera, PICTURE, error_px, &mut strip);
+        let mesh = strip_triangles(&field, &strip);
+        check_closed(&field, &mesh)?;
+        prop_assert_eq!(stats.triangles as usize, mesh.len());
+        prop_assert_eq!(stats.strip as usize, strip.len());
+
+        let frustum = camera.frustum(PICTURE.0);
+        for entry in 0..field.side * field.side {
+            let land_m = sample_m(&field, [entry % field.side, entry / field.side]);
+            let height = height_in(&mesh, Vec2::new(land_m.x, land_m.z)).expect("the mesh covers the square");
+            let drawn_m = Vec3::new(land_m.x, height, land_m.z);
+            if frustum.sees_sphere(land_m, 0.0) && let Some(seen) = project_px(&camera, land_m) {
+                let off = project_px(&camera, drawn_m).map_or(f32::MAX, |drawn| drawn.distance(seen));
+                prop_assert!(off <= error_px * 1.01 + 1e-2, "{off} of {error_px} px at {land_m}");
+            }
+        }
+    }
+
+    #[test]
+    fn without_an_allowed_error_all_that_is_seen_is_drawn(mut camera in camera(), seed in 0u32..99) {
+        let field = land(33, 1.0, 20.0, seed);
+        camera.position_m *= field.extent_m();
+        let mut strip = Vec::new();
+        Roam::default().triangulate(&field, &camera, PICTURE, 0.0, &mut strip);
+        let frustum = camera.frustum(PICTURE.0);
+        for entry in 0..field.side * field.side {
+            let flat = field.displacements_m[entry as usize] == 0.0;
+            let seen = frustum.sees_sphere(sample_m(&field, [entry % field.side, entry / field.side]), 0.0);
+            prop_assert!(flat || !seen || strip.contains(&entry), "sample {entry}");
+        }
+    }
+
+    #[test]
+    fn flags_of_earlier_frames_do_not_show(mut camera in camera(), mut other in camera(), wrap in any::<bool>()) {
+        let field = land(33, 1.0, 20.0, 5);
+        camera.position_m *= field.extent_m();
+        other.position_m *= field.extent_m();
+        let (mut fresh, mut used, mut worn) = (Vec::new(), Vec::new(), Roam::default());
+        worn.triangulate(&field, &other, PICTURE, 1.0, &mut used);
+        if wrap {
+            worn.wear();
+            worn.triangulate(&field, &other, PICTURE, 1.0, &mut used);
+        }
+        worn.triangulate(&field, &camera, PICTURE, 2.0, &mut used);
+        Roam::default().triangulate(&field, &camera, PICTURE, 2.0, &mut fresh);
+        prop_assert_eq!(fresh, used);
+    }
+}
+
+#[test]
+fn more_error_and_less_sight_mean_fewer_triangles() {
+    let field = land(129, 2.0, 40.0, 3);
+    let camera =
+        Camera { position_m: Vec3::new(0.0, 30.0, 100.0), yaw_rad: 0.0, pitch_rad: -0.2, fov_y_rad: 1.0 };
+    let (mut roam, mut strip, mut blocks) = (Roam::default(), Vec::new(), Vec::new());
+    let counts: Vec<u32> = [0.0, 1.0, 4.0, 64.0, 1e9]
+        .map(|error_px| roam.triangulate(&field, &camera, PICTURE, error_px, &mut strip).triangles)
+        .to_vec();
+    assert!(counts.is_sorted_by(|a, b| a > b), "{counts:?}");
+    let detail = detail_at(&field, camera.position_m, 1.0);
+    let all = quadtree::select(&field, &detail, None, &mut blocks);
+    let seen = quadtree::select(&field, &detail, Some(&camera.frustum(1.5)), &mut blocks);
+    assert!(seen.blocks < all.blocks && seen.blocks > 0 && seen.culled > 0, "{seen:?} of {all:?}");
+    let exact = quadtree::detail(&field, &Errors::of(&field), camera.position_m, 500.0, 0.0, f32::MAX);
+    assert_eq!(quadtree::select(&field, &exact, None, &mut blocks).triangles, 128 * 128 * 2);
+}
+
+/// Times: `cargo test -p genescape-viewer --lib lod::tests::speed -- --ignored --nocapture`.
+#[test]
+#[ignore = "prints times"]
+fn speed() {
+    let field = land(513, 2.0, 60.0, 7);
+    let errors = Errors::of(&field);
+    let (mut roam, mut strip, mut blocks) = (Roam::default(), Vec::new(), Vec::new());
+    let time = |name: &str, run: &mut dyn FnMut() -> String| {
+        let said = run();
+        let start = std::time::Instant::now();
+        (0..20).for_each(|_| drop(run()));
+        genescape_bake::say!("{name}: {:.0} us, {said}", start.elapsed().as_secs_f64() * 1e6 / 20.0);
+    };
+    for yaw_rad in [0.0, 2.0] {
+        let eye_m = Vec3::new(50.0, field.height_m(50.0, 90.0) + 1.6, 90.0);
+        let camera = Camera { position_m: eye_m, yaw_rad, pitch_rad: 0.0, fov_y_rad: 1.0 };
+        let frustum = camera.frustum(16.0 / 9.0);
+        let detail = quadtree::detail(&field, &errors, eye_m, 494.0, 1.0, 256.0);
+        time("blocks", &mut || {
+            let stats = quadtree::select(&field, &detail, Some(&frustum), &mut blocks);
+            format!("{stats:?}, d0 {} m", detail.unit_m)
+        });
+        time("roam", &mut || {
+            format!("{:?}", roam.triangulate(&field, &camera, (16.0 / 9.0, 540.0), 1.0, &mut strip))
+        });
+    }
+    time("errors", &mut || format!("{:?}", Errors::of(&field)));
 }

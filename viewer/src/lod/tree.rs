@@ -117,7 +117,12 @@ mod tests {
     }
 
     fn scheme() -> impl Strategy<Value = TreeScheme> {
-        prop::sample::select(vec![TreeScheme::Quality, TreeScheme::Simple, TreeScheme::Discrete, TreeScheme::Off])
+        prop::sample::select(vec![
+            TreeScheme::Quality,
+            TreeScheme::Simple,
+            TreeScheme::Discrete,
+            TreeScheme::Off,
+        ])
     }
 
     proptest! {
