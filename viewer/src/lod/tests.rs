@@ -103,9 +103,9 @@ fn detail_at(field: &Heightfield, eye_m: Vec3, unit: f32) -> Detail {
 }
 
 prop_compose! {
-    /// An eye over or beside a field of extent 1, near or far.
-    fn eye()(x in -1.5f32..1.5, y in -0.1f32..0.5, z in -1.5f32..1.5, far in 1f32..4.) -> Vec3 {
-        Vec3::new(x, y, z) * far
+    /// An eye over or beside a field of extent 1, as often as not on the ground.
+    fn eye()(x in -0.8f32..0.8, y in -0.3f32..0.3, z in -0.8f32..0.8) -> Vec3 {
+        Vec3::new(x, y, z)
     }
 }
 
@@ -131,12 +131,10 @@ proptest! {
         quadtree::select(&field, &detail, None, &mut blocks);
         let cells: u64 = blocks.iter().map(|block| (16u64 << block.level) * (16u64 << block.level)).sum();
         prop_assert_eq!(cells, 1024 * 1024);
-        for block in blocks {
-            let place = Vec2::new(
-                field.place_m(block.i + (x << block.level)),
-                field.place_m(block.j + (z << block.level)),
-            );
-            let lambda = detail.lambda(place);
+        // The greatest λ is at a corner, for distance is convex.
+        for ([x, z], block) in [[0, 0], [16, 0], [0, 16], [16, 16], [x, z]].iter().flat_map(|v| blocks.iter().map(move |b| (v, b))) {
+            let place = |from: u32, by: u32| field.place_m(from + (by << block.level));
+            let lambda = detail.lambda(Vec2::new(place(block.i, *x), place(block.j, *z)));
             let level = block.level as f32;
             prop_assert!(lambda >= level - 1e-4 && lambda <= level + 2.0 + 1e-4, "{lambda} in {block:?}");
         }
@@ -283,7 +281,7 @@ proptest! {
         worn.triangulate(&field, &other, PICTURE, 1.0, &mut used);
         if wrap {
             worn.wear();
-            worn.triangulate(&field, &other, PICTURE, 1.0, &mut used);
+            worn.triangulate(&field, &other, PICTURE, 1e9, &mut used);
         }
         worn.triangulate(&field, &camera, PICTURE, 2.0, &mut used);
         Roam::default().triangulate(&field, &camera, PICTURE, 2.0, &mut fresh);
