@@ -23,6 +23,7 @@ use genescape_bake::world::World;
 use thread_priority::{ThreadPriority, set_current_thread_priority};
 
 pub use genescape_bake::events::Event;
+pub use genescape_bake::session::scope as history_scope;
 
 /// Priority of the bake's threads from 0 to 99: half way down. At the very bottom it would never get on where the
 /// pictures are drawn by the processor, too.

@@ -78,6 +78,9 @@ pub struct Bookmark {
     pub yaw_rad: f32,
     /// As in [`crate::camera::Camera`].
     pub pitch_rad: f32,
+    /// In flight; otherwise on foot, at whatever height the ground is.
+    #[serde(default)]
+    pub flying: bool,
 }
 
 /// Votes in the making.
@@ -290,7 +293,7 @@ mod tests {
             for (name, number) in names {
                 let mut world = WorldSettings::default();
                 if !turn.is_nan() {
-                    let mark = Bookmark { position_m: [turn, 1.5, -0.25], yaw_rad: turn, pitch_rad: 0.1 };
+                    let mark = Bookmark { position_m: [turn, 1.5, -0.25], yaw_rad: turn, pitch_rad: 0.1, flying: maximized };
                     world.bookmarks.insert(number, mark);
                 }
                 world.locked_genes.insert(name.clone());

@@ -60,7 +60,8 @@ pub struct Range {
 pub struct TreeVertex {
     /// Metres, in the template's space.
     pub position_m: [f32; 3],
-    /// Linear; multiplies the texture. RGBA in 8 bits.
+    /// Linear, in 8 bits; multiplies the texture. Alpha is no transparency: on closed surfaces it is the sign of the
+    /// bitangent (0 or 255), on leaves the share of their surroundings that neighbours leave open.
     pub color: [u8; 4],
     /// Added to the position at α = 1.
     pub position_delta_m: [f32; 3],
@@ -72,7 +73,7 @@ pub struct TreeVertex {
     pub uv_delta: [f32; 2],
     /// Octahedral normal at α = 1.
     pub normal_end_oct: [i16; 2],
-    /// Octahedral tangent (bark only; the bitangent is normal × tangent · `tangent_sign`).
+    /// Octahedral tangent of closed surfaces.
     pub tangent_oct: [i16; 2],
 }
 

@@ -1,0 +1,296 @@
+//! The trees of a scene file: templates with all their levels of detail, and instances.
+
+use std::sync::Arc;
+
+use genescape_schema::gltf::{InstancesExtension, ProgressiveMeshExtension, Resource, read_instances};
+use glam::Vec3;
+use gltf::Semantic;
+
+use super::document::Document;
+use super::{LoadError, pictures};
+use crate::scene::{Instance, Level, Material, Range, Template, TreeVertex, Trees};
+
+/// The trees; none if the scene has none.
+pub(super) fn read(document: &Document) -> Result<Trees, LoadError> {
+    let has = |node: &gltf::Node<'_>| node.extension_value("GSC_instances").is_some();
+    let Some(node) = document.gltf.nodes().find(has) else { return Ok(Trees::default()) };
+    let extension: InstancesExtension =
+        document.extension(node.extension_value("GSC_instances"), "GSC_instances")?;
+    let records = read_instances(&document.view(extension.buffer_view)?)
+        .map_err(|error| document.wrong(format!("its GSC_instances is wrong: {error}")))?;
+    let templates = extension
+        .templates
+        .iter()
+        .map(|entry| template(document, &entry.name, entry.mesh))
+        .collect::<Result<Vec<_>, _>>()?;
+    let instance = |record: genescape_schema::gltf::InstanceRecord| {
+        let known = (record.template as usize) < templates.len();
+        known
+            .then_some(Instance {
+                world_from_tree: record.world_from_tree,
+                template: record.template,
+                trunk_cylinder_m: record.trunk_cylinder_m,
+            })
+            .ok_or_else(|| document.wrong(format!("a tree is of unknown kind {}", record.template)))
+    };
+    let instances = records.into_iter().map(instance).collect::<Result<Vec<_>, _>>()?;
+    Ok(Trees { templates, instances: instances.into() })
+}
+
+fn template(document: &Document, name: &str, finest: usize) -> Result<Arc<Template>, LoadError> {
+    let mesh = mesh(document, finest)?;
+    let blob = blob_name(document, &mesh);
+    document.store.get(&format!("{blob} {finest}"), || {
+        let value = mesh.extension_value("GSC_progressive_mesh");
+        let extension: ProgressiveMeshExtension = document.extension(value, "GSC_progressive_mesh")?;
+        build(document, name, &blob, &extension)
+    })
+}
+
+fn mesh<'a>(document: &'a Document, index: usize) -> Result<gltf::Mesh<'a>, LoadError> {
+    document.gltf.meshes().nth(index).ok_or_else(|| document.wrong(format!("it has no mesh {index}")))
+}
+
+/// Name of the file that a mesh's positions are in.
+fn blob_name(document: &Document, mesh: &gltf::Mesh<'_>) -> String {
+    let positions = mesh.primitives().next().and_then(|primitive| primitive.get(&Semantic::Positions));
+    let buffer = positions.and_then(|accessor| accessor.view()).map(|view| view.buffer());
+    match buffer.map(|buffer| buffer.source()) {
+        Some(gltf::buffer::Source::Uri(uri)) => document.name_of(&Resource::file(uri, "")),
+        _ => format!("{} mesh {}", document.name_of(&Resource::view(0, "")), mesh.index()),
+    }
+}
+
+fn build(
+    document: &Document,
+    name: &str,
+    blob: &str,
+    extension: &ProgressiveMeshExtension,
+) -> Result<Template, LoadError> {
+    let mut template = Template {
+        name: name.to_owned(),
+        blob: blob.to_owned(),
+        vertices: Vec::new(),
+        indices: Vec::new(),
+        levels: Vec::new(),
+        materials: Vec::new(),
+        center_m: [0.0; 3],
+        radius_m: 0.0,
+    };
+    // Numbers of the materials in the file, in the order of the finest level.
+    let mut materials: Vec<usize> = Vec::new();
+    for (number, level) in extension.levels.iter().enumerate() {
+        let last = number + 1 == extension.levels.len();
+        let base_vertex = template.vertices.len() as u32;
+        let mut ranges = vec![Range::default(); materials.len()];
+        for (part, primitive) in mesh(document, level.mesh)?.primitives().enumerate() {
+            let material = primitive.material();
+            let index =
+                material.index().ok_or_else(|| document.wrong("a tree has a part without material"))?;
+            let slot = materials.iter().position(|&known| known == index).unwrap_or_else(|| {
+                materials.push(index);
+                ranges.push(Range::default());
+                materials.len() - 1
+            });
+            if template.materials.len() < materials.len() {
+                template.materials.push(read_material(document, &material)?);
+            }
+            let first_vertex = template.vertices.len() as u32 - base_vertex;
+            let delta = if last { None } else { level.texcoord_deltas.get(part).copied() };
+            let mut part = vertices(document, &primitive, delta)?;
+            if template.materials[slot].alpha_cutoff.is_some() {
+                shade_crown(&mut part);
+            }
+            template.vertices.extend(part);
+            let first = template.indices.len() as u32;
+            template.indices.extend(document.indices(&primitive)?.iter().map(|index| index + first_vertex));
+            ranges[slot] = Range { first, count: template.indices.len() as u32 - first };
+        }
+        template.levels.push(Level { error_m: level.error_m, base_vertex, ranges });
+    }
+    let parts = materials.len();
+    template.levels.iter_mut().for_each(|level| level.ranges.resize(parts, Range::default()));
+    check(document, &template)?;
+    (template.center_m, template.radius_m) = sphere(&template.vertices);
+    Ok(template)
+}
+
+fn check(document: &Document, template: &Template) -> Result<(), LoadError> {
+    let errors = || template.levels.iter().map(|level| level.error_m);
+    if template.levels.is_empty() || !errors().all(|error| error.is_finite() && error > 0.0) {
+        return Err(
+            document.wrong(format!("{} has no levels of detail, or levels without error", template.name))
+        );
+    }
+    if !errors().is_sorted() {
+        return Err(
+            document.wrong(format!("the levels of {} are not in order of their errors", template.name))
+        );
+    }
+    Ok(())
+}
+
+/// One primitive's vertices with where they go at the end of the morph.
+fn vertices(
+    document: &Document,
+    primitive: &gltf::Primitive<'_>,
+    texcoord_deltas: Option<usize>,
+) -> Result<Vec<TreeVertex>, LoadError> {
+    let positions = primitive.get(&Semantic::Positions);
+    let positions: Vec<[f32; 3]> =
+        document.values(positions.ok_or_else(|| document.wrong("a tree has no positions"))?)?;
+    let count = positions.len();
+    let fitting = |found: usize, what: &str| {
+        if found == count { Ok(()) } else { Err(document.wrong(format!("a tree's {what} do not match"))) }
+    };
+    let or = |semantic: Semantic| primitive.get(&semantic);
+    let normals: Vec<[f32; 3]> = match or(Semantic::Normals) {
+        Some(accessor) => document.values(accessor)?,
+        None => vec![[0.0, 1.0, 0.0]; count],
+    };
+    let uvs: Vec<[f32; 2]> = match or(Semantic::TexCoords(0)) {
+        Some(accessor) => document.values(accessor)?,
+        None => vec![[0.0; 2]; count],
+    };
+    let colors: Vec<[u8; 4]> = match or(Semantic::Colors(0)) {
+        Some(accessor) => document.values(accessor)?,
+        None => vec![[255; 4]; count],
+    };
+    let tangents: Vec<[f32; 4]> = match or(Semantic::Tangents) {
+        Some(accessor) => document.values(accessor)?,
+        None => vec![[1.0, 0.0, 0.0, 1.0]; count],
+    };
+    let target = primitive.morph_targets().next();
+    let moves: Vec<[f32; 3]> = match target.as_ref().and_then(|target| target.positions()) {
+        Some(accessor) => document.values(accessor)?,
+        None => vec![[0.0; 3]; count],
+    };
+    let turns: Vec<[f32; 3]> = match target.as_ref().and_then(|target| target.normals()) {
+        Some(accessor) => document.values(accessor)?,
+        None => vec![[0.0; 3]; count],
+    };
+    let slides: Vec<[f32; 2]> = match texcoord_deltas {
+        Some(index) => document.values(document.accessor(index)?)?,
+        None => vec![[0.0; 2]; count],
+    };
+    fitting(normals.len(), "normals")?;
+    fitting(uvs.len(), "texture coordinates")?;
+    fitting(colors.len(), "colours")?;
+    fitting(tangents.len(), "tangents")?;
+    fitting(moves.len(), "geomorphs")?;
+    fitting(turns.len(), "geomorphs of normals")?;
+    fitting(slides.len(), "geomorphs of texture coordinates")?;
+    let vertex = |v: usize| {
+        let normal = Vec3::from(normals[v]);
+        let [x, y, z, sign] = tangents[v];
+        let [r, g, b, _] = colors[v];
+        TreeVertex {
+            position_m: positions[v],
+            color: [r, g, b, if sign < 0.0 { 0 } else { 255 }],
+            position_delta_m: moves[v],
+            normal_oct: octahedral(normal),
+            uv: uvs[v],
+            uv_delta: slides[v],
+            normal_end_oct: octahedral(normal + Vec3::from(turns[v])),
+            tangent_oct: octahedral(Vec3::new(x, y, z)),
+        }
+    };
+    Ok((0..count).map(vertex).collect())
+}
+
+/// Writes into each leaf's alpha how open its surroundings are: little in the middle of the crown, much at its surface
+/// and top. Light that crosses a crown falls off with the foliage on its way, of which the place within the ellipsoid
+/// around the crown is the measure here.
+fn shade_crown(leaves: &mut [TreeVertex]) {
+    let places = || leaves.iter().map(|leaf| Vec3::from(leaf.position_m));
+    let (low, high) = (places().fold(Vec3::MAX, Vec3::min), places().fold(Vec3::MIN, Vec3::max));
+    let (middle, half) = (0.5 * (low + high), (0.5 * (high - low)).max(Vec3::splat(1e-3)));
+    for leaf in leaves {
+        let place = (Vec3::from(leaf.position_m) - middle) / half;
+        let outside = ((place.length() - 0.15) / 0.85).clamp(0.0, 1.0);
+        let open = 0.12 + 0.7 * outside + 0.18 * (0.5 + 0.5 * place.y).clamp(0.0, 1.0);
+        leaf.color[3] = (open * 255.0).round() as u8;
+    }
+}
+
+/// A direction in two signed 16-bit numbers (Meyer et al. 2010); straight up if it has no length.
+fn octahedral(direction: Vec3) -> [i16; 2] {
+    let sum = direction.abs().element_sum();
+    let n = if sum > 1e-12 { direction / sum } else { Vec3::Y };
+    let fold = |a: f32, b: f32| (1.0 - b.abs()) * if a >= 0.0 { 1.0 } else { -1.0 };
+    let (x, y) = if n.z >= 0.0 { (n.x, n.y) } else { (fold(n.x, n.y), fold(n.y, n.x)) };
+    [x, y].map(|value| (value.clamp(-1.0, 1.0) * 32767.0).round() as i16)
+}
+
+/// A sphere around all vertices, at the start and the end of their morphs.
+fn sphere(vertices: &[TreeVertex]) -> ([f32; 3], f32) {
+    let ends = |v: &TreeVertex| {
+        let start = Vec3::from(v.position_m);
+        [start, start + Vec3::from(v.position_delta_m)]
+    };
+    let points = || vertices.iter().flat_map(ends);
+    let low = points().fold(Vec3::MAX, Vec3::min);
+    let high = points().fold(Vec3::MIN, Vec3::max);
+    let center = if vertices.is_empty() { Vec3::ZERO } else { 0.5 * (low + high) };
+    let radius = points().map(|point| point.distance_squared(center)).fold(0.0, f32::max).sqrt();
+    (center.into(), radius)
+}
+
+fn read_material(document: &Document, material: &gltf::Material<'_>) -> Result<Material, LoadError> {
+    let pbr = material.pbr_metallic_roughness();
+    let picture = |texture: gltf::Texture<'_>| -> Result<crate::scene::Picture, LoadError> {
+        let image = texture.source();
+        let (resource, mipmaps) = image_files(document, &image)?;
+        pictures::with_mips(document, &resource, &mipmaps)
+    };
+    Ok(Material {
+        name: material.name().unwrap_or("unnamed").to_owned(),
+        color: pbr.base_color_texture().map(|info| picture(info.texture())).transpose()?,
+        color_factor: pbr.base_color_factor(),
+        normal: material.normal_texture().map(|info| picture(info.texture())).transpose()?,
+        alpha_cutoff: match material.alpha_mode() {
+            gltf::material::AlphaMode::Opaque => None,
+            _ => Some(material.alpha_cutoff().unwrap_or(0.5)),
+        },
+    })
+}
+
+/// An image's own file and those of its coarser versions.
+fn image_files(document: &Document, image: &gltf::Image<'_>) -> Result<(Resource, Vec<Resource>), LoadError> {
+    #[derive(Default, serde::Deserialize)]
+    #[serde(default)]
+    struct Extras {
+        mipmaps: Vec<Resource>,
+    }
+    let resource = match image.source() {
+        gltf::image::Source::Uri { uri, .. } => Resource::file(uri, "image/png"),
+        gltf::image::Source::View { view, .. } => Resource::view(view.index(), "image/png"),
+    };
+    let extras = image.extras().as_ref().map(|raw| serde_json::from_str::<Extras>(raw.get()));
+    let extras = extras.transpose().map_err(|error| document.wrong(format!("mipmaps are wrong: {error}")))?;
+    Ok((resource, extras.unwrap_or_default().mipmaps))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// As the shaders decode it.
+    fn decode([x, y]: [i16; 2]) -> Vec3 {
+        let (x, y) = (f32::from(x) / 32767.0, f32::from(y) / 32767.0);
+        let z = 1.0 - x.abs() - y.abs();
+        let t = (-z).max(0.0);
+        Vec3::new(x - t.copysign(x), y - t.copysign(y), z).normalize()
+    }
+
+    proptest! {
+        #[test]
+        fn octahedral_directions_come_back(x in -1f32..1., y in -1f32..1., z in -1f32..1.) {
+            let direction = Vec3::new(x, y, z);
+            prop_assume!(direction.length() > 1e-2);
+            let back = decode(octahedral(direction));
+            prop_assert!(back.dot(direction.normalize()) > 0.999_999);
+        }
+    }
+}
