@@ -66,7 +66,7 @@ impl Default for Options {
             tree_scheme: TreeScheme::Quality,
             terrain_scheme: TerrainScheme::Morph,
             tree_error_px: 1.0,
-            terrain_error_px: 1.0,
+            terrain_error_px: 2.0,
             wireframe: false,
             tint_levels: false,
             overhead: false,
@@ -78,4 +78,13 @@ impl Default for Options {
             fov_y_deg: 60.0,
         }
     }
+}
+
+/// What one frame is drawn from; the same for all views.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrameInput {
+    /// The person's wishes.
+    pub options: Options,
+    /// Seconds for which clouds have drifted and waves have run.
+    pub time_s: f32,
 }

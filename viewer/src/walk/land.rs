@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 use super::Trunks;
+use crate::camera::Camera;
 use crate::scene::{Heightfield, Scene};
 
 /// Height of a walker's eyes above what it stands on.
@@ -36,6 +37,19 @@ impl Land {
             field: scene.ground.field.clone(),
             water_level_m: scene.ground.water_level_m,
             trunks: Trunks::of(&scene.trees.instances),
+        }
+    }
+
+    /// The camera that looks on from above, as in the thesis's figures 12 and 13: over the middle, all of the land in
+    /// a square picture.
+    pub fn overhead(&self, fov_y_rad: f32) -> Camera {
+        let [_, high_m] = self.field.range_m();
+        let height_m = high_m + 0.5 * self.field.extent_m() / libm::tanf(0.5 * fov_y_rad);
+        Camera {
+            position_m: Vec3::new(0.0, height_m, 0.0),
+            yaw_rad: 0.0,
+            pitch_rad: -std::f32::consts::FRAC_PI_2,
+            fov_y_rad,
         }
     }
 

@@ -12,6 +12,8 @@ use glam::{Vec2, Vec3};
 
 use super::{BODY_RADIUS_M, EYE_HEIGHT_M, Land, Mode, Pose, nearest_free, reach_m};
 
+/// Radius around the middle within which walks start: the thesis's "certain distance".
+pub const START_RADIUS_M: f32 = 128.0;
 /// Air around a walker at the start, so that no trunk fills the picture.
 const ROOM_M: f32 = 1.5;
 /// Candidates lie on a grid no finer than this.

@@ -1,0 +1,114 @@
+//! The device that draws, and what it can do.
+
+use thiserror::Error;
+
+/// The device with its queue; cheap to clone.
+#[derive(Clone, Debug)]
+pub struct Gpu {
+    /// Makes resources.
+    pub device: wgpu::Device,
+    /// Takes work.
+    pub queue: wgpu::Queue,
+    /// "llvmpipe (LLVM 15.0.6, 256 bits)".
+    pub name: String,
+    /// True if there is no graphics card and the processor draws.
+    pub software: bool,
+    /// Optional abilities that this device has.
+    pub features: wgpu::Features,
+}
+
+/// Why nothing can be drawn.
+#[derive(Debug, Error)]
+pub enum GpuError {
+    /// No driver answered.
+    #[error(
+        "no graphics device was found: {0}\n\
+         Genescape draws with Vulkan, Metal or Direct3D 12. On Linux install your card's Vulkan driver, or, to draw \
+         without a card, the package mesa-vulkan-drivers (Debian, Ubuntu, Fedora) or vulkan-swrast (Arch)."
+    )]
+    NoAdapter(#[from] wgpu::RequestAdapterError),
+    /// The driver is there but cannot do what is needed.
+    #[error("{name} lacks {missing}, which is needed to draw; try a newer driver")]
+    Lacking {
+        /// The adapter.
+        name: String,
+        /// What it lacks.
+        missing: String,
+    },
+    /// The driver refused.
+    #[error("{name} could not be opened: {source}")]
+    NoDevice {
+        /// The adapter.
+        name: String,
+        /// Why.
+        source: wgpu::RequestDeviceError,
+    },
+}
+
+/// What drawing cannot do without: trees are drawn by commands that a compute pass writes, each starting at an
+/// instance of its own.
+const NEEDED: wgpu::Features = wgpu::Features::INDIRECT_FIRST_INSTANCE;
+
+/// What is used where it is there.
+const WELCOME: wgpu::Features = wgpu::Features::POLYGON_MODE_LINE
+    .union(wgpu::Features::TIMESTAMP_QUERY)
+    .union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS)
+    .union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);
+
+impl Gpu {
+    /// Opens the best device that can also draw to `surface`, if one is given.
+    pub fn open(
+        instance: &wgpu::Instance,
+        surface: Option<&wgpu::Surface<'_>>,
+    ) -> Result<(Self, wgpu::Adapter), GpuError> {
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            compatible_surface: surface,
+            ..Default::default()
+        };
+        let adapter = pollster::block_on(instance.request_adapter(&options))?;
+        let info = adapter.get_info();
+        let missing = NEEDED - adapter.features();
+        if !missing.is_empty() {
+            return Err(GpuError::Lacking { name: info.name, missing: missing.to_string() });
+        }
+        let features = NEEDED | (WELCOME & adapter.features());
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("genescape"),
+            required_features: features,
+            required_limits: limits(&adapter.limits()),
+            ..Default::default()
+        };
+        let opened = pollster::block_on(adapter.request_device(&descriptor));
+        let (device, queue) =
+            opened.map_err(|source| GpuError::NoDevice { name: info.name.clone(), source })?;
+        let software = info.device_type == wgpu::DeviceType::Cpu;
+        Ok((Self { device, queue, name: info.name, software, features }, adapter))
+    }
+
+    /// Opens a device that draws to memory only.
+    pub fn headless() -> Result<Self, GpuError> {
+        Ok(Self::open(&instance(), None)?.0)
+    }
+
+    /// Waits until all that was submitted is done.
+    pub fn wait(&self) {
+        // An error here means a lost device, which the next call reports.
+        let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
+    }
+}
+
+/// The library's entry; `WGPU_BACKEND` and its like choose among several drivers.
+pub fn instance() -> wgpu::Instance {
+    wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env())
+}
+
+/// The defaults, with room for great forests where the adapter has it.
+fn limits(adapter: &wgpu::Limits) -> wgpu::Limits {
+    wgpu::Limits {
+        max_buffer_size: adapter.max_buffer_size,
+        max_storage_buffer_binding_size: adapter.max_storage_buffer_binding_size,
+        max_texture_dimension_2d: adapter.max_texture_dimension_2d,
+        ..Default::default()
+    }
+}

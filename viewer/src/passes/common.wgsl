@@ -1,0 +1,184 @@
+// What all passes share: the view, the light, the air. Right-handed, y up, metres; reversed depth.
+
+struct View {
+    clip_from_world: mat4x4f,
+    // Directions of the world from clip space; the eye is the origin.
+    ray_from_clip: mat4x4f,
+    shadow_from_world: mat4x4f,
+    eye: vec3f,
+    time_s: f32,
+    // Towards the sun.
+    sun_direction: vec3f,
+    sun_angular_radius: f32,
+    sun_irradiance: vec3f,
+    exposure: f32,
+    sky_irradiance: vec3f,
+    haze_extinction: f32,
+    haze: vec3f,
+    // Surface of the lake; far below everything if there is none.
+    water_level: f32,
+    viewport_px: vec2f,
+    // Pixels that one radian covers in the middle of the picture.
+    focal_px: f32,
+    flags: u32,
+    // Altitude and extent in metres of the cumulus sheet, then of the cirrus sheet; extent 0 if there is none.
+    clouds: vec4f,
+    // The eye for which levels of detail are chosen: that of the walker, also when one looks on from above.
+    lod_eye: vec3f,
+    unused: f32,
+    // Samples a side, metres between them, half the extent in metres, unused.
+    field: vec4f,
+    // Level of detail of the terrain: distance at which level 0 ends, greatest level, height of the eye above the
+    // highest land, unused.
+    terrain_lod: vec4f,
+    // Tile sizes in metres of the first four tiling textures of the ground, and of the fifth.
+    tiles: vec4f,
+    last_tile: vec4f,
+}
+
+const FLAG_TINT: u32 = 1u;
+const FLAG_DRIFT: u32 = 2u;
+const FLAG_MORPH: u32 = 4u;
+
+@group(0) @binding(0) var<uniform> view: View;
+@group(0) @binding(1) var repeating: sampler;
+@group(0) @binding(2) var clamped: sampler;
+@group(0) @binding(3) var sky_cube: texture_cube<f32>;
+@group(0) @binding(4) var clear_cube: texture_cube<f32>;
+@group(0) @binding(5) var cumulus_sheet: texture_2d<f32>;
+@group(0) @binding(6) var cirrus_sheet: texture_2d<f32>;
+@group(0) @binding(7) var shadow_map: texture_depth_2d;
+@group(0) @binding(8) var comparing: sampler_comparison;
+@group(0) @binding(9) var heights: texture_2d<f32>;
+@group(0) @binding(10) var light_map: texture_2d<f32>;
+
+const PI: f32 = 3.14159265;
+
+// Light that reaches the eye from `distance` metres: some of it is replaced by the air's own.
+fn through_air(radiance: vec3f, distance: f32) -> vec3f {
+    return mix(view.haze, radiance, exp(-distance * view.haze_extinction));
+}
+
+// 1 where the sun reaches a point, 0 in shadow; a soft edge a texel wide.
+fn sun_visibility(world: vec3f, bias_m: f32) -> f32 {
+    let lifted = world + view.sun_direction * bias_m;
+    let shadow = view.shadow_from_world * vec4f(lifted, 1.0);
+    let uv = shadow.xy * vec2f(0.5, -0.5) + 0.5;
+    if (any(uv < vec2f(0.0)) || any(uv > vec2f(1.0)) || shadow.z > 1.0 || shadow.z < 0.0) {
+        return 1.0;
+    }
+    let texel = 1.0 / vec2f(textureDimensions(shadow_map));
+    var sum = 0.0;
+    for (var i = 0; i < 4; i++) {
+        let offset = vec2f(f32(i & 1) - 0.5, f32(i >> 1) - 0.5) * texel;
+        sum += textureSampleCompareLevel(shadow_map, comparing, uv + offset, shadow.z);
+    }
+    return 0.25 * sum;
+}
+
+// Place of a sample's line in the world.
+fn place_m(line: f32) -> f32 {
+    return (line - 0.5 * (view.field.x - 1.0)) * view.field.y;
+}
+
+// Texture coordinates of the pictures that cover the field once.
+fn field_uv(world: vec2f) -> vec2f {
+    return world / (2.0 * view.field.z) + 0.5;
+}
+
+// Bilinear height of the land.
+fn height_m(world: vec2f) -> f32 {
+    let last = view.field.x - 1.0;
+    let at = clamp(world / view.field.y + 0.5 * last, vec2f(0.0), vec2f(last));
+    let cell = min(floor(at), vec2f(last - 1.0));
+    let part = at - cell;
+    let c = vec2i(cell);
+    let a = textureLoad(heights, c, 0).r;
+    let b = textureLoad(heights, c + vec2i(1, 0), 0).r;
+    let d = textureLoad(heights, c + vec2i(0, 1), 0).r;
+    let e = textureLoad(heights, c + vec2i(1, 1), 0).r;
+    return mix(mix(a, b, part.x), mix(d, e, part.x), part.y);
+}
+
+// A direction from two signed numbers (Meyer et al. 2010).
+fn octahedral(packed: vec2f) -> vec3f {
+    var n = vec3f(packed, 1.0 - abs(packed.x) - abs(packed.y));
+    let t = max(-n.z, 0.0);
+    n.x -= select(-t, t, n.x >= 0.0);
+    n.y -= select(-t, t, n.y >= 0.0);
+    return normalize(n);
+}
+
+// A colour for each level of detail.
+fn level_tint(level: f32) -> vec3f {
+    let phase = level * 2.4;
+    return 0.55 + 0.45 * cos(vec3f(phase, phase + 2.1, phase + 4.2));
+}
+
+// How far clouds have drifted, in metres, at two moments of a cycle half a cycle apart, and the share of the first: each
+// is faded in and out while it is far from where the clouds were painted, so that they drift for ever.
+struct Drift {
+    first: vec2f,
+    second: vec2f,
+    share: f32,
+}
+
+const WIND_M_PER_S: vec2f = vec2f(9.0, 4.0);
+const CYCLE_S: f32 = 200.0;
+
+fn drift() -> Drift {
+    let first = fract(view.time_s / CYCLE_S + 0.5) - 0.5;
+    let second = fract(view.time_s / CYCLE_S) - 0.5;
+    // Most of the time only one of the two is seen.
+    let share = smoothstep(0.25, 0.75, 1.0 - 2.0 * abs(first));
+    return Drift(WIND_M_PER_S * CYCLE_S * first, WIND_M_PER_S * CYCLE_S * second, share);
+}
+
+// Where a cloud that is seen in `direction` was painted before it drifted by `moved` metres.
+fn before_drift(direction: vec3f, moved: vec2f) -> vec3f {
+    let away = max(view.clouds.x, 400.0) / max(direction.y, 0.02);
+    let place = direction.xz * away - moved;
+    return normalize(vec3f(place.x, direction.y * away, place.y));
+}
+
+// What clouds add to the clear sky, or take from it.
+fn cloud_difference(direction: vec3f) -> vec3f {
+    let painted = textureSampleLevel(sky_cube, clamped, direction, 0.0).rgb;
+    return painted - textureSampleLevel(clear_cube, clamped, direction, 0.0).rgb;
+}
+
+// The sky in a direction, without the sun's disc: the painted clouds, drifting if that is wished for.
+fn sky_radiance(direction: vec3f) -> vec3f {
+    if ((view.flags & FLAG_DRIFT) == 0u || direction.y < 0.005) {
+        return textureSampleLevel(sky_cube, clamped, direction, 0.0).rgb;
+    }
+    let d = drift();
+    var clouds = vec3f(0.0);
+    if (d.share > 0.0) {
+        clouds += d.share * cloud_difference(before_drift(direction, d.first));
+    }
+    if (d.share < 1.0) {
+        clouds += (1.0 - d.share) * cloud_difference(before_drift(direction, d.second));
+    }
+    let clear = textureSampleLevel(clear_cube, clamped, direction, 0.0).rgb;
+    return max(clear + clouds, vec3f(0.0));
+}
+
+fn sheet_alpha(image: texture_2d<f32>, direction: vec3f, altitude: f32, extent: f32, moved: vec2f) -> f32 {
+    if (extent <= 0.0) {
+        return 0.0;
+    }
+    let place = direction.xz * altitude / max(direction.y, 0.02) - moved;
+    return textureSampleLevel(image, repeating, place / extent, 0.0).a;
+}
+
+// Share of the sun's disc that clouds let through.
+fn sun_clearness() -> f32 {
+    var moved = vec2f(0.0);
+    if ((view.flags & FLAG_DRIFT) != 0u) {
+        moved = drift().first;
+    }
+    let low = sheet_alpha(cumulus_sheet, view.sun_direction, view.clouds.x, view.clouds.y, moved);
+    let high = sheet_alpha(cirrus_sheet, view.sun_direction, view.clouds.z, view.clouds.w, moved);
+    return (1.0 - low) * (1.0 - 0.7 * high);
+}

@@ -1,0 +1,140 @@
+// Which trees are seen, and at which level of detail (thesis 4.3.2, 4.3.3): instances → for each kind and level a list of
+// instances with how far they have morphed, and the commands that draw them.
+
+const MAX_LEVELS: u32 = 12u;
+
+struct Cull {
+    // Unit normals and distances of the planes that bound the view; a point p is inside if n·p + d ≥ 0.
+    planes: array<vec4f, 5>,
+    eye: vec3f,
+    // World size in metres that may be wrong, for each metre of distance.
+    error_per_m: f32,
+    instances: u32,
+    // Kinds of tree, levels (the most of any kind), materials.
+    templates: u32,
+    levels: u32,
+    materials: u32,
+    // 0 quality, 1 simple, 2 discrete, 3 none, 4 the level whose error is at most `fixed_error_m`.
+    scheme: u32,
+    fixed_error_m: f32,
+    // 0 draws all of them, wherever they stand.
+    planes_used: u32,
+    unused: u32,
+}
+
+struct Tree {
+    // World from the template's space, by rows.
+    rows: array<vec4f, 3>,
+    template_index: u32,
+    // Greatest singular value of its linear part.
+    scale: f32,
+    pad: vec2f,
+}
+
+struct Template {
+    center: vec3f,
+    radius: f32,
+    errors: array<f32, MAX_LEVELS>,
+    levels: u32,
+    // Where its first list starts, and how long each of its lists may get.
+    first: u32,
+    capacity: u32,
+    unused: u32,
+}
+
+struct Visible {
+    tree: u32,
+    lambda: f32,
+}
+
+struct Command {
+    indices: u32,
+    instances: u32,
+    first_index: u32,
+    base_vertex: i32,
+    first_instance: u32,
+}
+
+@group(1) @binding(0) var<uniform> cull: Cull;
+@group(1) @binding(1) var<storage, read> trees: array<Tree>;
+@group(1) @binding(2) var<storage, read> templates: array<Template>;
+@group(1) @binding(3) var<storage, read_write> counts: array<atomic<u32>>;
+@group(1) @binding(4) var<storage, read_write> visible: array<Visible>;
+@group(1) @binding(5) var<storage, read_write> commands: array<Command>;
+
+// λ of a tree whose nearest part is `distance` away. The Rust twin is `lod::tree::lod_number`, and a test compares them.
+fn lod_number(kind: u32, scale: f32, distance: f32) -> f32 {
+    let last = f32(templates[kind].levels - 1u);
+    if (cull.scheme == 3u) {
+        return 0.0;
+    }
+    var allowed = cull.error_per_m * distance / scale;
+    if (cull.scheme == 4u) {
+        allowed = cull.fixed_error_m / scale;
+    }
+    let finest = templates[kind].errors[0];
+    if (!(allowed > finest)) {
+        return 0.0;
+    }
+    if (cull.scheme == 1u) {
+        return clamp(2.0 * log2(allowed / finest), 0.0, last);
+    }
+    var lambda = last;
+    for (var i = 0u; i + 1u < templates[kind].levels; i++) {
+        let low = templates[kind].errors[i];
+        let high = templates[kind].errors[i + 1u];
+        if (allowed < high) {
+            lambda = f32(i) + log2(allowed / low) / log2(high / low);
+            break;
+        }
+    }
+    if (cull.scheme == 2u || cull.scheme == 4u) {
+        return floor(lambda);
+    }
+    return lambda;
+}
+
+fn bucket(kind: u32, level: u32) -> u32 {
+    return level * cull.templates + kind;
+}
+
+@compute @workgroup_size(64)
+fn clear(@builtin(global_invocation_id) id: vec3u) {
+    if (id.x < cull.templates * cull.levels) {
+        atomicStore(&counts[id.x], 0u);
+    }
+}
+
+@compute @workgroup_size(64)
+fn choose(@builtin(global_invocation_id) id: vec3u) {
+    let index = id.x + id.y * 65535u * 64u;
+    if (index >= cull.instances) {
+        return;
+    }
+    let kind = trees[index].template_index;
+    let middle = vec4f(templates[kind].center, 1.0);
+    let center = vec3f(dot(trees[index].rows[0], middle), dot(trees[index].rows[1], middle), dot(trees[index].rows[2], middle));
+    let scale = trees[index].scale;
+    let radius = templates[kind].radius * scale;
+    if (cull.planes_used != 0u) {
+        for (var plane = 0u; plane < 5u; plane++) {
+            if (dot(cull.planes[plane], vec4f(center, 1.0)) < -radius) {
+                return;
+            }
+        }
+    }
+    let distance = max(length(center - cull.eye) - radius, 0.0);
+    let lambda = lod_number(kind, scale, distance);
+    let level = u32(lambda);
+    let slot = atomicAdd(&counts[bucket(kind, level)], 1u);
+    let list = templates[kind].first + level * templates[kind].capacity;
+    visible[list + slot] = Visible(index, lambda);
+}
+
+@compute @workgroup_size(64)
+fn write_commands(@builtin(global_invocation_id) id: vec3u) {
+    let buckets = cull.templates * cull.levels;
+    if (id.x < buckets * cull.materials) {
+        commands[id.x].instances = atomicLoad(&counts[id.x % buckets]);
+    }
+}

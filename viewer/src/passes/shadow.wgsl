@@ -1,0 +1,61 @@
+// Depth as seen from the sun: of trees at a fixed level of detail, and of the land. Drawn once for each landscape, for
+// nothing in it moves. Of closed surfaces only the sides that face away are drawn (Wang & Molnar 1994), so that small
+// shifts of the lit side by a geomorph never shade it.
+
+struct Tree {
+    rows: array<vec4f, 3>,
+    template_index: u32,
+    scale: f32,
+    pad: vec2f,
+}
+
+struct Material {
+    factor: vec4f,
+    alpha_cutoff: f32,
+    thin: f32,
+    has_color: f32,
+    has_normal: f32,
+}
+
+@group(1) @binding(0) var<storage, read> trees: array<Tree>;
+@group(2) @binding(0) var<uniform> material: Material;
+@group(2) @binding(1) var color_map: texture_2d<f32>;
+@group(2) @binding(2) var normal_map: texture_2d<f32>;
+
+struct Out {
+    @builtin(position) clip: vec4f,
+    @location(0) uv: vec2f,
+}
+
+@vertex
+fn tree(
+    @location(0) position: vec3f,
+    @location(4) uv: vec2f,
+    @location(8) tree: u32,
+) -> Out {
+    let rows = trees[tree].rows;
+    let local = vec4f(position, 1.0);
+    let world = vec3f(dot(rows[0], local), dot(rows[1], local), dot(rows[2], local));
+    return Out(view.shadow_from_world * vec4f(world, 1.0), uv);
+}
+
+@fragment
+fn leaf(in: Out) {
+    if (textureSample(color_map, clamped, in.uv).a < material.alpha_cutoff) {
+        discard;
+    }
+}
+
+// The land as a grid of every fourth sample, two triangles a cell, without buffers.
+@vertex
+fn land(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    let step = 4u;
+    let cells = (u32(view.field.x) - 1u) / step;
+    let cell = index / 6u;
+    let corner = array<vec2u, 6>(vec2u(0, 0), vec2u(0, 1), vec2u(1, 0), vec2u(1, 0), vec2u(0, 1), vec2u(1, 1))[index % 6u];
+    let sample = (vec2u(cell % cells, cell / cells) + corner) * step;
+    // A little lower than it is, lest what stands on it be shaded by it.
+    let height = textureLoad(heights, vec2i(sample), 0).r - 0.5;
+    let world = vec4f(place_m(f32(sample.x)), height, place_m(f32(sample.y)), 1.0);
+    return view.shadow_from_world * world;
+}

@@ -1,0 +1,130 @@
+// Trees: the geomorph between D_i and D_{i+1} (thesis 4.3), then light on bark and leaves.
+
+struct Tree {
+    rows: array<vec4f, 3>,
+    template_index: u32,
+    scale: f32,
+    pad: vec2f,
+}
+
+struct Material {
+    factor: vec4f,
+    alpha_cutoff: f32,
+    // 1 if light passes through (leaves and blossoms).
+    thin: f32,
+    has_color: f32,
+    has_normal: f32,
+}
+
+@group(1) @binding(0) var<storage, read> trees: array<Tree>;
+@group(2) @binding(0) var<uniform> material: Material;
+@group(2) @binding(1) var color_map: texture_2d<f32>;
+@group(2) @binding(2) var normal_map: texture_2d<f32>;
+
+struct In {
+    @location(0) position: vec3f,
+    @location(1) color: vec4f,
+    @location(2) delta: vec3f,
+    @location(3) normal: vec2f,
+    @location(4) uv: vec2f,
+    @location(5) uv_delta: vec2f,
+    @location(6) normal_end: vec2f,
+    @location(7) tangent: vec2f,
+    @location(8) tree: u32,
+    // λ: level of detail and, after the point, how far it has morphed to the next.
+    @location(9) lambda: f32,
+}
+
+struct Out {
+    @builtin(position) clip: vec4f,
+    @location(0) world: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) tangent: vec4f,
+    @location(3) uv: vec2f,
+    @location(4) color: vec3f,
+    // Leaves: share of the open sky and ground that they see between their neighbours.
+    @location(5) open: f32,
+}
+
+@vertex
+fn vertex(in: In) -> Out {
+    let rows = trees[in.tree].rows;
+    let alpha = fract(in.lambda);
+    let local = vec4f(in.position + alpha * in.delta, 1.0);
+    let world = vec3f(dot(rows[0], local), dot(rows[1], local), dot(rows[2], local));
+    let turned = normalize(mix(octahedral(in.normal), octahedral(in.normal_end), alpha));
+    // Normals take the cofactors of the linear part, whose rows are crosses of its rows.
+    let normal = vec3f(
+        dot(cross(rows[1].xyz, rows[2].xyz), turned),
+        dot(cross(rows[2].xyz, rows[0].xyz), turned),
+        dot(cross(rows[0].xyz, rows[1].xyz), turned),
+    );
+    let along = octahedral(in.tangent);
+    let tangent = vec3f(dot(rows[0].xyz, along), dot(rows[1].xyz, along), dot(rows[2].xyz, along));
+    var out: Out;
+    out.clip = view.clip_from_world * vec4f(world, 1.0);
+    out.world = world;
+    out.normal = normalize(normal);
+    out.tangent = vec4f(normalize(tangent), in.color.a * 2.0 - 1.0);
+    out.uv = in.uv + alpha * in.uv_delta;
+    out.color = in.color.rgb;
+    out.open = in.color.a;
+    if ((view.flags & FLAG_TINT) != 0u) {
+        out.color = level_tint(in.lambda) * 1.6;
+    }
+    return out;
+}
+
+fn ambient(normal: vec3f, albedo: vec3f) -> vec3f {
+    // Sky from above, ground from below: what a crown among other crowns gets on average.
+    let up = 0.5 + 0.5 * normal.y;
+    let ground = 0.12 * (view.sky_irradiance + view.sun_irradiance * max(view.sun_direction.y, 0.0));
+    return albedo / PI * mix(ground, view.sky_irradiance, up);
+}
+
+@fragment
+fn bark(in: Out) -> @location(0) vec4f {
+    var albedo = in.color * material.factor.rgb;
+    var normal = normalize(in.normal);
+    if (material.has_color > 0.5) {
+        albedo *= textureSample(color_map, repeating, in.uv).rgb;
+    }
+    if (material.has_normal > 0.5) {
+        let bump = textureSample(normal_map, repeating, in.uv).xyz * 2.0 - 1.0;
+        let tangent = normalize(in.tangent.xyz - normal * dot(in.tangent.xyz, normal));
+        let bitangent = cross(normal, tangent) * in.tangent.w;
+        normal = normalize(tangent * bump.x + bitangent * bump.y + normal * bump.z);
+    }
+    let facing = max(dot(normal, view.sun_direction), 0.0);
+    var radiance = ambient(normal, albedo) * 0.8;
+    if (facing > 0.0) {
+        radiance += albedo / PI * view.sun_irradiance * facing * sun_visibility(in.world, 0.25);
+    }
+    return vec4f(through_air(radiance, distance(in.world, view.eye)), 1.0);
+}
+
+@fragment
+fn leaf(in: Out, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    var albedo = vec4f(in.color, 1.0) * material.factor;
+    if (material.has_color > 0.5) {
+        albedo *= textureSample(color_map, clamped, in.uv);
+    }
+    if (albedo.a < material.alpha_cutoff) {
+        discard;
+    }
+    let to_eye = normalize(view.eye - in.world);
+    let normal = normalize(in.normal);
+    // A leaf has two sides and lets light through: seen from the side that the sun doesn't shine on it glows.
+    let toward_sun = dot(normal, view.sun_direction);
+    let same_side = toward_sun * dot(normal, to_eye) > 0.0;
+    let lit = abs(toward_sun) * 0.75 + 0.25;
+    // Chlorophyll takes red and blue on the way through.
+    let through = albedo.rgb * vec3f(0.75, 0.9, 0.3);
+    let reflected = select(through * 0.6, albedo.rgb * 0.8, same_side) * lit;
+    let glow = pow(max(dot(-to_eye, view.sun_direction), 0.0), 6.0) * 0.6;
+    let sun = sun_visibility(in.world, 0.4) * smoothstep(0.0, 0.7, in.open);
+    let outward = select(-normal, normal, normal.y > 0.0);
+    var radiance = ambient(outward, albedo.rgb) * (0.15 + 0.75 * in.open * in.open);
+    radiance += (reflected + through * glow) / PI * view.sun_irradiance * sun;
+    return vec4f(through_air(radiance, distance(in.world, view.eye)), 1.0);
+}

@@ -1,0 +1,44 @@
+//! Draws the lake over everything else.
+
+use super::{Layouts, Shape, pipeline};
+use crate::shaders::{ShaderError, Shaders};
+
+/// The pipeline.
+#[derive(Debug)]
+pub struct Water {
+    pipeline: wgpu::RenderPipeline,
+}
+
+impl Water {
+    /// Compiles it.
+    pub fn new(
+        device: &wgpu::Device,
+        layouts: &Layouts,
+        shaders: &Shaders,
+        samples: u32,
+    ) -> Result<Self, ShaderError> {
+        let shape = Shape {
+            label: "water",
+            module: &shaders.module(device, "water")?,
+            vertex: "vertex",
+            fragment: "fragment",
+            buffers: &[],
+            groups: &[Some(&layouts.view)],
+            topology: wgpu::PrimitiveTopology::TriangleList,
+            // A diver sees the surface from below.
+            cull: None,
+            blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+            depth_write: true,
+            wireframe: false,
+            samples,
+            alpha_to_coverage: false,
+        };
+        Ok(Self { pipeline: pipeline(device, &shape) })
+    }
+
+    /// One draw. Group 0 is set.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(&self.pipeline);
+        pass.draw(0..6, 0..1);
+    }
+}

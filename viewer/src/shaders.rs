@@ -1,0 +1,109 @@
+//! WGSL sources: built in, or from a folder while one works on them. Each is `common.wgsl` followed by a pass's own,
+//! checked by naga so that errors are told with file and line before the driver sees anything.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+/// What every pass's shader starts with.
+const COMMON: &str = include_str!("passes/common.wgsl");
+
+/// The sources that were built in, by name.
+const BUILTIN: &[(&str, &str)] = &[
+    ("cull", include_str!("passes/cull.wgsl")),
+    ("shadow", include_str!("passes/shadow.wgsl")),
+    ("sky", include_str!("passes/sky.wgsl")),
+    ("terrain", include_str!("passes/terrain.wgsl")),
+    ("tone", include_str!("passes/tone.wgsl")),
+    ("trees", include_str!("passes/trees.wgsl")),
+    ("water", include_str!("passes/water.wgsl")),
+];
+
+/// Where sources come from.
+#[derive(Clone, Debug, Default)]
+pub struct Shaders {
+    folder: Option<PathBuf>,
+}
+
+/// A shader that cannot be used.
+#[derive(Debug, Error)]
+pub enum ShaderError {
+    /// naga refuses it.
+    #[error("{name}.wgsl is wrong:\n{text}")]
+    Wrong {
+        /// Its name without ending.
+        name: String,
+        /// What and where.
+        text: String,
+    },
+    /// A pipeline cannot be made from it.
+    #[error("a shader does not fit its pipeline: {text}")]
+    Refused {
+        /// What the device says.
+        text: String,
+    },
+    /// It cannot be read.
+    #[error("cannot read {path}: {source}")]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+}
+
+impl Shaders {
+    /// Those that were built in.
+    pub fn builtin() -> Self {
+        Self::default()
+    }
+
+    /// Those in `folder`; any that is not there is taken from the built-in ones.
+    pub fn from_folder(folder: PathBuf) -> Self {
+        Self { folder: Some(folder) }
+    }
+
+    /// Names of all shaders.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        BUILTIN.iter().map(|(name, _)| *name)
+    }
+
+    fn source(&self, name: &str, builtin: &str) -> Result<String, ShaderError> {
+        let Some(folder) = &self.folder else { return Ok(builtin.to_owned()) };
+        let path = folder.join(name).with_extension("wgsl");
+        match std::fs::read_to_string(&path) {
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(builtin.to_owned()),
+            read => read.map_err(|source| ShaderError::Unreadable { path, source }),
+        }
+    }
+
+    /// The whole text of a shader: common part, then its own.
+    pub fn text(&self, name: &str) -> Result<String, ShaderError> {
+        let builtin = BUILTIN.iter().find(|(known, _)| *known == name).map_or("", |(_, text)| text);
+        Ok(self.source("common", COMMON)? + &self.source(name, builtin)?)
+    }
+
+    /// Parses and checks a shader.
+    pub fn check(&self, name: &str) -> Result<(naga::Module, naga::valid::ModuleInfo), ShaderError> {
+        let text = self.text(name)?;
+        let common_lines = self.source("common", COMMON)?.lines().count();
+        let wrong = |error: String| ShaderError::Wrong {
+            name: name.to_owned(),
+            text: format!("{error}(its first {common_lines} lines are those of common.wgsl)"),
+        };
+        let module = naga::front::wgsl::parse_str(&text)
+            .map_err(|error| wrong(error.emit_to_string_with_path(&text, &format!("{name}.wgsl"))))?;
+        let flags = naga::valid::ValidationFlags::all();
+        let info = naga::valid::Validator::new(flags, naga::valid::Capabilities::all())
+            .validate(&module)
+            .map_err(|error| wrong(error.emit_to_string_with_path(&text, &format!("{name}.wgsl"))))?;
+        Ok((module, info))
+    }
+
+    /// Compiles a shader.
+    pub fn module(&self, device: &wgpu::Device, name: &str) -> Result<wgpu::ShaderModule, ShaderError> {
+        self.check(name)?;
+        let source = wgpu::ShaderSource::Wgsl(self.text(name)?.into());
+        Ok(device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(name), source }))
+    }
+}

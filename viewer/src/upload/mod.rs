@@ -1,0 +1,103 @@
+//! A [`Scene`]'s plain values → buffers and textures on the device. Immutable once made; shared by all views that show
+//! it. What two landscapes have in common (a tree that was inherited, a texture) is uploaded once.
+
+mod ground;
+mod sky;
+mod texture;
+mod trees;
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, Weak};
+
+pub use ground::{GroundBuffers, RingVertex};
+pub use sky::SkyTextures;
+pub use texture::PictureUse;
+pub use trees::{
+    DrawCommand, MATERIALS_PER_TREE_SET, MAX_LEVELS, MaterialUniform, TemplateData, TreeData, TreeMaterial,
+    TreeSet,
+};
+
+use crate::gpu::Gpu;
+use crate::scene::{Ground, Scene, Sky};
+
+/// A landscape on the device.
+#[derive(Debug)]
+pub struct SceneBuffers {
+    /// The individual's name.
+    pub name: String,
+    /// The plain values that a view needs besides: heights to choose levels of detail by, light.
+    pub ground: Ground,
+    /// Sun and air.
+    pub sky: Sky,
+    /// The land.
+    pub land: GroundBuffers,
+    /// Sky pictures.
+    pub heaven: SkyTextures,
+    /// Trees; none if the land is bare.
+    pub trees: Option<TreeSet>,
+    /// Shadows as seen from the sun; drawn into once.
+    pub shadow_map: wgpu::Texture,
+}
+
+/// Uploads landscapes.
+#[derive(Debug)]
+pub struct Uploader {
+    gpu: Gpu,
+    textures: Mutex<HashMap<String, Weak<wgpu::Texture>>>,
+}
+
+impl Uploader {
+    /// To that device.
+    pub fn new(gpu: &Gpu) -> Self {
+        Self { gpu: gpu.clone(), textures: Mutex::default() }
+    }
+
+    /// Uploads a landscape. May run on any thread.
+    pub fn upload(&self, scene: &Scene) -> Result<SceneBuffers, String> {
+        Ok(SceneBuffers {
+            name: scene.name.clone(),
+            ground: scene.ground.clone(),
+            sky: scene.sky.clone(),
+            land: self.ground(&scene.ground)?,
+            heaven: self.sky(&scene.sky),
+            trees: self.trees(&scene.trees),
+            shadow_map: self.shadow_map(),
+        })
+    }
+
+    fn shadow_map(&self) -> wgpu::Texture {
+        // A tree's crown is some metres wide: half a metre a texel shows it, a quarter is better where memory is no matter.
+        let side = if self.gpu.software { 2048 } else { 4096 };
+        self.gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("shadow map"),
+            size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Depth16Unorm,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        })
+    }
+
+    /// The texture of that name, made if nobody has it.
+    fn shared(&self, name: String, make: impl FnOnce() -> wgpu::Texture) -> Arc<wgpu::Texture> {
+        let lock = || self.textures.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        if let Some(known) = lock().get(&name).and_then(Weak::upgrade) {
+            return known;
+        }
+        let made = Arc::new(make());
+        let mut textures = lock();
+        textures.retain(|_, texture| texture.strong_count() > 0);
+        textures.insert(name, Arc::downgrade(&made));
+        made
+    }
+
+    fn buffer(&self, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        use wgpu::util::DeviceExt;
+        // Empty buffers cannot be bound.
+        let contents = if contents.is_empty() { &[0; 16] } else { contents };
+        let descriptor = wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage };
+        self.gpu.device.create_buffer_init(&descriptor)
+    }
+}

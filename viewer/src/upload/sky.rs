@@ -1,0 +1,46 @@
+//! The sky's pictures.
+
+use std::sync::Arc;
+
+use super::{PictureUse, Uploader};
+use crate::scene::{Picture, Sky};
+
+/// Sky pictures on the device.
+#[derive(Debug)]
+pub struct SkyTextures {
+    /// With clouds.
+    pub cube: Arc<wgpu::Texture>,
+    /// Without.
+    pub clear_cube: Arc<wgpu::Texture>,
+    /// Sheet of cumulus.
+    pub cumulus: Arc<wgpu::Texture>,
+    /// Sheet of cirrus.
+    pub cirrus: Arc<wgpu::Texture>,
+    /// Altitude and extent of the cumulus, then of the cirrus; extent 0 if there is none.
+    pub sheets_m: [f32; 4],
+}
+
+impl Uploader {
+    pub(super) fn sky(&self, sky: &Sky) -> SkyTextures {
+        let layer = |name: &str| sky.layers.iter().find(|layer| layer.name == name);
+        let nothing = Picture {
+            name: "nothing".into(),
+            width_px: 1,
+            height_px: 1,
+            levels: vec![Arc::from([0u8; 4].as_slice())],
+        };
+        let texture = |name: &str| {
+            let image = layer(name).map_or(&nothing, |layer| &layer.image);
+            self.picture(image, PictureUse::Color)
+        };
+        let measure = |name: &str| layer(name).map_or([0.0; 2], |layer| [layer.altitude_m, layer.extent_m]);
+        let ([a, b], [c, d]) = (measure("cumulus"), measure("cirrus"));
+        SkyTextures {
+            cube: self.cube(&sky.faces),
+            clear_cube: self.cube(&sky.clear_faces),
+            cumulus: texture("cumulus"),
+            cirrus: texture("cirrus"),
+            sheets_m: [a, b, c, d],
+        }
+    }
+}

@@ -1,0 +1,310 @@
+//! Trees: one vertex buffer and one index buffer for all kinds and levels, instances, and the commands that draw them.
+
+use std::sync::Arc;
+
+use glam::{Mat3, Vec3};
+
+use super::{PictureUse, Uploader};
+use crate::scene::{Instance, Material, Picture, Template, TreeVertex, Trees};
+
+/// The most levels of detail of a kind of tree; as in `cull.wgsl`.
+pub const MAX_LEVELS: usize = 12;
+/// The most materials that all trees of a landscape may have: each is one draw.
+pub const MATERIALS_PER_TREE_SET: usize = 4;
+
+/// A tree, as the shaders read it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct TreeData {
+    /// World from the template's space, by rows.
+    pub rows: [[f32; 4]; 3],
+    /// Which kind.
+    pub template_index: u32,
+    /// Greatest singular value of the linear part.
+    pub scale: f32,
+    /// Unused.
+    pub pad: [f32; 2],
+}
+
+/// A kind of tree, as the shaders read it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct TemplateData {
+    /// Of a sphere around it.
+    pub center: [f32; 3],
+    /// Of that sphere.
+    pub radius: f32,
+    /// Error of each level in metres.
+    pub errors: [f32; MAX_LEVELS],
+    /// How many levels.
+    pub levels: u32,
+    /// Where its first list of visible trees starts.
+    pub first: u32,
+    /// How many entries each of its lists has room for.
+    pub capacity: u32,
+    /// Unused.
+    pub unused: u32,
+}
+
+/// The arguments of an indexed indirect draw.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct DrawCommand {
+    /// Indices of the mesh.
+    pub indices: u32,
+    /// How many trees; written by the device.
+    pub instances: u32,
+    /// Where the mesh's indices start.
+    pub first_index: u32,
+    /// What is added to each.
+    pub base_vertex: i32,
+    /// Where the list of visible trees starts.
+    pub first_instance: u32,
+}
+
+/// What a material looks like, as the shaders read it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct MaterialUniform {
+    /// Factor on the albedo.
+    pub factor: [f32; 4],
+    /// Below this alpha nothing is drawn.
+    pub alpha_cutoff: f32,
+    /// 1 if light passes through.
+    pub thin: f32,
+    /// 1 if there is a colour texture.
+    pub has_color: f32,
+    /// 1 if there is a normal texture.
+    pub has_normal: f32,
+}
+
+/// All trees of a landscape on the device.
+#[derive(Debug)]
+pub struct TreeSet {
+    /// [`TreeVertex`] of all kinds and levels.
+    pub vertices: wgpu::Buffer,
+    /// 32-bit.
+    pub indices: wgpu::Buffer,
+    /// [`TreeData`] of each tree.
+    pub trees: wgpu::Buffer,
+    /// How many trees.
+    pub count: u32,
+    /// [`TemplateData`] of each kind.
+    pub templates: wgpu::Buffer,
+    /// How many kinds.
+    pub template_count: u32,
+    /// The most levels that a kind has.
+    pub level_count: u32,
+    /// One for each material, level and kind, in this order of significance, nearest levels first, with no trees yet.
+    pub commands: Vec<DrawCommand>,
+    /// Triangles of one tree for each level and kind, all materials together: index level · kinds + kind.
+    pub triangles: Vec<u32>,
+    /// What the trees are made of.
+    pub materials: Vec<TreeMaterial>,
+    /// Entries of all lists of visible trees together.
+    pub list_capacity: u32,
+}
+
+/// A material on the device.
+#[derive(Debug)]
+pub struct TreeMaterial {
+    /// "leaf".
+    pub name: String,
+    /// True if it has holes and two sides.
+    pub masked: bool,
+    /// [`MaterialUniform`].
+    pub uniform: wgpu::Buffer,
+    /// Colour.
+    pub color: Arc<wgpu::Texture>,
+    /// Normals.
+    pub normal: Arc<wgpu::Texture>,
+}
+
+impl Uploader {
+    /// `None` if there are no trees to draw.
+    pub(super) fn trees(&self, trees: &Trees) -> Option<TreeSet> {
+        if trees.instances.is_empty() || trees.templates.is_empty() {
+            return None;
+        }
+        let set = arrange(trees);
+        use wgpu::BufferUsages as Usage;
+        let bytes = |label: &str, bytes: &[u8], usage| self.buffer(label, bytes, usage);
+        Some(TreeSet {
+            vertices: bytes("tree vertices", bytemuck::cast_slice(&set.vertices), Usage::VERTEX),
+            indices: bytes("tree indices", bytemuck::cast_slice(&set.indices), Usage::INDEX),
+            trees: bytes("trees", bytemuck::cast_slice(&set.trees), Usage::STORAGE),
+            count: set.trees.len() as u32,
+            templates: bytes("kinds of tree", bytemuck::cast_slice(&set.templates), Usage::STORAGE),
+            template_count: set.templates.len() as u32,
+            level_count: set.level_count,
+            commands: set.commands,
+            triangles: set.triangles,
+            materials: set.materials.iter().map(|material| self.material(material)).collect(),
+            list_capacity: set.list_capacity,
+        })
+    }
+
+    fn material(&self, material: &Material) -> TreeMaterial {
+        let blank = |value: [u8; 4]| Picture {
+            name: format!("blank {value:?}"),
+            width_px: 1,
+            height_px: 1,
+            levels: vec![Arc::from(value.as_slice())],
+        };
+        let flag = |present: bool| if present { 1.0 } else { 0.0 };
+        let uniform = MaterialUniform {
+            factor: material.color_factor,
+            alpha_cutoff: material.alpha_cutoff.unwrap_or(0.0),
+            thin: flag(material.alpha_cutoff.is_some()),
+            has_color: flag(material.color.is_some()),
+            has_normal: flag(material.normal.is_some()),
+        };
+        let color = material.color.clone().unwrap_or_else(|| blank([255; 4]));
+        let normal = material.normal.clone().unwrap_or_else(|| blank([128, 128, 255, 255]));
+        TreeMaterial {
+            name: material.name.clone(),
+            masked: material.alpha_cutoff.is_some(),
+            uniform: self.buffer("material", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM),
+            color: self.picture(&color, PictureUse::Color),
+            normal: self.picture(&normal, PictureUse::Data),
+        }
+    }
+}
+
+/// What goes into the buffers.
+struct Arranged {
+    vertices: Vec<TreeVertex>,
+    indices: Vec<u32>,
+    trees: Vec<TreeData>,
+    templates: Vec<TemplateData>,
+    level_count: u32,
+    commands: Vec<DrawCommand>,
+    triangles: Vec<u32>,
+    materials: Vec<Material>,
+    list_capacity: u32,
+}
+
+fn arrange(trees: &Trees) -> Arranged {
+    let kinds = trees.templates.len();
+    let depth = |template: &Template| template.levels.len().min(MAX_LEVELS);
+    let level_count = trees.templates.iter().map(|template| depth(template)).max().unwrap_or(1);
+    let materials = common_materials(trees);
+    let buckets = level_count * kinds;
+    let mut set = Arranged {
+        vertices: Vec::new(),
+        indices: Vec::new(),
+        trees: trees.instances.iter().map(tree_data).collect(),
+        templates: Vec::new(),
+        level_count: level_count as u32,
+        commands: vec![DrawCommand::default(); buckets * materials.len()],
+        triangles: vec![0; buckets],
+        materials,
+        list_capacity: 0,
+    };
+    for (kind, template) in trees.templates.iter().enumerate() {
+        let capacity = trees.instances.iter().filter(|tree| tree.template as usize == kind).count() as u32;
+        let (base_vertex, base_index) = (set.vertices.len() as u32, set.indices.len() as u32);
+        for (number, level) in template.levels.iter().take(MAX_LEVELS).enumerate() {
+            let bucket = number * kinds + kind;
+            for (range, material) in level.ranges.iter().zip(&template.materials) {
+                let slot = set.materials.iter().position(|known| same(known, material)).unwrap_or(0);
+                set.commands[slot * buckets + bucket] = DrawCommand {
+                    indices: range.count,
+                    instances: 0,
+                    first_index: base_index + range.first,
+                    base_vertex: (base_vertex + level.base_vertex) as i32,
+                    first_instance: set.list_capacity + number as u32 * capacity,
+                };
+                set.triangles[bucket] += range.count / 3;
+            }
+        }
+        set.templates.push(template_data(template, set.list_capacity, capacity));
+        set.list_capacity += capacity * depth(template) as u32;
+        set.vertices.extend_from_slice(&template.vertices);
+        set.indices.extend_from_slice(&template.indices);
+    }
+    set
+}
+
+fn template_data(template: &Template, first: u32, capacity: u32) -> TemplateData {
+    let mut errors = [f32::MAX; MAX_LEVELS];
+    for (slot, level) in errors.iter_mut().zip(&template.levels) {
+        *slot = level.error_m;
+    }
+    TemplateData {
+        center: template.center_m,
+        radius: template.radius_m,
+        errors,
+        levels: template.levels.len().min(MAX_LEVELS) as u32,
+        first,
+        capacity,
+        unused: 0,
+    }
+}
+
+fn tree_data(instance: &Instance) -> TreeData {
+    TreeData {
+        rows: instance.world_from_tree,
+        template_index: instance.template,
+        scale: greatest_stretch(&instance.world_from_tree),
+        pad: [0.0; 2],
+    }
+}
+
+/// The greatest singular value of an affine map's linear part, never too small by more than rounding: 24 steps of
+/// power iteration on AᵀA, which for the mild shears of trees is exact.
+fn greatest_stretch(rows: &[[f32; 4]; 3]) -> f32 {
+    let transposed = Mat3::from_cols_array_2d(&rows.map(|[x, y, z, _]| [x, y, z]));
+    let gram = transposed * transposed.transpose();
+    let mut direction = Vec3::new(0.62, 0.55, 0.56);
+    for _ in 0..24 {
+        direction = (gram * direction).normalize_or(Vec3::Y);
+    }
+    (gram * direction).dot(direction).max(0.0).sqrt()
+}
+
+/// Materials of all kinds, equal ones once; beyond the greatest number the first stands in.
+fn common_materials(trees: &Trees) -> Vec<Material> {
+    let mut materials: Vec<Material> = Vec::new();
+    for material in trees.templates.iter().flat_map(|template| &template.materials) {
+        let known = materials.iter().any(|known| same(known, material));
+        if !known && materials.len() < MATERIALS_PER_TREE_SET {
+            materials.push(material.clone());
+        }
+    }
+    // What has no holes first: it hides what is behind.
+    materials.sort_by_key(|material| material.alpha_cutoff.is_some());
+    materials
+}
+
+fn same(a: &Material, b: &Material) -> bool {
+    let name = |picture: &Option<Picture>| picture.as_ref().map(|picture| picture.name.clone());
+    (name(&a.color), name(&a.normal), a.color_factor, a.alpha_cutoff)
+        == (name(&b.color), name(&b.normal), b.color_factor, b.alpha_cutoff)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn no_direction_is_stretched_more(
+            rows in proptest::array::uniform3(proptest::array::uniform4(-2f32..2.)),
+            x in -1f32..1., y in -1f32..1., z in -1f32..1.,
+        ) {
+            let direction = Vec3::new(x, y, z);
+            prop_assume!(direction.length() > 0.1);
+            let unit = direction.normalize();
+            let image = rows.map(|[a, b, c, _]| Vec3::new(a, b, c).dot(unit));
+            prop_assert!(Vec3::from(image).length() <= greatest_stretch(&rows) * 1.02 + 1e-4);
+        }
+    }
+
+    #[test]
+    fn a_uniform_scale_is_itself() {
+        let rows = [[0.0, 0.0, 3.0, 9.0], [3.0, 0.0, 0.0, 9.0], [0.0, 3.0, 0.0, 9.0]];
+        assert!((greatest_stretch(&rows) - 3.0).abs() < 1e-5);
+    }
+}
