@@ -1,0 +1,138 @@
+//! The window: its surface, and the user interface painted onto it.
+
+use std::sync::Arc;
+
+use anyhow::{Context, Result, anyhow};
+use winit::window::Window;
+
+use crate::gpu::{Gpu, GpuError};
+
+/// A window with its surface and what paints the user interface.
+pub struct Screen {
+    /// The window.
+    pub window: Arc<Window>,
+    /// egui's side of it.
+    pub ctx: egui::Context,
+    /// Translates the window's events.
+    pub input: egui_winit::State,
+    /// Paints; knows textures by [`egui::TextureId`].
+    pub painter: egui_wgpu::Renderer,
+    surface: wgpu::Surface<'static>,
+    config: wgpu::SurfaceConfiguration,
+    gpu: Gpu,
+}
+
+/// What became of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Presented {
+    /// It is on the screen.
+    Yes,
+    /// Nobody sees the window now.
+    Hidden,
+}
+
+impl Screen {
+    /// Opens a device that can draw to `window`.
+    pub fn open(window: Arc<Window>) -> Result<(Self, Gpu)> {
+        let instance = crate::gpu::instance();
+        let surface = instance.create_surface(window.clone()).context("the window cannot be drawn to")?;
+        let (gpu, adapter) =
+            Gpu::open(&instance, Some(&surface)).map_err(|error: GpuError| anyhow!(error))?;
+        let size = window.inner_size();
+        let mut config = surface
+            .get_default_config(&adapter, size.width.max(1), size.height.max(1))
+            .ok_or_else(|| anyhow!("{} cannot draw to this window", gpu.name))?;
+        let formats = surface.get_capabilities(&adapter).formats;
+        // The pictures are encoded already: the surface must not encode them again.
+        if let Some(plain) = formats.iter().find(|format| !format.is_srgb()) {
+            config.format = *plain;
+        }
+        config.present_mode = wgpu::PresentMode::AutoVsync;
+        config.desired_maximum_frame_latency = 2;
+        surface.configure(&gpu.device, &config);
+        let ctx = egui::Context::default();
+        crate::ui::theme::install(&ctx);
+        let scale = window.scale_factor() as f32;
+        let id = egui::ViewportId::ROOT;
+        let input = egui_winit::State::new(ctx.clone(), id, &window, Some(scale), window.theme(), Some(8192));
+        let painter =
+            egui_wgpu::Renderer::new(&gpu.device, config.format, egui_wgpu::RendererOptions::default());
+        Ok((Self { window, ctx, input, painter, surface, config, gpu: gpu.clone() }, gpu))
+    }
+
+    /// Follows the window's size.
+    pub fn resize(&mut self, width: u32, height: u32) {
+        let most = self.gpu.device.limits().max_texture_dimension_2d;
+        (self.config.width, self.config.height) = (width.clamp(1, most), height.clamp(1, most));
+        self.surface.configure(&self.gpu.device, &self.config);
+    }
+
+    /// Paints the user interface and shows it; `commands` have drawn what it shows.
+    pub fn present(
+        &mut self,
+        output: egui::FullOutput,
+        mut encoder: wgpu::CommandEncoder,
+        before_submit: impl FnOnce(&mut wgpu::CommandEncoder),
+    ) -> Presented {
+        self.input.handle_platform_output(&self.window, output.platform_output);
+        let pixels_per_point = output.pixels_per_point;
+        let shapes = self.ctx.tessellate(output.shapes, pixels_per_point);
+        for (id, deltas) in &output.textures_delta.set {
+            for delta in deltas {
+                self.painter.update_texture(&self.gpu.device, &self.gpu.queue, *id, delta);
+            }
+        }
+        let screen = egui_wgpu::ScreenDescriptor {
+            size_in_pixels: [self.config.width, self.config.height],
+            pixels_per_point,
+        };
+        let (device, queue) = (&self.gpu.device, &self.gpu.queue);
+        let uploads = self.painter.update_buffers(device, queue, &mut encoder, &shapes, &screen);
+        let frame = self.frame();
+        if let Some(frame) = &frame {
+            let view = frame.texture.create_view(&Default::default());
+            let attachment = wgpu::RenderPassColorAttachment {
+                view: &view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                    store: wgpu::StoreOp::Store,
+                },
+            };
+            let mut pass = encoder
+                .begin_render_pass(&wgpu::RenderPassDescriptor {
+                    label: Some("user interface"),
+                    color_attachments: &[Some(attachment)],
+                    ..Default::default()
+                })
+                .forget_lifetime();
+            self.painter.render(&mut pass, &shapes, &screen);
+        }
+        before_submit(&mut encoder);
+        self.gpu.queue.submit(uploads.into_iter().chain([encoder.finish()]));
+        for id in &output.textures_delta.free {
+            self.painter.free_texture(id);
+        }
+        match frame {
+            Some(frame) => {
+                self.window.pre_present_notify();
+                self.gpu.queue.present(frame);
+                Presented::Yes
+            }
+            None => Presented::Hidden,
+        }
+    }
+
+    fn frame(&mut self) -> Option<wgpu::SurfaceTexture> {
+        use wgpu::CurrentSurfaceTexture as Current;
+        for _ in 0..2 {
+            match self.surface.get_current_texture() {
+                Current::Success(frame) | Current::Suboptimal(frame) => return Some(frame),
+                Current::Outdated | Current::Lost => self.surface.configure(&self.gpu.device, &self.config),
+                _ => return None,
+            }
+        }
+        None
+    }
+}

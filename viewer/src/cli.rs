@@ -1,0 +1,249 @@
+//! What can be asked for on the command line.
+
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand, ValueEnum};
+
+use crate::frame::{Options, TerrainScheme, TreeScheme};
+
+/// Shows four landscapes at once: walk through all of them, say which has the best trees, terrain and sky, and breed
+/// four new ones
+#[derive(Clone, Debug, Parser)]
+#[command(name = "viewer", version, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
+pub struct Cli {
+    /// A world, a baked folder or a scene.gltf [default: the world in ./world, made if absent]
+    pub path: Option<PathBuf>,
+
+    /// The world folder: populations and everything baked
+    #[arg(long, value_name = "DIR", default_value = "world", conflicts_with = "path")]
+    pub world: PathBuf,
+
+    /// Do not bake: somebody else does, `bake --watch` for instance
+    #[arg(long)]
+    pub no_bake: bool,
+
+    /// Threads that bake [default: all cores but one]
+    #[arg(long, value_name = "N")]
+    pub threads: Option<usize>,
+
+    /// Look several times a second instead of waiting for events, for network folders that send none
+    #[arg(long)]
+    pub poll: bool,
+
+    /// Keep settings in this file instead of the platform's folder for settings
+    #[arg(long, value_name = "FILE")]
+    pub settings: Option<PathBuf>,
+
+    /// Read shaders from this folder, and again whenever one is saved; what is missing there is built in
+    #[arg(long, value_name = "DIR")]
+    pub shaders: Option<PathBuf>,
+
+    /// Folder for screenshots
+    #[arg(long, value_name = "DIR", default_value = "pictures")]
+    pub pictures: PathBuf,
+
+    /// Draw to a PNG file instead of a window
+    #[arg(long, value_name = "OUT.png")]
+    pub screenshot: Option<PathBuf>,
+
+    /// Size of the window or the picture
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<[u32; 2]>,
+
+    /// With --screenshot: which landscape, 0 to 3
+    #[arg(long, value_name = "N", conflicts_with = "all", value_parser = clap::value_parser!(u8).range(0..4))]
+    pub scene: Option<u8>,
+
+    /// With --screenshot: all landscapes in one picture, two by two
+    #[arg(long)]
+    pub all: bool,
+
+    /// With --screenshot: where the eye is. X and Z in metres east and south of the middle, HEIGHT above the ground,
+    /// YAW to the left of north and PITCH upwards in degrees [default: where walks start]
+    #[arg(long, value_name = "X,Z,HEIGHT,YAW,PITCH", value_parser = place, allow_hyphen_values = true)]
+    pub camera: Option<Place>,
+
+    /// With --screenshot: seconds for which clouds have drifted
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
+    pub time: f32,
+
+    /// How it is drawn.
+    #[command(flatten)]
+    pub drawing: Drawing,
+
+    /// Something else than looking.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
+
+/// Other things to do.
+#[derive(Clone, Debug, Subcommand)]
+pub enum Command {
+    /// Measure how long pictures take, as ratios of one run
+    Bench(crate::bench::BenchArgs),
+}
+
+const EXAMPLES: &str = "Examples:
+  viewer                                       walk through the landscapes of ./world; they are baked if need be
+  viewer --world alps                          those of another world
+  viewer world/baked/g0003                     an older generation as it was baked
+  viewer --screenshot all.png --all            draw all four to a file, without a window
+  viewer --screenshot a.png --scene 2 --camera 0,20,1.6,45,-5 --size 1600x900";
+
+/// How it is drawn; kept by nobody.
+#[derive(Clone, Debug, clap::Args)]
+#[command(next_help_heading = "Drawing (with --screenshot)")]
+pub struct Drawing {
+    /// Levels of detail of trees
+    #[arg(long, value_enum, default_value_t)]
+    pub tree_lod: TreeLod,
+    /// Levels of detail of the terrain
+    #[arg(long, value_enum, default_value_t)]
+    pub terrain_lod: TerrainLod,
+    /// Error that trees may have on the screen, in pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = Options::default().tree_error_px)]
+    pub tree_error: f32,
+    /// Error that the terrain may have on the screen, in pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = Options::default().terrain_error_px)]
+    pub terrain_error: f32,
+    /// Samples a pixel
+    #[arg(long, default_value_t = 4, value_parser = samples)]
+    pub samples: u32,
+    /// Edges of triangles only
+    #[arg(long)]
+    pub wireframe: bool,
+    /// Colours that say the level of detail
+    #[arg(long)]
+    pub tint: bool,
+    /// From above, with what was chosen for the eye
+    #[arg(long)]
+    pub overhead: bool,
+    /// Factor on the landscape's own exposure
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    pub exposure: f32,
+    /// Vertical field of view in degrees
+    #[arg(long, value_name = "DEGREES", default_value_t = Options::default().fov_y_deg)]
+    pub fov: f32,
+}
+
+/// As [`TreeScheme`].
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum TreeLod {
+    /// Continuous, by error
+    #[default]
+    Quality,
+    /// Continuous, by number of vertices
+    Simple,
+    /// By error, without morphing
+    Discrete,
+    /// None
+    Off,
+}
+
+/// As [`TerrainScheme`].
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum TerrainLod {
+    /// Blocks that morph in the vertex shader
+    #[default]
+    Morph,
+    /// Triangles split by wedgies on the CPU
+    Roam,
+    /// None
+    Off,
+}
+
+impl Drawing {
+    /// As options for a frame.
+    pub fn options(&self) -> Options {
+        Options {
+            tree_scheme: match self.tree_lod {
+                TreeLod::Quality => TreeScheme::Quality,
+                TreeLod::Simple => TreeScheme::Simple,
+                TreeLod::Discrete => TreeScheme::Discrete,
+                TreeLod::Off => TreeScheme::Off,
+            },
+            terrain_scheme: match self.terrain_lod {
+                TerrainLod::Morph => TerrainScheme::Morph,
+                TerrainLod::Roam => TerrainScheme::Roam,
+                TerrainLod::Off => TerrainScheme::Off,
+            },
+            tree_error_px: self.tree_error,
+            terrain_error_px: self.terrain_error,
+            wireframe: self.wireframe,
+            tint_levels: self.tint,
+            overhead: self.overhead,
+            exposure: self.exposure,
+            samples: self.samples,
+            fov_y_deg: self.fov,
+            ..Options::default()
+        }
+    }
+}
+
+/// Where an eye is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Metres east of the middle.
+    pub x_m: f32,
+    /// Metres south of the middle.
+    pub z_m: f32,
+    /// Metres above the ground.
+    pub height_m: f32,
+    /// Degrees to the left of north.
+    pub yaw_deg: f32,
+    /// Degrees upwards.
+    pub pitch_deg: f32,
+}
+
+fn place(text: &str) -> Result<Place, String> {
+    let numbers: Vec<f32> = text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
+    let parts = text.split(',').count();
+    match numbers[..] {
+        [x_m, z_m, height_m, yaw_deg, pitch_deg] if parts == 5 && numbers.iter().all(|n| n.is_finite()) => {
+            Ok(Place { x_m, z_m, height_m, yaw_deg, pitch_deg })
+        }
+        _ => Err("five numbers are needed: X,Z,HEIGHT,YAW,PITCH, as in 0,20,1.6,45,-5".to_owned()),
+    }
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let sides: Vec<u32> = text.split(['x', 'X', '×']).filter_map(|side| side.trim().parse().ok()).collect();
+    match sides[..] {
+        [width, height] if (16..=16384).contains(&width) && (16..=16384).contains(&height) => {
+            Ok([width, height])
+        }
+        _ => Err("a size is WIDTHxHEIGHT in pixels, 16 to 16384 each, as in 1280x800".to_owned()),
+    }
+}
+
+fn samples(text: &str) -> Result<u32, String> {
+    match text {
+        "1" => Ok(1),
+        "4" => Ok(4),
+        _ => Err("1 or 4 samples a pixel".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_holds_together() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn places_and_sizes_are_read_or_refused_with_an_example() {
+        let read = place("0,20,1.6,45,-5").expect("five numbers");
+        assert_eq!(read, Place { x_m: 0.0, z_m: 20.0, height_m: 1.6, yaw_deg: 45.0, pitch_deg: -5.0 });
+        for wrong in ["", "1,2,3,4", "1,2,3,4,5,6", "1,2,x,4,5", "1,2,nan,4,5", "1,2,,4,5"] {
+            assert!(place(wrong).is_err_and(|text| text.contains("0,20,1.6,45,-5")), "{wrong}");
+        }
+        assert_eq!(size("640x480"), Ok([640, 480]));
+        for wrong in ["640", "0x480", "640x480x3", "x", "99999x10"] {
+            assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+}
