@@ -29,10 +29,13 @@ pub enum Source {
 impl Source {
     /// What a folder or file is, that was named or dropped. A text for people if it is nothing of ours.
     pub fn of(path: &Path) -> Result<Self, String> {
-        if path.is_file() {
-            let known = path.extension().is_some_and(|ending| ending == "gltf" || ending == "glb");
-            let scenes = || Ok(Self::Scenes(vec![path.to_owned()]));
-            return if known { scenes() } else { Err(format!("{} is no scene.gltf", path.display())) };
+        let of_gltf = path.extension().is_some_and(|ending| ending == "gltf" || ending == "glb");
+        if of_gltf || path.is_file() {
+            return match (of_gltf, path.is_file()) {
+                (true, true) => Ok(Self::Scenes(vec![path.to_owned()])),
+                (true, false) => Err(format!("there is no file {}", path.display())),
+                (false, _) => Err(format!("{} is no scene.gltf", path.display())),
+            };
         }
         if path.join(names::POPULATIONS).is_dir() || !path.exists() {
             return Ok(Self::World(path.to_owned()));

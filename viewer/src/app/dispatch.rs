@@ -84,6 +84,7 @@ impl App {
             Action::Vote(category, best) => self.vote_by_key(category, best),
             Action::NextGeneration => self.desk.breed(),
             Action::Undo => self.desk.undo(),
+            Action::Redo => self.desk.redo(),
             Action::OlderGeneration => self.step_generation(-1),
             Action::NewerGeneration => self.step_generation(1),
             Action::SetBookmark(number) => self.set_bookmark(number),

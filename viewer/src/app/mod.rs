@@ -466,6 +466,10 @@ impl App {
             Some(folder) => Shaders::from_folder(folder.clone()),
             None => Shaders::builtin(),
         };
+        if !gpu.software && self.settings == Settings::default() {
+            // Nobody has chosen yet, and a card can afford smooth edges.
+            self.settings.options.samples = 4;
+        }
         let show = Show::new(&gpu, shaders, &self.settings.options)?;
         let loader = Loader::start(&gpu, self.wake())?;
         screen.window.request_redraw();

@@ -43,6 +43,8 @@ pub enum Action {
     NextGeneration,
     /// Take back the last vote or generation.
     Undo,
+    /// Make again what was taken back.
+    Redo,
     /// Show the generation before.
     OlderGeneration,
     /// Show the generation after.
@@ -118,7 +120,7 @@ impl Action {
             .chain((0..VIEWS).map(Maximise))
             .chain([ShowAll, CompareAB])
             .chain(votes)
-            .chain([NextGeneration, Undo, OlderGeneration, NewerGeneration])
+            .chain([NextGeneration, Undo, Redo, OlderGeneration, NewerGeneration])
             .chain((1..=BOOKMARKS).map(SetBookmark))
             .chain((1..=BOOKMARKS).map(GoBookmark))
             .chain([ToggleHelp, ToggleGenome, ToggleStats, ToggleSettings, ToggleFullscreen, Screenshot])
@@ -138,7 +140,7 @@ impl Action {
                 Group::Move
             }
             Maximise(_) | ShowAll | CompareAB => Group::Look,
-            Vote(..) | NextGeneration | Undo | OlderGeneration | NewerGeneration => Group::Choose,
+            Vote(..) | NextGeneration | Undo | Redo | OlderGeneration | NewerGeneration => Group::Choose,
             SetBookmark(_) | GoBookmark(_) => Group::Bookmarks,
             ToggleHelp | ToggleGenome | ToggleStats | ToggleSettings | ToggleFullscreen | Screenshot => {
                 Group::Window
@@ -171,6 +173,7 @@ impl Action {
             Vote(category, None) => return format!("best {category}: none of them"),
             NextGeneration => "breed the next generation",
             Undo => "undo",
+            Redo => "redo",
             OlderGeneration => "the generation before",
             NewerGeneration => "the generation after",
             SetBookmark(number) => return format!("keep this view as bookmark {number}"),
@@ -214,6 +217,7 @@ impl fmt::Display for Action {
             Vote(category, None) => return write!(f, "vote_{}_none", category.name()),
             NextGeneration => "next_generation",
             Undo => "undo",
+            Redo => "redo",
             OlderGeneration => "older_generation",
             NewerGeneration => "newer_generation",
             SetBookmark(number) => return write!(f, "set_bookmark_{number}"),

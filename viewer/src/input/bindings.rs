@@ -259,6 +259,7 @@ fn defaults() -> Vec<(Chord, Action)> {
     .map(|(code, action)| (Chord::key(code), action))
     .into();
     pairs.push((Chord::key(K::KeyZ).with(Modifiers::CTRL), Undo));
+    pairs.push((Chord::key(K::KeyY).with(Modifiers::CTRL), Redo));
     let rows = [
         (Category::Tree, [K::KeyU, K::KeyI, K::KeyO, K::KeyP, K::BracketLeft]),
         (Category::Terrain, [K::KeyJ, K::KeyK, K::KeyL, K::Semicolon, K::Quote]),

@@ -175,4 +175,5 @@ impl Cull {
     }
 }
 
-const _: () = assert!(size_of::<ViewUniform>() % 16 == 0 && size_of::<CullUniform>() % 16 == 0);
+const _: () =
+    assert!(size_of::<ViewUniform>().is_multiple_of(16) && size_of::<CullUniform>().is_multiple_of(16));
