@@ -50,6 +50,8 @@ pub struct Options {
     pub drift_clouds: bool,
     /// Trees are drawn.
     pub draw_trees: bool,
+    /// Grass is drawn near by.
+    pub grass: bool,
     /// The land is drawn.
     pub draw_terrain: bool,
     /// Factor on the scene's own exposure.
@@ -72,6 +74,7 @@ impl Default for Options {
             overhead: false,
             drift_clouds: true,
             draw_trees: true,
+            grass: true,
             draw_terrain: true,
             exposure: 1.0,
             samples: 1,

@@ -11,6 +11,7 @@ const COMMON: &str = include_str!("passes/common.wgsl");
 /// The sources that were built in, by name.
 const BUILTIN: &[(&str, &str)] = &[
     ("cull", include_str!("passes/cull.wgsl")),
+    ("grass", include_str!("passes/grass.wgsl")),
     ("shadow", include_str!("passes/shadow.wgsl")),
     ("sky", include_str!("passes/sky.wgsl")),
     ("terrain", include_str!("passes/terrain.wgsl")),

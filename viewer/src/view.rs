@@ -9,6 +9,7 @@ use crate::gpu::Gpu;
 use crate::lod::morph::Detail;
 use crate::lod::quadtree;
 use crate::lod::roam::Roam;
+use crate::passes::grass::{self, Clump};
 use crate::passes::{
     CullUniform, DEPTH, DISPLAY, Land, Layouts, Passes, RADIANCE, TreeGroups, TreeLists, ViewUniform, bind,
     focal_px, texture_view,
@@ -45,6 +46,7 @@ pub struct View {
     targets: Targets,
     shown: Option<Shown>,
     land: LandChoice,
+    clumps: Vec<Clump>,
 }
 
 /// Which triangles of the land are drawn; its lists are kept from frame to frame.
@@ -94,6 +96,8 @@ struct Shown {
     trees: Option<(TreeGroups, TreeLists)>,
     land: Land,
     land_buffer: wgpu::Buffer,
+    clumps: u32,
+    clump_buffer: wgpu::Buffer,
 }
 
 /// What a picture took.
@@ -122,6 +126,7 @@ impl View {
             targets,
             shown: None,
             land: LandChoice::default(),
+            clumps: Vec::new(),
         }
     }
 
@@ -204,6 +209,13 @@ impl View {
             let mut pass = scope.scoped_compute_pass("choose trees");
             passes.cull.dispatch(&mut pass, lists);
         }
+        self.clumps.clear();
+        // In pictures that explain levels of detail it would only hide them.
+        let options = &frame.options;
+        if options.grass && !options.wireframe && !options.tint_levels && !options.overhead {
+            grass::clumps(&shown.scene.ground, lod_camera.position_m, &frustum, &mut self.clumps);
+        }
+        shown.write_clumps(&self.gpu, &self.clumps);
         let draws = shown.draw(&mut scope, passes, &self.targets, frame);
         Drawn { draws, land_triangles }
     }
@@ -221,6 +233,8 @@ impl Shown {
             trees,
             land: Land::Blocks(0),
             land_buffer: land_buffer(gpu, 64 * 1024),
+            clumps: 0,
+            clump_buffer: land_buffer(gpu, 64 * 1024),
             scene,
         }
     }
@@ -233,11 +247,13 @@ impl Shown {
         quadtree::detail(field, errors, camera.position_m, focal_px, error_px, LARGEST_BLOCK_M)
     }
 
+    fn write_clumps(&mut self, gpu: &Gpu, clumps: &[Clump]) {
+        write(gpu, &mut self.clump_buffer, bytemuck::cast_slice(clumps));
+        self.clumps = clumps.len() as u32;
+    }
+
     fn write_land(&mut self, gpu: &Gpu, bytes: &[u8]) {
-        if bytes.len() as u64 > self.land_buffer.size() {
-            self.land_buffer = land_buffer(gpu, (bytes.len() as u64).next_power_of_two());
-        }
-        gpu.queue.write_buffer(&self.land_buffer, 0, bytes);
+        write(gpu, &mut self.land_buffer, bytes);
     }
 
     fn draw(
@@ -264,6 +280,12 @@ impl Shown {
                 passes.trees.draw(&mut pass, set, groups, lists, options.wireframe);
                 draws += set.materials.len() as u32;
             }
+            // Before the land: what it hides needs no light.
+            if options.draw_terrain && self.clumps > 0 {
+                let (grass, buffer) = (&mut pass.scope("grass"), &self.clump_buffer);
+                passes.grass.draw(grass, &self.ground_group, buffer, self.clumps);
+                draws += 1;
+            }
             if options.draw_terrain {
                 let mut pass = pass.scope("land");
                 let land = (self.land, &self.land_buffer);
@@ -283,6 +305,14 @@ impl Shown {
         passes.tone.draw(&mut pass, &targets.group);
         draws
     }
+}
+
+/// Into a buffer, which is made anew if it is too small.
+fn write(gpu: &Gpu, buffer: &mut wgpu::Buffer, bytes: &[u8]) {
+    if bytes.len() as u64 > buffer.size() {
+        *buffer = land_buffer(gpu, (bytes.len() as u64).next_power_of_two());
+    }
+    gpu.queue.write_buffer(buffer, 0, bytes);
 }
 
 fn land_buffer(gpu: &Gpu, size: u64) -> wgpu::Buffer {

@@ -9,7 +9,7 @@ pub struct Layouts {
     pub view: BindGroupLayout,
     /// Group 0 of the shadow pass, which cannot read what it writes.
     pub sun_view: BindGroupLayout,
-    /// Group 1 of the terrain: what covers it.
+    /// Group 1 of the terrain and of grass: what covers the land.
     pub ground: BindGroupLayout,
     /// Group 1 of trees: where they stand.
     pub trees: BindGroupLayout,
@@ -103,7 +103,7 @@ impl Layouts {
                 BOTH,
                 &[(0, uniform()), (2, filtering), (9, unfilterable)],
             ),
-            ground: layout(device, "ground", fragment, &ground),
+            ground: layout(device, "ground", BOTH, &ground),
             trees: layout(device, "trees", ShaderStages::VERTEX, &[(0, storage(true))]),
             material: layout(
                 device,

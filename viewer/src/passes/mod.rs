@@ -1,9 +1,10 @@
 //! The passes: each an immutable set of pipelines that records its part of a picture, with its WGSL beside it.
 //!
-//! Order of a picture: choice of trees, then in one render pass trees, land, sky and water, then tones. Shadows are drawn
+//! Order of a picture: choice of trees, then in one render pass trees, grass, land, sky and water, then tones. Shadows are drawn
 //! once for each landscape, before its first picture.
 
 mod cull;
+pub mod grass;
 mod layouts;
 mod shadow;
 mod sky;
@@ -14,6 +15,7 @@ mod view_uniform;
 mod water;
 
 pub use cull::{Cull, CullUniform, TreeLists};
+pub use grass::Grass;
 pub use layouts::{Layouts, bind, texture_view};
 pub use shadow::Shadow;
 pub use sky::Sky;
@@ -48,6 +50,8 @@ pub struct Passes {
     pub trees: Trees,
     /// The land.
     pub terrain: Terrain,
+    /// Grass.
+    pub grass: Grass,
     /// The sky.
     pub sky: Sky,
     /// The lake.
@@ -68,6 +72,7 @@ impl Passes {
             cull: Cull::new(device, &layouts, shaders)?,
             trees: Trees::new(gpu, &layouts, shaders, samples)?,
             terrain: Terrain::new(gpu, &layouts, shaders, samples)?,
+            grass: Grass::new(gpu, &layouts, shaders, samples)?,
             sky: Sky::new(device, &layouts, shaders, samples)?,
             water: Water::new(device, &layouts, shaders, samples)?,
             tone: Tone::new(device, &layouts, shaders)?,

@@ -1,0 +1,158 @@
+//! The land around the eye → clumps of grass, drawn at once; metres. Clumps belong to cells of the world, so that grass
+//! stays where it is while one walks; which are drawn depends on the distance, and blades shrink into the ground before
+//! their clump is left out.
+
+use glam::{Vec2, Vec3};
+
+use super::{Layouts, Shape, pipeline};
+use crate::camera::Frustum;
+use crate::gpu::Gpu;
+use crate::scene::{Ground, Picture};
+use crate::shaders::{ShaderError, Shaders};
+
+/// Metres a side of a cell; this and the next four are those of `grass.wgsl`, and a test compares them.
+pub const CELL_M: f32 = 1.0;
+/// Blades of a clump.
+pub const BLADES: u32 = 32;
+/// Clumps of a cell near the eye.
+pub const CLUMPS: u32 = 10;
+/// Up to this distance in metres all of them stand.
+pub const DENSE_M: f32 = 3.5;
+/// Beyond this distance in metres there are none.
+pub const REACH_M: f32 = 34.0;
+
+/// Vertices of a blade, and its triangles: two for the stalk, one for the tip.
+const BLADE_VERTICES: u16 = 5;
+const BLADE_TRIANGLES: [u16; 9] = [0, 1, 2, 2, 1, 3, 2, 3, 4];
+/// Bytes of rock, scree, snow and mud together beyond which no grass grows.
+const BARE: u32 = 190;
+
+/// So many blades of a cell, as the shader reads them.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct Clump {
+    /// From `cell` · [`CELL_M`] one cell east and south.
+    pub cell: [i32; 2],
+    /// Number within the cell, less than [`CLUMPS`].
+    pub number: u32,
+}
+
+/// The pipeline.
+#[derive(Debug)]
+pub struct Grass {
+    pipeline: wgpu::RenderPipeline,
+    indices: wgpu::Buffer,
+    index_count: u32,
+}
+
+impl Grass {
+    /// Compiles it.
+    pub fn new(gpu: &Gpu, layouts: &Layouts, shaders: &Shaders, samples: u32) -> Result<Self, ShaderError> {
+        use wgpu::util::DeviceExt;
+        let clump = wgpu::vertex_attr_array![0 => Sint32x2, 1 => Uint32];
+        let buffer = wgpu::VertexBufferLayout {
+            array_stride: size_of::<Clump>() as u64,
+            step_mode: wgpu::VertexStepMode::Instance,
+            attributes: &clump,
+        };
+        let shape = Shape {
+            label: "grass",
+            module: &shaders.module(&gpu.device, "grass")?,
+            vertex: "vertex",
+            fragment: "fragment",
+            buffers: &[Some(buffer)],
+            groups: &[Some(&layouts.view), Some(&layouts.ground)],
+            topology: wgpu::PrimitiveTopology::TriangleList,
+            // A blade has two sides.
+            cull: None,
+            blend: None,
+            depth_write: true,
+            wireframe: false,
+            samples,
+            alpha_to_coverage: false,
+        };
+        let blades = 0..BLADES as u16;
+        let indices: Vec<u16> =
+            blades.flat_map(|blade| BLADE_TRIANGLES.map(|v| blade * BLADE_VERTICES + v)).collect();
+        let buffer = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("blades"),
+            contents: bytemuck::cast_slice(&indices),
+            usage: wgpu::BufferUsages::INDEX,
+        });
+        Ok(Self {
+            pipeline: pipeline(&gpu.device, &shape),
+            indices: buffer,
+            index_count: indices.len() as u32,
+        })
+    }
+
+    /// One draw of so many [`Clump`]s from a buffer. Group 0 is set; `ground` is group 1 of the land.
+    pub fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        ground: &wgpu::BindGroup,
+        clumps: &wgpu::Buffer,
+        count: u32,
+    ) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(1, ground, &[]);
+        pass.set_vertex_buffer(0, clumps.slice(..));
+        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint16);
+        pass.draw_indexed(0..self.index_count, 0, 0..count);
+    }
+}
+
+/// Share of a cell's clumps that stand at a distance: `density` of `grass.wgsl` without its fade, never less.
+fn density(away_m: f32) -> f32 {
+    if away_m < REACH_M { (DENSE_M / away_m.max(0.01)).min(1.0) } else { 0.0 }
+}
+
+/// The clumps that an eye may see, into `out`, which is emptied first.
+pub fn clumps(ground: &Ground, eye_m: Vec3, frustum: &Frustum, out: &mut Vec<Clump>) {
+    out.clear();
+    let field = &ground.field;
+    let above_m = eye_m.y - field.height_m(eye_m.x, eye_m.z);
+    if above_m > REACH_M {
+        return;
+    }
+    let half_m = 0.5 * field.extent_m();
+    let water_m = ground.water_level_m.unwrap_or(f32::MIN);
+    let lines = |middle_m: f32| {
+        let line = |m: f32| (m.clamp(-half_m, half_m) / CELL_M).floor() as i32;
+        line(middle_m - REACH_M)..=line(middle_m + REACH_M)
+    };
+    for z in lines(eye_m.z) {
+        for x in lines(eye_m.x) {
+            let middle = (Vec2::new(x as f32, z as f32) + 0.5) * CELL_M;
+            let in_plan = (middle - Vec2::new(eye_m.x, eye_m.z)).length() - 0.71 * CELL_M;
+            let share = density(Vec2::new(in_plan.max(0.0), above_m).length());
+            if share == 0.0 {
+                continue;
+            }
+            let height_m = field.height_m(middle.x, middle.y);
+            // Half a cell's diagonal on steep land, and a blade.
+            let seen = frustum.sees_sphere(Vec3::new(middle.x, height_m, middle.y), 1.5 * CELL_M);
+            if !seen || height_m < water_m - CELL_M || is_bare(&ground.surface.weights, middle, half_m) {
+                continue;
+            }
+            let count = ((share * CLUMPS as f32).ceil() as u32).min(CLUMPS);
+            out.extend((0..count).map(|number| Clump { cell: [x, z], number }));
+        }
+    }
+}
+
+/// True if nothing grows in a cell: neither in its middle nor at its corners.
+fn is_bare(weights: &Picture, middle_m: Vec2, half_m: f32) -> bool {
+    let Some(pixels) = weights.levels.first() else { return false };
+    let texel = |along_m: f32, size_px: u32| {
+        let along = (along_m / half_m * 0.5 + 0.5) * size_px as f32;
+        (along.max(0.0) as u32).min(size_px - 1)
+    };
+    let half = 0.5 * CELL_M;
+    let around = [(0.0, 0.0), (-half, -half), (half, -half), (-half, half), (half, half)];
+    around.iter().all(|&(x, z)| {
+        let (i, j) = (texel(middle_m.x + x, weights.width_px), texel(middle_m.y + z, weights.height_px));
+        let first = ((j * weights.width_px + i) * 4) as usize;
+        pixels.get(first..first + 4).is_some_and(|p| p.iter().map(|&w| u32::from(w)).sum::<u32>() > BARE)
+    })
+}

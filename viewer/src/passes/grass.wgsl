@@ -1,0 +1,169 @@
+// Blades of grass around the eye: a clump's number → blades of three triangles, rooted on the land as it is drawn, in the
+// ground's colour and light. All of it happens for vertices: a pixel is given its colour, nothing more.
+
+// These four are those of grass.rs; a test compares them.
+const CELL_M: f32 = 1.0;
+const BLADES: u32 = 32u;
+const DENSE_M: f32 = 3.5;
+const REACH_M: f32 = 34.0;
+// Blades of one tuft, and clumps that a cell has at most.
+const TUFT: u32 = 8u;
+const CLUMPS: u32 = 10u;
+
+@group(1) @binding(0) var ground_color: texture_2d<f32>;
+@group(1) @binding(1) var ground_weights: texture_2d<f32>;
+
+struct Clump {
+    // Cell of the world: from cell · CELL_M one cell east and south.
+    @location(0) cell: vec2i,
+    // Number within the cell; higher ones are drawn only near by.
+    @location(1) number: u32,
+}
+
+struct Out {
+    @builtin(position) clip: vec4f,
+    @location(0) radiance: vec3f,
+}
+
+// Three numbers from three (Jarzynski & Olano 2020).
+fn pcg3d(seed: vec3u) -> vec3u {
+    var v = seed * 1664525u + 1013904223u;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v ^= v >> vec3u(16u);
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    return v;
+}
+
+// In [0, 1).
+fn unit(v: vec3u) -> vec3f {
+    return vec3f(v >> vec3u(8u)) / 16777216.0;
+}
+
+// Smooth noise in [-1, 1], one hill or hollow a metre.
+fn noise(place: vec2f) -> f32 {
+    let cell = floor(place);
+    let part = place - cell;
+    let t = part * part * (3.0 - 2.0 * part);
+    let c = bitcast<vec2u>(vec2i(cell));
+    let a = f32(pcg3d(vec3u(c, 7u)).x >> 8u);
+    let b = f32(pcg3d(vec3u(c + vec2u(1u, 0u), 7u)).x >> 8u);
+    let d = f32(pcg3d(vec3u(c + vec2u(0u, 1u), 7u)).x >> 8u);
+    let e = f32(pcg3d(vec3u(c + vec2u(1u, 1u), 7u)).x >> 8u);
+    return mix(mix(a, b, t.x), mix(d, e, t.x), t.y) / 8388608.0 - 1.0;
+}
+
+// Height of the land as its triangles have it at full resolution: the diagonals of cells take turns.
+fn drawn_height_m(world: vec2f) -> f32 {
+    let last = view.field.x - 1.0;
+    let at = clamp(world / view.field.y + 0.5 * last, vec2f(0.0), vec2f(last));
+    let cell = min(floor(at), vec2f(last - 1.0));
+    let p = at - cell;
+    let c = vec2i(cell);
+    let nw = textureLoad(heights, c, 0).r;
+    let ne = textureLoad(heights, c + vec2i(1, 0), 0).r;
+    let sw = textureLoad(heights, c + vec2i(0, 1), 0).r;
+    let se = textureLoad(heights, c + vec2i(1, 1), 0).r;
+    if (((c.x + c.y) & 1) == 0) {
+        // North-west to south-east.
+        let corner = select(nw + p.x * (ne - nw) + p.y * (se - ne), nw + p.y * (sw - nw) + p.x * (se - sw), p.y > p.x);
+        return corner;
+    }
+    if (p.x + p.y < 1.0) {
+        return nw + p.x * (ne - nw) + p.y * (sw - nw);
+    }
+    return se + (1.0 - p.x) * (sw - se) + (1.0 - p.y) * (ne - se);
+}
+
+// Share of the blades that stand at a distance from the eye; they get wider as they get fewer.
+fn density(away: f32) -> f32 {
+    return min(DENSE_M / max(away, 0.01), 1.0) * (1.0 - smoothstep(0.6 * REACH_M, REACH_M, away));
+}
+
+// Wind that comes in gusts and bends a tip by so many times the blade's height.
+fn wind(place: vec2f, own: f32) -> vec2f {
+    let along = dot(place, vec2f(0.91, 0.41));
+    let across = dot(place, vec2f(-0.41, 0.91));
+    let gust = 0.5 + 0.5 * sin(0.23 * along + 0.9 * sin(0.11 * across) - 1.1 * view.time_s);
+    let flutter = sin(3.1 * view.time_s + 6.283 * own + 1.7 * along);
+    return vec2f(0.91, 0.41) * (0.30 * gust + 0.07 * flutter * (0.4 + gust));
+}
+
+const NOWHERE = Out(vec4f(0.0, 0.0, -1.0, 1.0), vec3f(0.0));
+
+@vertex
+fn vertex(clump: Clump, @builtin(vertex_index) index: u32) -> Out {
+    let blade = clump.number * BLADES + index / 5u;
+    let cell = bitcast<vec2u>(clump.cell);
+    let tuft_dice = unit(pcg3d(vec3u(cell, blade / TUFT)));
+    let seed = pcg3d(vec3u(cell, blade + 8191u));
+    let dice = unit(seed);
+    let more = unit(pcg3d(seed));
+    let turn = 6.2831853 * dice.x;
+    let outward = vec2f(cos(turn), sin(turn));
+    let root = (vec2f(clump.cell) + tuft_dice.xy) * CELL_M + outward * (0.17 * dice.y);
+
+    let away = length(vec3f(root - view.eye.xz, view.terrain_lod.z));
+    // Fewer with distance, by rank: each shrinks into the ground as its turn comes.
+    let rank = (f32(blade) + 1.0) / f32(CLUMPS * BLADES);
+    let present = clamp((density(away) - rank) / (0.25 * rank + 0.004), 0.0, 1.0);
+    let inside = all(abs(root) < vec2f(view.field.z));
+    if (present <= 0.0 || !inside) {
+        return NOWHERE;
+    }
+    let uv = field_uv(root);
+    let weights = textureSampleLevel(ground_weights, clamped, uv, 0.0);
+    let grass = 1.0 - weights.r - weights.g - weights.b - weights.a;
+    let lush = noise(root / 1.3);
+    let growth = min((grass - 0.3) * 1.7 + 0.45 * lush + 0.4 * (tuft_dice.z - 0.5), 1.0);
+    let ground_m = drawn_height_m(root);
+    if (growth < 0.03 || grass < 0.3 || ground_m < view.water_level + 0.12) {
+        return NOWHERE;
+    }
+    let taller = select(1.0, 1.7, tuft_dice.z > 0.93);
+    let height = (0.05 + 0.15 * growth) * (0.55 + 0.8 * more.x) * taller * present;
+    // 0 at the root, 1 at the tip; two vertices, two vertices, one.
+    let corner = index % 5u;
+    let up = f32(corner / 2u) * 0.5;
+    let side = select(f32(corner & 1u) * 2.0 - 1.0, 0.0, corner == 4u);
+
+    let to_eye = normalize(view.eye - vec3f(root.x, ground_m, root.y));
+    let facing = normalize(vec2f(to_eye.z, -to_eye.x) + 1.3 * (dice.z - 0.5) * to_eye.xz + vec2f(1e-4));
+    let pixel_m = away / view.focal_px;
+    // Never much thinner than a pixel, and wider where there are fewer.
+    let half_m = max((0.0028 + 0.0026 * more.y) * (1.0 + 0.09 * away), 0.42 * pixel_m) * min(present * 3.0, 1.0);
+    let bend = outward * (0.2 + 0.65 * more.z) + wind(root, dice.y);
+    let lean = bend * (height * up * up);
+    let width = half_m * (1.0 - 0.28 * up * 2.0 * (1.0 - step(0.9, up)));
+    let world = vec3f(
+        root.x + lean.x + facing.x * side * width,
+        // A bent blade reaches less high; its root is in the ground.
+        ground_m - 0.015 + height * (up - 0.22 * up * up * dot(bend, bend)),
+        root.y + lean.y + facing.y * side * width,
+    );
+
+    let light = textureSampleLevel(light_map, clamped, uv, 0.0);
+    var albedo = textureSampleLevel(ground_color, clamped, uv, 0.0).rgb;
+    // Some blades are straw, some tufts are fresher.
+    albedo *= select(vec3f(1.0, 1.0 + 0.12 * lush, 1.0 - 0.2 * lush), vec3f(1.8, 1.42, 1.15), more.z > 0.88);
+    albedo *= 0.8 + 0.5 * dice.z;
+    let far = smoothstep(5.0, REACH_M * 0.8, away);
+    // Roots stand in each other's shade, tips in the open.
+    let open = mix(mix(0.5, 1.55, up), 1.08, far);
+    let side_lit = abs(dot(normalize(vec2f(-facing.y, facing.x)), view.sun_direction.xz));
+    let sun_on = mix(light.g, 0.35 * light.b * (0.5 + side_lit), 0.4);
+    var radiance = albedo / PI * open * (view.sun_irradiance * sun_on + view.sky_irradiance * light.r);
+    // Seen against the sun they glow: chlorophyll takes red and blue on the way through.
+    let against = max(dot(-to_eye, view.sun_direction), 0.0);
+    let glow = against * against * against * 0.9 * up * (1.0 - 0.7 * far);
+    radiance += albedo * vec3f(0.9, 1.0, 0.35) / PI * view.sun_irradiance * light.b * glow;
+    return Out(view.clip_from_world * vec4f(world, 1.0), through_air(radiance, away));
+}
+
+@fragment
+fn fragment(in: Out) -> @location(0) vec4f {
+    return vec4f(in.radiance, 1.0);
+}
