@@ -13,13 +13,13 @@ use crate::shaders::{ShaderError, Shaders};
 /// Metres a side of a cell; this and the next four are those of `grass.wgsl`, and a test compares them.
 pub const CELL_M: f32 = 1.0;
 /// Blades of a clump.
-pub const BLADES: u32 = 32;
+pub const BLADES: u32 = 16;
 /// Clumps of a cell near the eye.
-pub const CLUMPS: u32 = 10;
+pub const CLUMPS: u32 = 18;
 /// Up to this distance in metres all of them stand.
-pub const DENSE_M: f32 = 3.5;
+pub const DENSE_M: f32 = 3.0;
 /// Beyond this distance in metres there are none.
-pub const REACH_M: f32 = 34.0;
+pub const REACH_M: f32 = 30.0;
 
 /// Vertices of a blade, and its triangles: two for the stalk, one for the tip.
 const BLADE_VERTICES: u16 = 5;
@@ -102,9 +102,10 @@ impl Grass {
     }
 }
 
-/// Share of a cell's clumps that stand at a distance: `density` of `grass.wgsl` without its fade, never less.
+/// Share of a cell's blades that stand at a distance, as `density` of `grass.wgsl`.
 fn density(away_m: f32) -> f32 {
-    if away_m < REACH_M { (DENSE_M / away_m.max(0.01)).min(1.0) } else { 0.0 }
+    let far = ((away_m / REACH_M - 0.6) / 0.4).clamp(0.0, 1.0);
+    (DENSE_M / away_m.max(0.01)).min(1.0) * (1.0 - far * far * (3.0 - 2.0 * far))
 }
 
 /// The clumps that an eye may see, into `out`, which is emptied first.
@@ -131,7 +132,7 @@ pub fn clumps(ground: &Ground, eye_m: Vec3, frustum: &Frustum, out: &mut Vec<Clu
             }
             let height_m = field.height_m(middle.x, middle.y);
             // Half a cell's diagonal on steep land, and a blade.
-            let seen = frustum.sees_sphere(Vec3::new(middle.x, height_m, middle.y), 1.5 * CELL_M);
+            let seen = frustum.sees_sphere(Vec3::new(middle.x, height_m, middle.y), 1.2 * CELL_M);
             if !seen || height_m < water_m - CELL_M || is_bare(&ground.surface.weights, middle, half_m) {
                 continue;
             }

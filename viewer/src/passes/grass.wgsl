@@ -3,12 +3,12 @@
 
 // These four are those of grass.rs; a test compares them.
 const CELL_M: f32 = 1.0;
-const BLADES: u32 = 32u;
-const DENSE_M: f32 = 3.5;
-const REACH_M: f32 = 34.0;
+const BLADES: u32 = 16u;
+const DENSE_M: f32 = 3.0;
+const REACH_M: f32 = 30.0;
 // Blades of one tuft, and clumps that a cell has at most.
 const TUFT: u32 = 8u;
-const CLUMPS: u32 = 10u;
+const CLUMPS: u32 = 18u;
 
 @group(1) @binding(0) var ground_color: texture_2d<f32>;
 @group(1) @binding(1) var ground_weights: texture_2d<f32>;
@@ -150,15 +150,15 @@ fn vertex(clump: Clump, @builtin(vertex_index) index: u32) -> Out {
     // Some blades are straw, some tufts are fresher.
     albedo *= select(vec3f(1.0, 1.0 + 0.12 * lush, 1.0 - 0.2 * lush), vec3f(1.8, 1.42, 1.15), more.z > 0.88);
     albedo *= 0.8 + 0.5 * dice.z;
-    let far = smoothstep(5.0, REACH_M * 0.8, away);
+    let far = smoothstep(4.0, REACH_M * 0.7, away);
     // Roots stand in each other's shade, tips in the open.
-    let open = mix(mix(0.5, 1.55, up), 1.08, far);
+    let open = mix(mix(0.5, 1.5, up), 1.05, far);
     let side_lit = abs(dot(normalize(vec2f(-facing.y, facing.x)), view.sun_direction.xz));
     let sun_on = mix(light.g, 0.35 * light.b * (0.5 + side_lit), 0.4);
     var radiance = albedo / PI * open * (view.sun_irradiance * sun_on + view.sky_irradiance * light.r);
     // Seen against the sun they glow: chlorophyll takes red and blue on the way through.
     let against = max(dot(-to_eye, view.sun_direction), 0.0);
-    let glow = against * against * against * 0.9 * up * (1.0 - 0.7 * far);
+    let glow = against * against * against * 0.9 * up * (1.0 - far);
     radiance += albedo * vec3f(0.9, 1.0, 0.35) / PI * view.sun_irradiance * light.b * glow;
     return Out(view.clip_from_world * vec4f(world, 1.0), through_air(radiance, away));
 }

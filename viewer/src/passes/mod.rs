@@ -66,7 +66,7 @@ impl Passes {
     /// Compiles everything. `samples` is 1 or 4.
     pub fn new(gpu: &Gpu, shaders: &Shaders, samples: u32) -> Result<Self, ShaderError> {
         let device = &gpu.device;
-        let layouts = Layouts::new(device);
+        let layouts = Layouts::new(gpu);
         Ok(Self {
             shadow: Shadow::new(device, &layouts, shaders)?,
             cull: Cull::new(device, &layouts, shaders)?,

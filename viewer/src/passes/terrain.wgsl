@@ -113,6 +113,14 @@ fn sample_vertex(@builtin(vertex_index) index: u32) -> Out {
     return out_at(sample_place(s), normal_at(s), f32(level_of(s)));
 }
 
+// What a pixel covers, its longer side made shorter: tiling textures are to be sharp at low angles also where the device
+// filters them alike in all directions, and are smooth enough to bear it.
+fn less_stretched(dx: vec2f, dy: vec2f) -> array<vec2f, 2> {
+    let ratio = max(length(dx), 1e-9) / max(length(dy), 1e-9);
+    let keep = pow(max(ratio, 1.0 / ratio), -0.45);
+    return array<vec2f, 2>(dx * select(1.0, keep, ratio > 1.0), dy * select(keep, 1.0, ratio > 1.0));
+}
+
 struct Tiles {
     factor: vec3f,
     bump: vec3f,
@@ -120,8 +128,9 @@ struct Tiles {
 
 // A tiling texture seen along one axis: `uv` in metres, and how fast it changes from pixel to pixel.
 fn tile_from(layer: i32, uv: vec2f, dx: vec2f, dy: vec2f) -> Tiles {
-    let factor = textureSampleGrad(details, repeating, uv, layer, dx, dy).rgb * (255.0 / 128.0);
-    let bump = textureSampleGrad(detail_normals, repeating, uv, layer, dx, dy).xyz * 2.0 - 1.0;
+    let footprint = less_stretched(dx, dy);
+    let factor = textureSampleGrad(details, repeating, uv, layer, footprint[0], footprint[1]).rgb * (255.0 / 128.0);
+    let bump = textureSampleGrad(detail_normals, repeating, uv, layer, footprint[0], footprint[1]).xyz * 2.0 - 1.0;
     return Tiles(factor, bump);
 }
 
