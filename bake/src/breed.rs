@@ -4,7 +4,9 @@
 //! Child 0 unites the favourites. Children 1, 2 and 3 keep the favourite trees, terrain and sky respectively and
 //! vary the other two categories, so each shows what a change does beside something known, and the cache has it.
 
-use genescape_schema::{Category, Chromosome, Genome, INDIVIDUALS, Individual, Parent, Population, Space};
+use genescape_schema::{
+    Category, Chromosome, Genome, INDIVIDUALS, Individual, Parent, Population, Space, Votes,
+};
 use rand::Rng;
 use rand_pcg::Pcg64Mcg;
 
@@ -57,6 +59,8 @@ pub fn breed(space: &Space, parents: &Population, next: u32) -> Result<Populatio
             None => litter.stranger(),
         })
     });
+    let mut litters = litters;
+    keep_locked(space, parents, &votes, &mut litters);
     let individuals = std::array::from_fn(|child| {
         let chromosomes = [0, 1, 2].map(|category| litters[category][child].0.clone());
         let origins: Vec<String> = Category::ALL
@@ -68,7 +72,26 @@ pub fn breed(space: &Space, parents: &Population, next: u32) -> Result<Populatio
         Individual { name, genome: Genome { chromosomes } }
     });
     let parent = Some(Parent { generation, votes });
-    Ok(Population { generation: next, seed: parents.seed, parent, individuals, votes: None })
+    let locked = parents.locked.clone();
+    Ok(Population { generation: next, seed: parents.seed, parent, individuals, votes: None, locked })
+}
+
+/// Gives every child the locked genes of the favourite or, where nobody was voted for, of the parent in its place.
+fn keep_locked(
+    space: &Space,
+    parents: &Population,
+    votes: &Votes,
+    litters: &mut [[(Chromosome, String); INDIVIDUALS]; 3],
+) {
+    for (category, litter) in Category::ALL.into_iter().zip(litters) {
+        let favourite = votes.get(category).filter(|&vote| vote < INDIVIDUALS);
+        for (place, (child, _)) in litter.iter_mut().enumerate() {
+            let kept = &parents.individuals[favourite.unwrap_or(place)].genome;
+            for gene in space.category(category).filter(|gene| parents.is_locked(gene)) {
+                child.set_code(gene, kept.code(gene));
+            }
+        }
+    }
 }
 
 /// One category's chromosomes in the making, each with a word on where it comes from.
@@ -174,7 +197,6 @@ impl Litter<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use genescape_schema::Votes;
     use proptest::prelude::*;
 
     fn voted(space: &Space, seed: u64, generation: u32, votes: [Option<usize>; 3]) -> Population {
@@ -189,6 +211,28 @@ mod tests {
         let error = breed(&space, &Population::random(&space, 1, 3), 4).expect_err("nobody voted");
         assert_eq!(error, BreedError::NoVotes { generation: 3 });
         assert!(error.to_string().contains("votes: Some((tree: Some(0)"));
+    }
+
+    #[test]
+    fn what_is_locked_stays_and_the_rest_still_changes() {
+        let space = Space::builtin();
+        for (seed, favourite) in (0..40).map(|seed| (seed, if seed % 2 == 0 { Some(2) } else { None })) {
+            let mut parents = voted(&space, seed, 0, [favourite, Some(1), None]);
+            parents.locked = ["height_m", "sky"].map(str::to_owned).into();
+            let children = breed(&space, &parents, 1).expect("votes");
+            assert_eq!(children.locked, parents.locked);
+            let height = space.find("height_m").expect("a gene");
+            for (place, child) in children.individuals.iter().enumerate() {
+                let kept = &parents.individuals[favourite.unwrap_or(place)].genome;
+                assert_eq!(child.genome.code(height), kept.code(height));
+                let sky = |one: &Individual| one.genome.chromosome(Category::Sky).clone();
+                assert_eq!(sky(child), sky(&parents.individuals[place]));
+            }
+            let trees = |one: &Individual| one.genome.chromosome(Category::Tree).clone();
+            let fresh =
+                |child: &Individual| !parents.individuals.iter().any(|parent| trees(parent) == trees(child));
+            assert!(children.individuals.iter().any(fresh), "only what is locked stays");
+        }
     }
 
     #[test]

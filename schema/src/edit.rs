@@ -1,5 +1,6 @@
 //! Changes one value of a population file and leaves every other byte, comments included, as the person wrote it.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use crate::check::Checker;
@@ -8,7 +9,7 @@ use crate::population::Votes;
 use crate::report::Report;
 use crate::ron_tree::{Field, Node, Value, prepare};
 use crate::space::Space;
-use crate::write::{vote_text, votes_text};
+use crate::write::{locked_text, vote_text, votes_text};
 
 /// A change that cannot be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -39,16 +40,43 @@ pub fn set_votes(file: &str, text: &str, votes: Option<Votes>) -> Result<String,
     let prepared = prepare(text);
     let root = Checker::new(file, &prepared).parse()?;
     let fields = struct_fields(&root, "Population")?;
-    let Ok(node) = find(fields, "votes") else {
-        // An older or shorter file: before its first field, where no comma can be missing.
-        let first = fields.first().ok_or_else(|| EditError::Missing("individuals".into()))?;
-        let line = prepared[..first.name_start].rfind('\n').map_or(0, |newline| newline + 1);
-        let indent = &prepared[line..first.name_start];
-        let gap = if indent.trim().is_empty() { format!("\n{indent}") } else { " ".into() };
-        let line = format!("votes: {},{gap}", votes_text(votes.as_ref()));
-        return Ok(replace(text, vec![(first.name_start..first.name_start, line)]));
-    };
-    Ok(replace(text, vote_changes(node, votes)))
+    match find(fields, "votes") {
+        Ok(node) => Ok(replace(text, vote_changes(node, votes))),
+        Err(_) => add_field(text, &prepared, fields, &format!("votes: {}", votes_text(votes.as_ref()))),
+    }
+}
+
+/// The text of a population file in which breeding leaves other genes and categories as they are.
+///
+/// # Errors
+/// Text that is no population; a name that is neither a gene nor a category.
+pub fn set_locked(
+    space: &Space,
+    file: &str,
+    text: &str,
+    locked: &BTreeSet<String>,
+) -> Result<String, EditError> {
+    let known = |name: &str| space.find(name).is_some() || Category::from_name(name).is_some();
+    if let Some(unknown) = locked.iter().find(|name| !known(name)) {
+        return Err(EditError::Missing(format!("gene {unknown}")));
+    }
+    let prepared = prepare(text);
+    let root = Checker::new(file, &prepared).parse()?;
+    let fields = struct_fields(&root, "Population")?;
+    match find(fields, "locked") {
+        Ok(node) => Ok(replace(text, vec![(node.span(), locked_text(locked))])),
+        Err(_) if locked.is_empty() => Ok(text.to_owned()),
+        Err(_) => add_field(text, &prepared, fields, &format!("locked: {}", locked_text(locked))),
+    }
+}
+
+/// A field more, for an older or shorter file: before its first one, where no comma can be missing.
+fn add_field(text: &str, prepared: &str, fields: &[Field<'_>], field: &str) -> Result<String, EditError> {
+    let first = fields.first().ok_or_else(|| EditError::Missing("individuals".into()))?;
+    let line = prepared[..first.name_start].rfind('\n').map_or(0, |newline| newline + 1);
+    let indent = &prepared[line..first.name_start];
+    let gap = if indent.trim().is_empty() { format!("\n{indent}") } else { " ".into() };
+    Ok(replace(text, vec![(first.name_start..first.name_start, format!("{field},{gap}"))]))
 }
 
 /// The text of a population file with another value, in the gene's unit, for one gene of an individual 0 … 3. The

@@ -2,6 +2,7 @@
 //! population file that say who descends from whom, readable even when its genes are not.
 
 use crate::check::{Checker, given};
+use crate::load::FIELDS;
 use crate::parameter::Category;
 use crate::population::{INDIVIDUALS, Votes};
 use crate::report::Report;
@@ -58,8 +59,7 @@ pub fn unanswered(lineages: &[Lineage]) -> Vec<Parent> {
 }
 
 fn lineage(checker: &mut Checker<'_>, root: &Node<'_>) -> Option<Lineage> {
-    const KNOWN: [&str; 5] = ["generation", "seed", "parent", "votes", "individuals"];
-    let fields = checker.root(root, "Population", &KNOWN)?;
+    let fields = checker.root(root, "Population", &FIELDS)?;
     let generation = checker.need(&fields, root, "Population", "generation")?;
     let generation = checker.whole(generation, "generation", u32::MAX)?;
     let field = |name| fields.iter().find(|field| field.name == name).map(|field| &field.node);

@@ -1,5 +1,7 @@
 //! Reads population and preset files: every fault of a file at once, every rounded value told.
 
+use std::collections::BTreeSet;
+
 use crate::check::{Checker, did_you_mean, given};
 use crate::genome::{Chromosome, Genome};
 use crate::lineage::{read_parent, read_votes};
@@ -8,6 +10,9 @@ use crate::population::{INDIVIDUALS, Individual, Loaded, LoadedPreset, Populatio
 use crate::report::Report;
 use crate::ron_tree::{Node, Value, prepare};
 use crate::space::Space;
+
+/// Fields that a population file may have.
+pub(crate) const FIELDS: [&str; 6] = ["generation", "seed", "parent", "votes", "locked", "individuals"];
 
 impl Population {
     /// Reads the text of a population file; `file` is its name for messages.
@@ -51,8 +56,7 @@ struct Loader<'a> {
 impl<'a> Loader<'a> {
     fn population(&mut self, root: &Node<'a>) -> Option<Population> {
         const WHAT: &str = "Population";
-        let fields =
-            self.checker.root(root, WHAT, &["generation", "seed", "parent", "votes", "individuals"])?;
+        let fields = self.checker.root(root, WHAT, &FIELDS)?;
         let generation = self.checker.need(&fields, root, WHAT, "generation");
         let generation = generation.and_then(|node| self.checker.whole(node, "generation", u32::MAX));
         let seed = self.checker.need(&fields, root, WHAT, "seed");
@@ -61,6 +65,7 @@ impl<'a> Loader<'a> {
         let optional = |name| fields.iter().find(|field| field.name == name).map(|field| &field.node);
         let parent = optional("parent").and_then(|node| read_parent(&mut self.checker, node));
         let votes = optional("votes").and_then(|node| read_votes(&mut self.checker, node));
+        let locked = optional("locked").map(|node| self.locked(node)).unwrap_or_default();
         let list = self.checker.need(&fields, root, WHAT, "individuals")?;
         let nodes = self.checker.list(list, "individuals")?;
         if nodes.len() != INDIVIDUALS {
@@ -74,7 +79,25 @@ impl<'a> Loader<'a> {
         let individuals: Vec<_> =
             nodes.iter().enumerate().filter_map(|(index, node)| self.individual(index, node)).collect();
         let individuals = individuals.try_into().ok()?;
-        Some(Population { generation: generation?, seed: seed?, parent, individuals, votes })
+        Some(Population { generation: generation?, seed: seed?, parent, individuals, votes, locked })
+    }
+
+    /// `["height_m", "sky"]`: names of genes and of whole categories.
+    fn locked(&mut self, node: &Node<'a>) -> BTreeSet<String> {
+        let genes = self.space.parameters().iter().map(|parameter| parameter.name.as_str());
+        let known: Vec<&str> = genes.chain(Category::ALL.map(Category::name)).collect();
+        let mut locked = BTreeSet::new();
+        for node in self.checker.list(node, "locked").unwrap_or_default() {
+            let Some(name) = self.checker.text(node, "locked") else { continue };
+            if known.contains(&name) {
+                locked.insert(name.to_owned());
+            } else {
+                let near = did_you_mean(name, &known);
+                self.checker
+                    .error(node.span(), format!("locked: {name} is neither a gene nor a category{near}"));
+            }
+        }
+        locked
     }
 
     fn individual(&mut self, index: usize, node: &Node<'a>) -> Option<Individual> {

@@ -1,10 +1,11 @@
 //! Four landscapes, the votes cast on them, and the file types that hold genes.
 
+use std::collections::BTreeSet;
 use std::fmt;
 
 use crate::genome::{Chromosome, Genome};
 use crate::lineage::Parent;
-use crate::parameter::Category;
+use crate::parameter::{Category, Parameter};
 use crate::space::Space;
 
 /// Landscapes in a population: what the four panes of the viewer show.
@@ -63,6 +64,9 @@ pub struct Population {
     pub individuals: [Individual; INDIVIDUALS],
     /// `None` until they are cast.
     pub votes: Option<Votes>,
+    /// Names of genes and of whole categories that breeding leaves as they are: every child has those of the
+    /// favourite or, where nobody was voted for, of the individual in its place.
+    pub locked: BTreeSet<String>,
 }
 
 impl Population {
@@ -76,7 +80,12 @@ impl Population {
             }
             Individual { name: format!("Random {seed}.{index}"), genome }
         });
-        Self { generation, seed, parent: None, individuals, votes: None }
+        Self { generation, seed, parent: None, individuals, votes: None, locked: BTreeSet::new() }
+    }
+
+    /// Whether breeding leaves a gene as it is: by itself or with its category.
+    pub fn is_locked(&self, gene: &Parameter) -> bool {
+        self.locked.contains(&gene.name) || self.locked.contains(gene.category.name())
     }
 }
 

@@ -1,5 +1,6 @@
 //! Writes populations and presets as RON for people: a gene a line, its range beside it, always in the same order.
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use crate::genome::Chromosome;
@@ -30,6 +31,14 @@ impl Population {
             "// The best of each, 0 … 3, as Some((tree: Some(0), terrain: Some(2), sky: None)); None: no favourite.",
         );
         put(&mut out, 1, &format!("votes: {votes},"));
+        if !self.locked.is_empty() {
+            put(
+                &mut out,
+                1,
+                "// Genes and whole categories (tree, terrain, sky) that breeding leaves as they are.",
+            );
+            put(&mut out, 1, &format!("locked: {},", locked_text(&self.locked)));
+        }
         put(&mut out, 1, "individuals: [");
         for individual in &self.individuals {
             put(&mut out, 2, "(");
@@ -64,6 +73,12 @@ pub(crate) fn votes_text(votes: Option<&Votes>) -> String {
 fn cast_text(votes: &Votes) -> String {
     let votes = Category::ALL.map(|category| format!("{category}: {}", vote_text(votes.get(category))));
     format!("({})", votes.join(", "))
+}
+
+/// Names of what is locked as RON.
+pub(crate) fn locked_text(locked: &BTreeSet<String>) -> String {
+    let names: Vec<String> = locked.iter().map(|name| quoted(name)).collect();
+    format!("[{}]", names.join(", "))
 }
 
 /// One category's vote as RON.

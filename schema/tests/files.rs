@@ -1,6 +1,6 @@
 //! Files as people write them: nothing is lost, every fault is told with its place, nothing panics.
 
-use genescape_schema::edit::{set_gene, set_votes};
+use genescape_schema::edit::{set_gene, set_locked, set_votes};
 use genescape_schema::{
     Category, Current, Individual, Lineage, Parent, Population, Report, Space, TreePreset, Votes, names,
 };
@@ -240,7 +240,9 @@ fn population() -> impl Strategy<Value = Population> {
                 Individual { name, ..individual }
             });
             let parent = parent.map(|(generation, votes)| Parent { generation, votes });
-            Population { parent, individuals, votes, ..random }
+            let locked = ["height_m", "sky", "terrain_seed", "tree"];
+            let locked = locked.into_iter().take((seed % 5) as usize).map(str::to_owned).collect();
+            Population { parent, individuals, votes, locked, ..random }
         },
     )
 }
@@ -277,6 +279,17 @@ proptest! {
         let loaded = Population::load(&space, "p.ron", &voted).expect("valid");
         prop_assert_eq!(loaded.population, Population { votes, ..population });
         prop_assert_eq!(set_votes("p.ron", &voted, votes).expect("a population"), voted);
+    }
+
+    #[test]
+    fn locks_change_nothing_else(population in population(), names in prop::collection::btree_set(prop::sample::select(vec!["height_m", "sky", "tree"]), 0..3)) {
+        let space = Space::builtin();
+        let locked: std::collections::BTreeSet<String> = names.into_iter().map(str::to_owned).collect();
+        let text = population.to_ron(&space);
+        let edited = set_locked(&space, "p.ron", &text, &locked).expect("a population");
+        let loaded = Population::load(&space, "p.ron", &edited).expect("valid").population;
+        prop_assert_eq!(&loaded, &Population { locked: locked.clone(), ..population });
+        prop_assert_eq!(set_locked(&space, "p.ron", &edited, &locked).expect("a population"), edited);
     }
 
     #[test]

@@ -2,9 +2,9 @@
 //! stay, and what the file said before is remembered. Nothing that an editor has written meanwhile is ever lost: a
 //! step is taken back only if the file still says what the step has made it say.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use genescape_schema::edit::{EditError, set_gene, set_votes};
+use genescape_schema::edit::{EditError, set_gene, set_locked, set_votes};
 use genescape_schema::{Space, Votes};
 
 use crate::world_files::{FileError, WorldFiles};
@@ -17,6 +17,8 @@ const STEPS: usize = 200;
 pub enum Edit {
     /// The votes become these.
     Votes(Option<Votes>),
+    /// Breeding leaves these genes and categories as they are, and no others.
+    Locked(BTreeSet<String>),
     /// Genes of one landscape get other values, in their units.
     Genes {
         /// Whose: 0 … 3.
@@ -32,6 +34,7 @@ impl Edit {
         match self {
             Self::Votes(Some(_)) => "votes".into(),
             Self::Votes(None) => "removal of votes".into(),
+            Self::Locked(_) => "locks".into(),
             Self::Genes { values, individual } => match &values[..] {
                 [(name, _)] => format!("{name} of {individual}"),
                 several => format!("{} genes of {individual}", several.len()),
@@ -46,6 +49,7 @@ impl Edit {
     pub fn apply(&self, space: &Space, file: &str, text: &str) -> Result<String, EditError> {
         match self {
             Self::Votes(votes) => set_votes(file, text, *votes),
+            Self::Locked(locked) => set_locked(space, file, text, locked),
             Self::Genes { individual, values } => {
                 values.iter().try_fold(text.to_owned(), |text, (name, value)| {
                     set_gene(space, file, &text, *individual, name, *value)

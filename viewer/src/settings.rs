@@ -1,10 +1,10 @@
 //! What is kept between runs, as one RON file for people in the platform's folder for settings: options, window,
-//! bookmarks and locks, votes that were not yet written down.
+//! bookmarks, votes that were not yet written down.
 //!
 //! What other modules keep here in types of their own (keys, comfort) passes through as [`Opaque`] text, so that a
 //! fault in one of them spoils nothing else.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -61,10 +61,6 @@ impl Default for Window {
 pub struct WorldSettings {
     /// Places to go back to, by the number of their key.
     pub bookmarks: BTreeMap<u8, Bookmark>,
-    /// Genes that stay as they are, by name.
-    pub locked_genes: BTreeSet<String>,
-    /// Categories that stay as they are: "tree", "terrain", "sky".
-    pub locked_categories: BTreeSet<String>,
     /// Votes that were cast and not yet written into the population's file.
     pub running_votes: Option<RunningVotes>,
 }
@@ -296,7 +292,6 @@ mod tests {
                     let mark = Bookmark { position_m: [turn, 1.5, -0.25], yaw_rad: turn, pitch_rad: 0.1, flying: maximized };
                     world.bookmarks.insert(number, mark);
                 }
-                world.locked_genes.insert(name.clone());
                 let cast = BTreeMap::from([("sky".to_owned(), best), ("tree".to_owned(), None)]);
                 world.running_votes = Some(RunningVotes { generation, cast });
                 settings.worlds.insert(name, world);

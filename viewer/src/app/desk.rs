@@ -1,7 +1,7 @@
 //! What the person works on: a world's files, the generation on show, votes, genes, and how the bake gets on. Takes
 //! events and changes of files, writes what the person decides, and says what has to be shown.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -113,8 +113,6 @@ pub struct Desk {
     ballots: Ballots,
     history: History,
     steps: Vec<Step>,
-    locked: BTreeSet<String>,
-    locked_categories: [bool; 3],
     /// A newer generation comes on show by itself.
     follows: bool,
     /// Generation of the scene that each view shows.
@@ -143,8 +141,6 @@ impl Desk {
             ballots: Ballots::default(),
             history: History::default(),
             steps: Vec::new(),
-            locked: kept.locked_genes.clone(),
-            locked_categories: Category::ALL.map(|c| kept.locked_categories.contains(c.name())),
             follows: true,
             shown: [None; INDIVIDUALS],
             faults: BTreeMap::new(),
@@ -191,9 +187,6 @@ impl Desk {
 
     /// What should be kept of this world between runs, besides bookmarks.
     pub fn keep(&self, kept: &mut WorldSettings) {
-        kept.locked_genes = self.locked.clone();
-        let names = Category::ALL.into_iter().zip(self.locked_categories).filter(|(_, locked)| *locked);
-        kept.locked_categories = names.map(|(category, _)| category.name().to_owned()).collect();
         kept.running_votes = running(self.generation, &self.ballots);
     }
 
@@ -443,38 +436,40 @@ impl Desk {
 
     /// Changes genes of one landscape for good.
     pub fn set_genes(&mut self, individual: usize, values: Vec<(String, f64)>) {
-        let free = |(name, _): &(String, f64)| {
-            self.space.find(name).is_some_and(|gene| {
-                !self.locked.contains(name) && !self.locked_categories[gene.category as usize]
-            })
-        };
+        let Some(population) = &self.population else { return };
+        let free =
+            |(name, _): &(String, f64)| self.space.find(name).is_some_and(|gene| !population.is_locked(gene));
         let values: Vec<_> = values.into_iter().filter(free).collect();
         if values.is_empty() || self.world().is_none() {
             return;
         }
-        let edit = Edit::Genes { individual, values };
-        match self.history.apply(&self.files, &self.space, self.generation, &edit) {
+        self.edit(&Edit::Genes { individual, values });
+    }
+
+    /// Writes a change into the file on show.
+    fn edit(&mut self, edit: &Edit) {
+        match self.history.apply(&self.files, &self.space, self.generation, edit) {
             Ok(true) => {
                 self.steps.push(Step::File { generation: self.generation });
                 self.read_population();
             }
             Ok(false) => {}
-            Err(error) => self.tell(Tone::Error, format!("The gene is not changed: {error}")),
+            Err(error) => self.tell(Tone::Error, format!("Nothing is changed: {error}")),
         }
     }
 
-    /// Locks or frees a gene.
-    pub fn lock_gene(&mut self, name: String, locked: bool) {
+    /// Locks or frees a gene or, by its category's name, all genes of one: breeding leaves what is locked as it is.
+    pub fn lock(&mut self, name: &str, locked: bool) {
+        let Some(population) = &self.population else { return };
+        let mut names = population.locked.clone();
         if locked {
-            self.locked.insert(name);
+            names.insert(name.to_owned())
         } else {
-            self.locked.remove(&name);
+            names.remove(name)
+        };
+        if self.world().is_some() {
+            self.edit(&Edit::Locked(names));
         }
-    }
-
-    /// Locks or frees a category.
-    pub fn lock_category(&mut self, category: Category, locked: bool) {
-        self.locked_categories[category as usize] = locked;
     }
 
     /// Takes the latest step back.
@@ -610,8 +605,8 @@ impl Desk {
             space: self.space.clone(),
             bred: self.bred.clone().unwrap_or_else(|| now.clone()),
             now,
-            locked: self.locked.clone(),
-            locked_categories: self.locked_categories,
+            locked: population.locked.clone(),
+            locked_categories: Category::ALL.map(|category| population.locked.contains(category.name())),
         })
     }
 }

@@ -37,8 +37,8 @@ impl App {
                 self.desk.set_genes(individual, vec![(name, value)]);
             }
             Event::Genes { individual, values } => self.desk.set_genes(individual, values),
-            Event::LockGene { name, locked } => self.desk.lock_gene(name, locked),
-            Event::LockCategory { category, locked } => self.desk.lock_category(category, locked),
+            Event::LockGene { name, locked } => self.desk.lock(&name, locked),
+            Event::LockCategory { category, locked } => self.desk.lock(category.name(), locked),
             Event::Options(options) => self.settings.options = options,
             Event::Comfort(comfort) => self.comfort = comfort,
             Event::ResetSettings => {
