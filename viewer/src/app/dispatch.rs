@@ -78,6 +78,7 @@ impl App {
                 self.ui.notify(Tone::Info, mode);
             }
             Action::ReleaseMouse => self.capture(false),
+            Action::GoToStart => self.handle(Event::GoToStart),
             Action::Maximise(view) => self.maximise(usize::from(view)),
             Action::ShowAll => self.arrangement = Arrangement::Grid,
             Action::CompareAB => self.compare(),
@@ -95,6 +96,7 @@ impl App {
             Action::ToggleSettings => self.toggle(Panel::Settings),
             Action::ToggleFullscreen => self.toggle_fullscreen(),
             Action::Screenshot => self.screenshot_wanted = true,
+            Action::Quit => self.quit_wanted = true,
             Action::CycleTreeScheme => {
                 options.tree_scheme = match options.tree_scheme {
                     TreeScheme::Quality => TreeScheme::Simple,

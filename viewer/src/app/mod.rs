@@ -101,6 +101,7 @@ struct App {
     born: Instant,
     saved: Instant,
     screenshot_wanted: bool,
+    quit_wanted: bool,
     failure: Option<anyhow::Error>,
 }
 
@@ -157,6 +158,7 @@ impl App {
             born: Instant::now(),
             saved: Instant::now(),
             screenshot_wanted: false,
+            quit_wanted: false,
             failure: None,
             proxy,
             start,
@@ -289,6 +291,9 @@ impl App {
         output.events.into_iter().for_each(|event| self.dispatch(event, events));
         if std::mem::take(&mut self.screenshot_wanted) {
             self.save_screenshot();
+        }
+        if self.quit_wanted {
+            return events.exit();
         }
         if self.saved.elapsed() > SAVE_EVERY {
             self.keep_settings();

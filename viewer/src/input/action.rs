@@ -31,6 +31,8 @@ pub enum Action {
     ToggleWalkFlyOrbit,
     /// Lets the mouse go from the window.
     ReleaseMouse,
+    /// Back to where walks start.
+    GoToStart,
     /// One landscape fills the window; the same again shows all.
     Maximise(u8),
     /// All four.
@@ -65,6 +67,8 @@ pub enum Action {
     ToggleFullscreen,
     /// The picture into a file.
     Screenshot,
+    /// Close the window.
+    Quit,
     /// The next way of choosing trees' levels of detail.
     CycleTreeScheme,
     /// The next way of choosing the terrain's levels of detail.
@@ -115,7 +119,7 @@ impl Action {
         let votes = Category::ALL.into_iter().flat_map(|category| {
             (0..VIEWS).map(Some).chain([None]).map(move |individual| Vote(category, individual))
         });
-        [Forward, Back, Left, Right, Up, Down, Run, ToggleWalkFlyOrbit, ReleaseMouse]
+        [Forward, Back, Left, Right, Up, Down, Run, ToggleWalkFlyOrbit, ReleaseMouse, GoToStart]
             .into_iter()
             .chain((0..VIEWS).map(Maximise))
             .chain([ShowAll, CompareAB])
@@ -123,7 +127,15 @@ impl Action {
             .chain([NextGeneration, Undo, Redo, OlderGeneration, NewerGeneration])
             .chain((1..=BOOKMARKS).map(SetBookmark))
             .chain((1..=BOOKMARKS).map(GoBookmark))
-            .chain([ToggleHelp, ToggleGenome, ToggleStats, ToggleSettings, ToggleFullscreen, Screenshot])
+            .chain([
+                ToggleHelp,
+                ToggleGenome,
+                ToggleStats,
+                ToggleSettings,
+                ToggleFullscreen,
+                Screenshot,
+                Quit,
+            ])
             .chain([CycleTreeScheme, CycleTerrainScheme, ToggleWireframe, ToggleTint, ToggleOverhead])
     }
 
@@ -136,15 +148,13 @@ impl Action {
     pub fn group(self) -> Group {
         use Action::*;
         match self {
-            Forward | Back | Left | Right | Up | Down | Run | ToggleWalkFlyOrbit | ReleaseMouse => {
-                Group::Move
-            }
+            Forward | Back | Left | Right | Up | Down | Run | ToggleWalkFlyOrbit | ReleaseMouse
+            | GoToStart => Group::Move,
             Maximise(_) | ShowAll | CompareAB => Group::Look,
             Vote(..) | NextGeneration | Undo | Redo | OlderGeneration | NewerGeneration => Group::Choose,
             SetBookmark(_) | GoBookmark(_) => Group::Bookmarks,
-            ToggleHelp | ToggleGenome | ToggleStats | ToggleSettings | ToggleFullscreen | Screenshot => {
-                Group::Window
-            }
+            ToggleHelp | ToggleGenome | ToggleStats | ToggleSettings | ToggleFullscreen | Screenshot
+            | Quit => Group::Window,
             CycleTreeScheme | CycleTerrainScheme | ToggleWireframe | ToggleTint | ToggleOverhead => {
                 Group::Laboratory
             }
@@ -164,6 +174,7 @@ impl Action {
             Run => "run",
             ToggleWalkFlyOrbit => "walk, fly or orbit",
             ReleaseMouse => "let the mouse go",
+            GoToStart => "back to the start",
             Maximise(view) => return format!("landscape {} alone, or all again", u32::from(view) + 1),
             ShowAll => "all four landscapes",
             CompareAB => "two side by side",
@@ -184,6 +195,7 @@ impl Action {
             ToggleSettings => "settings",
             ToggleFullscreen => "whole screen",
             Screenshot => "save a picture",
+            Quit => "close the window",
             CycleTreeScheme => "trees' levels of detail",
             CycleTerrainScheme => "terrain's levels of detail",
             ToggleWireframe => "edges only",
@@ -208,6 +220,7 @@ impl fmt::Display for Action {
             Run => "run",
             ToggleWalkFlyOrbit => "walk_fly_orbit",
             ReleaseMouse => "release_mouse",
+            GoToStart => "start",
             Maximise(view) => return write!(f, "maximise_{}", u32::from(view) + 1),
             ShowAll => "show_all",
             CompareAB => "compare",
@@ -228,6 +241,7 @@ impl fmt::Display for Action {
             ToggleSettings => "settings",
             ToggleFullscreen => "fullscreen",
             Screenshot => "screenshot",
+            Quit => "quit",
             CycleTreeScheme => "tree_scheme",
             CycleTerrainScheme => "terrain_scheme",
             ToggleWireframe => "wireframe",

@@ -238,6 +238,7 @@ fn defaults() -> Vec<(Chord, Action)> {
         (K::ShiftRight, Run),
         (K::KeyF, ToggleWalkFlyOrbit),
         (K::Escape, ReleaseMouse),
+        (K::Home, GoToStart),
         (K::Digit0, ShowAll),
         (K::Backspace, ShowAll),
         (K::Tab, CompareAB),
@@ -260,6 +261,7 @@ fn defaults() -> Vec<(Chord, Action)> {
     .into();
     pairs.push((Chord::key(K::KeyZ).with(Modifiers::CTRL), Undo));
     pairs.push((Chord::key(K::KeyY).with(Modifiers::CTRL), Redo));
+    pairs.push((Chord::key(K::KeyQ).with(Modifiers::CTRL), Quit));
     let rows = [
         (Category::Tree, [K::KeyU, K::KeyI, K::KeyO, K::KeyP, K::BracketLeft]),
         (Category::Terrain, [K::KeyJ, K::KeyK, K::KeyL, K::Semicolon, K::Quote]),
