@@ -6,6 +6,7 @@
 //! all four landscapes); flying keeps one altitude in all views ([`fly`]); orbiting circles a point on the ground
 //! ([`orbit`]).
 
+mod detour;
 mod fly;
 mod land;
 mod orbit;
@@ -22,6 +23,7 @@ use std::f32::consts::{PI, TAU};
 use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
+pub use detour::{Detour, Side};
 pub use land::{BODY_RADIUS_M, EDGE_M, EYE_HEIGHT_M, LEAST_HEIGHT_M, Land, WADING_DEPTH_M, reach_m, within};
 pub use start::{START_RADIUS_M, start_pose};
 pub use steps::{advance, free, nearest_free};
@@ -166,6 +168,8 @@ pub struct Rig {
     fly_mps: f32,
     /// What an orbit circles: (x, z).
     target_m: Vec2,
+    /// How it is getting out of a pocket between trunks.
+    detour: Detour,
     /// Parts of walking, flying and orbiting in the eyes' height; their sum is 1, and soon the mode's own part is.
     parts: [f32; 3],
 }
@@ -178,6 +182,7 @@ impl Rig {
             velocity_mps: Vec3::ZERO,
             fly_mps: fly::SPEED_MPS,
             target_m: Vec2::ZERO,
+            detour: Detour::default(),
             parts: Mode::Walk.alone(),
         };
         rig.go(pose, lands);
@@ -342,7 +347,11 @@ impl Rig {
         let wish_mps = level(level_wish(&self.pose, controls) * feel.walk_mps * pace(controls, feel));
         let moved_m = glide(&mut self.velocity_mps, wish_mps, dt_s, feel.smooth_s);
         let from_m = self.pose.place_m();
-        self.pose.put(advance(lands, from_m, Vec2::new(moved_m.x, moved_m.z)));
+        let by_m = Vec2::new(moved_m.x, moved_m.z);
+        if by_m == Vec2::ZERO {
+            self.detour = Detour::default();
+        }
+        self.pose.put(advance(lands, from_m, by_m, &mut self.detour));
     }
 }
 

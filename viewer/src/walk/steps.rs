@@ -7,11 +7,13 @@
 //! What is guaranteed and why: a step is cut into pieces no longer than [`PIECE_M`], far below a body's diameter, so
 //! nothing is jumped over at any speed; and a piece ends at a candidate place only after that very place, in the
 //! numbers that the camera gets, was found clear of every trunk. Of several candidates (straight on, around the trunk,
-//! up to the trunk) the first clear one is taken, and if none is clear the walker stays. So from a clear place every
-//! step ends in a clear place, whatever cluster the trunks form.
+//! along the trunks next to it, up to the trunk) the first clear one is taken, and if none is clear the walker stays. So
+//! from a clear place every step ends in a clear place, whatever cluster the trunks form. How a walker gets out of a
+//! pocket between trunks is told in [`super::detour`].
 
 use glam::Vec2;
 
+use super::detour::{Detour, Side};
 use super::land::{BODY_RADIUS_M, Land, within};
 use super::trunks::Trunk;
 
@@ -22,6 +24,8 @@ const SKIN_M: f32 = 1e-3;
 /// Slowest slide around a trunk as a part of the speed. To run straight into a trunk is an unstable equilibrium of
 /// sliding: this is what pushes off it. One that is hit dead on is passed on the right.
 const LEAST_SLIDE: f32 = 0.3;
+/// In one piece a walker goes along at most this many trunks.
+const MOST_TRUNKS: u32 = 4;
 /// A step is cut into at most this many pieces, 400 m in all; what is left of a longer one is not walked.
 const MOST_PIECES: u32 = 4000;
 
@@ -30,23 +34,21 @@ pub fn free(lands: &[&Land], place_m: Vec2) -> bool {
     lands.iter().all(|land| land.trunks.clear(place_m, BODY_RADIUS_M))
 }
 
-/// Where a walker at `from_m` gets that wants to move by `by_m`. `from_m` must be free; what comes back is.
-pub fn advance(lands: &[&Land], from_m: Vec2, by_m: Vec2) -> Vec2 {
+/// Where a walker at `from_m` gets that wants to move by `by_m`. `from_m` must be free; what comes back is. `detour`:
+/// what the walker remembers from step to step.
+pub fn advance(lands: &[&Land], from_m: Vec2, by_m: Vec2, detour: &mut Detour) -> Vec2 {
     let length_m = by_m.length();
     if !length_m.is_finite() || length_m == 0.0 {
         return from_m;
     }
+    detour.wish(by_m / length_m);
     let pieces = (length_m / PIECE_M).ceil().clamp(1.0, MOST_PIECES as f32);
     let piece_m = by_m / length_m * (length_m / pieces).min(PIECE_M);
-    let mut place_m = from_m;
-    for _ in 0..pieces as u32 {
-        let next_m = piece(lands, place_m, piece_m);
-        if next_m == place_m {
-            break;
-        }
-        place_m = next_m;
-    }
-    place_m
+    (0..pieces as u32).fold(from_m, |place_m, _| {
+        let next_m = piece(lands, place_m, piece_m, detour);
+        detour.walked(place_m, next_m);
+        next_m
+    })
 }
 
 /// The free place nearest to `place_m`, which lies on the land: itself, or the first found on rings around it, each a
@@ -76,23 +78,71 @@ fn on_ring(lands: &[&Land], center_m: Vec2, ring_m: f32) -> Option<Vec2> {
             let (sin, cos) = libm::sincosf(i as f32 * (std::f32::consts::TAU / PLACES as f32));
             center_m + ring_m * Vec2::new(cos, sin)
         })
-        .find(|&place_m| within(lands, place_m) == place_m && free(lands, place_m))
+        .find(|&place_m| stands(lands, place_m))
 }
 
 /// One piece of a step.
-fn piece(lands: &[&Land], from_m: Vec2, by_m: Vec2) -> Vec2 {
+fn piece(lands: &[&Land], from_m: Vec2, by_m: Vec2, detour: &mut Detour) -> Vec2 {
     // The land's edge is a wall that is slid along by dropping what leads across it.
     let straight_m = within(lands, from_m + by_m);
     let by_m = straight_m - from_m;
-    let Some(hit) = first_hit(lands, from_m, by_m) else {
-        return if free(lands, straight_m) { straight_m } else { from_m };
+    if by_m == Vec2::ZERO {
+        return from_m;
+    }
+    let beside = wall_beside(from_m, by_m, detour);
+    let Some(hit) = beside.or_else(|| first_hit(lands, from_m, by_m, None)) else {
+        return if stands(lands, straight_m) { straight_m } else { from_m };
     };
-    // Half and a quarter of the way around, where another trunk stands in the full way; then no way around, only up.
-    [1.0, 0.5, 0.25, 0.0]
-        .into_iter()
-        .map(|part| hit.around(part))
-        .find(|&place_m| within(lands, place_m) == place_m && free(lands, place_m))
-        .unwrap_or(from_m)
+    if detour.given_up() {
+        return from_m;
+    }
+    let side = detour.side().unwrap_or_else(|| hit.easier_side());
+    let around_m = hit.around(side);
+    if stands(lands, around_m) {
+        detour.hold(hit.trunk);
+        return around_m;
+    }
+    detour.begin(side, from_m, by_m.normalize_or_zero());
+    let (place_m, wall) = along_wall(lands, from_m, hit, side);
+    detour.hold(wall);
+    place_m
+}
+
+/// The trunk that the hand is on, as long as the way around it leads back, away from the wish. There straight on leads
+/// into the pocket again, and the trunk that stands first in that way may be one on its other side.
+fn wall_beside(from_m: Vec2, by_m: Vec2, detour: &Detour) -> Option<Hit> {
+    let (trunk, side) = (detour.wall()?, detour.side()?);
+    let hit = Hit { trunk, touch_m: from_m, toward: by_m.normalize_or_zero(), left_m: by_m.length() };
+    let touches = from_m.distance(trunk.center_m) < hit.reach_m() + PIECE_M;
+    (touches && hit.tangent(side).dot(hit.toward) < 0.0).then_some(hit)
+}
+
+/// Around a trunk into the next one, around that one on the same side, and so on; up to the trunk if that is all. Gives
+/// the place and the trunk beside it.
+fn along_wall(lands: &[&Land], from_m: Vec2, first: Hit, side: Side) -> (Vec2, Trunk) {
+    let up_to = (first.touching(), first.trunk);
+    let mut hit = first;
+    for _ in 0..MOST_TRUNKS {
+        let (touch_m, by_m) = (hit.touching(), hit.tangent(side) * hit.slide_m());
+        // Not the same trunk again, which a tangent touches or not as rounding has it.
+        let Some(next) = first_hit(lands, touch_m, by_m, Some(hit.trunk)) else {
+            if stands(lands, touch_m + by_m) {
+                return (touch_m + by_m, hit.trunk);
+            }
+            break;
+        };
+        hit = next;
+        let around_m = hit.around(side);
+        if stands(lands, around_m) {
+            return (around_m, hit.trunk);
+        }
+    }
+    if stands(lands, up_to.0) { up_to } else { (from_m, up_to.1) }
+}
+
+/// True if a walker can be here: on the land and clear of all trunks.
+fn stands(lands: &[&Land], place_m: Vec2) -> bool {
+    within(lands, place_m) == place_m && free(lands, place_m)
 }
 
 /// A trunk in the way.
@@ -107,29 +157,57 @@ struct Hit {
 }
 
 impl Hit {
-    /// Where the body gets that goes a part (0 to 1) of what is left, around the trunk.
-    fn around(&self, part: f32) -> Vec2 {
-        let reach_m = self.trunk.radius_m + BODY_RADIUS_M + SKIN_M;
-        let normal = (self.touch_m - self.trunk.center_m).normalize_or(-self.toward);
+    /// The side on which the trunk turns the walker aside; right if it turns it to neither.
+    fn easier_side(&self) -> Side {
+        if self.tangent(Side::Right).dot(self.toward) >= 0.0 { Side::Right } else { Side::Left }
+    }
+
+    /// Unit vector from the trunk's axis to the body.
+    fn normal(&self) -> Vec2 {
+        (self.touch_m - self.trunk.center_m).normalize_or(-self.toward)
+    }
+
+    /// Unit vector along the trunk.
+    fn tangent(&self, side: Side) -> Vec2 {
+        let normal = self.normal();
         // With x east and z south, this is what lies on the right of someone who faces the trunk.
         let right = Vec2::new(normal.y, -normal.x);
-        let along = right.dot(self.toward);
-        let side = if along >= 0.0 { right } else { -right };
-        let angle_rad = part * self.left_m * along.abs().max(LEAST_SLIDE) / reach_m;
-        let (sin, cos) = libm::sincosf(angle_rad);
-        self.trunk.center_m + reach_m * (cos * normal + sin * side)
+        match side {
+            Side::Right => right,
+            Side::Left => -right,
+        }
+    }
+
+    /// How far the body slides with what is left of the wish.
+    fn slide_m(&self) -> f32 {
+        self.left_m * self.tangent(Side::Right).dot(self.toward).abs().max(LEAST_SLIDE)
+    }
+
+    /// Where the body touches the trunk but for the skin.
+    fn touching(&self) -> Vec2 {
+        self.trunk.center_m + self.reach_m() * self.normal()
+    }
+
+    /// Where the body gets around the trunk.
+    fn around(&self, side: Side) -> Vec2 {
+        let (sin, cos) = libm::sincosf(self.slide_m() / self.reach_m());
+        self.trunk.center_m + self.reach_m() * (cos * self.normal() + sin * self.tangent(side))
+    }
+
+    fn reach_m(&self) -> f32 {
+        self.trunk.radius_m + BODY_RADIUS_M + SKIN_M
     }
 }
 
-/// The first trunk that a body meets on its way.
-fn first_hit(lands: &[&Land], from_m: Vec2, by_m: Vec2) -> Option<Hit> {
+/// The first trunk, other than one, that a body meets on its way.
+fn first_hit(lands: &[&Land], from_m: Vec2, by_m: Vec2, but: Option<Trunk>) -> Option<Hit> {
     let length_m = by_m.length();
     let toward = by_m.try_normalize()?;
     let mut first: Option<(f32, Trunk)> = None;
     for land in lands {
         for trunk in land.trunks.near(from_m, length_m + BODY_RADIUS_M + SKIN_M) {
             let Some(way_m) = way_to(trunk, from_m, toward) else { continue };
-            if way_m < length_m && first.is_none_or(|(least_m, _)| way_m < least_m) {
+            if way_m < length_m && Some(*trunk) != but && first.is_none_or(|(least_m, _)| way_m < least_m) {
                 first = Some((way_m, *trunk));
             }
         }
@@ -158,7 +236,8 @@ mod tests {
 
     /// Walks straight on in pieces as frames make them.
     fn walk(lands: &[&Land], from_m: Vec2, by_m: Vec2, steps: u32) -> Vec2 {
-        (0..steps).fold(from_m, |place_m, _| advance(lands, place_m, by_m))
+        let mut detour = Detour::default();
+        (0..steps).fold(from_m, |place_m, _| advance(lands, place_m, by_m, &mut detour))
     }
 
     proptest! {
@@ -215,6 +294,44 @@ mod tests {
             let least = radius_m + BODY_RADIUS_M - start.length();
             prop_assert!(start.distance(found) <= 1.15 * least.max(0.0) + 0.1, "{start} to {found}, needed {least}");
         }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(60))]
+        #[test]
+        fn a_pocket_is_left_around_its_shorter_or_its_longer_side(
+            arms in (1u32..12, 1u32..12), slant in -0.5f32..1.2, angle in 0f32..7., stride_m in 0.02f32..0.3
+        ) {
+            // A funnel of trunks with no gap: arms to both sides of the way that lean towards the walker.
+            let (sin, cos) = libm::sincosf(angle);
+            let (toward, right) = (Vec2::new(cos, sin), Vec2::new(-sin, cos));
+            let at = |i: i32| trunk(0.6 * (right * i as f32 - toward * slant * i.abs() as f32), 0.15);
+            let land = land_with((-(arms.0 as i32)..=arms.1 as i32).map(at));
+            let steps = (150.0 / stride_m) as u32;
+            let end = walk(&[&land], -toward * 15.0, toward * stride_m, steps);
+            prop_assert!(end.dot(toward) > 3.0, "stuck at {end}");
+        }
+    }
+
+    #[test]
+    fn who_is_walled_in_stands_still_at_last() {
+        let ring = (0..40).map(|i| {
+            let (sin, cos) = libm::sincosf(i as f32 * 0.157);
+            trunk(3.0 * Vec2::new(cos, sin), 0.2)
+        });
+        let land = land_with(ring);
+        let mut detour = Detour::default();
+        let mut place = Vec2::ZERO;
+        for _ in 0..10_000 {
+            place = advance(&[&land], place, Vec2::new(0.05, 0.0), &mut detour);
+            assert!(place.length() < 3.0);
+        }
+        let after = advance(&[&land], place, Vec2::new(0.05, 0.0), &mut detour);
+        assert_eq!(after, place);
+        assert!(
+            advance(&[&land], place, Vec2::new(-0.05, 0.0), &mut detour) != place,
+            "another wish is heard"
+        );
     }
 
     #[test]

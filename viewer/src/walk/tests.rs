@@ -244,3 +244,20 @@ fn a_lake_carries_and_does_not_drown() {
     lake.water_level_m = Some(0.5);
     assert_eq!(rig.camera(&lake, 1.0).position_m.y, EYE_HEIGHT_M, "shallow water is waded through");
 }
+
+#[test]
+fn who_walks_straight_on_gets_through_four_forests() {
+    // A trunk each 7 m²: sliding alone ends in a pocket.
+    let lands: [Land; 4] = std::array::from_fn(|view| land_with(forest(900 + view as u64, 500, 60.0)));
+    let lands = borrowed(&lands);
+    let wish = Controls { forward: 1.0, run: true, ..Controls::default() };
+    for line in 0..40 {
+        let start = Pose { x_m: -58.0, z_m: 2.0 * line as f32 - 40.0, yaw_rad: -0.5 * PI, ..Pose::default() };
+        let mut rig = Rig::new(start, &lands);
+        let arrived = (0..6000).any(|_| {
+            rig.step(1.0 / 60.0, &wish, &Feel::default(), &lands);
+            rig.pose().x_m > 2.0
+        });
+        assert!(arrived, "line {line} ended at {}", rig.pose().place_m());
+    }
+}
