@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand, ValueEnum};
 
+use crate::baker::BakerOptions;
 use crate::frame::{Options, TerrainScheme, TreeScheme};
 
 /// Shows four landscapes at once: walk through all of them, say which has the best trees, terrain and sky, and breed
@@ -26,6 +27,10 @@ pub struct Cli {
     #[arg(long, value_name = "N")]
     pub threads: Option<usize>,
 
+    /// Samples a side of the heightfields that are baked, as in `bake --size`: 65, 129, 257, 513, 1025 or 2049
+    #[arg(long, value_name = "N", default_value_t = BakerOptions::default().side, value_parser = heightfield)]
+    pub heightfield: u32,
+
     /// Look several times a second instead of waiting for events, for network folders that send none
     #[arg(long)]
     pub poll: bool,
@@ -41,6 +46,10 @@ pub struct Cli {
     /// Folder for screenshots
     #[arg(long, value_name = "DIR", default_value = "pictures")]
     pub pictures: PathBuf,
+
+    /// Write what happens in the window to this file, a JSON object a line
+    #[arg(long, value_name = "FILE")]
+    pub log: Option<PathBuf>,
 
     /// Draw to a PNG file instead of a window
     #[arg(long, value_name = "OUT.png")]
@@ -214,6 +223,12 @@ fn size(text: &str) -> Result<[u32; 2], String> {
         }
         _ => Err("a size is WIDTHxHEIGHT in pixels, 16 to 16384 each, as in 1280x800".to_owned()),
     }
+}
+
+fn heightfield(text: &str) -> Result<u32, String> {
+    let side = text.parse().ok();
+    side.filter(|side| [65, 129, 257, 513, 1025, 2049].contains(side))
+        .ok_or_else(|| "a heightfield has 65, 129, 257, 513, 1025 or 2049 samples a side".to_owned())
 }
 
 fn samples(text: &str) -> Result<u32, String> {

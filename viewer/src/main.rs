@@ -29,7 +29,7 @@ fn run(cli: &Cli) -> Result<()> {
     if let Some(out) = &cli.screenshot {
         return screenshot::take(cli, &source, out);
     }
-    let bake = BakerOptions { threads: cli.threads, poll: cli.poll, ..BakerOptions::default() };
+    let bake = BakerOptions { threads: cli.threads, side: cli.heightfield, poll: cli.poll };
     app::run(Start {
         source,
         settings: cli.settings.clone().or_else(SettingsFile::usual_path),
@@ -38,5 +38,6 @@ fn run(cli: &Cli) -> Result<()> {
         poll: cli.poll,
         pictures: cli.pictures.clone(),
         size: cli.size.map(|size| size.map(|side| side as f32)),
+        log: cli.log.clone(),
     })
 }

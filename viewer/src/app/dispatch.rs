@@ -16,6 +16,7 @@ use crate::ui::Tone;
 impl App {
     /// An event of the user interface.
     pub(super) fn dispatch(&mut self, event: Event, events: &ActiveEventLoop) {
+        self.log.wish(&event);
         match event {
             Event::Quit => events.exit(),
             other => self.handle(other),
@@ -67,6 +68,7 @@ impl App {
 
     /// An action of a key, a button or a gamepad.
     pub(super) fn act(&mut self, action: Action) {
+        self.log.wish(&action);
         let options = &mut self.settings.options;
         match action {
             Action::Forward | Action::Back | Action::Left | Action::Right => {}

@@ -1,10 +1,11 @@
 //! The application: a window, and a loop that hands each event to its owner. What each does is in its own file: [`desk`]
 //! (the person's work), [`show`] (the pictures), [`pilot`] (the camera), [`screen`] (the window), [`loader`] (files to
-//! device).
+//! device), [`log`] (what happened).
 
 pub mod desk;
 pub mod dispatch;
 pub mod loader;
+pub mod log;
 pub mod model;
 pub mod pilot;
 pub mod screen;
@@ -17,6 +18,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use glam::Vec3;
+use serde_json::json;
 use winit::application::ApplicationHandler;
 use winit::event::{DeviceEvent, DeviceId, ElementState, MouseScrollDelta, StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
@@ -35,6 +37,7 @@ use crate::ui::{self, Tone};
 use crate::world_watch::{Change, WatchOptions, WorldWatch};
 use desk::{Desk, Source, Task};
 use loader::{Loader, Request};
+use log::{Log, Moment};
 use pilot::Pilot;
 use screen::{Presented, Screen};
 use show::Show;
@@ -59,6 +62,8 @@ pub struct Start {
     pub pictures: PathBuf,
     /// Size of the window in logical pixels, if not the last one.
     pub size: Option<[f32; 2]>,
+    /// Where to write what happens.
+    pub log: Option<PathBuf>,
 }
 
 /// Wakes the loop: something is new somewhere.
@@ -70,7 +75,8 @@ pub fn run(start: Start) -> Result<()> {
     let events = EventLoop::<Wake>::with_user_event().build().context(
         "no window can be opened; without a display `viewer --screenshot OUT.png` draws to a file",
     )?;
-    let mut app = App::new(start, events.create_proxy());
+    let log = Log::create(start.log.as_deref())?;
+    let mut app = App::new(start, log, events.create_proxy());
     events.run_app(&mut app)?;
     match app.failure.take() {
         Some(failure) => Err(failure),
@@ -103,6 +109,7 @@ struct App {
     screenshot_wanted: bool,
     quit_wanted: bool,
     failure: Option<anyhow::Error>,
+    log: Log,
 }
 
 /// What exists once there is a window.
@@ -114,7 +121,7 @@ struct Live {
 }
 
 impl App {
-    fn new(start: Start, proxy: EventLoopProxy<Wake>) -> Self {
+    fn new(start: Start, log: Log, proxy: EventLoopProxy<Wake>) -> Self {
         let mut notices = Vec::new();
         let (settings_file, settings) = match &start.settings {
             Some(path) => {
@@ -160,6 +167,7 @@ impl App {
             screenshot_wanted: false,
             quit_wanted: false,
             failure: None,
+            log,
             proxy,
             start,
         };
@@ -238,10 +246,14 @@ impl App {
                 Task::Load { view, generation, path } => {
                     live.loader.ask(Request { view, generation, path, passes: live.show.passes() });
                 }
-                Task::Tell(tone, text) => self.ui.notify(tone, text),
+                Task::Tell(tone, text) => {
+                    self.log.note("told", json!({ "text": text }));
+                    self.ui.notify(tone, text);
+                }
             }
         }
         for (tone, text) in self.notices.drain(..) {
+            self.log.note("told", json!({ "text": text }));
             self.ui.notify(tone, text);
         }
     }
@@ -277,10 +289,20 @@ impl App {
         let ctx = screen.ctx.clone();
         let mut output = ui::Output::default();
         let full = ctx.run_ui(input, |ui| output = ui::show(ui, &model, &mut self.ui));
+        let told = full.platform_output.accesskit_update.as_ref();
+        let widgets = told.filter(|_| self.log.wants_widgets());
+        let widgets = widgets.map(|told| log::widgets(told, full.pixels_per_point));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         show.record(&mut encoder, &mut screen.painter, &output.views.slots, &frame, &self.pilot);
         let presented = screen.present(full, encoder, |_| {});
         show.settle();
+        self.log.frame(Moment {
+            model: &model,
+            landscapes: std::array::from_fn(|view| show.scene(view)),
+            pose: self.pilot.pose(),
+            size_px: screen.window.inner_size().into(),
+            widgets,
+        });
         if presented == Presented::Hidden {
             show.pause();
             std::thread::sleep(Duration::from_millis(50));
@@ -454,6 +476,7 @@ impl ApplicationHandler<Wake> for App {
     fn exiting(&mut self, _: &ActiveEventLoop) {
         self.keep_settings();
         self.baker = None;
+        self.log.note("end", json!({}));
     }
 }
 
@@ -467,6 +490,10 @@ impl App {
             .with_inner_size(winit::dpi::LogicalSize::new(width.max(480.0), height.max(320.0)));
         let window = Arc::new(events.create_window(attributes).context("no window can be opened")?);
         let (screen, gpu) = Screen::open(window)?;
+        if self.log.is_on() {
+            screen.ctx.enable_accesskit();
+        }
+        self.log.note("start", json!({ "version": env!("CARGO_PKG_VERSION"), "adapter": gpu.name }));
         let shaders = match &self.start.shaders {
             Some(folder) => Shaders::from_folder(folder.clone()),
             None => Shaders::builtin(),

@@ -1,0 +1,315 @@
+//! The flight recorder: what happens in the window → one JSON object a line, in the order in which it happened, for
+//! bug reports and for programs that drive the viewer and have to know how it stands. Each line has `t_s` (seconds since
+//! the start), `frame` (frames shown) and `what`; a state is written when it changes, so the last line of each `what` says
+//! how things are. Lengths in metres, angles in radians, places in the window in physical pixels.
+
+use std::fmt::Debug;
+use std::fs::File;
+use std::io::Write;
+use std::path::Path;
+use std::sync::{Arc, Weak};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result};
+use egui::accesskit::{Role, TreeUpdate};
+use genescape_schema::{Category, INDIVIDUALS};
+use serde_json::{Value, json};
+
+use crate::event::Ballot;
+use crate::ui::model::{Model, Situation};
+use crate::upload::SceneBuffers;
+use crate::walk::Pose;
+
+/// Between two lines about what changes in every frame.
+const PAUSE: Duration = Duration::from_millis(100);
+/// Between two lines about how long frames take.
+const FRAMES_EVERY: Duration = Duration::from_secs(1);
+
+/// A log that is being written. Without a file it costs nothing.
+pub struct Log {
+    file: Option<File>,
+    born: Instant,
+    frame: u64,
+    states: Vec<State>,
+    landscapes: [Weak<SceneBuffers>; INDIVIDUALS],
+    frames: Frames,
+}
+
+/// What was written last of one kind.
+struct State {
+    what: &'static str,
+    value: Value,
+    at: Instant,
+}
+
+/// Frames since the last line about them.
+struct Frames {
+    since: Instant,
+    last: Instant,
+    count: u32,
+    worst_ms: f32,
+}
+
+/// How things stand after a frame.
+pub struct Moment<'a> {
+    /// What the user interface showed.
+    pub model: &'a Model,
+    /// The landscapes that are drawn.
+    pub landscapes: [Option<&'a Arc<SceneBuffers>>; INDIVIDUALS],
+    /// Where the cameras are.
+    pub pose: Pose,
+    /// Width and height of the window.
+    pub size_px: [u32; 2],
+    /// What can be pressed, if anybody asked egui.
+    pub widgets: Option<Value>,
+}
+
+impl Log {
+    /// Into a new file; into none without a path.
+    ///
+    /// # Errors
+    /// A file that cannot be made.
+    pub fn create(path: Option<&Path>) -> Result<Self> {
+        let create = |path: &Path| {
+            File::create(path).with_context(|| format!("the log {} cannot be written", path.display()))
+        };
+        let now = Instant::now();
+        Ok(Self {
+            file: path.map(create).transpose()?,
+            born: now,
+            frame: 0,
+            states: Vec::new(),
+            landscapes: Default::default(),
+            frames: Frames { since: now, last: now, count: 0, worst_ms: 0.0 },
+        })
+    }
+
+    /// Whether anybody will read it.
+    pub fn is_on(&self) -> bool {
+        self.file.is_some()
+    }
+
+    /// Something that happens once.
+    pub fn note(&mut self, what: &'static str, value: Value) {
+        self.write(what, &value);
+    }
+
+    /// A wish of the person: an event or an action.
+    pub fn wish(&mut self, wish: &impl Debug) {
+        if self.is_on() {
+            self.write("wish", &json!({ "wish": format!("{wish:?}") }));
+        }
+    }
+
+    /// A frame was shown: writes what is not as it was.
+    pub fn frame(&mut self, moment: Moment<'_>) {
+        self.frame += 1;
+        if !self.is_on() {
+            return;
+        }
+        let Moment { model, landscapes, pose, size_px, widgets } = moment;
+        for (view, landscape) in landscapes.into_iter().enumerate() {
+            self.landscape(view, landscape, model.generation);
+        }
+        self.state("generations", json!({ "shown": model.generation, "all": model.generations }));
+        self.state("ballots", ballots(model));
+        self.state("bake", bake(model));
+        self.state("errors", errors(model));
+        self.state("screen", screen(model, size_px));
+        self.seldom("pose", || place(&pose));
+        if let Some(widgets) = widgets {
+            self.seldom("widgets", || widgets);
+        }
+        self.time_frame();
+    }
+
+    /// Whether it is time to look at what can be pressed.
+    pub fn wants_widgets(&self) -> bool {
+        self.is_on() && self.rested("widgets")
+    }
+
+    fn landscape(&mut self, view: usize, landscape: Option<&Arc<SceneBuffers>>, generation: u32) {
+        let now = landscape.map(Arc::downgrade).unwrap_or_default();
+        if now.ptr_eq(&self.landscapes[view]) {
+            return;
+        }
+        let trees = landscape.and_then(|scene| scene.trees.as_ref()).map_or(0, |trees| trees.count);
+        let name = landscape.map(|scene| scene.name.clone());
+        self.landscapes[view] = now;
+        self.write(
+            "landscape",
+            &json!({ "view": view, "generation": generation, "name": name, "trees": trees }),
+        );
+    }
+
+    fn time_frame(&mut self) {
+        let (now, frames) = (Instant::now(), &mut self.frames);
+        frames.count += 1;
+        frames.worst_ms = frames.worst_ms.max((now - frames.last).as_secs_f32() * 1e3);
+        frames.last = now;
+        let span = now - frames.since;
+        if span < FRAMES_EVERY {
+            return;
+        }
+        let value = json!({ "fps": frames.count as f32 / span.as_secs_f32(), "worst_ms": frames.worst_ms });
+        (frames.since, frames.count, frames.worst_ms) = (now, 0, 0.0);
+        self.write("frames", &value);
+    }
+
+    /// Written if it changed.
+    fn state(&mut self, what: &'static str, value: Value) {
+        let known = self.states.iter().position(|state| state.what == what);
+        if known.is_some_and(|at| self.states[at].value == value) {
+            return;
+        }
+        self.write(what, &value);
+        let state = State { what, value, at: Instant::now() };
+        match known {
+            Some(at) => self.states[at] = state,
+            None => self.states.push(state),
+        }
+    }
+
+    /// Written if it changed, and not in every frame. A change is written later, but never lost.
+    fn seldom(&mut self, what: &'static str, value: impl FnOnce() -> Value) {
+        if self.rested(what) {
+            self.state(what, value());
+        }
+    }
+
+    fn rested(&self, what: &str) -> bool {
+        self.states.iter().find(|state| state.what == what).is_none_or(|state| state.at.elapsed() >= PAUSE)
+    }
+
+    fn write(&mut self, what: &str, value: &Value) {
+        let Some(file) = &mut self.file else { return };
+        let t_s = self.born.elapsed().as_secs_f64();
+        let mut line = json!({ "t_s": (t_s * 1e3).round() / 1e3, "frame": self.frame, "what": what });
+        if let (Some(line), Some(value)) = (line.as_object_mut(), value.as_object()) {
+            line.extend(value.clone());
+        }
+        // A full disk ends the log, not the viewer. In one piece, so that a reader meets whole lines.
+        if file.write_all(format!("{line}\n").as_bytes()).is_err() {
+            self.file = None;
+        }
+    }
+}
+
+fn ballots(model: &Model) -> Value {
+    let entry = |category: Category| {
+        let ballot = match model.ballots.get(category) {
+            Ballot::Open => Value::Null,
+            Ballot::Nobody => json!("nobody"),
+            Ballot::For(best) => json!(best),
+        };
+        (category.name().to_owned(), ballot)
+    };
+    Value::Object(Category::ALL.map(entry).into_iter().collect())
+}
+
+fn bake(model: &Model) -> Value {
+    match &model.baking {
+        Some(bake) => json!({ "generation": bake.generation, "done": bake.done, "total": bake.total }),
+        None => json!({ "generation": null }),
+    }
+}
+
+fn errors(model: &Model) -> Value {
+    let error = |error: &crate::ui::model::FileError| json!({ "title": error.title, "report": error.report });
+    json!({ "count": model.errors.len(), "errors": model.errors.iter().map(error).collect::<Vec<_>>() })
+}
+
+fn screen(model: &Model, size_px: [u32; 2]) -> Value {
+    let situation = match &model.situation {
+        Situation::Ready => "ready",
+        Situation::Growing => "growing",
+        Situation::Stuck { .. } => "stuck",
+    };
+    json!({
+        "situation": situation,
+        "arrangement": format!("{:?}", model.arrangement),
+        "chosen": model.chosen,
+        "captured": model.captured,
+        "panels": format!("{:?}", model.panels),
+        "size_px": size_px,
+        "names": model.views.each_ref().map(|view| view.name.clone()),
+    })
+}
+
+fn place(pose: &Pose) -> Value {
+    json!({
+        "x_m": pose.x_m, "z_m": pose.z_m, "yaw_rad": pose.yaw_rad, "pitch_rad": pose.pitch_rad,
+        "altitude_m": pose.altitude_m, "mode": format!("{:?}", pose.mode),
+    })
+}
+
+/// What can be pressed or dragged, as it is told to people who do not see: its words, and its middle in pixels.
+pub fn widgets(told: &TreeUpdate, pixels_per_point: f32) -> Value {
+    let usable = |role: Role| {
+        matches!(
+            role,
+            Role::Button | Role::Slider | Role::SpinButton | Role::CheckBox | Role::RadioButton | Role::TextInput
+        )
+    };
+    let mut listed: Vec<Value> = Vec::new();
+    for (_, node) in told.nodes.iter().filter(|(_, node)| usable(node.role())) {
+        let (Some(words), Some(place)) = (node.label().or_else(|| node.value()), node.bounds()) else { continue };
+        let pixels = |low: f64, high: f64| (0.5 * (low + high) * f64::from(pixels_per_point)).round();
+        let size = |low: f64, high: f64| ((high - low) * f64::from(pixels_per_point)).round();
+        listed.push(json!({
+            "label": words,
+            "role": format!("{:?}", node.role()),
+            "at_px": [pixels(place.x0, place.x1), pixels(place.y0, place.y1)],
+            "size_px": [size(place.x0, place.x1), size(place.y0, place.y1)],
+        }));
+    }
+    json!({ "widgets": listed })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lines(path: &Path) -> Vec<Value> {
+        let text = std::fs::read_to_string(path).expect("written");
+        text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()
+    }
+
+    #[test]
+    fn a_state_is_written_when_it_changes_and_only_then() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("log");
+        let mut log = Log::create(Some(&path)).expect("a file");
+        for value in [1, 1, 2, 2, 1] {
+            log.state("bake", json!({ "generation": value }));
+            log.state("errors", json!({ "count": 0 }));
+        }
+        log.wish(&Ballot::Nobody);
+        let told: Vec<_> = lines(&path).iter().map(|line| line["what"].clone()).collect();
+        assert_eq!(told, ["bake", "errors", "bake", "bake", "wish"]);
+        assert_eq!(lines(&path)[2]["generation"], 2);
+        assert_eq!(lines(&path)[4]["wish"], "Nobody");
+    }
+
+    #[test]
+    fn what_changes_in_every_frame_is_written_at_intervals() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("log");
+        let mut log = Log::create(Some(&path)).expect("a file");
+        for x in 0..50 {
+            log.seldom("pose", || json!({ "x_m": x }));
+            log.states[0].at -= PAUSE / 10;
+        }
+        let told = lines(&path);
+        assert!((5..=50 / 4).contains(&told.len()), "{} lines", told.len());
+    }
+
+    #[test]
+    fn without_a_path_nothing_is_written_and_a_wrong_one_is_named() {
+        let mut log = Log::create(None).expect("no file");
+        log.note("start", json!({}));
+        assert!(!log.is_on() && !log.wants_widgets());
+        let error = Log::create(Some(Path::new("/nowhere/at/all"))).err().expect("no folder");
+        assert!(error.to_string().contains("/nowhere/at/all"));
+    }
+}
