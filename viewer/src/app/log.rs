@@ -23,7 +23,7 @@ use crate::walk::Pose;
 /// Between two lines about what changes in every frame.
 const PAUSE: Duration = Duration::from_millis(100);
 /// Between two lines about how long frames take.
-const FRAMES_EVERY: Duration = Duration::from_secs(1);
+const FRAMES_EVERY: Duration = Duration::from_millis(250);
 
 /// A log that is being written. Without a file it costs nothing.
 pub struct Log {
@@ -248,12 +248,19 @@ pub fn widgets(told: &TreeUpdate, pixels_per_point: f32) -> Value {
     let usable = |role: Role| {
         matches!(
             role,
-            Role::Button | Role::Slider | Role::SpinButton | Role::CheckBox | Role::RadioButton | Role::TextInput
+            Role::Button
+                | Role::Slider
+                | Role::SpinButton
+                | Role::CheckBox
+                | Role::RadioButton
+                | Role::TextInput
         )
     };
     let mut listed: Vec<Value> = Vec::new();
     for (_, node) in told.nodes.iter().filter(|(_, node)| usable(node.role())) {
-        let (Some(words), Some(place)) = (node.label().or_else(|| node.value()), node.bounds()) else { continue };
+        let (Some(words), Some(place)) = (node.label().or_else(|| node.value()), node.bounds()) else {
+            continue;
+        };
         let pixels = |low: f64, high: f64| (0.5 * (low + high) * f64::from(pixels_per_point)).round();
         let size = |low: f64, high: f64| ((high - low) * f64::from(pixels_per_point)).round();
         listed.push(json!({

@@ -70,7 +70,7 @@ impl Screen {
     /// Paints the user interface and shows it; `commands` have drawn what it shows.
     pub fn present(
         &mut self,
-        output: egui::FullOutput,
+        mut output: egui::FullOutput,
         mut encoder: wgpu::CommandEncoder,
         before_submit: impl FnOnce(&mut wgpu::CommandEncoder),
     ) -> Presented {
@@ -114,6 +114,8 @@ impl Screen {
         for id in &output.textures_delta.free {
             self.painter.free_texture(id);
         }
+        // Says that all is done; egui complains of changes that are dropped.
+        output.textures_delta.clear();
         match frame {
             Some(frame) => {
                 self.window.pre_present_notify();

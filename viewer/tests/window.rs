@@ -1,0 +1,354 @@
+//! A person's session in a real window: the program as it is, under an X server without a screen, with synthetic keys and
+//! mouse. What it does is known from its log, its files and its pixels; pictures of it go to target/window-test/.
+//!
+//! Without Xvfb these tests say so and pass, unless GENESCAPE_NEEDS_WINDOW is set.
+
+mod common;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use clap::Parser;
+use common::display::{Display, Picture, keys};
+use common::viewer::Viewer;
+use genescape_schema::{Parent, Space, Votes};
+use genescape_viewer::settings::SettingsFile;
+use genescape_viewer::world_files::WorldFiles;
+use serde_json::json;
+
+/// Of the window, in pixels; the screen is as large.
+const SIZE: [u16; 2] = [1000, 680];
+/// Where the four pictures are when they stand two by two: clear of the bar above, names and buttons.
+const PICTURES: [[usize; 4]; 4] =
+    [[10, 80, 490, 290], [510, 80, 990, 290], [10, 400, 490, 610], [510, 400, 990, 610]];
+/// In the first picture, where nothing can be pressed.
+const IN_PICTURE: [i16; 2] = [250, 180];
+
+/// A folder of our own with a world in it, and a display.
+struct Stage {
+    folder: tempfile::TempDir,
+    files: WorldFiles,
+    display: Display,
+}
+
+impl Stage {
+    /// `None` where there is no Xvfb.
+    fn set() -> Option<Self> {
+        let Some(display) = Display::start(SIZE) else {
+            let needed = std::env::var_os("GENESCAPE_NEEDS_WINDOW").is_some();
+            assert!(!needed, "GENESCAPE_NEEDS_WINDOW is set and Xvfb cannot be started");
+            eprintln!("skipped: no Xvfb (on Debian and Ubuntu: apt-get install xvfb)");
+            return None;
+        };
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let files = WorldFiles::new(folder.path().join("world"));
+        Some(Self { folder, files, display })
+    }
+
+    fn viewer(&self, more: &[&str]) -> Viewer {
+        let usual = ["--world", "world", "--settings", "settings.ron", "--heightfield", "65"];
+        Viewer::start(&self.display, self.folder.path(), &[&usual, more].concat())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// What is on the screen, kept for people; each of the four pictures must be one of something.
+    fn look(&self, name: &str) -> Picture {
+        let picture = self.display.picture();
+        picture.save(name);
+        for (view, place) in PICTURES.into_iter().enumerate() {
+            let (mean, deviation) = picture.brightness(place);
+            assert!(
+                (15.0..240.0).contains(&mean) && deviation > 6.0,
+                "{name}: view {view} is black, white or flat: brightness {mean:.1} ± {deviation:.1}"
+            );
+        }
+        picture
+    }
+
+    fn population(&self, generation: u32) -> genescape_schema::Population {
+        self.files.population(&Space::builtin(), generation).expect("a valid file").population
+    }
+}
+
+#[test]
+fn a_whole_round_in_a_window() {
+    let Some(stage) = Stage::set() else { return };
+    let mut viewer = stage.viewer(&["--size", "1000x680", "--pictures", "pictures"]);
+    the_first_landscapes_grow(&stage, &mut viewer);
+    somebody_walks_and_looks_around(&stage, &mut viewer);
+    somebody_votes_and_breeds(&stage, &mut viewer);
+    somebody_goes_back(&stage, &mut viewer);
+    files_change_by_another_hand(&stage, &mut viewer);
+    a_gene_changes_in_the_panel(&stage, &mut viewer);
+    a_picture_is_saved(&stage, &mut viewer);
+    the_window_changes_its_size(&stage, &mut viewer);
+    it_ends_and_remembers(&stage, viewer);
+}
+
+/// An empty folder becomes a world; pictures come one by one while it is baked.
+fn the_first_landscapes_grow(stage: &Stage, viewer: &mut Viewer) {
+    viewer.until("the first landscapes", |viewer| viewer.shows(0));
+    let part = |line: &&serde_json::Value| {
+        line["what"] == "bake"
+            && line["done"].as_u64().is_some_and(|done| Some(done) < line["total"].as_u64())
+    };
+    assert!(viewer.lines.iter().filter(part).count() > 10, "no progress was seen");
+    let first = viewer.lines.iter().position(|line| line["what"] == "landscape" && !line["name"].is_null());
+    let end = viewer.lines.iter().rposition(|line| line["what"] == "bake");
+    assert!(first < end, "landscapes do not come one by one");
+    let mut names: Vec<_> = viewer.landscapes.iter().map(|one| one["name"].to_string()).collect();
+    names.dedup();
+    assert_eq!(names.len(), 4, "{names:?}");
+    viewer.frames(2);
+    stage.look("1-start.png");
+}
+
+fn somebody_walks_and_looks_around(stage: &Stage, viewer: &mut Viewer) {
+    let display = &stage.display;
+    let before = display.picture();
+    let place = |viewer: &Viewer| {
+        ["x_m", "z_m", "yaw_rad", "pitch_rad"].map(|key| viewer.get("pose", key).as_f64().expect("a pose"))
+    };
+    let start = place(viewer);
+    display.key(keys::W, true);
+    viewer.until("somebody walks", |viewer| {
+        let now = place(viewer);
+        (now[0] - start[0]).hypot(now[1] - start[1]) > 2.0
+    });
+    display.key(keys::W, false);
+    viewer.frames(1);
+    assert_eq!(place(viewer)[2..], start[2..], "walking turns nobody");
+
+    // Dragging a picture.
+    let turned = |viewer: &Viewer, from: f64| (place(viewer)[2] - from).abs() > 0.02;
+    display.point(IN_PICTURE);
+    viewer.frames(2);
+    display.button(1, true);
+    viewer.frames(1);
+    display.nudge([60, 0]);
+    viewer.until("a drag turns", |viewer| turned(viewer, start[2]));
+    display.button(1, false);
+    // The pointer steers after a right click, until Escape.
+    viewer.press(display, IN_PICTURE, 3);
+    viewer.until("the pointer is the camera's", |viewer| viewer.get("screen", "captured") == true);
+    let from = place(viewer);
+    display.nudge([-120, 0]);
+    viewer.until("the mouse turns", |viewer| turned(viewer, from[2]));
+    display.tap(keys::ESCAPE);
+    viewer.until("the pointer is free", |viewer| viewer.get("screen", "captured") == false);
+
+    viewer.frames(2);
+    let after = stage.look("2-walked.png");
+    for place in PICTURES {
+        assert!(after.difference(&before, place) > 0.02, "all four walk");
+    }
+}
+
+/// By key, by click, and with a step back in between.
+fn somebody_votes_and_breeds(stage: &Stage, viewer: &mut Viewer) {
+    let display = &stage.display;
+    let cast = |viewer: &Viewer| ["tree", "terrain", "sky"].map(|name| viewer.get("ballots", name).clone());
+    display.tap(keys::U);
+    viewer.until("a vote by key", |viewer| cast(viewer) == [json!(0), json!(null), json!(null)]);
+    viewer.click(display, "Terrain: best in 2");
+    viewer.until("a vote by click", |viewer| cast(viewer) == [json!(0), json!(1), json!(null)]);
+    display.tap(keys::DOT);
+    viewer.until("another by key", |viewer| cast(viewer) == [json!(0), json!(1), json!(2)]);
+    display.tap_with_ctrl(keys::Z);
+    viewer.until("it is taken back", |viewer| cast(viewer) == [json!(0), json!(1), json!(null)]);
+    viewer.click(display, "Sky: none of the four");
+    viewer.until("none pleases", |viewer| cast(viewer) == [json!(0), json!(1), json!("nobody")]);
+    viewer.frames(1);
+    stage.look("3-votes.png");
+
+    display.tap(keys::N);
+    viewer.until("the next generation", |viewer| viewer.shows(1));
+    let votes = Votes { tree: Some(0), terrain: Some(1), sky: None };
+    let (parents, children) = (stage.population(0), stage.population(1));
+    assert_eq!(parents.votes, Some(votes));
+    assert_eq!(children.parent, Some(Parent { generation: 0, votes }));
+    assert_eq!(cast(viewer), [json!(null), json!(null), json!(null)]);
+    viewer.frames(2);
+    stage.look("4-children.png");
+}
+
+fn somebody_goes_back(stage: &Stage, viewer: &mut Viewer) {
+    let display = &stage.display;
+    display.tap(keys::PAGE_UP);
+    viewer.until("the parents", |viewer| viewer.shows(0));
+    display.tap(keys::PAGE_DOWN);
+    viewer.until("the children again", |viewer| viewer.shows(1));
+    display.tap_with_ctrl(keys::Z);
+    viewer.until("the breeding is taken back", |viewer| viewer.shows(0));
+    assert_eq!(stage.population(0).votes, None);
+    assert_eq!(*viewer.get("ballots", "tree"), 0, "the ballots are as they were before");
+    assert_eq!(stage.files.generations().expect("a folder"), [0, 1], "nothing is thrown away");
+}
+
+/// Somebody edits the population's file while a bake is on; first makes a mistake, then mends it.
+fn files_change_by_another_hand(stage: &Stage, viewer: &mut Viewer) {
+    let path = stage.files.population_path(0);
+    let good = fs::read_to_string(&path).expect("a file");
+    let other = good.replacen("height_m: 12.86,", "height_m: 25,", 1);
+    assert_ne!(other, good);
+    let from = viewer.lines.len();
+    fs::write(&path, &other).expect("written");
+    // In mid-flight: as soon as the bake of that change has begun.
+    viewer.until("the change is baked", |viewer| !viewer.get("bake", "generation").is_null());
+    fs::write(&path, other.replacen("tree_seed: 7,", "tree_seed: seven,", 1)).expect("written");
+    viewer.until("a mistake is told", |viewer| viewer.get("errors", "count") == 1);
+    let report = viewer.get("errors", "errors")[0]["report"].to_string();
+    assert!(report.contains("g0000.ron") && report.contains("tree_seed"), "{report}");
+    viewer.frames(2);
+    stage.look("5-mistake.png");
+    fs::write(&path, &other).expect("written");
+    viewer.until("the mistake is mended", |viewer| viewer.get("errors", "count") == 0);
+    viewer.until("the change shows", |viewer| {
+        let new = viewer.lines[from..].iter().any(|line| line["what"] == "landscape" && line["view"] == 0);
+        new && viewer.shows(0)
+    });
+}
+
+fn a_gene_changes_in_the_panel(stage: &Stage, viewer: &mut Viewer) {
+    let display = &stage.display;
+    let before = stage.population(0);
+    display.tap(keys::G);
+    let field = viewer.place_of("Value of height_m");
+    let from = viewer.lines.len();
+    viewer.press(display, field, 1);
+    display.tap_with_ctrl(keys::A);
+    "17".chars().for_each(|digit| display.tap(keys::digit(digit)));
+    viewer.frames(2);
+    stage.display.picture().save("6-genes.png");
+    display.tap(keys::ENTER);
+    viewer.until("the gene's landscape", |viewer| {
+        let new = viewer.lines[from..].iter().any(|line| line["what"] == "landscape" && line["view"] == 0);
+        new && viewer.shows(0)
+    });
+    let after = stage.population(0);
+    let height = |population: &genescape_schema::Population| {
+        population.individuals[0].genome.value(&Space::builtin(), "height_m").expect("a gene")
+    };
+    assert!((height(&after) - 17.0).abs() < 0.3 && (height(&before) - 25.0).abs() < 0.3);
+    assert_eq!(after.individuals[1..], before.individuals[1..]);
+    assert!(viewer.get("screen", "arrangement") == "Grid", "digits that are typed are no commands");
+    display.tap(keys::G);
+    viewer.until("the panel is gone", |viewer| {
+        viewer.get("screen", "panels").as_str().is_some_and(|panels| panels.contains("genome: false"))
+    });
+}
+
+fn a_picture_is_saved(stage: &Stage, viewer: &mut Viewer) {
+    stage.display.tap(keys::F12);
+    let path = stage.path("pictures/genescape-0001.png");
+    // It is there at once, but written when its last bytes can be read.
+    let read = || {
+        let mut reader =
+            png::Decoder::new(std::io::BufReader::new(fs::File::open(&path).ok()?)).read_info().ok()?;
+        let mut pixels = vec![0; reader.output_buffer_size()?];
+        let info = reader.next_frame(&mut pixels).ok()?;
+        pixels.truncate(info.buffer_size());
+        Some((info.width, info.height, pixels))
+    };
+    viewer.until("a picture is saved", |_| read().is_some());
+    let (width, height, pixels) = read().expect("it was just there");
+    assert!(width > 900 && height > 500, "{width} × {height}");
+    let distinct: std::collections::BTreeSet<_> = pixels.chunks_exact(4).collect();
+    assert!(distinct.len() > 1000, "{} colours", distinct.len());
+}
+
+fn the_window_changes_its_size(stage: &Stage, viewer: &mut Viewer) {
+    for size in [[300, 200], [1000, 90], [60, 600]] {
+        stage.display.resize(viewer.window, size);
+        viewer.until("the window is small", |viewer| *viewer.get("screen", "size_px") == json!(size));
+        viewer.frames(3);
+        stage.display.picture().save(&format!("7-window-{}x{}.png", size[0], size[1]));
+    }
+    stage.display.resize(viewer.window, SIZE.map(u32::from));
+    viewer.until("the window is large", |viewer| *viewer.get("screen", "size_px") == json!(SIZE));
+    viewer.frames(3);
+    stage.look("8-large-again.png");
+}
+
+/// What was chosen is there again after a second start, and the window is as it was.
+fn it_ends_and_remembers(stage: &Stage, mut viewer: Viewer) {
+    stage.display.tap(keys::F5);
+    viewer.until("another scheme", |viewer| viewer.get("wish", "wish") == "CycleTreeScheme");
+    stage.display.resize(viewer.window, [900, 640]);
+    viewer.until("another size", |viewer| *viewer.get("screen", "size_px") == json!([900, 640]));
+    assert_eq!(viewer.quit(&stage.display).code(), Some(0));
+    let kept = SettingsFile::open(stage.path("settings.ron"));
+    assert_eq!(kept.problem, None);
+    assert_eq!(kept.settings.options.tree_scheme, genescape_viewer::frame::TreeScheme::Simple);
+
+    let mut viewer = stage.viewer(&["--no-bake"]);
+    viewer.until("the second start shows all", |viewer| viewer.shows(0));
+    assert_eq!(*viewer.get("screen", "size_px"), json!([900, 640]));
+    assert_eq!(*viewer.get("ballots", "tree"), 0);
+    assert_eq!(*viewer.get("ballots", "sky"), "nobody");
+    viewer.frames(2);
+    stage.display.picture().save("9-second-start.png");
+    assert_eq!(viewer.quit(&stage.display).code(), Some(0));
+}
+
+#[test]
+fn a_baker_that_is_killed_leaves_the_viewer_going_and_another_bakes_the_rest() {
+    let Some(stage) = Stage::set() else { return };
+    let mut viewer = stage.viewer(&["--no-bake", "--size", "1000x680"]);
+    viewer.until("an empty world is told", |viewer| viewer.get("screen", "situation") == "stuck");
+    let mut baker = baker(stage.files.root());
+    let baked = |files: &WorldFiles| (0..4).filter(|scene| files.scene_path(0, *scene).is_file()).count();
+    let start = Instant::now();
+    while baked(&stage.files) == 0 {
+        assert!(start.elapsed() < Duration::from_secs(180), "nothing is baked");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    // SIGKILL: it has no time to tidy up.
+    baker.kill().expect("our child");
+    baker.wait().expect("our child");
+    let before = baked(&stage.files);
+    assert!(before < 4, "it had done everything already");
+    let shown = |viewer: &Viewer| viewer.landscapes.iter().filter(|one| one["generation"] == 0).count();
+    viewer.until("what was done is shown", |viewer| shown(viewer) == before);
+    viewer.frames(5);
+    assert_eq!(*viewer.get("errors", "count"), 0);
+    stage.display.picture().save("10-baker-killed.png");
+
+    let mut second = self::baker(stage.files.root());
+    viewer.until("another baker's landscapes", |viewer| viewer.shows(0));
+    viewer.frames(2);
+    stage.look("11-second-baker.png");
+    second.kill().expect("our child");
+    second.wait().expect("our child");
+    viewer.frames(3);
+    assert_eq!(viewer.quit(&stage.display).code(), Some(0));
+}
+
+/// Says to this program that it is a baker.
+const BAKES: &str = "GENESCAPE_TEST_BAKES";
+
+/// `bake --watch` in a process of its own: this very program, for the viewer's tests have no other at hand.
+fn baker(world: &Path) -> Child {
+    Command::new(std::env::current_exe().expect("this program"))
+        .args(["--exact", "acts_as_a_baker", "--nocapture"])
+        .env(BAKES, world)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("this program once more")
+}
+
+/// No test: what the process of [`baker`] does.
+#[test]
+fn acts_as_a_baker() {
+    let Some(world) = std::env::var_os(BAKES) else { return };
+    let world = world.to_str().expect("a temporary folder's name");
+    let command = ["bake", "--watch", "--world", world, "--size", "65", "--threads", "1"];
+    genescape_bake::commands::run(genescape_bake::cli::Cli::parse_from(command));
+}
