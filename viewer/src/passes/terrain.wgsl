@@ -113,49 +113,71 @@ fn sample_vertex(@builtin(vertex_index) index: u32) -> Out {
     return out_at(sample_place(s), normal_at(s), f32(level_of(s)));
 }
 
-// What a pixel covers, its longer side made shorter: tiling textures are to be sharp at low angles also where the device
-// filters them alike in all directions, and are smooth enough to bear it.
-fn less_stretched(dx: vec2f, dy: vec2f) -> array<vec2f, 2> {
-    let ratio = max(length(dx), 1e-9) / max(length(dy), 1e-9);
-    let keep = pow(max(ratio, 1.0 / ratio), -0.45);
-    return array<vec2f, 2>(dx * select(1.0, keep, ratio > 1.0), dy * select(keep, 1.0, ratio > 1.0));
-}
-
 struct Tiles {
     factor: vec3f,
     bump: vec3f,
 }
 
-// A tiling texture seen along one axis: `uv` in metres, and how fast it changes from pixel to pixel.
-fn tile_from(layer: i32, uv: vec2f, dx: vec2f, dy: vec2f) -> Tiles {
-    let footprint = less_stretched(dx, dy);
-    let factor = textureSampleGrad(details, repeating, uv, layer, footprint[0], footprint[1]).rgb * (255.0 / 128.0);
-    let bump = textureSampleGrad(detail_normals, repeating, uv, layer, footprint[0], footprint[1]).xyz * 2.0 - 1.0;
-    return Tiles(factor, bump);
+// What a pixel covers, its longer side made shorter: tiling textures are to be sharp at low angles also where the device
+// filters them alike in all directions, and are smooth enough to bear it.
+fn less_stretched(dx: vec2f, dy: vec2f) -> vec2f {
+    let ratio = max(length(dx), 1e-9) / max(length(dy), 1e-9);
+    let keep = pow(max(ratio, 1.0 / ratio), -0.45);
+    return vec2f(select(1.0, keep, ratio > 1.0), select(keep, 1.0, ratio > 1.0));
 }
 
-fn add_tile(tiles: Tiles, layer: i32, weight: f32, at: Surface, tile_m: f32) -> Tiles {
-    if (weight < 0.01) {
-        return tiles;
+// One look at a tiling texture: which texture, seen along which axis, at which of two scales. The wide scale is larger and
+// turned by some 35°, and takes over with distance (`far`, 0 to 1), so that no pattern of tiles shows.
+fn look(k: u32, at: Surface, parts: array<f32, 5>, far: f32) -> Tiles {
+    let layer = min(k / 6u, 4u);
+    let axis = (k / 2u) % 3u;
+    let wide = (k & 1u) == 1u;
+    let tile_m = array<f32, 5>(view.tiles.x, view.tiles.y, view.tiles.z, view.tiles.w, view.last_tile.x)[layer];
+    var p = array<vec2f, 3>(at.world.xz, at.world.zy, at.world.xy)[axis] / tile_m;
+    var dx = array<vec2f, 3>(at.dx.xz, at.dx.zy, at.dx.xy)[axis] / tile_m;
+    var dy = array<vec2f, 3>(at.dy.xz, at.dy.zy, at.dy.xy)[axis] / tile_m;
+    let turn = mat2x2f(0.82, 0.57, -0.57, 0.82);
+    if (wide) {
+        p = turn * p / 4.3;
+        dx = turn * dx / 4.3;
+        dy = turn * dy / 4.3;
     }
-    let p = at.world / tile_m;
-    let dx = at.dx / tile_m;
-    let dy = at.dy / tile_m;
-    var sum = Tiles(vec3f(0.0), vec3f(0.0));
+    let shorter = less_stretched(dx, dy);
+    dx *= shorter.x;
+    dy *= shorter.y;
+    let factor = textureSampleGrad(details, repeating, p, layer, dx, dy).rgb * (255.0 / 128.0);
+    var bump = textureSampleGrad(detail_normals, repeating, p, layer, dx, dy).xyz * 2.0 - 1.0;
+    if (wide) {
+        // v runs against the bitangent: normals turn back the other way.
+        bump = vec3f(turn * bump.xy, bump.z);
+    }
+    var copy = parts;
+    let share = copy[layer] * array<f32, 3>(at.sides.y, at.sides.x, at.sides.z)[axis] * select(1.0 - far, far, wide);
+    return Tiles(share * factor, share * bump);
+}
+
+// All looks that count. Mesa's software driver takes both ways of every `if`, but ends a loop when no pixel needs it any
+// more: so a loop over the looks, of which there are one or two nearly everywhere, and not thirty conditions.
+fn looks(at: Surface, parts: array<f32, 5>, far: f32) -> Tiles {
+    let scales = select(0u, 1u, far < 1.0) | select(0u, 2u, far > 0.0);
     // From above, and on steep ground from the sides, too: else the texture is stretched.
-    if (at.sides.y > 0.02) {
-        let tile = tile_from(layer, p.xz, dx.xz, dy.xz);
-        sum = Tiles(sum.factor + at.sides.y * tile.factor, sum.bump + at.sides.y * tile.bump);
+    let seen = select(0u, scales, at.sides.y > 0.02) | select(0u, scales << 2u, at.sides.x > 0.02)
+        | select(0u, scales << 4u, at.sides.z > 0.02);
+    var copy = parts;
+    var left = 0u;
+    for (var layer = 0u; layer < 5u; layer++) {
+        left |= select(0u, seen << (6u * layer), copy[layer] > 0.01);
     }
-    if (at.sides.x > 0.02) {
-        let tile = tile_from(layer, p.zy, dx.zy, dy.zy);
-        sum = Tiles(sum.factor + at.sides.x * tile.factor, sum.bump + at.sides.x * tile.bump);
+    var sum = Tiles(vec3f(0.0), vec3f(0.0));
+    loop {
+        let one = look(countTrailingZeros(left), at, parts, far);
+        sum = Tiles(sum.factor + one.factor, sum.bump + one.bump);
+        left &= left - 1u;
+        if (left == 0u) {
+            break;
+        }
     }
-    if (at.sides.z > 0.02) {
-        let tile = tile_from(layer, p.xy, dx.xy, dy.xy);
-        sum = Tiles(sum.factor + at.sides.z * tile.factor, sum.bump + at.sides.z * tile.bump);
-    }
-    return Tiles(tiles.factor + weight * sum.factor, tiles.bump + weight * sum.bump);
+    return sum;
 }
 
 // A place on the ground, its change from pixel to pixel, and how much of it each axis sees.
@@ -187,14 +209,10 @@ fn ground(in: Out) -> @location(0) vec4f {
     var normal = normalize(in.normal);
     var relief = 1.0;
     if (away < 160.0) {
-        var tiles = Tiles(vec3f(0.0), vec3f(0.0));
         let at = Surface(in.world, dx, dy, sides_of(normal));
         let rest = max(1.0 - weights.r - weights.g - weights.b - weights.a, 0.0);
-        tiles = add_tile(tiles, 0, rest, at, view.tiles.x);
-        tiles = add_tile(tiles, 1, weights.r, at, view.tiles.y);
-        tiles = add_tile(tiles, 2, weights.g, at, view.tiles.z);
-        tiles = add_tile(tiles, 3, weights.b, at, view.tiles.w);
-        tiles = add_tile(tiles, 4, weights.a, at, view.last_tile.x);
+        let parts = array<f32, 5>(rest, weights.r, weights.g, weights.b, weights.a);
+        let tiles = looks(at, parts, smoothstep(7.0, 22.0, away));
         let fade = 1.0 - smoothstep(80.0, 160.0, away);
         albedo *= mix(vec3f(1.0), tiles.factor, fade);
         let bump = mix(vec3f(0.0, 0.0, 1.0), tiles.bump, fade);
