@@ -2,6 +2,7 @@
 // instances with how far they have morphed, and the commands that draw them.
 
 const MAX_LEVELS: u32 = 12u;
+const LEAST_DISTANCE_M: f32 = 0.01;
 
 struct Cull {
     // Unit normals and distances of the planes that bound the view; a point p is inside if n·p + d ≥ 0.
@@ -39,7 +40,8 @@ struct Template {
     // Where its first list starts, and how long each of its lists may get.
     first: u32,
     capacity: u32,
-    unused: u32,
+    // Error that the simple scheme gives its finest mesh.
+    simple_error: f32,
 }
 
 struct Visible {
@@ -72,12 +74,15 @@ fn lod_number(kind: u32, scale: f32, distance: f32) -> f32 {
     if (cull.scheme == 4u) {
         allowed = cull.fixed_error_m / scale;
     }
-    let finest = templates[kind].errors[0];
-    if (!(allowed > finest)) {
-        return 0.0;
-    }
     if (cull.scheme == 1u) {
-        return clamp(2.0 * log2(allowed / finest), 0.0, last);
+        let simple = templates[kind].simple_error;
+        if (!(allowed > simple)) {
+            return 0.0;
+        }
+        return min(2.0 * log2(allowed / simple), last);
+    }
+    if (!(allowed > templates[kind].errors[0])) {
+        return 0.0;
     }
     var lambda = last;
     for (var i = 0u; i + 1u < templates[kind].levels; i++) {
@@ -123,7 +128,7 @@ fn choose(@builtin(global_invocation_id) id: vec3u) {
             }
         }
     }
-    let distance = max(length(center - cull.eye) - radius, 0.0);
+    let distance = max(length(center - cull.eye) - radius, LEAST_DISTANCE_M);
     let lambda = lod_number(kind, scale, distance);
     let level = u32(lambda);
     let slot = atomicAdd(&counts[bucket(kind, level)], 1u);

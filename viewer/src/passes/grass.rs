@@ -37,6 +37,9 @@ pub struct Clump {
     pub number: u32,
 }
 
+/// Attributes of [`Clump`].
+pub const CLUMP: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Sint32x2, 1 => Uint32];
+
 /// The pipeline.
 #[derive(Debug)]
 pub struct Grass {
@@ -49,11 +52,10 @@ impl Grass {
     /// Compiles it.
     pub fn new(gpu: &Gpu, layouts: &Layouts, shaders: &Shaders, samples: u32) -> Result<Self, ShaderError> {
         use wgpu::util::DeviceExt;
-        let clump = wgpu::vertex_attr_array![0 => Sint32x2, 1 => Uint32];
         let buffer = wgpu::VertexBufferLayout {
             array_stride: size_of::<Clump>() as u64,
             step_mode: wgpu::VertexStepMode::Instance,
-            attributes: &clump,
+            attributes: &CLUMP,
         };
         let shape = Shape {
             label: "grass",

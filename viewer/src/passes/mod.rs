@@ -8,9 +8,9 @@ pub mod grass;
 mod layouts;
 mod shadow;
 mod sky;
-mod terrain;
+pub mod terrain;
 mod tone;
-mod trees;
+pub mod trees;
 mod view_uniform;
 mod water;
 

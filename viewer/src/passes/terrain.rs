@@ -15,6 +15,12 @@ pub enum Land {
     Strip(u32),
 }
 
+/// Attributes of [`Block`].
+pub const BLOCK: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Uint32x2, 1 => Uint32];
+/// Attributes of [`RingVertex`].
+pub const RING: [wgpu::VertexAttribute; 3] =
+    wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Unorm8x4];
+
 /// The pipelines.
 #[derive(Debug)]
 pub struct Terrain {
@@ -93,17 +99,15 @@ impl Pipelines {
         samples: u32,
         wireframe: bool,
     ) -> Self {
-        let block = wgpu::vertex_attr_array![0 => Uint32x2, 1 => Uint32];
         let blocks = wgpu::VertexBufferLayout {
             array_stride: size_of::<Block>() as u64,
             step_mode: wgpu::VertexStepMode::Instance,
-            attributes: &block,
+            attributes: &BLOCK,
         };
-        let vertex = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Unorm8x4];
         let ring = wgpu::VertexBufferLayout {
             array_stride: size_of::<RingVertex>() as u64,
             step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &vertex,
+            attributes: &RING,
         };
         let build =
             |vertex: &str, fragment: &str, buffers: &[Option<wgpu::VertexBufferLayout<'_>>], strip: bool| {

@@ -18,12 +18,12 @@ const OPAQUE: usize = 0;
 const MASKED: usize = 1;
 
 /// Attributes of [`TreeVertex`].
-pub(super) const VERTEX: [wgpu::VertexAttribute; 8] = wgpu::vertex_attr_array![
+pub const VERTEX: [wgpu::VertexAttribute; 8] = wgpu::vertex_attr_array![
     0 => Float32x3, 1 => Unorm8x4, 2 => Float32x3, 3 => Snorm16x2,
     4 => Float32x2, 5 => Float32x2, 6 => Snorm16x2, 7 => Snorm16x2,
 ];
 /// Attributes of a visible tree: its number and λ.
-pub(super) const VISIBLE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![8 => Uint32, 9 => Float32];
+pub const VISIBLE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![8 => Uint32, 9 => Float32];
 
 /// The two vertex buffers of every draw of trees.
 pub(super) fn buffers() -> [Option<wgpu::VertexBufferLayout<'static>>; 2] {

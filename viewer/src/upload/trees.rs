@@ -42,8 +42,8 @@ pub struct TemplateData {
     pub first: u32,
     /// How many entries each of its lists has room for.
     pub capacity: u32,
-    /// Unused.
-    pub unused: u32,
+    /// Error of the simple scheme, [`crate::lod::tree::simple_error_m`].
+    pub simple_error: f32,
 }
 
 /// The arguments of an indexed indirect draw.
@@ -227,6 +227,7 @@ fn arrange(trees: &Trees) -> Arranged {
 }
 
 fn template_data(template: &Template, first: u32, capacity: u32) -> TemplateData {
+    let levels = template.levels.len().min(MAX_LEVELS);
     let mut errors = [f32::MAX; MAX_LEVELS];
     for (slot, level) in errors.iter_mut().zip(&template.levels) {
         *slot = level.error_m;
@@ -235,10 +236,10 @@ fn template_data(template: &Template, first: u32, capacity: u32) -> TemplateData
         center: template.center_m,
         radius: template.radius_m,
         errors,
-        levels: template.levels.len().min(MAX_LEVELS) as u32,
+        levels: levels as u32,
         first,
         capacity,
-        unused: 0,
+        simple_error: crate::lod::tree::simple_error_m(&errors[..levels]),
     }
 }
 

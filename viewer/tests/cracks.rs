@@ -1,0 +1,69 @@
+//! Nothing shines through the land, whatever triangles it is drawn with: green land before a magenta sky, seen from above
+//! so that all there can be is land.
+
+mod made_up;
+
+use genescape_viewer::camera::Camera;
+use genescape_viewer::frame::{FrameInput, TerrainScheme};
+use genescape_viewer::picture_file::Pixels;
+use genescape_viewer::scene::Trees;
+use glam::Vec3;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg32;
+
+const SIZE_PX: [u32; 2] = [160, 100];
+const CAMERAS: u64 = 200;
+
+/// Pixels that are rather magenta than green.
+fn sky_pixels(pixels: &Pixels) -> usize {
+    pixels.rgba.chunks_exact(4).filter(|pixel| pixel[0] >= pixel[1]).count()
+}
+
+/// Looks down so steeply that even the picture's corners show land, from at most 20 m above it.
+fn camera(seed: u64, height_m: impl Fn(f32, f32) -> f32) -> (Camera, f32) {
+    let mut rng = Pcg32::seed_from_u64(seed);
+    let (x, z) = (rng.random_range(-40.0..40.0f32), rng.random_range(-40.0..40.0f32));
+    let above_m = rng.random_range(1.0..20.0f32);
+    let camera = Camera {
+        position_m: Vec3::new(x, height_m(x, z) + above_m, z),
+        yaw_rad: rng.random_range(-3.1..3.1f32),
+        pitch_rad: rng.random_range(-1.5..-1.05f32),
+        fov_y_rad: 0.87,
+    };
+    (camera, libm::exp2f(rng.random_range(-1.0..5.0f32)))
+}
+
+fn no_sky_shines_through(scheme: TerrainScheme) {
+    let Some(studio) = made_up::studio() else { return };
+    let field = made_up::field(129, 2.0, 16.0, 2.5);
+    let scene = made_up::scene(field, [30, 200, 30, 255], [2.0, 0.0, 2.0], Trees::default());
+    let buffers = made_up::upload(&studio, &scene);
+    let mut view = studio.view(buffers, SIZE_PX);
+    let mut frame = FrameInput::default();
+    frame.options.terrain_scheme = scheme;
+    frame.options.grass = false;
+    let up = Camera { position_m: Vec3::Y * 60.0, yaw_rad: 0.0, pitch_rad: 1.2, fov_y_rad: 0.87 };
+    let sky = studio.shoot(&mut view, &frame, &up, &up).expect("a picture");
+    assert_eq!(sky_pixels(&sky), sky.rgba.len() / 4, "sky is told from land");
+    for seed in 0..CAMERAS {
+        let (camera, error_px) = camera(seed, |x, z| scene.ground.field.height_m(x, z));
+        frame.options.terrain_error_px = error_px;
+        let pixels = studio.shoot(&mut view, &frame, &camera, &camera).expect("a picture");
+        assert_eq!(sky_pixels(&pixels), 0, "{scheme:?}, error of {error_px} px, camera {seed}: {camera:?}");
+    }
+}
+
+#[test]
+fn morphing_blocks_have_no_cracks() {
+    no_sky_shines_through(TerrainScheme::Morph);
+}
+
+#[test]
+fn the_strip_of_triangles_has_no_cracks() {
+    no_sky_shines_through(TerrainScheme::Roam);
+}
+
+#[test]
+fn the_whole_grid_has_no_cracks() {
+    no_sky_shines_through(TerrainScheme::Off);
+}

@@ -1,0 +1,188 @@
+//! The device chooses trees and levels as the reference in Rust does: the same trees, each once, at the same λ.
+
+mod made_up;
+
+use genescape_viewer::camera::{Camera, Frustum};
+use genescape_viewer::frame::{Options, TreeScheme};
+use genescape_viewer::gpu::Gpu;
+use genescape_viewer::lod::tree::{Control, distance_m, lod_number, simple_error_m};
+use genescape_viewer::passes::{CullUniform, TreeLists};
+use genescape_viewer::picture_file;
+use genescape_viewer::scene::Trees;
+use genescape_viewer::screenshot::Studio;
+use genescape_viewer::upload::{DrawCommand, SceneBuffers};
+use glam::Vec3;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg32;
+use std::sync::Arc;
+
+/// Differences of λ that rounding explains.
+const ROUNDING: f32 = 2e-3;
+
+/// A random forest, and what the reference needs of it.
+struct Forest {
+    trees: Trees,
+    errors_m: Vec<Vec<f32>>,
+    scales: Vec<f32>,
+}
+
+fn forest(rng: &mut Pcg32) -> Forest {
+    let errors_m: Vec<Vec<f32>> = (0..rng.random_range(1..4))
+        .map(|_| {
+            let mut error_m = rng.random_range(0.002..0.05f32);
+            let levels = rng.random_range(1..8);
+            (0..levels)
+                .map(|_| {
+                    error_m *= rng.random_range(1.1..4.0f32);
+                    error_m
+                })
+                .collect()
+        })
+        .collect();
+    let templates = errors_m
+        .iter()
+        .enumerate()
+        .map(|(kind, errors_m)| Arc::new(made_up::template(&format!("kind {kind}"), errors_m)))
+        .collect();
+    let (mut instances, mut scales) = (Vec::new(), Vec::new());
+    for _ in 0..rng.random_range(1..300) {
+        let mut place = |m: f32| rng.random_range(-m..m);
+        let at = [place(200.0), place(20.0), place(200.0)];
+        let (kind, scale) = (rng.random_range(0..errors_m.len()) as u32, rng.random_range(0.3..3.0f32));
+        instances.push(made_up::instance(kind, at, scale, rng.random_range(0.0..6.0f32)));
+        scales.push(scale);
+    }
+    Forest { trees: Trees { templates, instances: instances.into() }, errors_m, scales }
+}
+
+/// Anywhere, or inside a crown.
+fn eye(rng: &mut Pcg32, trees: &Trees) -> Camera {
+    let crown = trees.instances[rng.random_range(0..trees.instances.len())].world_from_tree;
+    let inside = rng.random_range(0..4) == 0;
+    let mut place = |m: f32| rng.random_range(-m..m);
+    let near = Vec3::new(place(0.5), place(0.5) + 3.0, place(0.5)) + Vec3::from(crown.map(|row| row[3]));
+    let far = Vec3::new(place(250.0), place(40.0), place(250.0));
+    Camera {
+        position_m: if inside { near } else { far },
+        yaw_rad: place(3.1),
+        pitch_rad: place(1.2),
+        fov_y_rad: 0.9 + place(0.4),
+    }
+}
+
+fn fetch(gpu: &Gpu, from: &wgpu::Buffer) -> Vec<u8> {
+    let to = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: from.size(),
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encoder.copy_buffer_to_buffer(from, 0, &to, 0, from.size());
+    gpu.queue.submit([encoder.finish()]);
+    picture_file::read_buffer(gpu, &to).expect("readable")
+}
+
+/// λ of each tree as the device chose it, `None` where it is not seen. Checks lists, counts and commands on the way.
+fn chosen(
+    studio: &Studio,
+    buffers: &SceneBuffers,
+    uniform: &CullUniform,
+    forest: &Forest,
+) -> Vec<Option<f32>> {
+    let gpu = &studio.gpu;
+    let set = buffers.trees.as_ref().expect("trees");
+    let lists = TreeLists::new(gpu, &studio.passes.layouts, set);
+    lists.set(&gpu.queue, uniform);
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    studio.passes.cull.dispatch(&mut encoder.begin_compute_pass(&Default::default()), &lists);
+    gpu.queue.submit([encoder.finish()]);
+    let counts: Vec<u32> = bytemuck::pod_collect_to_vec(&fetch(gpu, &lists.counts));
+    let visible: Vec<[u32; 2]> = bytemuck::pod_collect_to_vec(&fetch(gpu, &lists.visible));
+    let commands: Vec<DrawCommand> = bytemuck::pod_collect_to_vec(&fetch(gpu, &lists.commands));
+    let buckets = lists.buckets as usize;
+    let mut lambdas = vec![None; forest.scales.len()];
+    for (index, (command, before)) in commands.iter().zip(&set.commands).enumerate() {
+        let count = counts[index % buckets];
+        assert_eq!(*command, DrawCommand { instances: count, ..*before });
+    }
+    for bucket in 0..buckets {
+        let (level, kind) = (bucket / set.template_count as usize, bucket % set.template_count as usize);
+        let first = commands[bucket].first_instance as usize;
+        for &[tree, bits] in &visible[first..first + counts[bucket] as usize] {
+            let lambda = f32::from_bits(bits);
+            assert_eq!(lambda as usize, level, "a tree is listed at its level");
+            assert_eq!(forest.trees.instances[tree as usize].template as usize, kind, "and under its kind");
+            assert!(lambdas[tree as usize].replace(lambda).is_none(), "tree {tree} is drawn twice");
+        }
+    }
+    lambdas
+}
+
+/// The distance from the nearest plane at which a sphere would just be out of sight.
+fn margin_m(frustum: &Frustum, center_m: Vec3, radius_m: f32) -> f32 {
+    frustum
+        .planes
+        .iter()
+        .map(|plane| (plane.dot(center_m.extend(1.0)) + radius_m).abs())
+        .fold(f32::MAX, f32::min)
+}
+
+fn compare(studio: &Studio, seed: u64) -> [usize; 2] {
+    let mut rng = Pcg32::seed_from_u64(seed);
+    let forest = forest(&mut rng);
+    let scene = made_up::scene(made_up::field(17, 2.0, 1.0, 0.1), [90; 4], [1.0; 3], forest.trees.clone());
+    let buffers = genescape_viewer::upload::Uploader::new(&studio.gpu).upload(&scene).expect("uploaded");
+    let set = buffers.trees.as_ref().expect("trees");
+    let mut seen = [0; 2];
+    for scheme in [TreeScheme::Quality, TreeScheme::Simple, TreeScheme::Discrete, TreeScheme::Off] {
+        let camera = eye(&mut rng, &forest.trees);
+        let frustum = camera.frustum(1.6);
+        let control = Control {
+            scheme,
+            focal_px: rng.random_range(100.0..900.0f32),
+            error_px: rng.random_range(0.3..8.0f32),
+        };
+        let options = Options { tree_scheme: scheme, tree_error_px: control.error_px, ..Options::default() };
+        let uniform = CullUniform::for_view(set, &frustum, camera.position_m, control.focal_px, &options);
+        let device = chosen(studio, &buffers, &uniform, &forest);
+        for (tree, lambda) in device.into_iter().enumerate() {
+            let (instance, scale) = (&forest.trees.instances[tree], forest.scales[tree]);
+            let template = &forest.trees.templates[instance.template as usize];
+            let middle = Vec3::from(template.center_m).extend(1.0);
+            let center = Vec3::from(instance.world_from_tree.map(|row| glam::Vec4::from(row).dot(middle)));
+            let radius_m = template.radius_m * scale;
+            if margin_m(&frustum, center, radius_m) > 1e-2 {
+                assert_eq!(
+                    lambda.is_some(),
+                    frustum.sees_sphere(center, radius_m),
+                    "seed {seed}, tree {tree}"
+                );
+            }
+            seen[usize::from(lambda.is_some())] += 1;
+            let Some(lambda) = lambda else { continue };
+            let errors_m = &forest.errors_m[instance.template as usize];
+            let away_m = distance_m(center.distance(camera.position_m), radius_m);
+            let number = |control: &Control, away_m: f32| {
+                lod_number(control, errors_m, simple_error_m(errors_m), away_m, scale)
+            };
+            let expected = number(&control, away_m);
+            // Rounding may tip a tree over the edge of a level.
+            let [lower, upper] = [0.999, 1.001].map(|factor| number(&control, factor * away_m));
+            let close = (lambda - expected).abs() < ROUNDING || lambda == lower || lambda == upper;
+            assert!(close, "seed {seed}, {scheme:?}, tree {tree}: λ {lambda} instead of {expected}");
+        }
+    }
+    seen
+}
+
+#[test]
+fn the_device_chooses_as_the_reference_does() {
+    let Some(studio) = made_up::studio() else { return };
+    let mut seen = [0; 2];
+    for seed in 0..40 {
+        let more = compare(&studio, seed);
+        seen = [seen[0] + more[0], seen[1] + more[1]];
+    }
+    assert!(seen.iter().all(|&count| count > 500), "some are seen and some are not: {seen:?}");
+}

@@ -1,0 +1,186 @@
+//! A landscape made up for tests, without files, and a device to draw it with.
+
+#![allow(dead_code, reason = "each test uses some of it")]
+
+use std::sync::Arc;
+
+use genescape_bake::model;
+use genescape_bake::stages::terrain_lod;
+use genescape_viewer::gpu::GpuError;
+use genescape_viewer::scene::{
+    Apron, Detail, Ground, HdrPicture, Heightfield, Instance, Level, Material, Picture, Range, Scene, Sky,
+    Surface, Template, TreeVertex, Trees,
+};
+use genescape_viewer::screenshot::Studio;
+use genescape_viewer::shaders::Shaders;
+use genescape_viewer::upload::{SceneBuffers, Uploader};
+
+/// A device, or nothing, with a word about it, where there is none and `GENESCAPE_NEEDS_GPU` isn't set.
+pub fn studio() -> Option<Studio> {
+    match Studio::open(&Shaders::builtin(), 1) {
+        Ok(studio) => Some(studio),
+        Err(error) => {
+            let absent = matches!(error.downcast_ref(), Some(GpuError::NoAdapter(_)));
+            assert!(absent && std::env::var_os("GENESCAPE_NEEDS_GPU").is_none(), "{error:#}");
+            genescape_bake::say!("SKIPPED, for nothing can draw here: {error:#}");
+            None
+        }
+    }
+}
+
+/// Brings a landscape to the device, with shadows.
+pub fn upload(studio: &Studio, scene: &Scene) -> Arc<SceneBuffers> {
+    let buffers = Uploader::new(&studio.gpu).upload(scene).expect("a landscape that can be drawn");
+    studio.passes.shadow.bake(&studio.gpu, &studio.passes.layouts, &studio.passes.cull, &buffers);
+    Arc::new(buffers)
+}
+
+/// In [0, 1), the same for the same numbers.
+pub fn hash(i: u32, j: u32, seed: u32) -> f32 {
+    let mixed = i.wrapping_mul(0x9e37_79b9) ^ j.wrapping_mul(0x85eb_ca6b) ^ seed.wrapping_mul(0x27d4_eb2f);
+    let mixed = (mixed ^ mixed >> 15).wrapping_mul(0xc2b2_ae35);
+    ((mixed ^ mixed >> 13).wrapping_mul(0x27d4_eb2f) >> 8) as f32 / (1 << 24) as f32
+}
+
+/// Land with waves `relief_m` high and noise of `rough_m`.
+pub fn field(side: u32, spacing_m: f32, relief_m: f32, rough_m: f32) -> Heightfield {
+    let height = |i: u32, j: u32| {
+        let (x, z) = (i as f32 / side as f32, j as f32 / side as f32);
+        let waves = libm::sinf(8.0 * x) * libm::cosf(6.0 * z) + 0.4 * libm::sinf(19.0 * (x + z));
+        relief_m * 0.5 * waves + rough_m * hash(i, j, 1)
+    };
+    let heights_m = (0..side * side).map(|n| height(n % side, n / side)).collect();
+    let field = model::Heightfield { side, spacing_m, heights_m };
+    let lod = terrain_lod::lod(&field);
+    Heightfield {
+        side,
+        spacing_m,
+        heights_m: field.heights_m,
+        wedgies_m: lod.wedgies_m,
+        displacements_m: lod.displacements_m,
+        levels: lod.levels,
+        block_ranges_m: lod.block_ranges_m,
+    }
+}
+
+/// A square picture.
+pub fn picture(name: &str, side: u32, pixel: impl Fn(u32, u32) -> [u8; 4]) -> Picture {
+    let pixels: Vec<u8> = (0..side * side).flat_map(|n| pixel(n % side, n / side)).collect();
+    Picture { name: name.to_owned(), width_px: side, height_px: side, levels: vec![pixels.into()] }
+}
+
+/// Faces of one colour each, linear.
+pub fn faces(name: &str, color: impl Fn(usize) -> [f32; 3]) -> [HdrPicture; 6] {
+    std::array::from_fn(|face| {
+        let [r, g, b] = color(face);
+        let halves = [r, g, b, 1.0].map(|value| half::f16::from_f32(value).to_le_bytes());
+        let pixels: Arc<[u8]> = halves.as_flattened().into();
+        HdrPicture { name: format!("{name} {face}"), width_px: 1, height_px: 1, pixels }
+    })
+}
+
+/// A landscape: `field` in one colour, evenly lit, under an even sky.
+pub fn scene(field: Heightfield, color: [u8; 4], sky: [f32; 3], trees: Trees) -> Scene {
+    let plain = |name: &str, pixel: [u8; 4]| picture(name, 1, |_, _| pixel);
+    let detail = |layer: u32| Detail {
+        name: format!("tile {layer}"),
+        detail: plain(&format!("tile {layer}"), [128; 4]),
+        normal: plain(&format!("normals {layer}"), [128, 128, 255, 255]),
+        tile_m: 4.0,
+    };
+    Scene {
+        name: "made up".to_owned(),
+        genome: Vec::new(),
+        ground: Ground {
+            name: format!("field {} {:?}", field.side, field.range_m()),
+            field: Arc::new(field),
+            water_level_m: None,
+            surface: Surface {
+                color: plain(&format!("color {color:?}"), color),
+                weights: plain("weights", [0; 4]),
+                light: plain("light", [255; 4]),
+                details: (0..5).map(detail).collect(),
+            },
+            apron: Arc::new(Apron::default()),
+        },
+        trees,
+        sky: Sky {
+            faces: faces(&format!("sky {sky:?}"), |_| sky),
+            clear_faces: faces(&format!("clear {sky:?}"), |_| sky),
+            layers: Vec::new(),
+            sun_direction: [0.48, 0.64, 0.6],
+            sun_angular_radius_rad: 0.0046,
+            sun_irradiance_linear: [3.0; 3],
+            sky_irradiance_linear: [0.6; 3],
+            haze_linear: sky,
+            haze_extinction_per_m: 0.0,
+            exposure: 1.0,
+        },
+    }
+}
+
+/// A kind of tree whose meshes are stacks of cones, each level with half the sides of the one before, and with these
+/// errors.
+pub fn template(name: &str, errors_m: &[f32]) -> Template {
+    let (mut vertices, mut indices, mut levels) = (Vec::new(), Vec::new(), Vec::new());
+    for (number, &error_m) in errors_m.iter().enumerate() {
+        let (base_vertex, first) = (vertices.len() as u32, indices.len() as u32);
+        let sides = (24 >> number).max(3);
+        for storey in 0..3u32 {
+            let (low, high, wide) =
+                (0.8 + 1.4 * storey as f32, 3.2 + 1.4 * storey as f32, 1.6 - 0.4 * storey as f32);
+            let start = vertices.len() as u32 - base_vertex;
+            for side in 0..sides {
+                let (sin, cos) = libm::sincosf(side as f32 / sides as f32 * std::f32::consts::TAU);
+                vertices.push(cone_vertex([wide * cos, low, wide * sin], [cos, sin]));
+                let next = (side + 1) % sides;
+                indices.extend([start + side, start + sides, start + next]);
+            }
+            vertices.push(cone_vertex([0.0, high, 0.0], [0.0, 0.0]));
+        }
+        let range = Range { first, count: indices.len() as u32 - first };
+        levels.push(Level { error_m, base_vertex, ranges: vec![range] });
+    }
+    Template {
+        name: name.to_owned(),
+        blob: name.to_owned(),
+        vertices,
+        indices,
+        levels,
+        materials: vec![Material {
+            name: "needles".to_owned(),
+            color: None,
+            color_factor: [1.0; 4],
+            normal: None,
+            alpha_cutoff: None,
+        }],
+        center_m: [0.0, 3.4, 0.0],
+        radius_m: 3.1,
+    }
+}
+
+fn cone_vertex(position_m: [f32; 3], [x, y]: [f32; 2]) -> TreeVertex {
+    // Octahedral, about half way up.
+    let normal_oct = [x, y].map(|part| (part * 0.7 * 32767.0) as i16);
+    TreeVertex {
+        position_m,
+        color: [40, 90, 30, 255],
+        normal_oct,
+        normal_end_oct: normal_oct,
+        ..TreeVertex::default()
+    }
+}
+
+/// A tree turned and scaled alike in all directions.
+pub fn instance(template: u32, [x, y, z]: [f32; 3], scale: f32, turn_rad: f32) -> Instance {
+    let (sin, cos) = libm::sincosf(turn_rad);
+    Instance {
+        world_from_tree: [
+            [scale * cos, 0.0, scale * sin, x],
+            [0.0, scale, 0.0, y],
+            [-scale * sin, 0.0, scale * cos, z],
+        ],
+        template,
+        trunk_cylinder_m: [x, z, 0.2],
+    }
+}
