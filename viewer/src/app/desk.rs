@@ -597,6 +597,13 @@ impl Desk {
         }
     }
 
+    /// Whether a view waits for a scene that is there to be read.
+    pub fn awaits_scenes(&self) -> bool {
+        (0..INDIVIDUALS).any(|view| {
+            self.shown[view] != Some(self.generation) && !self.faults.contains_key(&Fault::Scene(view))
+        })
+    }
+
     /// Genes of the four landscapes; none before a population is read.
     pub fn genes(&self) -> Option<Genes> {
         let population = self.population.as_ref()?;

@@ -324,11 +324,12 @@ impl App {
     }
 
     /// When the next frame comes: at once, for clouds drift and waves run; but not while there is nothing to look at, and
-    /// where the processor draws and bakes at once, it does the one half of the time and the other half the other.
+    /// where the processor draws while it bakes or reads, it does the one half of the time and the other half the other.
     fn pace(&self, events: &ActiveEventLoop, frame: Duration) {
         let Some(live) = &self.live else { return };
         let idle = live.show.lands().is_empty();
-        let shared = live.gpu.software && self.desk.baking().is_some();
+        let waiting = self.desk.baking().is_some() || self.desk.awaits_scenes();
+        let shared = live.gpu.software && waiting;
         let rest = match (idle, shared) {
             (true, _) => Duration::from_millis(100),
             (false, true) => frame.min(Duration::from_secs(1)),
@@ -441,7 +442,10 @@ impl ApplicationHandler<Wake> for App {
                 self.pilot.let_go();
                 self.dispatch(Event::Capture(false), events);
             }
-            WindowEvent::KeyboardInput { event, .. } if !self.typing => {
+            // A key that was pressed before one began to type is released all the same.
+            WindowEvent::KeyboardInput { event, .. }
+                if !self.typing || event.state == ElementState::Released =>
+            {
                 let PhysicalKey::Code(code) = event.physical_key else { return };
                 if taken && event.state == ElementState::Pressed && code == winit::keyboard::KeyCode::Tab {
                     return;
