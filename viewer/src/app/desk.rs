@@ -599,7 +599,11 @@ impl Desk {
 
     /// Whether a view waits for a scene that is there to be read.
     pub fn awaits_scenes(&self) -> bool {
-        (0..INDIVIDUALS).any(|view| {
+        let wanted = match &self.source {
+            Source::World(_) => INDIVIDUALS,
+            Source::Scenes(scenes) => scenes.len().min(INDIVIDUALS),
+        };
+        (0..wanted).any(|view| {
             self.shown[view] != Some(self.generation) && !self.faults.contains_key(&Fault::Scene(view))
         })
     }
