@@ -100,7 +100,11 @@ impl Gpu {
 
 /// The library's entry; `WGPU_BACKEND` and its like choose among several drivers.
 pub fn instance() -> wgpu::Instance {
-    wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env())
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+    // Labels are for debuggers, and Mesa 22.3's llvmpipe (Debian 12) dies of them sooner or later, where the names of
+    // nested groups are kept. WGPU_DISCARD_HAL_LABELS=0 brings them back.
+    descriptor.flags = (descriptor.flags | wgpu::InstanceFlags::DISCARD_HAL_LABELS).with_env();
+    wgpu::Instance::new(descriptor)
 }
 
 /// The defaults, with room for great forests where the adapter has it.
