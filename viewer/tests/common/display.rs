@@ -15,24 +15,21 @@ use x11rb::rust_connection::RustConnection;
 
 /// Keys by their place on the keyboard: what the kernel calls them, plus the 8 that X adds.
 pub mod keys {
-    /// Builds the constants.
+    /// As they are written on an American keyboard.
     macro_rules! keys {
         ($($name:ident = $code:literal),* $(,)?) => {
             $(#[doc = stringify!($name)] pub const $name: u8 = $code + 8;)*
         };
     }
     keys! {
-        ESCAPE = 1, ONE = 2, TWO = 3, THREE = 4, FOUR = 5, FIVE = 6, SIX = 7, SEVEN = 8, EIGHT = 9, NINE = 10,
-        ZERO = 11, U = 22, ENTER = 28, CTRL = 29, A = 30, G = 34, Z = 44, N = 49, DOT = 52, W = 17,
-        PAGE_UP = 104, PAGE_DOWN = 109, F5 = 63, F12 = 88,
+        ESCAPE = 1, U = 22, ENTER = 28, CTRL = 29, A = 30, G = 34, Z = 44, N = 49, DOT = 52, W = 17, F5 = 63, F12 = 88,
+        PAGE_UP = 104, PAGE_DOWN = 109,
     }
 
     /// The key of a digit.
     pub fn digit(digit: char) -> u8 {
-        match digit {
-            '0' => ZERO,
-            other => ONE + (other as u8 - b'1'),
-        }
+        let place = digit.to_digit(10).expect("a digit") as u8;
+        8 + if place == 0 { 11 } else { place + 1 }
     }
 }
 
