@@ -215,7 +215,7 @@ fn place(text: &str) -> Result<Place, String> {
     }
 }
 
-fn size(text: &str) -> Result<[u32; 2], String> {
+pub(crate) fn size(text: &str) -> Result<[u32; 2], String> {
     let sides: Vec<u32> = text.split(['x', 'X', '×']).filter_map(|side| side.trim().parse().ok()).collect();
     match sides[..] {
         [width, height] if (16..=16384).contains(&width) && (16..=16384).contains(&height) => {

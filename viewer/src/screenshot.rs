@@ -145,7 +145,7 @@ pub fn take(cli: &Cli, source: &Source, out: &Path) -> Result<()> {
 }
 
 /// The scene files of a source: of a world, those that were baked last.
-fn scene_files(source: &Source) -> Result<Vec<PathBuf>> {
+pub(crate) fn scene_files(source: &Source) -> Result<Vec<PathBuf>> {
     let root = match source {
         Source::Scenes(paths) => return Ok(paths.clone()),
         Source::World(root) => root,

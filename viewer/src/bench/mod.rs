@@ -1,0 +1,111 @@
+//! How long pictures take, as ratios within one run on whatever device is there: `viewer bench`. Milliseconds of wall
+//! clock, and of processor time over all threads of the process, those of a device in software included.
+//!
+//! What is measured: the processor's work to record a picture with few and with many trees ([`record`]); pictures with
+//! levels of detail against pictures without, and how far apart they are ([`detail`]; thesis section 7); four views
+//! against four single ones ([`views`]); the frames around the swap of a landscape ([`swap`]); and, where there is a
+//! graphics card, the slowest frames of four large forests ([`card`]). [`serve`] lets another program measure
+//! beside its own pictures.
+
+mod card;
+mod detail;
+mod lab;
+mod record;
+mod report;
+mod serve;
+mod swap;
+mod views;
+
+use std::path::PathBuf;
+
+use anyhow::{Result, anyhow, ensure};
+use clap::{Args, ValueEnum};
+
+use crate::app::desk::Source;
+use crate::screenshot;
+use lab::Lab;
+use report::Report;
+
+/// What `viewer bench` can be asked for.
+#[derive(Clone, Debug, Args)]
+pub struct BenchArgs {
+    /// The world folder whose landscapes are drawn
+    #[arg(long, value_name = "DIR", default_value = "world", conflicts_with = "scenes")]
+    pub world: PathBuf,
+
+    /// Scene files to draw instead
+    #[arg(value_name = "SCENE.gltf")]
+    pub scenes: Vec<PathBuf>,
+
+    /// Size of a single picture; of four views, that of all together
+    #[arg(long, value_name = "WxH", default_value = "800x600", value_parser = crate::cli::size)]
+    pub size: [u32; 2],
+
+    /// Places of the camera on its way across the land; it goes there and back
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(2..=1000))]
+    pub steps: u32,
+
+    /// Measure only this; may be given several times
+    #[arg(long, value_enum, value_name = "WHAT")]
+    pub only: Vec<Measure>,
+
+    /// Print one line of JSON instead of text
+    #[arg(long)]
+    pub json: bool,
+
+    /// Draw the first scene's pictures as asked for on standard input, one line each, and answer in JSON what they
+    /// took: for programs that measure others beside ours
+    #[arg(long, conflicts_with_all = ["only", "json"])]
+    pub serve: bool,
+}
+
+/// A measurement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Measure {
+    /// Recording a picture of 100 and of 100,000 trees
+    Record,
+    /// Pictures with levels of detail against pictures without, at 1,500 trees
+    Detail,
+    /// Four views against four single ones
+    Views,
+    /// Frames around the swap of a landscape
+    Swap,
+    /// Four views of 10,000 trees each at 1920 × 1080, on a graphics card
+    Card,
+}
+
+/// Measures, and prints what came out.
+///
+/// # Errors
+/// If nothing can draw, a landscape cannot be read, or nothing is baked.
+pub fn run(args: &BenchArgs) -> Result<()> {
+    let source = match args.scenes.is_empty() {
+        true => Source::of(&args.world).map_err(anyhow::Error::msg)?,
+        false => Source::Scenes(args.scenes.clone()),
+    };
+    let paths = screenshot::scene_files(&source)?;
+    ensure!(!paths.is_empty(), "there is no landscape to draw");
+    let lab = Lab::open()?;
+    if args.serve {
+        let first = paths.first().ok_or_else(|| anyhow!("there is no landscape to draw"))?;
+        return serve::run(&lab, first, args);
+    }
+    let wanted = |measure| args.only.is_empty() || args.only.contains(&measure);
+    let mut report = Report::begin(&lab.gpu, args.json);
+    if wanted(Measure::Record) {
+        record::measure(&lab, &paths, args, &mut report)?;
+    }
+    if wanted(Measure::Detail) {
+        detail::measure(&lab, &paths, args, &mut report)?;
+    }
+    if wanted(Measure::Views) {
+        views::measure(&lab, &paths, args, &mut report)?;
+    }
+    if wanted(Measure::Swap) {
+        swap::measure(&lab, &paths, args, &mut report)?;
+    }
+    if wanted(Measure::Card) {
+        card::measure(&lab, &paths, args, &mut report)?;
+    }
+    report.end()
+}

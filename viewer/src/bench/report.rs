@@ -1,0 +1,189 @@
+//! Figures → text for people, or a line of JSON.
+
+use anyhow::Result;
+use genescape_bake::say;
+use serde::Serialize;
+
+use crate::gpu::Gpu;
+
+/// What a figure should be.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Aim {
+    AtMost(f64),
+    AtLeast(f64),
+}
+
+impl Aim {
+    fn met(self, value: f64) -> bool {
+        match self {
+            Self::AtMost(most) => value <= most,
+            Self::AtLeast(least) => value >= least,
+        }
+    }
+
+    fn text(self) -> String {
+        match self {
+            Self::AtMost(most) => format!("at most {most}"),
+            Self::AtLeast(least) => format!("at least {least}"),
+        }
+    }
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct Figure {
+    measure: String,
+    what: String,
+    value: f64,
+    unit: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    aim: Option<Aim>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    met: Option<bool>,
+}
+
+/// All figures of a run; in text each is printed as soon as it is known.
+#[derive(Debug, Serialize)]
+pub(super) struct Report {
+    device: String,
+    software: bool,
+    system: String,
+    cores: usize,
+    load_average_at_start: Option<f64>,
+    load_average_at_end: Option<f64>,
+    figures: Vec<Figure>,
+    notes: Vec<String>,
+    #[serde(skip)]
+    json: bool,
+    #[serde(skip)]
+    measure: String,
+}
+
+impl Report {
+    /// Names machine and device.
+    pub fn begin(gpu: &Gpu, json: bool) -> Self {
+        let cores = std::thread::available_parallelism().map_or(0, usize::from);
+        let report = Self {
+            device: gpu.name.clone(),
+            software: gpu.software,
+            system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+            cores,
+            load_average_at_start: load_average(),
+            load_average_at_end: None,
+            figures: Vec::new(),
+            notes: Vec::new(),
+            json,
+            measure: String::new(),
+        };
+        if !json {
+            let kind = if gpu.software { "in software" } else { "a graphics card" };
+            say!("{} ({kind}), {}, {cores} cores{}", gpu.name, report.system, busy(report.load_average_at_start));
+        }
+        report
+    }
+
+    /// The figures that follow belong to this.
+    pub fn section(&mut self, title: impl Into<String>) {
+        self.measure = title.into();
+        if !self.json {
+            say!("\n{}", self.measure);
+        }
+    }
+
+    /// A figure without an aim.
+    pub fn figure(&mut self, what: impl Into<String>, value: f64, unit: &'static str) {
+        self.add(what.into(), value, unit, None);
+    }
+
+    /// A figure that should be so.
+    pub fn aimed(&mut self, what: impl Into<String>, value: f64, unit: &'static str, aim: Aim) {
+        self.add(what.into(), value, unit, Some(aim));
+    }
+
+    /// Something to know.
+    pub fn note(&mut self, text: impl Into<String>) {
+        let text = text.into();
+        if !self.json {
+            say!("  {text}");
+        }
+        self.notes.push(text);
+    }
+
+    fn add(&mut self, what: String, value: f64, unit: &'static str, aim: Option<Aim>) {
+        let met = aim.map(|aim| aim.met(value));
+        if !self.json {
+            let verdict = match (aim, met) {
+                (Some(aim), Some(true)) => format!("   met: {}", aim.text()),
+                (Some(aim), _) => format!("   MISSED: {}", aim.text()),
+                _ => String::new(),
+            };
+            say!("  {:<58} {:>10} {unit}{verdict}", what, rounded(value));
+        }
+        self.figures.push(Figure { measure: self.measure.clone(), what, value, unit, aim, met });
+    }
+
+    /// Prints the JSON, or how many aims were met.
+    pub fn end(mut self) -> Result<()> {
+        self.load_average_at_end = load_average();
+        if self.json {
+            say!("{}", serde_json::to_string(&self)?);
+            return Ok(());
+        }
+        let aims = self.figures.iter().filter_map(|figure| figure.met);
+        let (met, all) = (aims.clone().filter(|met| *met).count(), aims.count());
+        say!("\n{met} of {all} aims met{}", busy(self.load_average_at_end));
+        Ok(())
+    }
+}
+
+/// Four significant digits, but no more than are before the point if those are more.
+fn rounded(value: f64) -> String {
+    let digits = (0..4).find(|&digits| value.abs() >= 10f64.powi(3 - digits)).unwrap_or(4);
+    format!("{value:.*}", digits as usize)
+}
+
+fn busy(load: Option<f64>) -> String {
+    load.map_or_else(String::new, |load| format!(", load average {load}"))
+}
+
+/// Programs that wanted to run in the last minute, on average, where the system tells.
+fn load_average() -> Option<f64> {
+    std::fs::read_to_string("/proc/loadavg").ok()?.split(' ').next()?.parse().ok()
+}
+
+/// The middle value; 0 of none.
+pub(super) fn median(values: &[f64]) -> f64 {
+    quantile(values, 0.5)
+}
+
+/// The least value that a share of all values does not exceed (nearest rank); 0 of none.
+pub(super) fn quantile(values: &[f64], share: f64) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let rank = (share * sorted.len() as f64).ceil() as usize;
+    sorted.get(rank.saturating_sub(1)).copied().unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_the_nearest_rank() {
+        let values: Vec<f64> = (1..=100).rev().map(f64::from).collect();
+        assert_eq!((quantile(&values, 0.99), quantile(&values, 0.0), quantile(&values, 1.0)), (99.0, 1.0, 100.0));
+        assert_eq!((median(&[3.0, 1.0, 2.0]), median(&[])), (2.0, 0.0));
+    }
+
+    #[test]
+    fn an_aim_is_met_up_to_its_bound() {
+        assert!(Aim::AtMost(1.5).met(1.5) && !Aim::AtMost(1.5).met(1.51));
+        assert!(Aim::AtLeast(6.0).met(6.0) && !Aim::AtLeast(6.0).met(5.9));
+    }
+
+    #[test]
+    fn numbers_are_told_in_four_digits() {
+        let told = [0.012345, 1.23456, 12.3456, 123.456, 12345.6].map(rounded);
+        assert_eq!(told, ["0.0123", "1.235", "12.35", "123.5", "12346"]);
+    }
+}
