@@ -18,7 +18,9 @@ const PLACES: u32 = 600;
 
 pub(super) fn measure(lab: &Lab, paths: &[PathBuf], _: &BenchArgs, report: &mut Report) -> Result<()> {
     let [width, height] = SIZE_PX;
-    report.section(format!("Four views of {TREES} trees each, {width} × {height} together, on a graphics card"));
+    report.section(format!(
+        "Four views of {TREES} trees each, {width} × {height} together, on a graphics card"
+    ));
     if lab.gpu.software {
         report.note("not measured: this device draws in software");
         return Ok(());

@@ -126,9 +126,8 @@ fn square_error(a: &[u8], b: &[u8]) -> f64 {
     let colors = |rgba: &[u8]| [rgba[0], rgba[1], rgba[2]].map(|value| f64::from(value) / 255.0);
     let pixels = a.chunks_exact(4).zip(b.chunks_exact(4));
     let count = 3.0 * pixels.len() as f64;
-    let of_pixel = |(a, b): (&[u8], &[u8])| {
-        colors(a).iter().zip(colors(b)).map(|(a, b)| (a - b) * (a - b)).sum::<f64>()
-    };
+    let of_pixel =
+        |(a, b): (&[u8], &[u8])| colors(a).iter().zip(colors(b)).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
     pixels.map(of_pixel).sum::<f64>() / count.max(1.0)
 }
 

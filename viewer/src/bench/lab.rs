@@ -61,7 +61,10 @@ impl Cost {
 
 impl std::iter::Sum for Cost {
     fn sum<I: Iterator<Item = Self>>(costs: I) -> Self {
-        costs.fold(Self::default(), |a, b| Self { wall_ms: a.wall_ms + b.wall_ms, cpu_ms: a.cpu_ms + b.cpu_ms })
+        costs.fold(Self::default(), |a, b| Self {
+            wall_ms: a.wall_ms + b.wall_ms,
+            cpu_ms: a.cpu_ms + b.cpu_ms,
+        })
     }
 }
 
@@ -71,10 +74,11 @@ fn milliseconds(time: std::time::Duration) -> f64 {
 
 impl Lab {
     /// Opens the best device, with one sample a pixel.
-    pub fn open() -> Result<Self> {
+    pub fn open(shaders: &Shaders) -> Result<Self> {
         let gpu = Gpu::headless()?;
-        let passes = Arc::new(Passes::new(&gpu, &Shaders::builtin(), 1)?);
-        let settings = wgpu_profiler::GpuProfilerSettings { enable_timer_queries: false, ..Default::default() };
+        let passes = Arc::new(Passes::new(&gpu, shaders, 1)?);
+        let settings =
+            wgpu_profiler::GpuProfilerSettings { enable_timer_queries: false, ..Default::default() };
         let profiler = wgpu_profiler::GpuProfiler::new(&gpu.device, settings)?;
         Ok(Self { uploader: Uploader::new(&gpu), store: Store::default(), gpu, passes, profiler })
     }

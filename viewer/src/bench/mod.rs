@@ -23,6 +23,7 @@ use clap::{Args, ValueEnum};
 
 use crate::app::desk::Source;
 use crate::screenshot;
+use crate::shaders::Shaders;
 use lab::Lab;
 use report::Report;
 
@@ -52,6 +53,10 @@ pub struct BenchArgs {
     /// Print one line of JSON instead of text
     #[arg(long)]
     pub json: bool,
+
+    /// Read shaders from this folder; what is missing there is built in
+    #[arg(long, value_name = "DIR")]
+    pub shaders: Option<PathBuf>,
 
     /// Draw the first scene's pictures as asked for on standard input, one line each, and answer in JSON what they
     /// took: for programs that measure others beside ours
@@ -85,7 +90,7 @@ pub fn run(args: &BenchArgs) -> Result<()> {
     };
     let paths = screenshot::scene_files(&source)?;
     ensure!(!paths.is_empty(), "there is no landscape to draw");
-    let lab = Lab::open()?;
+    let lab = Lab::open(&args.shaders.clone().map_or_else(Shaders::builtin, Shaders::from_folder))?;
     if args.serve {
         let first = paths.first().ok_or_else(|| anyhow!("there is no landscape to draw"))?;
         return serve::run(&lab, first, args);

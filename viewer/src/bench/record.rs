@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 
+use super::BenchArgs;
 use super::lab::{Cost, Lab, forest, way};
 use super::report::{Aim, Report, median};
-use super::BenchArgs;
 use crate::frame::FrameInput;
 
 /// Trees of the two forests.

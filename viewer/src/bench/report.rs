@@ -77,7 +77,12 @@ impl Report {
         };
         if !json {
             let kind = if gpu.software { "in software" } else { "a graphics card" };
-            say!("{} ({kind}), {}, {cores} cores{}", gpu.name, report.system, busy(report.load_average_at_start));
+            say!(
+                "{} ({kind}), {}, {cores} cores{}",
+                gpu.name,
+                report.system,
+                busy(report.load_average_at_start)
+            );
         }
         report
     }
@@ -171,7 +176,10 @@ mod tests {
     #[test]
     fn quantiles_are_the_nearest_rank() {
         let values: Vec<f64> = (1..=100).rev().map(f64::from).collect();
-        assert_eq!((quantile(&values, 0.99), quantile(&values, 0.0), quantile(&values, 1.0)), (99.0, 1.0, 100.0));
+        assert_eq!(
+            (quantile(&values, 0.99), quantile(&values, 0.0), quantile(&values, 1.0)),
+            (99.0, 1.0, 100.0)
+        );
         assert_eq!((median(&[3.0, 1.0, 2.0]), median(&[])), (2.0, 0.0));
     }
 

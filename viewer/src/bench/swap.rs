@@ -20,7 +20,9 @@ const NEIGHBOURS: usize = 10;
 const SWAPS: usize = 4;
 
 pub(super) fn measure(lab: &Lab, paths: &[PathBuf], args: &BenchArgs, report: &mut Report) -> Result<()> {
-    report.section(format!("Swap of a landscape in one of four views: {SWAPS} swaps, milliseconds of the clock"));
+    report.section(format!(
+        "Swap of a landscape in one of four views: {SWAPS} swaps, milliseconds of the clock"
+    ));
     let camera = way(&lab.load(&paths[0])?, 3)[1];
     let mut views = four_views(lab, paths, args.size)?;
     let frame = FrameInput::default();

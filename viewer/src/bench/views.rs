@@ -25,7 +25,9 @@ pub(super) fn four_views(lab: &Lab, paths: &[PathBuf], size_px: [u32; 2]) -> Res
 
 pub(super) fn measure(lab: &Lab, paths: &[PathBuf], args: &BenchArgs, report: &mut Report) -> Result<()> {
     let [width, height] = args.size;
-    report.section(format!("Four views, {width} × {height} together, against four single ones of the same size"));
+    report.section(format!(
+        "Four views, {width} × {height} together, against four single ones of the same size"
+    ));
     let cameras = way(&lab.load(&paths[0])?, args.steps);
     let mut views = four_views(lab, paths, args.size)?;
     let frame = FrameInput::default();
