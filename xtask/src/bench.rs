@@ -1,13 +1,15 @@
-//! Our bake against a peer on the same machine, in the same minute: the four starters, whole, against ez-tree making
-//! twenty trees without levels of detail, textures, land, light or files.
+//! Ours against peers on the same machine, in the same minute. The bake: the four starters, whole, against ez-tree making
+//! twenty trees without levels of detail, textures, land, light or files. The viewer: its pictures with and without
+//! levels of detail, then beside three.js drawing the same scene file.
 
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
 
 use crate::setup;
-use crate::tools::{cargo, program, root, run};
+use crate::tools::{cargo, is_installed, program, root, run};
 
 /// Trees in four scenes: five templates each.
 const TREES: &str = "20";
@@ -16,12 +18,11 @@ const BAKES: u32 = 3;
 /// The most that a whole bake may take, in times of the peer's trees.
 const MOST: f64 = 6.0;
 
-/// Prints `bake bench`, then what the peer takes, then the ratios and whether they are what they should be.
+/// Prints `bake bench`, then what the peer takes, then the ratios and whether they are what they should be; then the
+/// same of the viewer.
 pub fn bench(runs: u32) -> Result<()> {
     setup::node()?;
-    run(&mut cargo(&["build", "--release", "--quiet", "--package", "genescape-bake", "--bin", "bake"]))?;
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), Into::into);
-    let bake = target.join("release").join(format!("bake{}", std::env::consts::EXE_SUFFIX));
+    let bake = release("genescape-bake", "bake")?;
     run(program(&bake).args(["bench", "--runs", &runs.to_string()]))?;
 
     let world = root().join("target/bench-world");
@@ -35,7 +36,6 @@ pub fn bench(runs: u32) -> Result<()> {
         ensure!(output.status.success(), "bake failed: {}", String::from_utf8_lossy(&output.stderr));
         ours_ms = ours_ms.min(start.elapsed().as_secs_f64() * 1e3);
     }
-    std::fs::remove_dir_all(&world).context("cannot remove the bake")?;
 
     let peer = peer()?;
     let ratio = ours_ms / peer.ms;
@@ -50,7 +50,38 @@ pub fn bench(runs: u32) -> Result<()> {
     println!(
         "our four scenes take {ratio:.1} times as long as their {TREES} trees; at most {MOST:.0} is the aim"
     );
+    pictures(&world)?;
+    std::fs::remove_dir_all(&world).context("cannot remove the bake")
+}
+
+/// The viewer's figures on the world that was just baked, then each of its scenes beside three.js where Chromium is
+/// installed. An aim that is missed is told, and no error.
+fn pictures(world: &Path) -> Result<()> {
+    let viewer = release("genescape-viewer", "viewer")?;
+    println!();
+    run(program(&viewer).arg("bench").arg("--world").arg(world))?;
+    if !BROWSERS.iter().any(|name| is_installed(name)) {
+        println!("three.js is left out: Chromium is not installed (Debian: chromium)");
+        return Ok(());
+    }
+    for scene in crate::tools::files(&world.join("baked"), &["scene.gltf"])? {
+        println!("\n{}", scene.display());
+        let script = root().join("tests/peers/three_viewer.mjs");
+        let status = program("node").arg(script).arg(&scene).arg("--viewer").arg(&viewer).status()?;
+        // 1 says that an aim was missed.
+        ensure!(matches!(status.code(), Some(0 | 1)), "three.js could not be measured: {status}");
+    }
     Ok(())
+}
+
+/// What Chromium is called.
+const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
+
+/// Builds a program and says where it is.
+fn release(package: &str, name: &str) -> Result<PathBuf> {
+    run(&mut cargo(&["build", "--release", "--quiet", "--package", package, "--bin", name]))?;
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
+    Ok(target.join("release").join(format!("{name}{}", std::env::consts::EXE_SUFFIX)))
 }
 
 struct Peer {

@@ -33,7 +33,8 @@ enum Chore {
     },
     /// Install the programs that `test --interop` and `pictures` need into .interop/.
     Setup,
-    /// Time every stage, then a whole bake against ez-tree making as many trees (packages go to .interop/).
+    /// Time every stage, then a whole bake against ez-tree making as many trees, then the viewer's pictures, alone and
+    /// against three.js in Chromium (packages go to .interop/).
     Bench {
         /// Runs of `bake bench`.
         #[arg(long, default_value_t = 3)]

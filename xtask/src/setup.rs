@@ -27,10 +27,10 @@ pub fn all() -> Result<()> {
     blender()
 }
 
-/// The validator, three.js and ez-tree.
+/// The validator, three.js with what steers Chromium, and ez-tree.
 pub fn node() -> Result<()> {
     let folder = interop();
-    if ["gltf-validator", "three", "@dgreenheck/ez-tree"]
+    if ["gltf-validator", "three", "puppeteer-core", "@dgreenheck/ez-tree"]
         .iter()
         .all(|name| folder.join("node_modules").join(name).is_dir())
     {
