@@ -11,7 +11,7 @@ use glam::Vec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg32;
 
-const SIZE_PX: [u32; 2] = [160, 100];
+const SIZE_PX: [u32; 2] = [120, 75];
 const CAMERAS: u64 = 200;
 
 /// Pixels that are rather magenta than green.
@@ -19,11 +19,11 @@ fn sky_pixels(pixels: &Pixels) -> usize {
     pixels.rgba.chunks_exact(4).filter(|pixel| pixel[0] >= pixel[1]).count()
 }
 
-/// Looks down so steeply that even the picture's corners show land, from at most 20 m above it.
+/// Looks down so steeply that even the picture's corners show land, from at most 14 m above it.
 fn camera(seed: u64, height_m: impl Fn(f32, f32) -> f32) -> (Camera, f32) {
     let mut rng = Pcg32::seed_from_u64(seed);
-    let (x, z) = (rng.random_range(-40.0..40.0f32), rng.random_range(-40.0..40.0f32));
-    let above_m = rng.random_range(1.0..20.0f32);
+    let (x, z) = (rng.random_range(-16.0..16.0f32), rng.random_range(-16.0..16.0f32));
+    let above_m = rng.random_range(1.0..14.0f32);
     let camera = Camera {
         position_m: Vec3::new(x, height_m(x, z) + above_m, z),
         yaw_rad: rng.random_range(-3.1..3.1f32),
@@ -35,7 +35,7 @@ fn camera(seed: u64, height_m: impl Fn(f32, f32) -> f32) -> (Camera, f32) {
 
 fn no_sky_shines_through(scheme: TerrainScheme) {
     let Some(studio) = made_up::studio() else { return };
-    let field = made_up::field(129, 2.0, 16.0, 2.5);
+    let field = made_up::field(257, 0.5, 9.0, 0.7);
     let scene = made_up::scene(field, [30, 200, 30, 255], [2.0, 0.0, 2.0], Trees::default());
     let buffers = made_up::upload(&studio, &scene);
     let mut view = studio.view(buffers, SIZE_PX);

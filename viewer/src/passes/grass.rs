@@ -24,6 +24,8 @@ pub const REACH_M: f32 = 30.0;
 /// Vertices of a blade, and its triangles: two for the stalk, one for the tip.
 const BLADE_VERTICES: u16 = 5;
 const BLADE_TRIANGLES: [u16; 9] = [0, 1, 2, 2, 1, 3, 2, 3, 4];
+/// Metres from a cell's middle to the farthest of its blades: half a diagonal on steep land, and a blade.
+const AROUND_M: f32 = 1.2 * CELL_M;
 /// Bytes of rock, scree, snow and mud together beyond which no grass grows.
 const BARE: u32 = 190;
 
@@ -114,10 +116,6 @@ fn density(away_m: f32) -> f32 {
 pub fn clumps(ground: &Ground, eye_m: Vec3, frustum: &Frustum, out: &mut Vec<Clump>) {
     out.clear();
     let field = &ground.field;
-    let above_m = eye_m.y - field.height_m(eye_m.x, eye_m.z);
-    if above_m > REACH_M {
-        return;
-    }
     let half_m = 0.5 * field.extent_m();
     let water_m = ground.water_level_m.unwrap_or(f32::MIN);
     let lines = |middle_m: f32| {
@@ -127,14 +125,17 @@ pub fn clumps(ground: &Ground, eye_m: Vec3, frustum: &Frustum, out: &mut Vec<Clu
     for z in lines(eye_m.z) {
         for x in lines(eye_m.x) {
             let middle = (Vec2::new(x as f32, z as f32) + 0.5) * CELL_M;
-            let in_plan = (middle - Vec2::new(eye_m.x, eye_m.z)).length() - 0.71 * CELL_M;
-            let share = density(Vec2::new(in_plan.max(0.0), above_m).length());
-            if share == 0.0 {
+            if (middle - Vec2::new(eye_m.x, eye_m.z)).length() > REACH_M + CELL_M {
                 continue;
             }
             let height_m = field.height_m(middle.x, middle.y);
-            // Half a cell's diagonal on steep land, and a blade.
-            let seen = frustum.sees_sphere(Vec3::new(middle.x, height_m, middle.y), 1.2 * CELL_M);
+            let place = Vec3::new(middle.x, height_m, middle.y);
+            // Of the nearest blade.
+            let share = density((place.distance(eye_m) - AROUND_M).max(0.0));
+            if share == 0.0 {
+                continue;
+            }
+            let seen = frustum.sees_sphere(place, AROUND_M);
             if !seen || height_m < water_m - CELL_M || is_bare(&ground.surface.weights, middle, half_m) {
                 continue;
             }

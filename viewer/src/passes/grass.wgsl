@@ -106,7 +106,8 @@ fn vertex(clump: Clump, @builtin(vertex_index) index: u32) -> Out {
     let outward = vec2f(cos(turn), sin(turn));
     let root = (vec2f(clump.cell) + tuft_dice.xy) * CELL_M + outward * (0.17 * dice.y);
 
-    let away = length(vec3f(root - view.eye.xz, view.terrain_lod.z));
+    let ground_m = drawn_height_m(root);
+    let away = distance(vec3f(root.x, ground_m, root.y), view.eye);
     // Fewer with distance, by rank: each shrinks into the ground as its turn comes.
     let rank = (f32(blade) + 1.0) / f32(CLUMPS * BLADES);
     let present = clamp((density(away) - rank) / (0.25 * rank + 0.004), 0.0, 1.0);
@@ -119,7 +120,6 @@ fn vertex(clump: Clump, @builtin(vertex_index) index: u32) -> Out {
     let grass = 1.0 - weights.r - weights.g - weights.b - weights.a;
     let lush = noise(root / 1.3);
     let growth = min((grass - 0.3) * 1.7 + 0.45 * lush + 0.4 * (tuft_dice.z - 0.5), 1.0);
-    let ground_m = drawn_height_m(root);
     if (growth < 0.03 || grass < 0.3 || ground_m < view.water_level + 0.12) {
         return NOWHERE;
     }
