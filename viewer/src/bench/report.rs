@@ -143,8 +143,8 @@ impl Report {
 
 /// Four significant digits, but no more than are before the point if those are more.
 fn rounded(value: f64) -> String {
-    let digits = (0..4).find(|&digits| value.abs() >= 10f64.powi(3 - digits)).unwrap_or(4);
-    format!("{value:.*}", digits as usize)
+    let digits = [1e3, 1e2, 1e1, 1.0].iter().position(|&least| value.abs() >= least).unwrap_or(4);
+    format!("{value:.digits$}")
 }
 
 fn busy(load: Option<f64>) -> String {
