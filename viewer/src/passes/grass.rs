@@ -160,3 +160,62 @@ fn is_bare(weights: &Picture, middle_m: Vec2, half_m: f32) -> bool {
         pixels.get(first..first + 4).is_some_and(|p| p.iter().map(|&w| u32::from(w)).sum::<u32>() > BARE)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::Camera;
+    use crate::scene::{Apron, Heightfield, Surface};
+    use glam::Vec3Swizzles;
+    use proptest::prelude::*;
+    use std::sync::Arc;
+
+    /// 64 m × 64 m that rise eastwards, bare in the northern half.
+    fn slope() -> Ground {
+        let mut field = Heightfield { side: 33, spacing_m: 2.0, ..Heightfield::default() };
+        field.heights_m = (0..33 * 33).map(|n| (n % 33) as f32).collect();
+        let pixels = |bare: u8| Picture {
+            name: String::new(),
+            width_px: 1,
+            height_px: 2,
+            levels: vec![[bare, 0, 0, 0, 0, 0, 0, 0].as_slice().into()],
+        };
+        let (color, light) = (pixels(0), pixels(0));
+        Ground {
+            name: String::new(),
+            field: Arc::new(field),
+            water_level_m: Some(8.0),
+            surface: Surface { color, weights: pixels(255), light, details: Vec::new() },
+            apron: Arc::new(Apron::default()),
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn every_blade_that_stands_has_its_clump(
+            x in -15f32..31., z in 1f32..31., to_x in -20f32..20., to_z in -20f32..20., above in 0.5f32..12.,
+            turn in -0.3f32..0.3, nod in -0.3f32..0.3, share in 0f32..0.99,
+        ) {
+            let ground = slope();
+            let on = |x: f32, z: f32| Vec3::new(x, ground.field.height_m(x, z), z);
+            let (root, eye) = (on(x, z), on(x + to_x, z + to_z) + Vec3::Y * above);
+            let look = root - eye;
+            let camera = Camera {
+                position_m: eye,
+                yaw_rad: libm::atan2f(-look.x, -look.z) + turn,
+                pitch_rad: libm::atan2f(look.y, look.xz().length()) + nod,
+                fov_y_rad: 1.0,
+            };
+            let frustum = camera.frustum(1.5);
+            prop_assume!(frustum.sees_sphere(root, 0.0) && density(look.length()) > 0.0);
+            let mut drawn = Vec::new();
+            clumps(&ground, eye, &frustum, &mut drawn);
+            let rank = share * density(look.length());
+            let cell = [root.x, root.z].map(|m| (m / CELL_M).floor() as i32);
+            let number = (rank * CLUMPS as f32) as u32;
+            let wanted = Clump { cell, number };
+            prop_assert!(drawn.contains(&wanted));
+            prop_assert!(drawn.iter().all(|clump| clump.cell[1] >= -1 && clump.number < CLUMPS));
+        }
+    }
+}
