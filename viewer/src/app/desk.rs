@@ -291,9 +291,10 @@ impl Desk {
                 let newest = self.generations.last().copied();
                 if self.population.is_none() && before.is_none() {
                     self.go_to(generation);
-                } else if newest > before && self.follows && newest == Some(generation) {
-                    self.go_to(generation);
-                    self.tell(Tone::Success, format!("Generation {generation} is born"));
+                } else if let (true, true, Some(newest)) = (newest > before, self.follows, newest) {
+                    // Whichever file's change made us look: the parents' may be told after the child is there.
+                    self.go_to(newest);
+                    self.tell(Tone::Success, format!("Generation {newest} is born"));
                 } else if generation == self.generation {
                     self.read_population();
                 }
@@ -645,4 +646,26 @@ fn ballots(running: &RunningVotes) -> Ballots {
         }
     }
     ballots
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use genescape_bake::world::World;
+
+    #[test]
+    fn a_new_generation_comes_on_show_whichever_change_is_told_first() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        for (place, told) in [[0, 1], [1, 0]].into_iter().enumerate() {
+            let root = folder.path().join(place.to_string());
+            World::open_or_create(&root).expect("a world").begin().expect("its first generation");
+            let mut desk = Desk::open(Source::World(root.clone()), &WorldSettings::default());
+            assert_eq!(desk.generations(), (0, [0].as_slice()));
+            let first = std::fs::read_to_string(root.join(names::population(0))).expect("there");
+            let second = first.replacen("generation: 0", "generation: 1", 1);
+            std::fs::write(root.join(names::population(1)), second).expect("written");
+            told.into_iter().for_each(|generation| desk.changed(Change::Population(generation)));
+            assert_eq!(desk.generations(), (1, [0, 1].as_slice()), "{told:?}");
+        }
+    }
 }
