@@ -1,6 +1,7 @@
 //! The whole check, step by step, each with its time; later steps run even if earlier ones failed.
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
@@ -11,7 +12,13 @@ use crate::tools::{cargo, files, program, python, root, run as execute, script};
 /// A step by its name.
 type Step = (&'static str, fn() -> Result<()>);
 
-const QUICK: [Step; 3] = [("formatting", formatting), ("lints", lints), ("tests", tests)];
+const QUICK: [Step; 5] = [
+    ("formatting", formatting),
+    ("the bake knows no window", dependencies),
+    ("lints", lints),
+    ("what the viewer's tests need", setup::window),
+    ("tests", tests),
+];
 const WHOLE: [Step; 4] = [
     ("documentation", documentation),
     ("bake", bake),
@@ -59,12 +66,49 @@ fn formatting() -> Result<()> {
     execute(&mut cargo(&["fmt", "--all", "--check"]))
 }
 
-fn lints() -> Result<()> {
-    execute(&mut cargo(&["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"]))
+/// The bake runs where nothing can be drawn, and compiles in a fraction of the viewer's time.
+fn dependencies() -> Result<()> {
+    let arguments = ["tree", "--package", "genescape-bake", "--edges", "normal,build", "--prefix", "none"];
+    let tree = cargo(&arguments).output().context("cannot start cargo tree")?;
+    ensure!(tree.status.success(), "cargo tree: {}", String::from_utf8_lossy(&tree.stderr));
+    let tree = String::from_utf8_lossy(&tree.stdout).into_owned();
+    let names: Vec<&str> = tree.lines().filter_map(|line| line.split(' ').next()).collect();
+    ensure!(names.contains(&"genescape-schema"), "cargo tree tells nothing of the bake");
+    let is_of_window =
+        |name: &&&str| ["wgpu", "egui", "winit", "naga"].iter().any(|one| name.starts_with(one));
+    let found: Vec<_> = names.iter().filter(is_of_window).collect();
+    ensure!(found.is_empty(), "genescape-bake depends on {found:?}");
+    Ok(())
 }
 
+/// With the gamepad, too, where its library can be compiled against.
+fn lints() -> Result<()> {
+    execute(&mut cargo(&["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
+    let udev = Command::new("pkg-config").args(["--exists", "libudev"]).status();
+    if cfg!(target_os = "linux") && !udev.is_ok_and(|status| status.success()) {
+        println!(
+            "the viewer's feature gamepad is not looked at: libudev-dev and pkg-config are not installed"
+        );
+        return Ok(());
+    }
+    let gamepad = ["clippy", "--quiet", "--package", "genescape-viewer", "--features", "gamepad"];
+    execute(cargo(&gamepad).args(["--all-targets", "--", "-D", "warnings"]))
+}
+
+/// All of them: no test may leave itself out for want of a device or a display.
 fn tests() -> Result<()> {
-    execute(&mut cargo(&["test", "--quiet", "--workspace"]))
+    let runtime = root().join("target/runtime");
+    std::fs::create_dir_all(&runtime).context("cannot make a folder in target/")?;
+    let mut command = cargo(&["test", "--quiet", "--workspace"]);
+    command.env("GENESCAPE_NEEDS_GPU", "1");
+    if cfg!(target_os = "linux") {
+        command.env("GENESCAPE_NEEDS_WINDOW", "1");
+        if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+            // Otherwise each window complains.
+            command.env("XDG_RUNTIME_DIR", runtime);
+        }
+    }
+    execute(&mut command)
 }
 
 fn documentation() -> Result<()> {

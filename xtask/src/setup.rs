@@ -21,6 +21,20 @@ const LIBRARIES: [(&str, &str); 10] = [
     ("libgomp1", "libgomp.so.1"),
 ];
 
+/// What a window without a screen needs: a Vulkan driver that draws on the processor, an X server, and what winit opens
+/// when it meets one.
+const WINDOW: [(&str, &str); 9] = [
+    ("mesa-vulkan-drivers", "libvulkan_lvp.so"),
+    ("libvulkan1", "libvulkan.so.1"),
+    ("xvfb", "Xvfb"),
+    ("libx11-6", "libX11.so.6"),
+    ("libx11-xcb1", "libX11-xcb.so.1"),
+    ("libxcursor1", "libXcursor.so.1"),
+    ("libxi6", "libXi.so.6"),
+    ("libxkbcommon0", "libxkbcommon.so.0"),
+    ("libxkbcommon-x11-0", "libxkbcommon-x11.so.0"),
+];
+
 /// Everything.
 pub fn all() -> Result<()> {
     node()?;
@@ -46,7 +60,7 @@ pub fn node() -> Result<()> {
 
 /// Blender as a Python module, and F3D.
 pub fn blender() -> Result<()> {
-    libraries()?;
+    packages(&LIBRARIES)?;
     let has = "import importlib.util as u, sys; sys.exit(not all(map(u.find_spec, ('bpy', 'f3d'))))";
     if python().is_file() && Command::new(python()).args(["-c", has]).status()?.success() {
         return Ok(());
@@ -62,8 +76,14 @@ pub fn blender() -> Result<()> {
         .arg(script("requirements.txt")))
 }
 
-/// Installs missing libraries where that is possible without asking, else says how.
-fn libraries() -> Result<()> {
+/// What the viewer's tests need.
+pub fn window() -> Result<()> {
+    packages(&WINDOW)
+}
+
+/// Installs missing packages, each known by a library or a program of it, where that is possible without asking; else
+/// says how.
+fn packages(needed: &[(&'static str, &str)]) -> Result<()> {
     if !cfg!(target_os = "linux") {
         return Ok(());
     }
@@ -72,16 +92,21 @@ fn libraries() -> Result<()> {
     });
     let Ok(cache) = cache else { return Ok(()) };
     let known = String::from_utf8_lossy(&cache.stdout).into_owned();
+    let is_there = |file: &str| known.contains(file) || is_installed(file);
     let missing: Vec<&str> =
-        LIBRARIES.iter().filter(|(_, file)| !known.contains(file)).map(|(package, _)| *package).collect();
+        needed.iter().filter(|(_, file)| !is_there(file)).map(|(package, _)| *package).collect();
     if missing.is_empty() {
         return Ok(());
     }
     let user = Command::new("id").arg("-u").output().context("cannot ask who we are")?;
     let root = user.stdout.trim_ascii() == b"0";
     if !root || !is_installed("apt-get") {
-        bail!("libraries are missing; on Debian or Ubuntu: sudo apt-get install {}", missing.join(" "));
+        bail!("packages are missing; on Debian or Ubuntu: sudo apt-get install {}", missing.join(" "));
     }
+    println!("installing {}", missing.join(" "));
     run(program("apt-get").args(["update", "-qq"]))?;
-    run(program("apt-get").args(["install", "-y", "-qq", "--no-install-recommends"]).args(&missing))
+    run(program("apt-get")
+        .args(["install", "-y", "-qq", "--no-install-recommends"])
+        .args(&missing)
+        .env("DEBIAN_FRONTEND", "noninteractive"))
 }

@@ -14,7 +14,7 @@ use x11rb::protocol::xproto::Window;
 use super::display::Display;
 
 /// The longest that anything may take: the machine may be slow and busy.
-const LIMIT: Duration = Duration::from_secs(180);
+const LIMIT: Duration = Duration::from_secs(120);
 /// Between two looks.
 const LOOK_EVERY: Duration = Duration::from_millis(10);
 
@@ -115,10 +115,9 @@ impl Viewer {
 
     /// The last lines, but for long ones.
     fn story(&self) -> String {
-        let told = self
-            .lines
-            .iter()
-            .filter(|line| !["widgets", "pose"].contains(&line["what"].as_str().unwrap_or("")));
+        let told = self.lines.iter().filter(|line| {
+            !["widgets", "pose", "frames", "bake"].contains(&line["what"].as_str().unwrap_or(""))
+        });
         let told: Vec<String> = told.map(Value::to_string).collect();
         told[told.len().saturating_sub(25)..].join("\n")
     }
@@ -154,6 +153,8 @@ impl Viewer {
             let number = |at: usize| widget["at_px"][at].as_f64().map(|value| value as i16);
             Some([number(0)?, number(1)?])
         };
+        // What was seen in an earlier frame may have moved.
+        self.frames(2);
         self.until(&format!("there is “{label}”"), |viewer| find(viewer).is_some());
         find(self).expect("it was just there")
     }
