@@ -118,7 +118,7 @@ fn somebody_walks_and_looks_around(stage: &Stage, viewer: &mut Viewer) {
     display.key(keys::W, true);
     viewer.until("somebody walks", |viewer| {
         let now = place(viewer);
-        (now[0] - start[0]).hypot(now[1] - start[1]) > 2.0
+        libm::hypot(now[0] - start[0], now[1] - start[1]) > 2.0
     });
     display.key(keys::W, false);
     viewer.frames(1);
