@@ -6,11 +6,13 @@ use std::sync::Arc;
 use anyhow::{Result, anyhow};
 
 use super::BenchArgs;
-use super::lab::{Lab, way};
+use super::lab::{Cost, Lab, way};
 use super::report::{Aim, Report, median, quantile};
 use super::views::four_views;
 use crate::app::loader::{Loader, Request};
 use crate::frame::FrameInput;
+use crate::load;
+use crate::upload::Uploader;
 
 /// Frames before a landscape is asked for, and after it is shown.
 const AROUND: usize = 15;
@@ -26,6 +28,7 @@ pub(super) fn measure(lab: &Lab, paths: &[PathBuf], args: &BenchArgs, report: &m
     let camera = way(&lab.load(&paths[0])?, 3)[1];
     let mut views = four_views(lab, paths, args.size)?;
     let frame = FrameInput::default();
+    parts(lab, &paths[0], report)?;
     let loader = Loader::start(&lab.gpu, || {})?;
     let (mut all, mut quiet, mut loading, mut shown) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     lab.frame(&mut views, &frame, &camera);
@@ -65,6 +68,28 @@ pub(super) fn measure(lab: &Lab, paths: &[PathBuf], args: &BenchArgs, report: &m
     report.figure("frames while one is loaded, worst", quantile(&loading, 1.0), "ms");
     report.figure("frame that shows it first, worst", quantile(&shown, 1.0), "ms");
     report.aimed("worst frame against those around", worst(&all), "×", Aim::AtMost(1.5));
+    Ok(())
+}
+
+/// What the loader does for a landscape of which nothing is known yet, piece by piece. The device does one thing after
+/// the other: a frame waits for what of this was submitted before it.
+fn parts(lab: &Lab, path: &std::path::Path, report: &mut Report) -> Result<()> {
+    let (reading, scene) = Cost::of(|| load::load(path, &load::Store::default()));
+    let scene = scene?;
+    let (bringing, uploaded) = Cost::of(|| {
+        let uploaded = Uploader::new(&lab.gpu).upload(&scene);
+        lab.gpu.queue.submit([]);
+        lab.gpu.wait();
+        uploaded
+    });
+    let uploaded = uploaded.map_err(|text| anyhow!(text))?;
+    let (shading, ()) = Cost::of(|| {
+        lab.passes.shadow.bake(&lab.gpu, &lab.passes.layouts, &lab.passes.cull, &uploaded);
+        lab.gpu.wait();
+    });
+    report.figure("alone: reading a landscape", reading.wall_ms, "ms");
+    report.figure("alone: bringing it to the device", bringing.wall_ms, "ms");
+    report.figure("alone: drawing its shadows", shading.wall_ms, "ms");
     Ok(())
 }
 
