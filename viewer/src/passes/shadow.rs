@@ -6,7 +6,7 @@ use super::view_uniform::{ViewUniform, shadow_from_world};
 use super::{Layouts, SHADOW, bind, texture_view};
 use crate::gpu::Gpu;
 use crate::shaders::{ShaderError, Shaders};
-use crate::upload::{DrawCommand, SceneBuffers};
+use crate::upload::{DrawCommand, SceneBuffers, TreeSet};
 
 /// The pipelines.
 #[derive(Debug)]
@@ -68,7 +68,9 @@ impl Shadow {
     }
 
     /// Draws a landscape's shadow map; may run on any thread. `cull` chooses trees: of each the level whose error is
-    /// below half a texel.
+    /// below half a texel. Waits until it is done, and works in pieces (the land, then each kind and material of trees):
+    /// a device does one thing after the other, and drawn in one go a forest keeps pictures waiting, in software for a
+    /// second.
     pub fn bake(&self, gpu: &Gpu, layouts: &Layouts, cull: &Cull, scene: &SceneBuffers) {
         use wgpu::util::DeviceExt;
         let sun = ViewUniform::for_sun(scene);
@@ -92,47 +94,75 @@ impl Shadow {
             (TreeGroups::new(gpu, layouts, set), lists)
         });
         let map = texture_view(&scene.shadow_map, wgpu::TextureViewDimension::D2);
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("shadows"),
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &map,
-                depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(1.0),
-                    store: wgpu::StoreOp::Store,
-                }),
-                stencil_ops: None,
-            }),
-            ..Default::default()
-        });
-        self.draw(&mut pass, scene, &view, trees.as_ref().map(|(groups, lists)| (groups, lists)));
-        drop(pass);
-        gpu.queue.submit([encoder.finish()]);
+        {
+            let mut pass = begin(&mut encoder, &map, wgpu::LoadOp::Clear(1.0));
+            pass.set_bind_group(0, &view, &[]);
+            self.draw_land(&mut pass, scene);
+        }
+        finish(gpu, encoder);
+        let (Some(set), Some((groups, lists))) = (&scene.trees, &trees) else { return };
+        for slot in 0..set.materials.len() {
+            for kind in 0..set.template_count {
+                let mut encoder = gpu.device.create_command_encoder(&Default::default());
+                let mut pass = begin(&mut encoder, &map, wgpu::LoadOp::Load);
+                pass.set_bind_group(0, &view, &[]);
+                self.draw_kind(&mut pass, set, groups, lists, (slot, kind));
+                drop(pass);
+                finish(gpu, encoder);
+            }
+        }
     }
 
-    /// Draws land and trees as the sun sees them; `view` is group 0 in the layout for this pass.
-    fn draw(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        scene: &SceneBuffers,
-        view: &wgpu::BindGroup,
-        trees: Option<(&TreeGroups, &TreeLists)>,
-    ) {
-        pass.set_bind_group(0, view, &[]);
+    fn draw_land(&self, pass: &mut wgpu::RenderPass<'_>, scene: &SceneBuffers) {
         pass.set_pipeline(&self.land);
         let cells = (scene.ground.field.side - 1) / LAND_STEP;
         pass.draw(0..cells * cells * 6, 0..1);
-        let (Some(set), Some((groups, lists))) = (&scene.trees, trees) else { return };
+    }
+
+    /// Trees of one kind, one material of them, at all levels.
+    fn draw_kind(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        set: &TreeSet,
+        groups: &TreeGroups,
+        lists: &TreeLists,
+        (slot, kind): (usize, u32),
+    ) {
+        pass.set_pipeline(if set.materials[slot].masked { &self.leaf } else { &self.bark });
         pass.set_bind_group(1, &groups.trees, &[]);
+        pass.set_bind_group(2, &groups.materials[slot], &[]);
         pass.set_vertex_buffer(0, set.vertices.slice(..));
         pass.set_vertex_buffer(1, lists.visible.slice(..));
         pass.set_index_buffer(set.indices.slice(..), wgpu::IndexFormat::Uint32);
-        for (slot, material) in set.materials.iter().enumerate() {
-            pass.set_pipeline(if material.masked { &self.leaf } else { &self.bark });
-            pass.set_bind_group(2, &groups.materials[slot], &[]);
-            let first = slot as u64 * u64::from(lists.buckets) * size_of::<DrawCommand>() as u64;
-            pass.multi_draw_indexed_indirect(&lists.commands, first, lists.buckets);
+        for level in 0..set.level_count {
+            let command =
+                slot as u64 * u64::from(lists.buckets) + u64::from(level * set.template_count + kind);
+            pass.draw_indexed_indirect(&lists.commands, command * size_of::<DrawCommand>() as u64);
         }
     }
+}
+
+fn begin<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    map: &wgpu::TextureView,
+    load: wgpu::LoadOp<f32>,
+) -> wgpu::RenderPass<'a> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("shadows"),
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: map,
+            depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Store }),
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    })
+}
+
+/// Hands work over and waits for it, so that pictures that others draw come in between.
+fn finish(gpu: &Gpu, encoder: wgpu::CommandEncoder) {
+    let submitted = gpu.queue.submit([encoder.finish()]);
+    // An error here means a lost device, which the next call reports.
+    let _ = gpu.device.poll(wgpu::PollType::Wait { submission_index: Some(submitted), timeout: None });
 }
 
 /// How wide a texel of a landscape's shadow map is: the map covers [−1, 1] along the first row of its matrix.
