@@ -127,6 +127,9 @@ pub struct Drawing {
     /// From above, with what was chosen for the eye
     #[arg(long)]
     pub overhead: bool,
+    /// No blades of grass around the eye
+    #[arg(long)]
+    pub no_grass: bool,
     /// Factor on the landscape's own exposure
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
     pub exposure: f32,
@@ -182,6 +185,7 @@ impl Drawing {
             tint_levels: self.tint,
             overhead: self.overhead,
             exposure: self.exposure,
+            grass: !self.no_grass,
             samples: self.samples,
             fov_y_deg: self.fov,
             ..Options::default()

@@ -99,6 +99,12 @@ fn options(ui: &mut Ui, current: &Options, events: &mut Vec<Event>) {
     section(ui, "PICTURE");
     switch(ui, &mut options.draw_trees, "Trees", "");
     switch(ui, &mut options.draw_terrain, "Terrain", "");
+    switch(
+        ui,
+        &mut options.grass,
+        "Grass",
+        "Blades around you; a tenth to a quarter of the time where the processor draws",
+    );
     switch(ui, &mut options.drift_clouds, "Clouds drift", "");
     number(ui, &mut options.exposure, 0.125..=8.0, "Exposure", " ×", true);
     number(ui, &mut options.fov_y_deg, 20.0..=110.0, "Field of view", "°", false);
