@@ -125,7 +125,7 @@ fn drift() -> Drift {
     let first = fract(view.time_s / CYCLE_S + 0.5) - 0.5;
     let second = fract(view.time_s / CYCLE_S) - 0.5;
     // Most of the time only one of the two is seen.
-    let share = smoothstep(0.25, 0.75, 1.0 - 2.0 * abs(first));
+    let share = smoothstep(0.4, 0.6, 1.0 - 2.0 * abs(first));
     return Drift(WIND_M_PER_S * CYCLE_S * first, WIND_M_PER_S * CYCLE_S * second, share);
 }
 
