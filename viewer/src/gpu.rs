@@ -27,6 +27,13 @@ pub enum GpuError {
          without a card, the package mesa-vulkan-drivers (Debian, Ubuntu, Fedora) or vulkan-swrast (Arch)."
     )]
     NoAdapter(#[from] wgpu::RequestAdapterError),
+    /// A window is there, but no driver that could draw to it.
+    #[error(
+        "no graphics device can draw to the window.\n\
+         Genescape draws with Vulkan, Metal or Direct3D 12. On Linux install your card's Vulkan driver, or, to draw \
+         without a card, the package mesa-vulkan-drivers (Debian, Ubuntu, Fedora) or vulkan-swrast (Arch)."
+    )]
+    NoSurface(#[from] wgpu::CreateSurfaceError),
     /// The driver is there but cannot do what is needed.
     #[error("{name} lacks {missing}, which is needed to draw; try a newer driver")]
     Lacking {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Result, anyhow};
 use winit::window::Window;
 
 use crate::gpu::{Gpu, GpuError};
@@ -35,7 +35,7 @@ impl Screen {
     /// Opens a device that can draw to `window`.
     pub fn open(window: Arc<Window>) -> Result<(Self, Gpu)> {
         let instance = crate::gpu::instance();
-        let surface = instance.create_surface(window.clone()).context("the window cannot be drawn to")?;
+        let surface = instance.create_surface(window.clone()).map_err(GpuError::from)?;
         let (gpu, adapter) =
             Gpu::open(&instance, Some(&surface)).map_err(|error: GpuError| anyhow!(error))?;
         let size = window.inner_size();
