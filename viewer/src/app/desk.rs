@@ -571,6 +571,12 @@ impl Desk {
         self.faults.values().cloned().collect()
     }
 
+    /// The world's own files are wrong: nobody can bake them. It is the first of the errors.
+    pub fn is_hindered(&self) -> bool {
+        let faults = [Fault::Space, Fault::Population, Fault::Folder];
+        faults.iter().any(|fault| self.faults.contains_key(fault))
+    }
+
     /// A landscape's name, if a population says it.
     pub fn name(&self, view: usize) -> Option<&str> {
         Some(self.population.as_ref()?.individuals[view].name.as_str())
@@ -652,6 +658,20 @@ fn ballots(running: &RunningVotes) -> Ballots {
 mod tests {
     use super::*;
     use genescape_bake::world::World;
+
+    #[test]
+    fn a_mistake_in_the_first_file_is_told_until_it_is_mended() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join(names::population(0));
+        World::open_or_create(folder.path()).expect("a world").begin().expect("its first generation");
+        let good = std::fs::read_to_string(&path).expect("there");
+        std::fs::write(&path, "Population(").expect("written");
+        let mut desk = Desk::open(Source::World(folder.path().to_owned()), &WorldSettings::default());
+        assert!(desk.is_hindered() && desk.errors()[0].report.contains("g0000.ron:1:"));
+        std::fs::write(&path, good).expect("written");
+        desk.changed(Change::Population(0));
+        assert!(!desk.is_hindered() && desk.errors().is_empty());
+    }
 
     #[test]
     fn a_new_generation_comes_on_show_whichever_change_is_told_first() {

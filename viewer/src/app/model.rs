@@ -74,7 +74,7 @@ fn situation(parts: &Parts<'_>, views: &[ViewModel]) -> Situation {
         return Situation::Ready;
     }
     let failed = views.iter().all(|view| matches!(view.state, ViewState::Failed { .. }));
-    if let (true, Some(error)) = (failed, parts.desk.errors().first()) {
+    if let (true, Some(error)) = (failed || parts.desk.is_hindered(), parts.desk.errors().first()) {
         return Situation::Stuck {
             title: "Nothing to show".to_owned(),
             what: error.report.clone(),
