@@ -301,16 +301,14 @@ fn a_baker_that_is_killed_leaves_the_viewer_going_and_another_bakes_the_rest() {
     let Some(stage) = Stage::set() else { return };
     let mut viewer = stage.viewer(&["--no-bake", "--size", "640x480"]);
     viewer.until("an empty world is told", |viewer| viewer.get("screen", "situation") == "stuck");
-    let mut baker = baker(stage.files.root());
+    let baker = baker(stage.files.root());
     let baked = |files: &WorldFiles| (0..4).filter(|scene| files.scene_path(0, *scene).is_file()).count();
     let start = Instant::now();
     while baked(&stage.files) == 0 {
         assert!(start.elapsed() < Duration::from_secs(180), "nothing is baked");
         std::thread::sleep(Duration::from_millis(2));
     }
-    // SIGKILL: it has no time to tidy up.
-    baker.kill().expect("our child");
-    baker.wait().expect("our child");
+    drop(baker);
     let before = baked(&stage.files);
     assert!(before < 4, "it had done everything already");
     let shown = |viewer: &Viewer| viewer.landscapes.iter().filter(|one| one["generation"] == 0).count();
@@ -319,12 +317,11 @@ fn a_baker_that_is_killed_leaves_the_viewer_going_and_another_bakes_the_rest() {
     assert_eq!(*viewer.get("errors", "count"), 0);
     stage.display.picture().save("10-baker-killed.png");
 
-    let mut second = self::baker(stage.files.root());
+    let second = self::baker(stage.files.root());
     viewer.until("another baker's landscapes", |viewer| viewer.shows(0));
     viewer.frames(2);
     stage.look("11-second-baker.png");
-    second.kill().expect("our child");
-    second.wait().expect("our child");
+    drop(second);
     viewer.frames(3);
     assert_eq!(viewer.quit(&stage.display).code(), Some(0));
 }
@@ -332,16 +329,27 @@ fn a_baker_that_is_killed_leaves_the_viewer_going_and_another_bakes_the_rest() {
 /// Says to this program that it is a baker.
 const BAKES: &str = "GENESCAPE_TEST_BAKES";
 
+/// A baker's process; it ends with this value, by SIGKILL: it has no time to tidy up.
+struct Baker(Child);
+
+impl Drop for Baker {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
 /// `bake --watch` in a process of its own: this very program, for the viewer's tests have no other at hand.
-fn baker(world: &Path) -> Child {
-    Command::new(std::env::current_exe().expect("this program"))
+fn baker(world: &Path) -> Baker {
+    let process = Command::new(std::env::current_exe().expect("this program"))
         .args(["--exact", "acts_as_a_baker", "--nocapture"])
         .env(BAKES, world)
         .stdin(Stdio::null())
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
-        .expect("this program once more")
+        .expect("this program once more");
+    Baker(process)
 }
 
 /// No test: what the process of [`baker`] does.
