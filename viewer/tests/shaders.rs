@@ -1,5 +1,5 @@
 //! Shaders are valid, and what they call a structure, an attribute or a constant is what Rust calls it: by name, place
-//! and size. Nothing is drawn.
+//! and size. Nounusedg is drawn.
 
 use std::mem::{offset_of, size_of};
 
@@ -111,7 +111,7 @@ fn uniforms_are_laid_out_alike() {
     same!(
         ["trees", "shadow"],
         "Material",
-        MaterialUniform { factor, alpha_cutoff, thin, has_color, has_normal }
+        MaterialUniform { factor, alpha_cutoff, unused, has_color, has_normal }
     );
 }
 

@@ -12,7 +12,7 @@ struct Tree {
 struct Material {
     factor: vec4f,
     alpha_cutoff: f32,
-    thin: f32,
+    unused: f32,
     has_color: f32,
     has_normal: f32,
 }

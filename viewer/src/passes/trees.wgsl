@@ -10,8 +10,7 @@ struct Tree {
 struct Material {
     factor: vec4f,
     alpha_cutoff: f32,
-    // 1 if light passes through (leaves and blossoms).
-    thin: f32,
+    unused: f32,
     has_color: f32,
     has_normal: f32,
 }

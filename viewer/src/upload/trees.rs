@@ -70,8 +70,8 @@ pub struct MaterialUniform {
     pub factor: [f32; 4],
     /// Below this alpha nothing is drawn.
     pub alpha_cutoff: f32,
-    /// 1 if light passes through.
-    pub thin: f32,
+    /// Unused.
+    pub unused: f32,
     /// 1 if there is a colour texture.
     pub has_color: f32,
     /// 1 if there is a normal texture.
@@ -155,7 +155,7 @@ impl Uploader {
         let uniform = MaterialUniform {
             factor: material.color_factor,
             alpha_cutoff: material.alpha_cutoff.unwrap_or(0.0),
-            thin: flag(material.alpha_cutoff.is_some()),
+            unused: 0.0,
             has_color: flag(material.color.is_some()),
             has_normal: flag(material.normal.is_some()),
         };

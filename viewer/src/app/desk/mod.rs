@@ -1,6 +1,10 @@
 //! What the person works on: a world's files, the generation on show, votes, genes, and how the bake gets on. Takes
 //! events and changes of files, writes what the person decides, and says what has to be shown.
 
+mod running_votes;
+mod shown;
+mod source;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -11,54 +15,13 @@ use genescape_schema::{Category, Genome, INDIVIDUALS, Parent, Population, Space,
 use crate::baker;
 use crate::event::{Ballot, Ballots};
 use crate::history::{Edit, History};
-use crate::settings::{RunningVotes, WorldSettings};
+use crate::settings::WorldSettings;
 use crate::ui::Tone;
-use crate::ui::model::{Baking, FileError, Genes, StageEntry, ViewState};
+use crate::ui::model::{Baking, FileError, StageEntry};
 use crate::world_files::WorldFiles;
 use crate::world_watch::Change;
-
-/// Where landscapes come from.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Source {
-    /// A world folder, with populations and a bake.
-    World(PathBuf),
-    /// Scene files only: what was baked elsewhere.
-    Scenes(Vec<PathBuf>),
-}
-
-impl Source {
-    /// What a folder or file is, that was named or dropped. A text for people if it is nothing of ours.
-    pub fn of(path: &Path) -> Result<Self, String> {
-        let of_gltf = path.extension().is_some_and(|ending| ending == "gltf" || ending == "glb");
-        if of_gltf || path.is_file() {
-            return match (of_gltf, path.is_file()) {
-                (true, true) => Ok(Self::Scenes(vec![path.to_owned()])),
-                (true, false) => Err(format!("there is no file {}", path.display())),
-                (false, _) => Err(format!("{} is no scene.gltf", path.display())),
-            };
-        }
-        if path.join(names::POPULATIONS).is_dir() || !path.exists() {
-            return Ok(Self::World(path.to_owned()));
-        }
-        let single = path.join("scene.gltf");
-        if single.is_file() {
-            return Ok(Self::Scenes(vec![single]));
-        }
-        let numbered = (0..INDIVIDUALS).map(|index| path.join(format!("scene-{index}/scene.gltf")));
-        let scenes: Vec<PathBuf> = numbered.filter(|scene| scene.is_file()).collect();
-        if !scenes.is_empty() {
-            return Ok(Self::Scenes(scenes));
-        }
-        let empty = std::fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_none());
-        if empty {
-            return Ok(Self::World(path.to_owned()));
-        }
-        Err(format!(
-            "{} is neither a world nor a baked folder: it has no population/ and no scene.gltf",
-            path.display()
-        ))
-    }
-}
+use running_votes::{ballots, running};
+pub use source::Source;
 
 /// A step that can be taken back.
 #[derive(Clone, Debug, PartialEq)]
@@ -542,116 +505,6 @@ impl Desk {
             Step::Bred { from, .. } => format!("breeding from generation {from}"),
         })
     }
-}
-
-/// What the user interface shows of the desk.
-impl Desk {
-    /// The generation on show, and all that exist.
-    pub fn generations(&self) -> (u32, &[u32]) {
-        (self.generation, &self.generations)
-    }
-
-    /// What was voted so far.
-    pub fn ballots(&self) -> Ballots {
-        self.ballots
-    }
-
-    /// How the bake gets on.
-    pub fn baking(&self) -> Option<Baking> {
-        self.baking.clone()
-    }
-
-    /// What became of each stage.
-    pub fn bake_log(&self) -> &[StageEntry] {
-        &self.bake_log
-    }
-
-    /// What is wrong.
-    pub fn errors(&self) -> Vec<FileError> {
-        self.faults.values().cloned().collect()
-    }
-
-    /// The world's own files are wrong: nobody can bake them. It is the first of the errors.
-    pub fn is_hindered(&self) -> bool {
-        let faults = [Fault::Space, Fault::Population, Fault::Folder];
-        faults.iter().any(|fault| self.faults.contains_key(fault))
-    }
-
-    /// A landscape's name, if a population says it.
-    pub fn name(&self, view: usize) -> Option<&str> {
-        Some(self.population.as_ref()?.individuals[view].name.as_str())
-    }
-
-    /// How a view stands.
-    pub fn state(&self, view: usize) -> ViewState {
-        if let Some(fault) = self.faults.get(&Fault::Scene(view)) {
-            let remedy = "Bake it again, or mend what the message names".to_owned();
-            return ViewState::Failed { what: fault.report.clone(), remedy };
-        }
-        let complete = self.shown[view] == Some(self.generation);
-        match (&self.baking, self.faults.get(&Fault::Bake)) {
-            (_, _) if complete => ViewState::Ready,
-            (Some(baking), _) => {
-                let (done, stage) = &self.scene_progress[view];
-                let total = if baking.total == 0 { 0 } else { (baking.total / INDIVIDUALS).max(*done) };
-                ViewState::Baking { done: *done, total, stage: stage.clone() }
-            }
-            (None, Some(fault)) => ViewState::Failed {
-                what: fault.report.clone(),
-                remedy: "Try again, or run bake in a terminal to learn more".to_owned(),
-            },
-            (None, None) => ViewState::Baking { done: 0, total: 0, stage: String::new() },
-        }
-    }
-
-    /// Whether a view waits for a scene that is there to be read.
-    pub fn awaits_scenes(&self) -> bool {
-        let wanted = match &self.source {
-            Source::World(_) => INDIVIDUALS,
-            Source::Scenes(scenes) => scenes.len().min(INDIVIDUALS),
-        };
-        (0..wanted).any(|view| {
-            self.shown[view] != Some(self.generation) && !self.faults.contains_key(&Fault::Scene(view))
-        })
-    }
-
-    /// Genes of the four landscapes; none before a population is read.
-    pub fn genes(&self) -> Option<Genes> {
-        let population = self.population.as_ref()?;
-        let now = population.individuals.each_ref().map(|one| one.genome.clone());
-        Some(Genes {
-            space: self.space.clone(),
-            bred: self.bred.clone().unwrap_or_else(|| now.clone()),
-            now,
-            locked: population.locked.clone(),
-            locked_categories: Category::ALL.map(|category| population.locked.contains(category.name())),
-        })
-    }
-}
-
-/// Votes as they are kept between runs; none while nobody has voted.
-fn running(generation: u32, ballots: &Ballots) -> Option<RunningVotes> {
-    let mut cast = BTreeMap::new();
-    for category in Category::ALL {
-        match ballots.get(category) {
-            Ballot::Open => {}
-            Ballot::Nobody => drop(cast.insert(category.name().to_owned(), None)),
-            Ballot::For(best) => drop(cast.insert(category.name().to_owned(), Some(best))),
-        }
-    }
-    (!cast.is_empty()).then_some(RunningVotes { generation, cast })
-}
-
-fn ballots(running: &RunningVotes) -> Ballots {
-    let mut ballots = Ballots::default();
-    for category in Category::ALL {
-        match running.cast.get(category.name()) {
-            None => {}
-            Some(Some(best)) if *best < INDIVIDUALS => ballots.set(category, Ballot::For(*best)),
-            Some(_) => ballots.set(category, Ballot::Nobody),
-        }
-    }
-    ballots
 }
 
 #[cfg(test)]
