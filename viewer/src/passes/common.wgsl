@@ -122,6 +122,9 @@ const WIND_M_PER_S: vec2f = vec2f(9.0, 4.0);
 const CYCLE_S: f32 = 200.0;
 
 fn drift() -> Drift {
+    if ((view.flags & FLAG_DRIFT) == 0u) {
+        return Drift(vec2f(0.0), vec2f(0.0), 1.0);
+    }
     let first = fract(view.time_s / CYCLE_S + 0.5) - 0.5;
     let second = fract(view.time_s / CYCLE_S) - 0.5;
     // Most of the time only one of the two is seen.
@@ -142,21 +145,20 @@ fn cloud_difference(direction: vec3f) -> vec3f {
     return painted - textureSampleLevel(clear_cube, clamped, direction, 0.0).rgb;
 }
 
-// The sky in a direction, without the sun's disc: the painted clouds, drifting if that is wished for.
+// The sky in a direction, without the sun's disc: the painted clouds, drifting if that is wished for. At the horizon they
+// stand still. A loop, because Mesa's software driver leaves a loop early but takes both ways of an `if`.
 fn sky_radiance(direction: vec3f) -> vec3f {
-    if ((view.flags & FLAG_DRIFT) == 0u || direction.y < 0.005) {
-        return textureSampleLevel(sky_cube, clamped, direction, 0.0).rgb;
-    }
     let d = drift();
-    var clouds = vec3f(0.0);
-    if (d.share > 0.0) {
-        clouds += d.share * cloud_difference(before_drift(direction, d.first));
+    let lift = smoothstep(0.005, 0.06, direction.y);
+    var radiance = textureSampleLevel(clear_cube, clamped, direction, 0.0).rgb;
+    let first = select(0, 1, d.share <= 0.0);
+    let last = select(2, 1, d.share >= 1.0);
+    for (var copy = first; copy < last; copy++) {
+        let moved = select(d.second, d.first, copy == 0) * lift;
+        let share = select(1.0 - d.share, d.share, copy == 0);
+        radiance += share * cloud_difference(before_drift(direction, moved));
     }
-    if (d.share < 1.0) {
-        clouds += (1.0 - d.share) * cloud_difference(before_drift(direction, d.second));
-    }
-    let clear = textureSampleLevel(clear_cube, clamped, direction, 0.0).rgb;
-    return max(clear + clouds, vec3f(0.0));
+    return max(radiance, vec3f(0.0));
 }
 
 fn sheet_alpha(image: texture_2d<f32>, direction: vec3f, altitude: f32, extent: f32, moved: vec2f) -> f32 {
@@ -169,10 +171,7 @@ fn sheet_alpha(image: texture_2d<f32>, direction: vec3f, altitude: f32, extent: 
 
 // Share of the sun's disc that clouds let through.
 fn sun_clearness() -> f32 {
-    var moved = vec2f(0.0);
-    if ((view.flags & FLAG_DRIFT) != 0u) {
-        moved = drift().first;
-    }
+    let moved = drift().first;
     let low = sheet_alpha(cumulus_sheet, view.sun_direction, view.clouds.x, view.clouds.y, moved);
     let high = sheet_alpha(cirrus_sheet, view.sun_direction, view.clouds.z, view.clouds.w, moved);
     return (1.0 - low) * (1.0 - 0.7 * high);

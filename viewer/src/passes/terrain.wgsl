@@ -145,11 +145,13 @@ fn look(k: u32, at: Surface, parts: array<f32, 5>, far: f32) -> Tiles {
     let shorter = less_stretched(dx, dy);
     dx *= shorter.x;
     dy *= shorter.y;
-    let factor = textureSampleGrad(details, repeating, p, layer, dx, dy).rgb * (255.0 / 128.0);
+    var factor = textureSampleGrad(details, repeating, p, layer, dx, dy).rgb * (255.0 / 128.0);
     var bump = textureSampleGrad(detail_normals, repeating, p, layer, dx, dy).xyz * 2.0 - 1.0;
     if (wide) {
         // v runs against the bitangent: normals turn back the other way.
-        bump = vec3f(turn * bump.xy, bump.z);
+        // And fainter: from afar it stands for patches, not for giant blades and pebbles.
+        bump = vec3f(turn * bump.xy * 0.4, bump.z);
+        factor = mix(vec3f(1.0), factor, 0.45);
     }
     var copy = parts;
     let share = copy[layer] * array<f32, 3>(at.sides.y, at.sides.x, at.sides.z)[axis] * select(1.0 - far, far, wide);
