@@ -5,7 +5,7 @@ mod running_votes;
 mod shown;
 mod source;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -84,6 +84,8 @@ pub struct Desk {
     baking: Option<Baking>,
     scene_progress: [(usize, String); INDIVIDUALS],
     bake_log: Vec<StageEntry>,
+    /// Values of the file on show that were rounded, as they were told.
+    rounded: BTreeSet<String>,
     tasks: Vec<Task>,
 }
 
@@ -110,6 +112,7 @@ impl Desk {
             baking: None,
             scene_progress: Default::default(),
             bake_log: Vec::new(),
+            rounded: BTreeSet::new(),
             tasks: Vec::new(),
             source,
         };
@@ -184,9 +187,11 @@ impl Desk {
     fn read_population(&mut self) {
         match self.files.population(&self.space, self.generation) {
             Ok(loaded) => {
-                for snap in &loaded.snaps {
-                    self.tasks.push(Task::Tell(Tone::Info, snap.to_string()));
-                }
+                // The same file is read again for many reasons; a rounded value is told once.
+                let rounded: BTreeSet<String> = loaded.snaps.iter().map(ToString::to_string).collect();
+                let news: Vec<String> = rounded.difference(&self.rounded).cloned().collect();
+                news.into_iter().for_each(|text| self.tell(Tone::Info, text));
+                self.rounded = rounded;
                 if self.bred.is_none() {
                     self.bred = Some(loaded.population.individuals.each_ref().map(|one| one.genome.clone()));
                 }
