@@ -161,6 +161,10 @@ impl Desk {
     }
 
     fn fault(&mut self, kind: Fault, title: impl Into<String>, report: impl Into<String>) {
+        // Whoever bakes says the same of a person's files; with the files it is told better, whichever comes first.
+        if matches!(kind, Fault::Space | Fault::Population) {
+            self.faults.remove(&Fault::Bake);
+        }
         self.faults.insert(kind, FileError { title: title.into(), report: report.into() });
     }
 
@@ -529,6 +533,28 @@ mod tests {
         std::fs::write(&path, good).expect("written");
         desk.changed(Change::Population(0));
         assert!(!desk.is_hindered() && desk.errors().is_empty());
+    }
+
+    #[test]
+    fn a_mistake_is_told_once_whoever_finds_it_first() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join(names::population(0));
+        World::open_or_create(folder.path()).expect("a world").begin().expect("its first generation");
+        for bake_first in [true, false] {
+            let mut desk = Desk::open(Source::World(folder.path().to_owned()), &WorldSettings::default());
+            let good = std::fs::read_to_string(&path).expect("there");
+            std::fs::write(&path, "Population(").expect("written");
+            let failed = baker::Event::Failed { message: "g0000.ron:1: wrong".into() };
+            if bake_first {
+                desk.baked(failed.clone());
+            }
+            desk.changed(Change::Population(0));
+            if !bake_first {
+                desk.baked(failed);
+            }
+            assert_eq!(desk.errors().len(), 1, "{bake_first}");
+            std::fs::write(&path, good).expect("written");
+        }
     }
 
     #[test]
