@@ -1,5 +1,5 @@
 //! Shaders are valid, and what they call a structure, an attribute or a constant is what Rust calls it: by name, place
-//! and size. Nounusedg is drawn.
+//! and size. Nothing is drawn.
 
 use std::mem::{offset_of, size_of};
 

@@ -294,7 +294,7 @@ impl App {
         let widgets = widgets.map(|told| log::widgets(told, full.pixels_per_point));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         show.record(&mut encoder, &mut screen.painter, &output.views.slots, &frame, &self.pilot);
-        let presented = screen.present(full, encoder, |_| {});
+        let presented = screen.present(full, encoder);
         show.settle();
         self.log.frame(Moment {
             model: &model,
@@ -333,7 +333,11 @@ impl App {
         let rest = match (idle, shared) {
             (true, _) => Duration::from_millis(100),
             (false, true) => frame.min(Duration::from_secs(1)),
-            (false, false) => return live.screen.window.request_redraw(),
+            (false, false) => {
+                // Or a moment that has passed would wake the loop again and again.
+                events.set_control_flow(ControlFlow::Wait);
+                return live.screen.window.request_redraw();
+            }
         };
         events.set_control_flow(ControlFlow::WaitUntil(Instant::now() + rest));
     }

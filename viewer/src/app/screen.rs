@@ -67,13 +67,8 @@ impl Screen {
         self.surface.configure(&self.gpu.device, &self.config);
     }
 
-    /// Paints the user interface and shows it; `commands` have drawn what it shows.
-    pub fn present(
-        &mut self,
-        mut output: egui::FullOutput,
-        mut encoder: wgpu::CommandEncoder,
-        before_submit: impl FnOnce(&mut wgpu::CommandEncoder),
-    ) -> Presented {
+    /// Paints the user interface and shows it; `encoder` has recorded what it shows.
+    pub fn present(&mut self, mut output: egui::FullOutput, mut encoder: wgpu::CommandEncoder) -> Presented {
         self.input.handle_platform_output(&self.window, output.platform_output);
         let pixels_per_point = output.pixels_per_point;
         let shapes = self.ctx.tessellate(output.shapes, pixels_per_point);
@@ -109,7 +104,6 @@ impl Screen {
                 .forget_lifetime();
             self.painter.render(&mut pass, &shapes, &screen);
         }
-        before_submit(&mut encoder);
         self.gpu.queue.submit(uploads.into_iter().chain([encoder.finish()]));
         for id in &output.textures_delta.free {
             self.painter.free_texture(id);

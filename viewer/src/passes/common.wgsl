@@ -52,6 +52,31 @@ const FLAG_MORPH: u32 = 4u;
 @group(0) @binding(9) var heights: texture_2d<f32>;
 @group(0) @binding(10) var light_map: texture_2d<f32>;
 
+// A tree, as `TreeData` in Rust.
+struct Tree {
+    // World from the template's space, by rows.
+    rows: array<vec4f, 3>,
+    template_index: u32,
+    // Greatest singular value of its linear part.
+    scale: f32,
+    pad: vec2f,
+}
+
+// What a part of a tree is made of, as `MaterialUniform` in Rust.
+struct Material {
+    factor: vec4f,
+    alpha_cutoff: f32,
+    unused: f32,
+    has_color: f32,
+    has_normal: f32,
+}
+
+// A point of a template in the world.
+fn from_template(rows: array<vec4f, 3>, point: vec3f) -> vec3f {
+    let local = vec4f(point, 1.0);
+    return vec3f(dot(rows[0], local), dot(rows[1], local), dot(rows[2], local));
+}
+
 const PI: f32 = 3.14159265;
 
 // Light that reaches the eye from `distance` metres: some of it is replaced by the air's own.

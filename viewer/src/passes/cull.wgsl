@@ -23,15 +23,6 @@ struct Cull {
     unused: u32,
 }
 
-struct Tree {
-    // World from the template's space, by rows.
-    rows: array<vec4f, 3>,
-    template_index: u32,
-    // Greatest singular value of its linear part.
-    scale: f32,
-    pad: vec2f,
-}
-
 struct Template {
     center: vec3f,
     radius: f32,
@@ -117,8 +108,7 @@ fn choose(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let kind = trees[index].template_index;
-    let middle = vec4f(templates[kind].center, 1.0);
-    let center = vec3f(dot(trees[index].rows[0], middle), dot(trees[index].rows[1], middle), dot(trees[index].rows[2], middle));
+    let center = from_template(trees[index].rows, templates[kind].center);
     let scale = trees[index].scale;
     let radius = templates[kind].radius * scale;
     if (cull.planes_used != 0u) {

@@ -59,22 +59,10 @@ impl Grass {
             step_mode: wgpu::VertexStepMode::Instance,
             attributes: &CLUMP,
         };
-        let shape = Shape {
-            label: "grass",
-            module: &shaders.module(&gpu.device, "grass")?,
-            vertex: "vertex",
-            fragment: "fragment",
-            buffers: &[Some(buffer)],
-            groups: &[Some(&layouts.view), Some(&layouts.ground)],
-            topology: wgpu::PrimitiveTopology::TriangleList,
-            // A blade has two sides.
-            cull: None,
-            blend: None,
-            depth_write: true,
-            wireframe: false,
-            samples,
-            alpha_to_coverage: false,
-        };
+        let module = shaders.module(&gpu.device, "grass")?;
+        let groups = [Some(&layouts.view), Some(&layouts.ground)];
+        let buffers = [Some(buffer)];
+        let shape = Shape { buffers: &buffers, ..Shape::new("grass", &module, &groups, samples) };
         let blades = 0..BLADES as u16;
         let indices: Vec<u16> =
             blades.flat_map(|blade| BLADE_TRIANGLES.map(|v| blade * BLADE_VERTICES + v)).collect();

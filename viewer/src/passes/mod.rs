@@ -96,7 +96,32 @@ struct Shape<'a> {
     depth_write: bool,
     wireframe: bool,
     samples: u32,
-    alpha_to_coverage: bool,
+}
+
+impl<'a> Shape<'a> {
+    /// Filled triangles with two sides that hide what is behind, from the entry points "vertex" and "fragment": what
+    /// most passes draw.
+    fn new(
+        label: &'a str,
+        module: &'a wgpu::ShaderModule,
+        groups: &'a [Option<&'a wgpu::BindGroupLayout>],
+        samples: u32,
+    ) -> Self {
+        Self {
+            label,
+            module,
+            vertex: "vertex",
+            fragment: "fragment",
+            buffers: &[],
+            groups,
+            topology: wgpu::PrimitiveTopology::TriangleList,
+            cull: None,
+            blend: None,
+            depth_write: true,
+            wireframe: false,
+            samples,
+        }
+    }
 }
 
 /// A pipeline that draws into radiance with reversed depth.
@@ -129,11 +154,7 @@ fn pipeline(device: &wgpu::Device, shape: &Shape<'_>) -> wgpu::RenderPipeline {
             stencil: Default::default(),
             bias: Default::default(),
         }),
-        multisample: wgpu::MultisampleState {
-            count: shape.samples,
-            alpha_to_coverage_enabled: shape.alpha_to_coverage && shape.samples > 1,
-            ..Default::default()
-        },
+        multisample: wgpu::MultisampleState { count: shape.samples, ..Default::default() },
         fragment: Some(wgpu::FragmentState {
             module: shape.module,
             entry_point: Some(shape.fragment),

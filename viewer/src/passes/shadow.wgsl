@@ -2,21 +2,6 @@
 // nothing in it moves. Of closed surfaces only the sides that face away are drawn (Wang & Molnar 1994), so that small
 // shifts of the lit side by a geomorph never shade it.
 
-struct Tree {
-    rows: array<vec4f, 3>,
-    template_index: u32,
-    scale: f32,
-    pad: vec2f,
-}
-
-struct Material {
-    factor: vec4f,
-    alpha_cutoff: f32,
-    unused: f32,
-    has_color: f32,
-    has_normal: f32,
-}
-
 @group(1) @binding(0) var<storage, read> trees: array<Tree>;
 @group(2) @binding(0) var<uniform> material: Material;
 @group(2) @binding(1) var color_map: texture_2d<f32>;
@@ -33,9 +18,7 @@ fn tree(
     @location(4) uv: vec2f,
     @location(8) tree: u32,
 ) -> Out {
-    let rows = trees[tree].rows;
-    let local = vec4f(position, 1.0);
-    let world = vec3f(dot(rows[0], local), dot(rows[1], local), dot(rows[2], local));
+    let world = from_template(trees[tree].rows, position);
     return Out(view.shadow_from_world * vec4f(world, 1.0), uv);
 }
 

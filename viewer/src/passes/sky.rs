@@ -17,21 +17,9 @@ impl Sky {
         shaders: &Shaders,
         samples: u32,
     ) -> Result<Self, ShaderError> {
-        let shape = Shape {
-            label: "sky",
-            module: &shaders.module(device, "sky")?,
-            vertex: "vertex",
-            fragment: "fragment",
-            buffers: &[],
-            groups: &[Some(&layouts.view)],
-            topology: wgpu::PrimitiveTopology::TriangleList,
-            cull: None,
-            blend: None,
-            depth_write: false,
-            wireframe: false,
-            samples,
-            alpha_to_coverage: false,
-        };
+        let module = shaders.module(device, "sky")?;
+        let groups = [Some(&layouts.view)];
+        let shape = Shape { depth_write: false, ..Shape::new("sky", &module, &groups, samples) };
         Ok(Self { pipeline: pipeline(device, &shape) })
     }
 

@@ -111,22 +111,11 @@ impl Pipelines {
         };
         let build =
             |vertex: &str, fragment: &str, buffers: &[Option<wgpu::VertexBufferLayout<'_>>], strip: bool| {
-                let topology = wgpu::PrimitiveTopology::TriangleList;
-                let shape = Shape {
-                    label: vertex,
-                    module,
-                    vertex,
-                    fragment,
-                    buffers,
-                    groups: &[Some(&layouts.view), Some(&layouts.ground)],
-                    topology: if strip { wgpu::PrimitiveTopology::TriangleStrip } else { topology },
-                    cull: Some(wgpu::Face::Back),
-                    blend: None,
-                    depth_write: true,
-                    wireframe,
-                    samples,
-                    alpha_to_coverage: false,
-                };
+                let groups = [Some(&layouts.view), Some(&layouts.ground)];
+                let usual = Shape::new(vertex, module, &groups, samples);
+                let topology = if strip { wgpu::PrimitiveTopology::TriangleStrip } else { usual.topology };
+                let cull = Some(wgpu::Face::Back);
+                let shape = Shape { vertex, fragment, buffers, topology, cull, wireframe, ..usual };
                 pipeline(device, &shape)
             };
         Self {

@@ -47,21 +47,10 @@ impl Trees {
         let module = shaders.module(&gpu.device, "trees")?;
         let build = |wireframe: bool| {
             [("bark", Some(wgpu::Face::Back)), ("leaf", None)].map(|(fragment, cull)| {
-                let shape = Shape {
-                    label: fragment,
-                    module: &module,
-                    vertex: "vertex",
-                    fragment,
-                    buffers: &buffers(),
-                    groups: &[Some(&layouts.view), Some(&layouts.trees), Some(&layouts.material)],
-                    topology: wgpu::PrimitiveTopology::TriangleList,
-                    cull,
-                    blend: None,
-                    depth_write: true,
-                    wireframe,
-                    samples,
-                    alpha_to_coverage: false,
-                };
+                let groups = [Some(&layouts.view), Some(&layouts.trees), Some(&layouts.material)];
+                let buffers = buffers();
+                let usual = Shape::new(fragment, &module, &groups, samples);
+                let shape = Shape { fragment, buffers: &buffers, cull, wireframe, ..usual };
                 pipeline(&gpu.device, &shape)
             })
         };

@@ -1,20 +1,5 @@
 // Trees: the geomorph between D_i and D_{i+1} (thesis 4.3), then light on bark and leaves.
 
-struct Tree {
-    rows: array<vec4f, 3>,
-    template_index: u32,
-    scale: f32,
-    pad: vec2f,
-}
-
-struct Material {
-    factor: vec4f,
-    alpha_cutoff: f32,
-    unused: f32,
-    has_color: f32,
-    has_normal: f32,
-}
-
 @group(1) @binding(0) var<storage, read> trees: array<Tree>;
 @group(2) @binding(0) var<uniform> material: Material;
 @group(2) @binding(1) var color_map: texture_2d<f32>;
@@ -49,8 +34,7 @@ struct Out {
 fn vertex(in: In) -> Out {
     let rows = trees[in.tree].rows;
     let alpha = fract(in.lambda);
-    let local = vec4f(in.position + alpha * in.delta, 1.0);
-    let world = vec3f(dot(rows[0], local), dot(rows[1], local), dot(rows[2], local));
+    let world = from_template(rows, in.position + alpha * in.delta);
     let turned = normalize(mix(octahedral(in.normal), octahedral(in.normal_end), alpha));
     // Normals take the cofactors of the linear part, whose rows are crosses of its rows.
     let normal = vec3f(

@@ -17,21 +17,12 @@ impl Water {
         shaders: &Shaders,
         samples: u32,
     ) -> Result<Self, ShaderError> {
+        let module = shaders.module(device, "water")?;
+        let groups = [Some(&layouts.view)];
         let shape = Shape {
-            label: "water",
-            module: &shaders.module(device, "water")?,
-            vertex: "vertex",
-            fragment: "fragment",
-            buffers: &[],
-            groups: &[Some(&layouts.view)],
-            topology: wgpu::PrimitiveTopology::TriangleList,
-            // A diver sees the surface from below.
-            cull: None,
+            // A diver sees the surface from below, so it has two sides.
             blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-            depth_write: true,
-            wireframe: false,
-            samples,
-            alpha_to_coverage: false,
+            ..Shape::new("water", &module, &groups, samples)
         };
         Ok(Self { pipeline: pipeline(device, &shape) })
     }
