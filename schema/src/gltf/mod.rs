@@ -6,12 +6,14 @@
 //! stays visible (`spacing_m` is `spacingM`). Every list of indices refers to the arrays of the glTF file it stands in.
 
 mod heightfield;
+mod heightfield_data;
 mod instances;
 mod progressive_mesh;
 mod resource;
 mod sky;
 
 pub use heightfield::{GSC_HEIGHTFIELD, GroundDetail, GroundSurface, HeightfieldExtension};
+pub use heightfield_data::{HeightfieldData, HeightfieldError, read_heightfield, write_heightfield};
 pub use instances::{
     GSC_INSTANCES, INSTANCE_BYTES, INSTANCES_HEADER_BYTES, InstanceRecord, InstancesError,
     InstancesExtension, InstancesTemplate, read_instances, write_instances,

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use genescape_schema::gltf::HeightfieldExtension;
+use genescape_schema::gltf::{HeightfieldError, HeightfieldExtension, read_heightfield};
 
 use super::document::Document;
-use super::{LoadError, payload, pictures};
-use crate::scene::{Apron, Detail, Ground, Surface};
+use super::{LoadError, pictures};
+use crate::scene::{Apron, Detail, Ground, Heightfield, Surface};
 
 pub(super) fn read(document: &Document) -> Result<Ground, LoadError> {
     let has = |node: &gltf::Node<'_>| node.extension_value("GSC_heightfield").is_some();
@@ -16,8 +16,7 @@ pub(super) fn read(document: &Document) -> Result<Ground, LoadError> {
     let name = document.name_of(&extension.lod);
     let field = document.store.get(&name, || {
         let bytes = document.bytes(&extension.lod)?;
-        payload::read(&bytes)
-            .map_err(|what| document.wrong(format!("its heightfield {name} is wrong: {what}")))
+        heightfield(&bytes).map_err(|what| document.wrong(format!("its heightfield {name} is wrong: {what}")))
     })?;
     Ok(Ground {
         name,
@@ -25,6 +24,19 @@ pub(super) fn read(document: &Document) -> Result<Ground, LoadError> {
         water_level_m: extension.water_level_m,
         surface: surface(document, &extension)?,
         apron: Arc::new(apron(document)?),
+    })
+}
+
+fn heightfield(bytes: &[u8]) -> Result<Heightfield, HeightfieldError> {
+    let data = read_heightfield(bytes)?;
+    Ok(Heightfield {
+        side: data.side,
+        spacing_m: data.spacing_m,
+        heights_m: data.heights_m.into_owned(),
+        wedgies_m: data.wedgies_m.into_owned(),
+        displacements_m: data.displacements_m.into_owned(),
+        levels: data.levels.into_owned(),
+        block_ranges_m: data.block_ranges_m.into_owned(),
     })
 }
 

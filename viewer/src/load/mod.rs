@@ -3,7 +3,6 @@
 
 mod document;
 mod ground;
-mod payload;
 mod pictures;
 mod store;
 mod trees;

@@ -21,5 +21,5 @@ mod tests;
 pub use apron::WATER_TILE_M;
 pub use data::lod;
 pub use near::{default_error_m, mesh};
-pub use payload::{DecodeError, decode, encode};
+pub use payload::encode;
 pub use verify::max_error_m;

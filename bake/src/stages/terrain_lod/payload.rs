@@ -1,131 +1,20 @@
-//! Heightfield and its level-of-detail data ↔ the binary payload of `GSC_heightfield` (`schema/docs/`).
-//!
-//! Little-endian, no padding but at the end; n = side, k = log2(n−1):
-//!
-//! | byte | type | what |
-//! |---|---|---|
-//! | 0 | 4 × u8 | magic `GSCH` |
-//! | 4 | u32 | version, 1 |
-//! | 8 | u32 | side: samples a side, 2^k+1, k ≥ 1 |
-//! | 12 | f32 | spacing between samples in metres |
-//! | 16 | 2 × f32 | lowest and highest sample in metres |
-//! | 24 | u32 | k: levels of blocks in the block ranges |
-//! | 28 | u32 | 0, reserved |
-//! | 32 | 5 × (u32, u32) | byte offset from the payload's start and byte length of the five arrays that follow |
-//! | 72 | n² × f32 | heights in metres |
-//! | | n² × f32 | wedgie half thicknesses in metres |
-//! | | n² × f32 | displacements in metres |
-//! | | Σ 4^l × 2 × f32, l = 0 … k−1 | lowest and highest height of each block in metres |
-//! | | n² × u8 | level numbers, then zeros up to a multiple of four bytes |
+//! Heightfield and its level-of-detail data → the binary data of `GSC_heightfield`, whose form the schema knows.
 
-use thiserror::Error;
+use std::borrow::Cow;
+
+use genescape_schema::gltf::{HeightfieldData, write_heightfield};
 
 use crate::model::{Heightfield, TerrainLod};
 
-const MAGIC: &[u8; 4] = b"GSCH";
-const VERSION: u32 = 1;
-const HEADER_BYTES: usize = 72;
-/// A field of 2^15+1 samples a side would need more bytes than the offsets can count.
-const GREATEST_K: u32 = 14;
-
-/// Why bytes are no payload of `GSC_heightfield`.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum DecodeError {
-    /// Not ours.
-    #[error("not a GSC_heightfield payload: it does not begin with \"GSCH\"")]
-    Magic,
-    /// From another time.
-    #[error("GSC_heightfield version {0} is unknown; this program reads version {VERSION}")]
-    Version(u32),
-    /// The number of samples or the spacing makes no sense.
-    #[error("GSC_heightfield of {side} samples a side is damaged: sides are 2^k+1 samples, 3 to 16385")]
-    Side {
-        /// What the header says.
-        side: u32,
-    },
-    /// An array lies outside the payload or has the wrong length.
-    #[error(
-        "GSC_heightfield is cut short or damaged: {array} should have {expected} bytes within the payload"
-    )]
-    Array {
-        /// Which.
-        array: &'static str,
-        /// How many bytes it should have.
-        expected: usize,
-    },
-}
-
 /// The payload's bytes.
 pub fn encode(field: &Heightfield, lod: &TerrainLod) -> Vec<u8> {
-    let arrays = [
-        le_bytes(&field.heights_m),
-        le_bytes(&lod.wedgies_m),
-        le_bytes(&lod.displacements_m),
-        le_bytes(lod.block_ranges_m.as_flattened()),
-        lod.levels.clone(),
-    ];
-    let (lowest, highest) = field.range_m();
-    let total = HEADER_BYTES + arrays.iter().map(Vec::len).sum::<usize>();
-    let mut bytes = Vec::with_capacity(total.next_multiple_of(4));
-    bytes.extend(MAGIC);
-    bytes.extend(VERSION.to_le_bytes());
-    bytes.extend(field.side.to_le_bytes());
-    bytes.extend(field.spacing_m.to_le_bytes());
-    bytes.extend(lowest.to_le_bytes());
-    bytes.extend(highest.to_le_bytes());
-    bytes.extend((field.side - 1).trailing_zeros().to_le_bytes());
-    bytes.extend(0_u32.to_le_bytes());
-    let mut offset = HEADER_BYTES;
-    for array in &arrays {
-        bytes.extend((offset as u32).to_le_bytes());
-        bytes.extend((array.len() as u32).to_le_bytes());
-        offset += array.len();
-    }
-    arrays.iter().for_each(|array| bytes.extend(array));
-    bytes.resize(total.next_multiple_of(4), 0);
-    bytes
-}
-
-/// What [`encode`] wrote, exactly.
-///
-/// # Errors
-/// When the bytes are no payload of this version, or are damaged.
-pub fn decode(bytes: &[u8]) -> Result<(Heightfield, TerrainLod), DecodeError> {
-    if !bytes.starts_with(MAGIC) {
-        return Err(DecodeError::Magic);
-    }
-    let header = bytes.get(..HEADER_BYTES);
-    let header = header.ok_or(DecodeError::Array { array: "the header", expected: HEADER_BYTES })?;
-    let word = |at: usize| u32::from_le_bytes([header[at], header[at + 1], header[at + 2], header[at + 3]]);
-    if word(4) != VERSION {
-        return Err(DecodeError::Version(word(4)));
-    }
-    let side = word(8);
-    let cells = side.wrapping_sub(1);
-    if !cells.is_power_of_two() || !(1..=GREATEST_K).contains(&cells.trailing_zeros()) {
-        return Err(DecodeError::Side { side });
-    }
-    let samples = side as usize * side as usize;
-    let blocks = (cells as usize * cells as usize - 1) / 3;
-    let array = |index: usize, array: &'static str, expected: usize| {
-        let (offset, length) = (word(32 + 8 * index) as usize, word(36 + 8 * index) as usize);
-        let found = offset.checked_add(length).and_then(|end| bytes.get(offset..end));
-        found.filter(|found| found.len() == expected).ok_or(DecodeError::Array { array, expected })
-    };
-    let heights_m = floats(array(0, "the heights", 4 * samples)?);
-    let wedgies_m = floats(array(1, "the wedgies", 4 * samples)?);
-    let displacements_m = floats(array(2, "the displacements", 4 * samples)?);
-    let ranges = floats(array(3, "the block ranges", 8 * blocks)?);
-    let block_ranges_m = ranges.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
-    let levels = array(4, "the levels", samples)?.to_vec();
-    let field = Heightfield { side, spacing_m: f32::from_bits(word(12)), heights_m };
-    Ok((field, TerrainLod { wedgies_m, displacements_m, levels, block_ranges_m }))
-}
-
-fn le_bytes(values: &[f32]) -> Vec<u8> {
-    values.iter().flat_map(|value| value.to_le_bytes()).collect()
-}
-
-fn floats(bytes: &[u8]) -> Vec<f32> {
-    bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
+    write_heightfield(&HeightfieldData {
+        side: field.side,
+        spacing_m: field.spacing_m,
+        heights_m: Cow::Borrowed(&field.heights_m),
+        wedgies_m: Cow::Borrowed(&lod.wedgies_m),
+        displacements_m: Cow::Borrowed(&lod.displacements_m),
+        block_ranges_m: Cow::Borrowed(&lod.block_ranges_m),
+        levels: Cow::Borrowed(&lod.levels),
+    })
 }

@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 
 use proptest::prelude::*;
 
+use genescape_schema::gltf::{HeightfieldError as DecodeError, read_heightfield};
+
 use super::*;
-use crate::model::{Heightfield, Landform, Mesh};
+use crate::model::{Heightfield, Landform, Mesh, TerrainLod};
 use crate::noise::fbm2;
 
 fn field(side: u32, spacing_m: f32, seed: u32, relief_m: f32) -> Heightfield {
@@ -91,6 +93,20 @@ fn check_wedgies(field: &Heightfield, wedgies: &[f32], t: bintree::Triangle) -> 
         assert!(own + 1e-4 >= off + below, "nested");
     }
     Some(own)
+}
+
+/// What [`encode`] wrote, as the viewer reads it.
+fn decode(bytes: &[u8]) -> Result<(Heightfield, TerrainLod), DecodeError> {
+    let data = read_heightfield(bytes)?;
+    let field =
+        Heightfield { side: data.side, spacing_m: data.spacing_m, heights_m: data.heights_m.into_owned() };
+    let lod = TerrainLod {
+        wedgies_m: data.wedgies_m.into_owned(),
+        displacements_m: data.displacements_m.into_owned(),
+        levels: data.levels.into_owned(),
+        block_ranges_m: data.block_ranges_m.into_owned(),
+    };
+    Ok((field, lod))
 }
 
 #[test]
