@@ -323,6 +323,24 @@ fn watch_answers_votes_once_and_on_old_generations_too() {
 }
 
 #[test]
+fn a_child_that_is_half_saved_is_not_bred_again() {
+    let world = World::new();
+    let mut watching = Watching::new(&world);
+    watching.next(&["done"]);
+    vote(&world, 0, "Some((tree: Some(0), terrain: Some(1), sky: Some(2)))");
+    assert_eq!(watching.next(&["bred"])["parent"], 0);
+    watching.next(&["done"]);
+    let child = fs::read_to_string(world.population(1)).expect("a child");
+    for half in ["", &child[..child.len() / 2]] {
+        fs::write(world.population(1), half).expect("written");
+        assert_eq!(watching.next(&["failed", "bred"])["event"], "failed");
+    }
+    fs::write(world.population(1), &child).expect("written");
+    assert_eq!(watching.next(&["done", "bred"])["event"], "done");
+    assert!(!world.population(2).exists());
+}
+
+#[test]
 fn a_save_during_a_bake_ends_it_and_what_was_saved_last_is_shown() {
     let world = World::new();
     let mut watching = Watching::new(&world);

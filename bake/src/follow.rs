@@ -11,6 +11,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::Duration;
 
 use anyhow::{Context, Result, anyhow};
 use genescape_schema::{Parent, names, unanswered};
@@ -20,6 +21,10 @@ use crate::inputs::Inputs;
 use crate::run::RunError;
 use crate::session::{Baked, Session};
 use crate::watch::Watch;
+
+/// Some editors save by moving the old file away before they write the new one: a child that is gone for no longer
+/// than this is not bred again.
+const REPLACING: Duration = Duration::from_millis(250);
 
 /// What to follow.
 #[derive(Clone, Debug, Default)]
@@ -112,6 +117,10 @@ impl<'a> Follower<'a> {
     fn look(&mut self, audience: &dyn Audience) -> Result<()> {
         let nothing = Inputs::default();
         let mut now = self.read(self.known.as_ref().unwrap_or(&nothing))?;
+        if self.known.as_ref().is_some_and(|known| now.lacks_some_of(known)) {
+            std::thread::sleep(REPLACING);
+            now = self.read(self.known.as_ref().unwrap_or(&nothing))?;
+        }
         let first = self.known.is_none();
         if !first && self.known.as_ref() == Some(&now) {
             return Ok(());

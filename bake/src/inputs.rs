@@ -27,7 +27,7 @@ pub struct Save {
     pub saved: Option<SystemTime>,
     /// Of its bytes: two saves may fall within one tick of that clock.
     pub digest: Digest,
-    /// Who descends from whom, if the file says so legibly.
+    /// Who descends from whom: what the file says; while it is illegible, what it last said, but without votes.
     pub lineage: Option<Lineage>,
 }
 
@@ -43,8 +43,13 @@ impl Inputs {
         for path in only.map_or_else(|| population_files(root), |path| Ok(vec![path.to_owned()]))? {
             if let Some((bytes, saved)) = read(&path)? {
                 let digest = Digest::of(&bytes);
-                let known = before.populations.get(&path).filter(|known| known.digest == digest);
-                let lineage = known.map_or_else(|| lineage(&bytes), |known| known.lineage);
+                let lineage = match before.populations.get(&path) {
+                    Some(known) if known.digest == digest => known.lineage,
+                    // Half saved, or with a mistake: still the child that it was, lest it be bred again.
+                    known => lineage(&bytes).or(known
+                        .and_then(|known| known.lineage)
+                        .map(|known| Lineage { votes: None, ..known })),
+                };
                 populations.insert(path, Save { saved, digest, lineage });
             }
         }
@@ -55,6 +60,11 @@ impl Inputs {
     pub fn saved_since<'a>(&'a self, before: &'a Self) -> impl Iterator<Item = &'a PathBuf> {
         let changed = |(path, save): &(&PathBuf, &Save)| before.populations.get(*path) != Some(*save);
         self.populations.iter().filter(changed).map(|(path, _)| path)
+    }
+
+    /// A population file of `before` is gone.
+    pub fn lacks_some_of(&self, before: &Self) -> bool {
+        before.populations.keys().any(|path| !self.populations.contains_key(path))
     }
 
     /// Who descends from whom.
@@ -143,6 +153,27 @@ mod tests {
     }
 
     #[test]
+    fn a_child_remains_its_parents_child_while_it_is_illegible() {
+        let folder = world();
+        let child = "(generation: 3, parent: (generation: 0, votes: (sky: 1)), votes: (sky: 2))";
+        fs::write(path(&folder, 3), child).expect("written");
+        let mut before = look(&folder, &Inputs::default());
+        let legible = before.lineages()[1];
+        assert!(legible.parent.is_some() && legible.votes.is_some());
+        for illegible in ["", &child[..30], "(generation: -1)"] {
+            fs::write(path(&folder, 3), illegible).expect("written");
+            before = look(&folder, &before);
+            assert_eq!(before.lineages()[1], Lineage { votes: None, ..legible }, "{illegible}");
+        }
+        fs::write(path(&folder, 3), child.replace("sky: 1", "sky: 0")).expect("written");
+        assert_ne!(
+            look(&folder, &before).lineages()[1].parent,
+            legible.parent,
+            "legible again: what it says"
+        );
+    }
+
+    #[test]
     fn one_file_alone_may_matter() {
         let folder = world();
         let only = path(&folder, 0);
@@ -150,6 +181,7 @@ mod tests {
         assert_eq!(inputs.populations.keys().collect::<Vec<_>>(), [&only]);
         fs::remove_file(&only).expect("removed");
         let gone = Inputs::read(folder.path(), Some(&only), &inputs).expect("readable");
-        assert!(gone.populations.is_empty() && gone != inputs);
+        assert!(gone.populations.is_empty() && gone != inputs && gone.lacks_some_of(&inputs));
+        assert!(!inputs.lacks_some_of(&gone));
     }
 }

@@ -5,7 +5,7 @@
 //! [`crate::model::Heightfield`].
 //!
 //! - [`lod`]: wedgies, displacements, level numbers and block height ranges (thesis 3.2.1 and 3.2.2);
-//! - [`encode`] and [`decode`]: the same as the payload of `GSC_heightfield`;
+//! - [`encode`]: the same as the payload of `GSC_heightfield`, which the schema reads back;
 //! - [`mesh`]: the land as triangles for any viewer, within a verified error bound.
 
 mod apron;
