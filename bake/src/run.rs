@@ -126,8 +126,11 @@ impl Runner<'_> {
         let board = Board::new(plan);
         std::thread::scope(|scope| {
             // One more than compute: while one stores its results, the others keep the pool busy.
-            for _ in 0..=self.pool.current_num_threads() {
-                scope.spawn(|| self.executor(plan, &board));
+            let executor = |_| scope.spawn(|| self.executor(plan, &board));
+            let executors: Vec<_> = (0..=self.pool.current_num_threads()).map(executor).collect();
+            for executor in executors {
+                // With its own message, where the scope would only say that there was one.
+                executor.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
             }
         });
         let state = board.state.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -139,6 +142,7 @@ impl Runner<'_> {
 
     fn executor(&self, plan: &Plan, board: &Board) {
         while let Some((id, inputs)) = board.take(plan) {
+            let _turn = Turn(board);
             let node = &plan.nodes[id];
             let result = if (self.cancelled)() {
                 Err(RunError::Cancelled)
@@ -230,6 +234,20 @@ struct State {
     ready: BinaryHeap<Reverse<NodeId>>,
     running: usize,
     error: Option<RunError>,
+    /// An executor panicked.
+    abandoned: bool,
+}
+
+/// An executor at work on a node: were it to panic, the others must not wait for it for ever.
+struct Turn<'a>(&'a Board);
+
+impl Drop for Turn<'_> {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.0.lock().abandoned = true;
+            self.0.changed.notify_all();
+        }
+    }
 }
 
 impl Board {
@@ -241,7 +259,7 @@ impl Board {
         let waiting: Vec<usize> = plan.nodes.iter().map(|node| node.inputs.len()).collect();
         let ready = (0..plan.nodes.len()).filter(|&id| waiting[id] == 0).map(Reverse).collect();
         let done = vec![None; plan.nodes.len()];
-        let state = State { done, waiting, readers, ready, running: 0, error: None };
+        let state = State { done, waiting, readers, ready, running: 0, error: None, abandoned: false };
         Self { state: Mutex::new(state), changed: Condvar::new() }
     }
 
@@ -253,7 +271,7 @@ impl Board {
     fn take(&self, plan: &Plan) -> Option<(NodeId, Vec<Done>)> {
         let mut state = self.lock();
         loop {
-            if state.error.is_some() {
+            if state.error.is_some() || state.abandoned {
                 return None;
             }
             if let Some(Reverse(id)) = state.ready.pop() {
@@ -304,5 +322,48 @@ impl Board {
         }
         drop(state);
         self.changed.notify_all();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    use genescape_schema::{Population, Space};
+
+    use super::*;
+    use crate::plan::Resolution;
+    use crate::world::STARTER_RON;
+
+    /// Falls over the first stage that is done.
+    #[derive(Default)]
+    struct Clumsy(AtomicBool);
+
+    impl Listener for Clumsy {
+        fn tell(&self, event: &Event) {
+            let done = matches!(event, Event::Finished { .. });
+            assert!(!done || self.0.swap(true, Ordering::SeqCst), "fell over a stage");
+        }
+    }
+
+    #[test]
+    fn a_panic_beside_the_stages_ends_the_run_with_its_own_words() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let cache = Cache::open(folder.path()).expect("a cache");
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
+        let space = Space::builtin();
+        let population = Population::load(&space, "starter.ron", STARTER_RON).expect("valid").population;
+        let side = Resolution::of_side(65).expect("a side");
+        let plan = Plan::new(&space, &population, side).expect("a plan");
+        let runner = Runner {
+            cache: &cache,
+            pool: &pool,
+            listener: &Clumsy::default(),
+            cancelled: &|| false,
+            scene_ready: &|_, _| Ok(()),
+        };
+        let panic = catch_unwind(AssertUnwindSafe(|| runner.run(&plan))).expect_err("it panics");
+        assert_eq!(panic.downcast_ref::<&str>(), Some(&"fell over a stage"));
     }
 }
