@@ -59,6 +59,8 @@ impl Default for Window {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct WorldSettings {
+    /// Where the person was last.
+    pub place: Option<Bookmark>,
     /// Places to go back to, by the number of their key.
     pub bookmarks: BTreeMap<u8, Bookmark>,
     /// Votes that were cast and not yet written into the population's file.

@@ -108,12 +108,14 @@ fn the_first_landscapes_grow(stage: &Stage, viewer: &mut Viewer) {
     stage.look("1-start.png");
 }
 
+/// Where the camera is, and where it looks.
+fn place(viewer: &Viewer) -> [f64; 4] {
+    ["x_m", "z_m", "yaw_rad", "pitch_rad"].map(|key| viewer.get("pose", key).as_f64().expect("a pose"))
+}
+
 fn somebody_walks_and_looks_around(stage: &Stage, viewer: &mut Viewer) {
     let display = &stage.display;
     let before = display.picture();
-    let place = |viewer: &Viewer| {
-        ["x_m", "z_m", "yaw_rad", "pitch_rad"].map(|key| viewer.get("pose", key).as_f64().expect("a pose"))
-    };
     let start = place(viewer);
     display.key(keys::W, true);
     viewer.until("somebody walks", |viewer| {
@@ -275,12 +277,13 @@ fn the_window_changes_its_size(stage: &Stage, viewer: &mut Viewer) {
     stage.look("8-large-again.png");
 }
 
-/// What was chosen is there again after a second start, and the window is as it was.
+/// What was chosen is there again after a second start, and the window and the walker are as they were.
 fn it_ends_and_remembers(stage: &Stage, mut viewer: Viewer) {
     stage.display.tap(keys::F5);
     viewer.until("another scheme", |viewer| viewer.get("wish", "wish") == "CycleTreeScheme");
     stage.display.resize(viewer.window, [600, 440]);
     viewer.until("another size", |viewer| *viewer.get("screen", "size_px") == json!([600, 440]));
+    let left = place(&viewer);
     assert_eq!(viewer.quit(&stage.display).code(), Some(0));
     let kept = SettingsFile::open(stage.path("settings.ron"));
     assert_eq!(kept.problem, None);
@@ -292,6 +295,8 @@ fn it_ends_and_remembers(stage: &Stage, mut viewer: Viewer) {
     assert_eq!(*viewer.get("ballots", "tree"), 0);
     assert_eq!(*viewer.get("ballots", "sky"), "nobody");
     viewer.frames(2);
+    let found = place(&viewer);
+    assert!(left.iter().zip(found).all(|(left, found)| (left - found).abs() < 0.01), "{left:?} {found:?}");
     stage.display.picture().save("9-second-start.png");
     assert_eq!(viewer.quit(&stage.display).code(), Some(0));
 }

@@ -142,9 +142,10 @@ impl App {
             or_default("bindings", error);
             None
         });
-        let (pilot, problem) = Pilot::new(bindings.unwrap_or_default());
+        let (mut pilot, problem) = Pilot::new(bindings.unwrap_or_default());
         notices.extend(problem.map(|problem| (Tone::Info, problem)));
         let kept = settings.worlds.get(&world_key(&start.source)).cloned().unwrap_or_default();
+        pilot.return_to(kept.place.as_ref());
         let mut app = Self {
             desk: Desk::open(start.source.clone(), &kept),
             comfort: comfort.unwrap_or_default(),
@@ -208,6 +209,7 @@ impl App {
         self.start.source = source;
         let kept = self.settings.worlds.get(&world_key(&self.start.source)).cloned().unwrap_or_default();
         self.desk = Desk::open(self.start.source.clone(), &kept);
+        self.pilot.return_to(kept.place.as_ref());
         if let Some(live) = &mut self.live {
             live.show.clear();
         }
@@ -371,6 +373,10 @@ impl App {
         let key = world_key(&self.start.source);
         let mut kept = self.settings.worlds.get(&key).cloned().unwrap_or_default();
         self.desk.keep(&mut kept);
+        // Not at every step of a walk, or the file would be written for as long as it goes.
+        if self.desk.world().is_some() {
+            kept.place = self.pilot.rested_at().or(kept.place);
+        }
         if kept != Default::default() || self.settings.worlds.contains_key(&key) {
             self.settings.worlds.insert(key, kept);
         }

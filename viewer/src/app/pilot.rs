@@ -23,6 +23,8 @@ pub struct Pilot {
     captured: bool,
     /// A walk has begun: the place is the person's, no longer ours to choose.
     begun: bool,
+    /// Nothing was held at the last step.
+    resting: bool,
     #[cfg(feature = "gamepad")]
     gamepads: crate::gamepad::Gamepads,
 }
@@ -40,6 +42,7 @@ impl Pilot {
             bindings,
             captured: false,
             begun: false,
+            resting: true,
             #[cfg(feature = "gamepad")]
             gamepads,
         };
@@ -76,7 +79,8 @@ impl Pilot {
         };
         #[cfg(not(feature = "gamepad"))]
         let asked = Vec::new();
-        self.begun |= controls != Default::default();
+        self.resting = controls == Default::default();
+        self.begun |= !self.resting;
         let usual = Feel::default();
         let feel = Feel {
             mouse_rad: usual.mouse_rad * comfort.mouse_sensitivity,
@@ -119,6 +123,11 @@ impl Pilot {
         }
     }
 
+    /// The place to come back to at the next start: where somebody who has moved came to rest.
+    pub fn rested_at(&self) -> Option<Bookmark> {
+        (self.begun && self.resting).then(|| self.bookmark())
+    }
+
     /// Goes to a remembered place.
     pub fn go_to(&mut self, mark: &Bookmark, lands: &[Arc<Land>]) {
         self.begun = true;
@@ -133,6 +142,14 @@ impl Pilot {
             ..Pose::default()
         };
         self.rig.go(pose, &borrowed(lands));
+    }
+
+    /// Before landscapes are there: goes to where the person was last, if they were; else the place is ours to choose.
+    pub fn return_to(&mut self, place: Option<&Bookmark>) {
+        self.begun = false;
+        if let Some(place) = place {
+            self.go_to(place, &[]);
+        }
     }
 
     /// A key went down or up.
