@@ -67,8 +67,8 @@ pub struct Cli {
     #[arg(long)]
     pub all: bool,
 
-    /// With --screenshot: where the eye is. X and Z in metres east and south of the middle, HEIGHT above the ground,
-    /// YAW to the left of north and PITCH upwards in degrees [default: where walks start]
+    /// With --screenshot: where the eye is. X and Z in metres east and south of the middle, HEIGHT above the ground
+    /// and never under water, YAW to the left of north and PITCH upwards in degrees [default: where walks start]
     #[arg(long, value_name = "X,Z,HEIGHT,YAW,PITCH", value_parser = place, allow_hyphen_values = true)]
     pub camera: Option<Place>,
 

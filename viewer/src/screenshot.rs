@@ -159,9 +159,10 @@ pub(crate) fn scene_files(source: &Source) -> Result<Vec<PathBuf>> {
 
 fn camera(cli: &Cli, rig: &Rig, land: &Land, fov_y_rad: f32) -> Camera {
     let Some(place) = cli.camera else { return rig.camera(land, fov_y_rad) };
-    let ground_m = land.ground_m(Vec2::new(place.x_m, place.z_m));
+    let place_m = Vec2::new(place.x_m, place.z_m);
+    let height_m = (land.ground_m(place_m) + place.height_m).max(land.floor_m(place_m));
     Camera {
-        position_m: Vec3::new(place.x_m, ground_m + place.height_m, place.z_m),
+        position_m: Vec3::new(place.x_m, height_m, place.z_m),
         yaw_rad: place.yaw_deg.to_radians(),
         pitch_rad: place.pitch_deg.to_radians(),
         fov_y_rad,

@@ -118,7 +118,7 @@ pub fn detail(
     }
 }
 
-/// Replaces `blocks` by those to draw, those that `frustum` doesn't see left out.
+/// Replaces `blocks` by those to draw, those that `frustum` doesn't see left out; none is hidden by a later one.
 pub fn select(
     field: &Heightfield,
     detail: &Detail,
@@ -172,7 +172,10 @@ impl Selection<'_> {
             self.blocks.push(block);
             return;
         }
-        for quarter in 0..4 {
+        // The nearest first, so that what it hides costs no light.
+        let (middle_m, eye_m) = (0.5 * (low_m + high_m), self.detail.eye_m);
+        let nearest = u32::from(eye_m.x > middle_m.x) | u32::from(eye_m.y > middle_m.z) << 1;
+        for quarter in (0..4).map(|turn| nearest ^ turn) {
             let (i, j) = (block.i + (quarter & 1) * size / 2, block.j + (quarter >> 1) * size / 2);
             self.visit(Block { i, j, level: block.level - 1 });
         }

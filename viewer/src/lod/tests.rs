@@ -139,6 +139,22 @@ proptest! {
             prop_assert!(lambda >= level - 1e-4 && lambda <= level + 2.0 + 1e-4, "{lambda} in {block:?}");
         }
     }
+
+    #[test]
+    fn whoever_looks_along_the_land_meets_blocks_in_their_order(eye in eye(), yaw in -4f32..4.) {
+        let field = Heightfield { side: 1025, spacing_m: 1.0, ..Heightfield::default() };
+        let detail = detail_at(&field, eye * field.extent_m(), 1.0);
+        let mut blocks = Vec::new();
+        quadtree::select(&field, &detail, None, &mut blocks);
+        let holds = |block: &Block, place_m: Vec2| {
+            let side = 16u32 << block.level;
+            let [low, high] = [0, side].map(|by| Vec2::new(field.place_m(block.i + by), field.place_m(block.j + by)));
+            place_m.cmpgt(low).all() && place_m.cmplt(high).all()
+        };
+        let places_m = (1..3000u32).map(|step| detail.eye_m + Vec2::from_angle(yaw) * (step as f32 * 0.5));
+        let met: Vec<usize> = places_m.filter_map(|at| blocks.iter().position(|block| holds(block, at))).collect();
+        prop_assert!(met.is_sorted(), "{met:?}");
+    }
 }
 
 /// Height of a mesh at (x, z), by the triangle that holds it.

@@ -26,7 +26,7 @@ struct View {
     // The eye for which levels of detail are chosen: that of the walker, also when one looks on from above.
     lod_eye: vec3f,
     unused: f32,
-    // Samples a side, metres between them, half the extent in metres, unused.
+    // Samples a side, metres between them, half the extent in metres, height of the highest land.
     field: vec4f,
     // Level of detail of the terrain: distance at which level 0 ends, greatest level, height of the eye above the
     // highest land, unused.

@@ -86,7 +86,7 @@ impl ViewUniform {
             clouds: scene.heaven.sheets_m,
             lod_eye: lod_camera.position_m.into(),
             unused: 0.0,
-            field: [field.side as f32, field.spacing_m, 0.5 * field.extent_m(), 0.0],
+            field: [field.side as f32, field.spacing_m, 0.5 * field.extent_m(), field.range_m()[1]],
             terrain_lod: [detail.unit_m, detail.top, detail.above_m, 0.0],
             tiles: [tiles[0], tiles[1], tiles[2], tiles[3]],
             last_tile: [tiles[4], 0.0, 0.0, 0.0],
@@ -100,7 +100,7 @@ impl ViewUniform {
         let field = &scene.ground.field;
         Self {
             shadow_from_world: shadow_from_world(scene).to_cols_array_2d(),
-            field: [field.side as f32, field.spacing_m, 0.5 * field.extent_m(), 0.0],
+            field: [field.side as f32, field.spacing_m, 0.5 * field.extent_m(), field.range_m()[1]],
             ..Default::default()
         }
     }

@@ -38,7 +38,7 @@ fn meets_land(start: vec3f, direction: vec3f) -> vec2f {
     var away = 6.0;
     for (var i = 0; i < 14; i++) {
         let at = start + direction * away;
-        if (any(abs(at.xz) > vec2f(view.field.z))) {
+        if (any(abs(at.xz) > vec2f(view.field.z)) || at.y > view.field.w) {
             break;
         }
         if (at.y < height_m(at.xz)) {
