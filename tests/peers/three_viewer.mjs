@@ -163,7 +163,7 @@ const OFF = 'ours, no levels of detail', TREES_OFF = 'ours, trees without levels
 const INSTANCED = 'three.js, full trees, instanced', CULLED = 'three.js, full trees, culled', FILE = 'three.js, the file as it is';
 const contestants = [
   [OFF, ours, 'off off'], [INSTANCED, three, 'instanced'], [TREES_OFF, ours, 'off morph'],
-  [CULLED, three, 'culled'], [ON, ours, 'quality morph'], [FILE, three, 'file'],
+  [CULLED, three, 'culled'], [ON, ours, 'simple morph'], [FILE, three, 'file'],
 ].map(([name, who, way]) => ({ name, who, way, frames: [] }));
 
 for (const { who, way } of contestants) await who.frame(way, 0);

@@ -142,9 +142,9 @@ pub struct Drawing {
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]
 pub enum TreeLod {
     /// Continuous, by error
-    #[default]
     Quality,
     /// Continuous, by number of vertices
+    #[default]
     Simple,
     /// By error, without morphing
     Discrete,

@@ -84,7 +84,8 @@ fn frame_of_land(field: &genescape_viewer::scene::Heightfield) -> Apron {
 
 /// What is drawn: name, where from (x, z, above the ground, yaw, pitch), options.
 fn pictures() -> Vec<(&'static str, [f32; 5], Options)> {
-    let plain = Options { drift_clouds: false, ..Options::default() };
+    let trees = Options { tree_scheme: TreeScheme::Quality, tree_error_px: 1.0, ..Options::default() };
+    let plain = Options { drift_clouds: false, ..trees };
     vec![
         ("walk", [20.0, 30.0, 1.7, 0.4, -0.1], plain),
         ("above", [0.0, 55.0, 30.0, 0.0, -0.5], Options { grass: false, ..plain }),

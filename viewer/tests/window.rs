@@ -287,7 +287,7 @@ fn it_ends_and_remembers(stage: &Stage, mut viewer: Viewer) {
     assert_eq!(viewer.quit(&stage.display).code(), Some(0));
     let kept = SettingsFile::open(stage.path("settings.ron"));
     assert_eq!(kept.problem, None);
-    assert_eq!(kept.settings.options.tree_scheme, genescape_viewer::frame::TreeScheme::Simple);
+    assert_eq!(kept.settings.options.tree_scheme, genescape_viewer::frame::TreeScheme::Discrete);
 
     let mut viewer = stage.viewer(&["--no-bake"]);
     viewer.until("the second start shows all", |viewer| viewer.shows(0));

@@ -63,8 +63,8 @@ fn header(ui: &mut Ui, events: &mut Vec<Event>) {
 }
 
 const TREE_SCHEMES: [(TreeScheme, &str, &str); 4] = [
-    (TreeScheme::Quality, "Quality", "Continuous, by the error of each mesh on the screen"),
     (TreeScheme::Simple, "Simple", "Continuous, by the number of vertices alone"),
+    (TreeScheme::Quality, "Quality", "Continuous, by the error of each mesh on the screen"),
     (TreeScheme::Discrete, "Discrete", "By error, without morphing between levels"),
     (TreeScheme::Off, "Off", "Always the finest mesh"),
 ];
