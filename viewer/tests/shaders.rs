@@ -105,7 +105,7 @@ fn uniforms_are_laid_out_alike() {
             scheme,
             fixed_error_m,
             planes_used,
-            unused,
+            first,
         }
     );
     same!(

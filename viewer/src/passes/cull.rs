@@ -1,5 +1,7 @@
 //! Chooses trees and their levels of detail on the device: the processor's work does not grow with their number.
 
+use std::ops::Range;
+
 use glam::Vec3;
 
 use super::{Layouts, ViewUniform};
@@ -32,7 +34,7 @@ pub struct CullUniform {
     pub scheme: u32,
     pub fixed_error_m: f32,
     pub planes_used: u32,
-    pub unused: u32,
+    pub first: u32,
 }
 
 impl CullUniform {
@@ -54,9 +56,10 @@ impl CullUniform {
         }
     }
 
-    /// For a shadow map with texels of that size: all trees.
-    pub fn for_shadow(set: &TreeSet, texel_m: f32) -> Self {
-        Self { scheme: 4, fixed_error_m: texel_m, ..Self::sizes(set) }
+    /// For a shadow map with texels of that size: of the trees of these numbers all.
+    pub fn for_shadow(set: &TreeSet, texel_m: f32, trees: Range<u32>) -> Self {
+        let (first, instances) = (trees.start, trees.end.min(set.count));
+        Self { scheme: 4, fixed_error_m: texel_m, first, instances, ..Self::sizes(set) }
     }
 
     fn sizes(set: &TreeSet) -> Self {

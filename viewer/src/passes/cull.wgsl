@@ -10,6 +10,7 @@ struct Cull {
     eye: vec3f,
     // World size in metres that may be wrong, for each metre of distance.
     error_per_m: f32,
+    // Where the trees that are looked at end; they begin at `first`.
     instances: u32,
     // Kinds of tree, levels (the most of any kind), materials.
     templates: u32,
@@ -20,7 +21,7 @@ struct Cull {
     fixed_error_m: f32,
     // 0 draws all of them, wherever they stand.
     planes_used: u32,
-    unused: u32,
+    first: u32,
 }
 
 struct Template {
@@ -103,7 +104,7 @@ fn clear(@builtin(global_invocation_id) id: vec3u) {
 
 @compute @workgroup_size(64)
 fn choose(@builtin(global_invocation_id) id: vec3u) {
-    let index = id.x + id.y * 65535u * 64u;
+    let index = cull.first + id.x + id.y * 65535u * 64u;
     if (index >= cull.instances) {
         return;
     }

@@ -1,23 +1,26 @@
 //! Draws what the sun sees of a landscape, once.
 
 use super::cull::{Cull, CullUniform, TreeLists};
-use super::trees::{TreeGroups, buffers};
+use super::trees::{TreeGroups, buffers, draw_chosen};
 use super::view_uniform::{ViewUniform, shadow_from_world};
 use super::{Layouts, SHADOW, bind, texture_view};
 use crate::gpu::Gpu;
 use crate::shaders::{ShaderError, Shaders};
-use crate::upload::{DrawCommand, SceneBuffers, TreeSet};
+use crate::upload::SceneBuffers;
 
 /// The pipelines.
 #[derive(Debug)]
 pub struct Shadow {
-    bark: wgpu::RenderPipeline,
-    leaf: wgpu::RenderPipeline,
+    /// As [`draw_chosen`] wants them.
+    trees: [wgpu::RenderPipeline; 2],
     land: wgpu::RenderPipeline,
 }
 
 /// The land is drawn as a grid of every so many samples; as in `shadow.wgsl`.
 const LAND_STEP: u32 = 4;
+
+/// Trees that are drawn in one go: in software, a fifth of what four pictures take.
+const TREES_A_PIECE: u32 = 256;
 
 impl Shadow {
     /// Compiles them.
@@ -59,17 +62,15 @@ impl Shadow {
                 cache: None,
             })
         };
-        Ok(Self {
-            // The sides of a trunk that face away bound its shadow (second-depth shadow mapping).
-            bark: build("tree", None, Some(wgpu::Face::Front), true),
-            leaf: build("tree", Some("leaf"), None, true),
-            land: build("land", None, None, false),
-        })
+        // The sides of a trunk that face away bound its shadow (second-depth shadow mapping).
+        let bark = build("tree", None, Some(wgpu::Face::Front), true);
+        let leaf = build("tree", Some("leaf"), None, true);
+        Ok(Self { trees: [bark, leaf], land: build("land", None, None, false) })
     }
 
     /// Draws a landscape's shadow map; may run on any thread. `cull` chooses trees: of each the level whose error is
-    /// below half a texel. Waits until it is done, and works in pieces (the land, then each kind and material of trees):
-    /// a device does one thing after the other, and drawn in one go a forest keeps pictures waiting, in software for a
+    /// below half a texel. Waits until it is done, and works in pieces (the land, then some trees after others): a device
+    /// does one thing after the other, and drawn in one go a forest keeps pictures waiting, in software for a quarter of a
     /// second.
     pub fn bake(&self, gpu: &Gpu, layouts: &Layouts, cull: &Cull, scene: &SceneBuffers) {
         use wgpu::util::DeviceExt;
@@ -86,30 +87,27 @@ impl Shadow {
             (9, wgpu::BindingResource::TextureView(&heights)),
         ];
         let view = bind(&gpu.device, "view of the sun", &layouts.sun_view, &bound);
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let trees = scene.trees.as_ref().map(|set| {
-            let lists = TreeLists::new(gpu, layouts, set);
-            lists.set(&gpu.queue, &CullUniform::for_shadow(set, 0.5 * texel_m(scene)));
-            cull.dispatch(&mut encoder.begin_compute_pass(&Default::default()), &lists);
-            (TreeGroups::new(gpu, layouts, set), lists)
-        });
         let map = texture_view(&scene.shadow_map, wgpu::TextureViewDimension::D2);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
         {
             let mut pass = begin(&mut encoder, &map, wgpu::LoadOp::Clear(1.0));
             pass.set_bind_group(0, &view, &[]);
             self.draw_land(&mut pass, scene);
         }
         finish(gpu, encoder);
-        let (Some(set), Some((groups, lists))) = (&scene.trees, &trees) else { return };
-        for slot in 0..set.materials.len() {
-            for kind in 0..set.template_count {
-                let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let Some(set) = &scene.trees else { return };
+        let (groups, lists) = (TreeGroups::new(gpu, layouts, set), TreeLists::new(gpu, layouts, set));
+        for first in (0..set.count).step_by(TREES_A_PIECE as usize) {
+            let piece = first..first.saturating_add(TREES_A_PIECE);
+            lists.set(&gpu.queue, &CullUniform::for_shadow(set, 0.5 * texel_m(scene), piece));
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            cull.dispatch(&mut encoder.begin_compute_pass(&Default::default()), &lists);
+            {
                 let mut pass = begin(&mut encoder, &map, wgpu::LoadOp::Load);
                 pass.set_bind_group(0, &view, &[]);
-                self.draw_kind(&mut pass, set, groups, lists, (slot, kind));
-                drop(pass);
-                finish(gpu, encoder);
+                draw_chosen(&mut pass, set, &groups, &lists, &self.trees);
             }
+            finish(gpu, encoder);
         }
     }
 
@@ -117,28 +115,6 @@ impl Shadow {
         pass.set_pipeline(&self.land);
         let cells = (scene.ground.field.side - 1) / LAND_STEP;
         pass.draw(0..cells * cells * 6, 0..1);
-    }
-
-    /// Trees of one kind, one material of them, at all levels.
-    fn draw_kind(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        set: &TreeSet,
-        groups: &TreeGroups,
-        lists: &TreeLists,
-        (slot, kind): (usize, u32),
-    ) {
-        pass.set_pipeline(if set.materials[slot].masked { &self.leaf } else { &self.bark });
-        pass.set_bind_group(1, &groups.trees, &[]);
-        pass.set_bind_group(2, &groups.materials[slot], &[]);
-        pass.set_vertex_buffer(0, set.vertices.slice(..));
-        pass.set_vertex_buffer(1, lists.visible.slice(..));
-        pass.set_index_buffer(set.indices.slice(..), wgpu::IndexFormat::Uint32);
-        for level in 0..set.level_count {
-            let command =
-                slot as u64 * u64::from(lists.buckets) + u64::from(level * set.template_count + kind);
-            pass.draw_indexed_indirect(&lists.commands, command * size_of::<DrawCommand>() as u64);
-        }
     }
 }
 

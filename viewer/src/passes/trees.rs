@@ -68,16 +68,27 @@ impl Trees {
         wire: bool,
     ) {
         let pipelines = self.wire.as_ref().filter(|_| wire).unwrap_or(&self.filled);
-        pass.set_bind_group(1, &groups.trees, &[]);
-        pass.set_vertex_buffer(0, set.vertices.slice(..));
-        pass.set_vertex_buffer(1, lists.visible.slice(..));
-        pass.set_index_buffer(set.indices.slice(..), wgpu::IndexFormat::Uint32);
-        for (slot, material) in set.materials.iter().enumerate() {
-            pass.set_pipeline(&pipelines[if material.masked { MASKED } else { OPAQUE }]);
-            pass.set_bind_group(2, &groups.materials[slot], &[]);
-            let first = slot as u64 * u64::from(lists.buckets) * size_of::<DrawCommand>() as u64;
-            pass.multi_draw_indexed_indirect(&lists.commands, first, lists.buckets);
-        }
+        draw_chosen(pass, set, groups, lists, pipelines);
+    }
+}
+
+/// Draws the trees that were chosen, with a pipeline for [`OPAQUE`] materials and one for [`MASKED`] ones.
+pub(super) fn draw_chosen(
+    pass: &mut wgpu::RenderPass<'_>,
+    set: &TreeSet,
+    groups: &TreeGroups,
+    lists: &TreeLists,
+    pipelines: &[wgpu::RenderPipeline; 2],
+) {
+    pass.set_bind_group(1, &groups.trees, &[]);
+    pass.set_vertex_buffer(0, set.vertices.slice(..));
+    pass.set_vertex_buffer(1, lists.visible.slice(..));
+    pass.set_index_buffer(set.indices.slice(..), wgpu::IndexFormat::Uint32);
+    for (slot, material) in set.materials.iter().enumerate() {
+        pass.set_pipeline(&pipelines[if material.masked { MASKED } else { OPAQUE }]);
+        pass.set_bind_group(2, &groups.materials[slot], &[]);
+        let first = slot as u64 * u64::from(lists.buckets) * size_of::<DrawCommand>() as u64;
+        pass.multi_draw_indexed_indirect(&lists.commands, first, lists.buckets);
     }
 }
 
