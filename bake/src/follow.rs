@@ -116,10 +116,11 @@ impl<'a> Follower<'a> {
     /// Finds out what was saved, breeds what is wanted, and notes what to bake.
     fn look(&mut self, audience: &dyn Audience) -> Result<()> {
         let nothing = Inputs::default();
-        let mut now = self.read(self.known.as_ref().unwrap_or(&nothing))?;
-        if self.known.as_ref().is_some_and(|known| now.lacks_some_of(known)) {
+        let before = self.known.as_ref().unwrap_or(&nothing);
+        let mut now = self.read(before)?;
+        if now.lacks_some_of(before) {
             std::thread::sleep(REPLACING);
-            now = self.read(self.known.as_ref().unwrap_or(&nothing))?;
+            now = self.read(before)?;
         }
         let first = self.known.is_none();
         if !first && self.known.as_ref() == Some(&now) {

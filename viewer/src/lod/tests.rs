@@ -1,9 +1,10 @@
 //! The meshes that both algorithms draw, taken apart: closed, unfolded, near the land, and calm.
 
+#[path = "../../tests/made_up/land.rs"]
+mod made_up;
+
 use std::collections::HashMap;
 
-use genescape_bake::model;
-use genescape_bake::stages::terrain_lod;
 use glam::{Vec2, Vec3};
 use proptest::prelude::*;
 
@@ -15,29 +16,13 @@ use crate::scene::Heightfield;
 
 /// Rough land of a given side: waves and noise from a seed, `relief_m` high.
 fn land(side: u32, spacing_m: f32, relief_m: f32, seed: u32) -> Heightfield {
-    let noise = |i: u32, j: u32| {
-        let mixed =
-            (i.wrapping_mul(0x9e37_79b9) ^ j.wrapping_mul(0x85eb_ca6b) ^ seed).wrapping_mul(0xc2b2_ae35);
-        ((mixed ^ mixed >> 15).wrapping_mul(0x27d4_eb2f) >> 8) as f32 / (1 << 24) as f32
-    };
     let height = |i: u32, j: u32| {
         let (x, z, turn) = (i as f32 / side as f32, j as f32 / side as f32, seed as f32);
         let waves =
             libm::sinf(7.0 * x + turn) * libm::cosf(5.0 * z - turn) + 0.4 * libm::sinf(23.0 * (x + z));
-        relief_m * (0.5 * waves + 0.05 * noise(i, j))
+        relief_m * (0.5 * waves + 0.05 * made_up::hash(i, j, seed))
     };
-    let heights_m = (0..side * side).map(|n| height(n % side, n / side)).collect();
-    let field = model::Heightfield { side, spacing_m, heights_m };
-    let lod = terrain_lod::lod(&field);
-    Heightfield {
-        side,
-        spacing_m,
-        heights_m: field.heights_m,
-        wedgies_m: lod.wedgies_m,
-        displacements_m: lod.displacements_m,
-        levels: lod.levels,
-        block_ranges_m: lod.block_ranges_m,
-    }
+    made_up::land(side, spacing_m, height)
 }
 
 type Triangle = [Vec3; 3];

@@ -2,10 +2,10 @@
 
 #![allow(dead_code, reason = "each test uses some of it")]
 
+mod land;
+
 use std::sync::Arc;
 
-use genescape_bake::model;
-use genescape_bake::stages::terrain_lod;
 use genescape_viewer::gpu::GpuError;
 use genescape_viewer::scene::{
     Apron, Detail, Ground, HdrPicture, Heightfield, Instance, Level, Material, Picture, Range, Scene, Sky,
@@ -14,6 +14,7 @@ use genescape_viewer::scene::{
 use genescape_viewer::screenshot::Studio;
 use genescape_viewer::shaders::Shaders;
 use genescape_viewer::upload::{SceneBuffers, Uploader};
+pub use land::{hash, land};
 
 /// A device, or nothing, with a word about it, where there is none and `GENESCAPE_NEEDS_GPU` isn't set.
 pub fn studio() -> Option<Studio> {
@@ -35,13 +36,6 @@ pub fn upload(studio: &Studio, scene: &Scene) -> Arc<SceneBuffers> {
     Arc::new(buffers)
 }
 
-/// In [0, 1), the same for the same numbers.
-pub fn hash(i: u32, j: u32, seed: u32) -> f32 {
-    let mixed = i.wrapping_mul(0x9e37_79b9) ^ j.wrapping_mul(0x85eb_ca6b) ^ seed.wrapping_mul(0x27d4_eb2f);
-    let mixed = (mixed ^ mixed >> 15).wrapping_mul(0xc2b2_ae35);
-    ((mixed ^ mixed >> 13).wrapping_mul(0x27d4_eb2f) >> 8) as f32 / (1 << 24) as f32
-}
-
 /// Land with waves `relief_m` high and noise of `rough_m`.
 pub fn field(side: u32, spacing_m: f32, relief_m: f32, rough_m: f32) -> Heightfield {
     let height = |i: u32, j: u32| {
@@ -49,18 +43,7 @@ pub fn field(side: u32, spacing_m: f32, relief_m: f32, rough_m: f32) -> Heightfi
         let waves = libm::sinf(8.0 * x) * libm::cosf(6.0 * z) + 0.4 * libm::sinf(19.0 * (x + z));
         relief_m * 0.5 * waves + rough_m * hash(i, j, 1)
     };
-    let heights_m = (0..side * side).map(|n| height(n % side, n / side)).collect();
-    let field = model::Heightfield { side, spacing_m, heights_m };
-    let lod = terrain_lod::lod(&field);
-    Heightfield {
-        side,
-        spacing_m,
-        heights_m: field.heights_m,
-        wedgies_m: lod.wedgies_m,
-        displacements_m: lod.displacements_m,
-        levels: lod.levels,
-        block_ranges_m: lod.block_ranges_m,
-    }
+    land(side, spacing_m, height)
 }
 
 /// A square picture.
