@@ -9,10 +9,10 @@ use genescape_cache::{BlobRef, Cache, How};
 use genescape_schema::{Category, Population, Space};
 
 use crate::events::{Event, Listener};
+use crate::gltf::{self, Picture, TreeImages};
 use crate::plan::{Plan, Resolution, TEMPLATES};
 use crate::run::Runner;
 use crate::say;
-use crate::stages::export::{self, Picture, TreeImages};
 use crate::stages::{lod, tree};
 
 /// Bakes the starters `runs` times into folders of their own and prints what each stage took, in the manner of the
@@ -116,7 +116,7 @@ fn tree_costs(space: &Space, starter: &Population, runs: u32) -> Result<()> {
                 let options = lod::LodOptions::default();
                 let levels = samples
                     .time("progressive mesh, levels, strips", || lod::levels(&template.mesh, &options));
-                samples.time("writing the file", || export::tree_glb("tree", &levels, &NO_PICTURES))?;
+                samples.time("writing the file", || gltf::tree_glb("tree", &levels, &NO_PICTURES))?;
                 triangles += template.mesh.triangle_count();
                 trees += 1;
                 Ok(())

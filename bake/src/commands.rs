@@ -233,7 +233,7 @@ fn export(args: &WorldArgs, scene: &str, out: &Path) -> Result<()> {
     let json = std::fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
     let folder = path.parent().unwrap_or(Path::new("."));
     let read = |uri: &str| std::fs::read(folder.join(uri)).map_err(|error| error.to_string());
-    let glb = crate::stages::export::single_glb(&json, read).with_context(|| {
+    let glb = crate::gltf::single_glb(&json, read).with_context(|| {
         format!("{}: cannot be made one file; bake again if blobs are missing", path.display())
     })?;
     world::write_synced(out, &glb)?;

@@ -9,16 +9,16 @@ use rayon::prelude::*;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
+use crate::gltf::{
+    self, Blob, CloudSheet, ExportError, GlbBlob, GroundBlobs, GroundDetailBlobs, HeightfieldBlobs, Picture,
+    SceneParts, SkyBlobs, TreeImages, TreeTemplateBlob, exr, png,
+};
 use crate::model::{
     Foreground, GroundMaps, GroundTextures, Image8, Landform, Mesh, Placement, SkyLight, StartView,
     TreeTextures,
 };
 use crate::plan::{Job, TEMPLATES};
 use crate::run::Inputs;
-use crate::stages::export::{
-    self, Blob, CloudSheet, ExportError, GlbBlob, GroundBlobs, GroundDetailBlobs, HeightfieldBlobs, Picture,
-    SceneParts, SkyBlobs, TreeImages, TreeTemplateBlob, exr, png,
-};
 use crate::stages::ground::GroundParams;
 use crate::stages::placement::TreeFootprint;
 use crate::stages::{ground, land, light, lod, placement, sky, start, terrain_lod, tree};
@@ -103,7 +103,7 @@ fn dispatch(job: &Job, inputs: &Inputs<'_>) -> Result<Vec<Output>, StageError> {
         Job::Placement { params } => {
             let footprints = for_trees(|name| read::<TreeFootprint>(inputs, name, "footprint"))?;
             let placed = placement::place(params, &read(inputs, "landform", "landform")?, &footprints);
-            let instances = export::instances_bin(&placed);
+            let instances = gltf::instances_bin(&placed);
             Ok(vec![encode("placement", &placed), Output::new("instances", "bin", instances)])
         }
         Job::LightMap { side_px } => {
@@ -159,7 +159,7 @@ fn terrain(params: &GroundParams, landform: &Landform) -> Result<Vec<Output>, St
                         ground::BLOCK_M,
                         &colors,
                     );
-                    export::terrain_glb(&mesh)
+                    gltf::terrain_glb(&mesh)
                 },
                 || terrain_lod::encode(field, &terrain_lod::lod(field)),
             )
@@ -182,9 +182,9 @@ fn terrain(params: &GroundParams, landform: &Landform) -> Result<Vec<Output>, St
 fn foreground(params: &GroundParams, map_px: u32, inputs: &Inputs<'_>) -> Result<Vec<Output>, StageError> {
     let land: Landform = read(inputs, "landform", "landform")?;
     let view: StartView = read(inputs, "start", "view")?;
-    let (positions, triangles) = export::near_mesh(&inputs.bytes("terrain", "mesh")?)?;
+    let (positions, triangles) = gltf::near_mesh(&inputs.bytes("terrain", "mesh")?)?;
     let made: Foreground = ground::foreground(params, &land, map_px, &view, &positions, &triangles);
-    let glb = export::foreground_glb(&made, &ground::TEXTURES, ground::BLADE_WHITE)?;
+    let glb = gltf::foreground_glb(&made, &ground::TEXTURES, ground::BLADE_WHITE)?;
     Ok(vec![Output::new("mesh", "glb", glb)])
 }
 
@@ -268,7 +268,7 @@ fn make_tree(params: &tree::TreeParams, index: u32, inputs: &Inputs<'_>) -> Resu
         blossom: blossom.as_ref().map(embedded),
         alpha_cutoff: textures.alpha_cutoff,
     };
-    let glb = export::tree_glb(&format!("tree-{index}"), &levels, &images)?;
+    let glb = gltf::tree_glb(&format!("tree-{index}"), &levels, &images)?;
     let footprint = TreeFootprint {
         height_m: template.bounds.max.y,
         trunk_radius_m: template.trunk_radius_m,
@@ -385,7 +385,7 @@ fn scene(name: &str, genes: &[(String, f32)], inputs: &Inputs<'_>) -> Result<Vec
         light: &sky_light,
         sky: sky_blobs(inputs, &blob)?,
     };
-    Ok(vec![Output::new(SCENE, "json", export::scene_gltf(&parts)?)])
+    Ok(vec![Output::new(SCENE, "json", gltf::scene_gltf(&parts)?)])
 }
 
 fn tree_images<'a>(inputs: &Inputs<'_>) -> Result<TreeImages<'a>, StageError> {

@@ -7,6 +7,7 @@ pub mod commands;
 pub mod events;
 mod execute;
 pub mod follow;
+pub mod gltf;
 pub mod import;
 mod inputs;
 pub mod lod_file;

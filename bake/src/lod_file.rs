@@ -6,10 +6,10 @@ use std::path::Path;
 use anyhow::{Context, Result};
 
 use crate::commands::BadInput;
+use crate::gltf::{self, MaterialSet, Picture};
 use crate::import::{self, Imported};
 use crate::model::Material;
 use crate::say;
-use crate::stages::export::{self, MaterialSet, Picture};
 use crate::stages::{lod, tree};
 use crate::world;
 
@@ -32,7 +32,7 @@ pub fn convert(input: &Path, out: &Path, crease_deg: f32) -> Result<()> {
     }
     let levels = lod::levels(&imported.mesh, &lod::LodOptions::default());
     let name = input.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy());
-    let glb = export::levelled_glb(&name, &levels, &materials(&imported))
+    let glb = gltf::levelled_glb(&name, &levels, &materials(&imported))
         .with_context(|| format!("{}: cannot be written as glTF", input.display()))?;
     world::write_synced(out, &glb)?;
 

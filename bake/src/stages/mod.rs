@@ -1,7 +1,6 @@
 //! The stages: pure functions from parameters and earlier results to later ones. No I/O, no clock, no global
 //! state, no unseeded randomness; transcendental functions come from `libm`.
 
-pub mod export;
 pub mod ground;
 pub mod land;
 pub mod light;

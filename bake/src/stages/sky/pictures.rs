@@ -4,8 +4,8 @@
 use half::f16;
 
 use super::{SkyParams, images, light};
+use crate::gltf::png;
 use crate::model::{Image8, ImageF16};
-use crate::stages::export::png;
 
 const VIEW_PX: (u32, u32) = (480, 270);
 const FIELD_OF_VIEW: f32 = 60.0;
