@@ -9,7 +9,8 @@ use genescape_cache::{BlobRef, Cache, How};
 use genescape_schema::{Category, Population, Space};
 
 use crate::events::{Event, Listener};
-use crate::gltf::{self, Picture, TreeImages};
+use crate::gltf::{self, Picture};
+use crate::model::TreeTextures;
 use crate::plan::{Plan, Resolution, TEMPLATES};
 use crate::run::Runner;
 use crate::say;
@@ -116,7 +117,7 @@ fn tree_costs(space: &Space, starter: &Population, runs: u32) -> Result<()> {
                 let options = lod::LodOptions::default();
                 let levels = samples
                     .time("progressive mesh, levels, strips", || lod::levels(&template.mesh, &options));
-                samples.time("writing the file", || gltf::tree_glb("tree", &levels, &NO_PICTURES))?;
+                samples.time("writing the file", || gltf::tree_glb("tree", &levels, &no_pictures()))?;
                 triangles += template.mesh.triangle_count();
                 trees += 1;
                 Ok(())
@@ -129,13 +130,17 @@ fn tree_costs(space: &Space, starter: &Population, runs: u32) -> Result<()> {
 }
 
 /// The textures of a tree are made once a scene, and timed there.
-const NO_PICTURES: TreeImages<'_> = TreeImages {
-    bark_color: Picture::Embedded { bytes: &[], mime_type: "image/png" },
-    bark_normal: Picture::Embedded { bytes: &[], mime_type: "image/png" },
-    leaf: Some(Picture::Embedded { bytes: &[], mime_type: "image/png" }),
-    blossom: Some(Picture::Embedded { bytes: &[], mime_type: "image/png" }),
-    alpha_cutoff: 0.5,
-};
+const NO_PICTURE: Picture<'_> = Picture::Embedded { bytes: &[], mime_type: "image/png" };
+
+fn no_pictures() -> TreeTextures<Picture<'static>> {
+    TreeTextures {
+        bark_color: NO_PICTURE,
+        bark_normal: NO_PICTURE,
+        leaf: vec![NO_PICTURE],
+        blossom: vec![NO_PICTURE],
+        alpha_cutoff: 0.5,
+    }
+}
 
 /// Figures by name, in the order of their first appearance.
 #[derive(Default)]

@@ -2,6 +2,7 @@
 //! files in place, `current.ron`, and a note for `bake explain` of what became of each stage.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::{Result, anyhow};
@@ -10,8 +11,9 @@ use genescape_schema::{Population, names};
 
 use crate::breed;
 use crate::events::{Event, Listener};
+use crate::graph::Done;
 use crate::plan::{Plan, Resolution};
-use crate::run::{Done, RunError, Runner};
+use crate::run::{RunError, Runner};
 use crate::world::{PopulationFile, World};
 
 /// All that bakes of one world share.
@@ -133,7 +135,7 @@ impl Session {
         population: &Population,
         listener: &dyn Listener,
         cancelled: &(dyn Fn() -> bool + Sync),
-    ) -> Result<Vec<Done>, RunError> {
+    ) -> Result<Vec<Arc<Done>>, RunError> {
         let scene_ready = |scene: usize, blob: &BlobRef| -> Result<()> {
             let json = || -> Result<Vec<u8>> {
                 let bytes = self.cache.get_blob(blob)?;
@@ -152,7 +154,7 @@ impl Session {
     }
 
     /// Notes for `explain` what became of each stage of each scene.
-    fn remember(&self, plan: &Plan, done: &[Done], population: &Population) -> Result<()> {
+    fn remember(&self, plan: &Plan, done: &[Arc<Done>], population: &Population) -> Result<()> {
         let generation = population.generation;
         let parent = population.parent.map_or(generation.checked_sub(1), |parent| Some(parent.generation));
         for scene in 0..plan.scenes.len() {

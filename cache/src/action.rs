@@ -202,6 +202,11 @@ impl Cache {
         gone.is_empty()
     }
 
+    /// Forgets what an action produced, so that it is built again: its blobs are whole, but not what its stage writes.
+    pub fn forget(&self, key: &ActionKey) {
+        self.discard_record(&record_path(key.digest()));
+    }
+
     pub(crate) fn discard_record(&self, path: &str) {
         // If it cannot be removed, it still fails its seal the next time.
         let _ = self.store.remove(path);

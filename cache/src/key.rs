@@ -56,6 +56,11 @@ impl ActionKey {
         KeyBuilder { fields: KeyFields { stage, version, parameters, named: Vec::new(), inputs: Vec::new() } }
     }
 
+    /// The key of an action that depends on `fields`.
+    pub fn new(fields: KeyFields) -> Self {
+        Self { digest: fields.digest(), fields }
+    }
+
     /// The key itself.
     pub fn digest(&self) -> Digest {
         self.digest
@@ -113,7 +118,7 @@ impl KeyBuilder {
 
     /// The key.
     pub fn build(self) -> ActionKey {
-        ActionKey { digest: self.fields.digest(), fields: self.fields }
+        ActionKey::new(self.fields)
     }
 }
 

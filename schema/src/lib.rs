@@ -7,7 +7,7 @@
 mod check;
 pub mod edit;
 mod genome;
-pub mod gltf;
+
 mod lineage;
 mod load;
 pub mod names;
@@ -15,6 +15,7 @@ mod parameter;
 mod population;
 mod report;
 mod ron_tree;
+pub mod scene;
 mod space;
 mod table;
 mod write;

@@ -1,6 +1,6 @@
 //! Meshes of a .glb → meshes of a scene that has the .glb for a buffer: only tables are copied, never vertices.
 
-use genescape_schema::gltf::{GSC_PROGRESSIVE_MESH, ProgressiveMeshExtension};
+use genescape_schema::scene::{GSC_PROGRESSIVE_MESH, ProgressiveMeshExtension};
 use serde_json::{Value, json};
 
 use super::ExportError;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use genescape_schema::gltf::{HeightfieldError, HeightfieldExtension, read_heightfield};
+use genescape_schema::scene::{GroundDetail, HeightfieldError, HeightfieldExtension, Resource, TerrainLod};
 
 use super::document::Document;
 use super::{LoadError, pictures};
@@ -28,21 +28,19 @@ pub(super) fn read(document: &Document) -> Result<Ground, LoadError> {
 }
 
 fn heightfield(bytes: &[u8]) -> Result<Heightfield, HeightfieldError> {
-    let data = read_heightfield(bytes)?;
+    let lod = TerrainLod::from_bytes(bytes)?;
     Ok(Heightfield {
-        side: data.side,
-        spacing_m: data.spacing_m,
-        heights_m: data.heights_m.into_owned(),
-        wedgies_m: data.wedgies_m.into_owned(),
-        displacements_m: data.displacements_m.into_owned(),
-        levels: data.levels.into_owned(),
-        block_ranges_m: data.block_ranges_m.into_owned(),
+        side: lod.field.side,
+        spacing_m: lod.field.spacing_m,
+        heights_m: lod.field.heights_m,
+        wedgies_m: lod.wedgies_m,
+        block_ranges_m: lod.block_ranges_m,
     })
 }
 
 fn surface(document: &Document, extension: &HeightfieldExtension) -> Result<Surface, LoadError> {
     let surface = &extension.surface;
-    let detail = |detail: &genescape_schema::gltf::GroundDetail| -> Result<Detail, LoadError> {
+    let detail = |detail: &GroundDetail<Resource>| -> Result<Detail, LoadError> {
         Ok(Detail {
             name: detail.name.clone(),
             detail: pictures::png(document, &detail.detail)?,

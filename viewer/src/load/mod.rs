@@ -9,7 +9,7 @@ mod trees;
 
 use std::path::{Path, PathBuf};
 
-use genescape_schema::gltf::{Resource, SkyExtension};
+use genescape_schema::scene::{Resource, SkyExtension};
 use thiserror::Error;
 
 pub use store::Store;
@@ -88,10 +88,13 @@ fn sky(document: &Document) -> Result<Sky, LoadError> {
             resources.iter().map(|face| pictures::exr(document, face)).collect::<Result<Vec<_>, _>>()?;
         faces.try_into().map_err(|_| document.wrong("GSC_sky has not six faces"))
     };
-    let faces = six(&extension.faces)?;
-    let clear_faces =
-        if extension.clear_faces.is_empty() { faces.clone() } else { six(&extension.clear_faces)? };
-    let layer = |layer: &genescape_schema::gltf::SkyLayer| -> Result<CloudLayer, LoadError> {
+    let faces = six(&extension.images.faces)?;
+    let clear_faces = if extension.images.clear_faces.is_empty() {
+        faces.clone()
+    } else {
+        six(&extension.images.clear_faces)?
+    };
+    let layer = |layer: &genescape_schema::scene::CloudLayer<Resource>| -> Result<CloudLayer, LoadError> {
         Ok(CloudLayer {
             name: layer.name.clone(),
             altitude_m: layer.altitude_m,
@@ -102,13 +105,13 @@ fn sky(document: &Document) -> Result<Sky, LoadError> {
     Ok(Sky {
         faces,
         clear_faces,
-        layers: extension.layers.iter().map(layer).collect::<Result<_, _>>()?,
-        sun_direction: extension.sun_direction,
-        sun_angular_radius_rad: extension.sun_angular_radius_rad,
-        sun_irradiance_linear: extension.sun_irradiance_linear,
-        sky_irradiance_linear: extension.sky_irradiance_linear,
-        haze_linear: extension.haze_linear,
-        haze_extinction_per_m: extension.haze_extinction_per_m,
-        exposure: extension.exposure,
+        layers: extension.images.layers.iter().map(layer).collect::<Result<_, _>>()?,
+        sun_direction: extension.light.sun_direction.to_array(),
+        sun_angular_radius_rad: extension.light.sun_angular_radius_rad,
+        sun_irradiance_linear: extension.light.sun_irradiance_linear,
+        sky_irradiance_linear: extension.light.sky_irradiance_linear,
+        haze_linear: extension.light.haze_linear,
+        haze_extinction_per_m: extension.light.haze_extinction_per_m,
+        exposure: extension.light.exposure,
     })
 }

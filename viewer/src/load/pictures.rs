@@ -4,7 +4,7 @@ use std::io::Cursor;
 use std::sync::Arc;
 
 use exr::prelude::{ReadChannels, ReadLayers};
-use genescape_schema::gltf::Resource;
+use genescape_schema::scene::Resource;
 use half::f16;
 
 use super::LoadError;

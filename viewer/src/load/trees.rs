@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use genescape_schema::gltf::{InstancesExtension, ProgressiveMeshExtension, Resource, read_instances};
+use genescape_schema::scene::{InstancesExtension, ProgressiveMeshExtension, Resource, read_instances};
 use glam::Vec3;
 use gltf::Semantic;
 
@@ -23,7 +23,7 @@ pub(super) fn read(document: &Document) -> Result<Trees, LoadError> {
         .iter()
         .map(|entry| template(document, &entry.name, entry.mesh))
         .collect::<Result<Vec<_>, _>>()?;
-    let instance = |record: genescape_schema::gltf::InstanceRecord| {
+    let instance = |record: genescape_schema::scene::Instance| {
         let known = (record.template as usize) < templates.len();
         known
             .then_some(Instance {

@@ -32,10 +32,6 @@ pub struct Heightfield {
     pub heights_m: Vec<f32>,
     /// Half thickness in metres of the wedgie of the triangles that each sample splits.
     pub wedgies_m: Vec<f32>,
-    /// From each sample to the middle of its parents, in metres.
-    pub displacements_m: Vec<f32>,
-    /// The coarsest level at which each sample is used.
-    pub levels: Vec<u8>,
     /// Lowest and highest of each block, coarsest level first: level l has 2^l × 2^l blocks of 2^(k−l) cells a side,
     /// row by row from the north-west, and starts at entry (4^l − 1)/3.
     pub block_ranges_m: Vec<[f32; 2]>,

@@ -22,8 +22,6 @@ pub fn land(side: u32, spacing_m: f32, height_m: impl Fn(u32, u32) -> f32) -> He
         spacing_m,
         heights_m: field.heights_m,
         wedgies_m: lod.wedgies_m,
-        displacements_m: lod.displacements_m,
-        levels: lod.levels,
         block_ranges_m: lod.block_ranges_m,
     }
 }

@@ -4,6 +4,8 @@
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use super::svd;
+
 /// The extension's name.
 pub const GSC_INSTANCES: &str = "GSC_instances";
 /// Bytes before the first record.
@@ -36,15 +38,32 @@ pub struct InstancesTemplate {
     pub mesh: usize,
 }
 
-/// One tree.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct InstanceRecord {
-    /// The transform from the template's space to the node's: 3 rows of 4, metres, determinant above 0.
+/// A tree that stands in the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Instance {
+    /// The transform from the template's space to the node's: 3 rows of 4, row-major, metres, determinant above 0.
     pub world_from_tree: [[f32; 4]; 3],
     /// Index into `templates`.
     pub template: u32,
-    /// The vertical cylinder around the trunk: x, z and radius in metres.
+    /// The infinite vertical cylinder around the trunk, for collision: x, z and radius in metres.
     pub trunk_cylinder_m: [f32; 3],
+}
+
+impl Instance {
+    /// The linear part of the transform, by columns.
+    pub fn linear(&self) -> svd::Columns {
+        let rows = &self.world_from_tree;
+        [0, 1, 2].map(|column| [0, 1, 2].map(|row| f64::from(rows[row][column])))
+    }
+
+    /// The greatest factor by which the transform makes anything longer: its greatest singular value.
+    pub fn max_scale(&self) -> f32 {
+        let linear = self.linear();
+        let factors = svd::decompose(linear).map(|factors| factors.scale.into_iter().fold(0.0, f64::max));
+        // The Frobenius norm is no less, should a damaged file hold a flattened tree.
+        let norm = || linear.as_flattened().iter().map(|x| x * x).sum::<f64>().sqrt();
+        factors.unwrap_or_else(norm) as f32
+    }
 }
 
 /// Why instances could not be read.
@@ -66,7 +85,7 @@ pub enum InstancesError {
 }
 
 /// Header and records, little-endian, as `schema/docs/GSC_instances.md` says.
-pub fn write_instances(records: &[InstanceRecord]) -> Vec<u8> {
+pub fn write_instances(records: &[Instance]) -> Vec<u8> {
     let mut out = Vec::with_capacity(INSTANCES_HEADER_BYTES + records.len() * INSTANCE_BYTES);
     out.extend_from_slice(MAGIC);
     for word in [VERSION, records.len() as u32, INSTANCE_BYTES as u32] {
@@ -85,7 +104,7 @@ pub fn write_instances(records: &[InstanceRecord]) -> Vec<u8> {
 }
 
 /// The inverse of [`write_instances`].
-pub fn read_instances(bytes: &[u8]) -> Result<Vec<InstanceRecord>, InstancesError> {
+pub fn read_instances(bytes: &[u8]) -> Result<Vec<Instance>, InstancesError> {
     let header = || InstancesError::Header(bytes.iter().copied().take(8).collect());
     let word = |at: usize| -> Option<[u8; 4]> { bytes.get(at..at + 4)?.try_into().ok() };
     let number = |at: usize| word(at).map(u32::from_le_bytes).ok_or_else(header);
@@ -100,10 +119,10 @@ pub fn read_instances(bytes: &[u8]) -> Result<Vec<InstanceRecord>, InstancesErro
     Ok(bytes[INSTANCES_HEADER_BYTES..].chunks_exact(INSTANCE_BYTES).map(read_record).collect())
 }
 
-fn read_record(bytes: &[u8]) -> InstanceRecord {
+fn read_record(bytes: &[u8]) -> Instance {
     let word = |i: usize| [bytes[4 * i], bytes[4 * i + 1], bytes[4 * i + 2], bytes[4 * i + 3]];
     let float = |i: usize| f32::from_le_bytes(word(i));
-    InstanceRecord {
+    Instance {
         world_from_tree: [0, 4, 8].map(|row| [0, 1, 2, 3].map(|column| float(row + column))),
         template: u32::from_le_bytes(word(12)),
         trunk_cylinder_m: [13, 14, 15].map(float),
@@ -114,9 +133,9 @@ fn read_record(bytes: &[u8]) -> InstanceRecord {
 mod tests {
     use super::*;
 
-    fn records() -> Vec<InstanceRecord> {
+    fn records() -> Vec<Instance> {
         (0..7u32)
-            .map(|i| InstanceRecord {
+            .map(|i| Instance {
                 world_from_tree: [0, 1, 2].map(|r| [0, 1, 2, 3].map(|c| (i * 12 + r * 4 + c) as f32 - 0.25)),
                 template: i % 3,
                 trunk_cylinder_m: [i as f32, -1.5, 0.3],

@@ -36,7 +36,7 @@ impl Visitor<'_> for Floats {
 
 #[cfg(test)]
 mod tests {
-    use crate::model::Heightfield;
+    use super::super::Heightfield;
 
     #[test]
     fn numbers_come_back_bit_by_bit_and_cut_bytes_are_refused() {

@@ -1,7 +1,11 @@
-//! Where a person first stands.
+//! Where a walk starts. The bake chooses it, and writes it as the glTF camera that any viewer may look through; ours
+//! reads it back from there.
 
 use glam::{Mat3, Quat, Vec3};
 use serde::{Deserialize, Serialize};
+
+/// Name of the node with the camera.
+pub const START_NODE: &str = "start";
 
 /// A place to look from.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -13,11 +17,20 @@ pub struct StartView {
 }
 
 impl StartView {
+    /// Height of a walker's eyes above the ground.
+    pub const EYE_HEIGHT_M: f32 = 1.6;
+
     /// Rotation of a glTF camera, which looks along its own −z with +y up.
     pub fn rotation(&self) -> Quat {
         let back = -self.direction;
         let right = Vec3::Y.cross(back).normalize();
         unit_quaternion(Quat::from_mat3(&Mat3::from_cols(right, back.cross(right), back)).to_array())
+    }
+
+    /// The view of a glTF camera's node.
+    pub fn of_camera(translation: [f32; 3], rotation: [f32; 4]) -> Self {
+        let direction = Quat::from_array(rotation) * Vec3::NEG_Z;
+        Self { position_m: translation.into(), direction }
     }
 }
 
@@ -34,4 +47,19 @@ pub fn rotation_from_z(direction: Vec3) -> Quat {
 fn unit_quaternion([x, y, z, w]: [f32; 4]) -> Quat {
     let length = (x * x + y * y + z * z + w * w).sqrt();
     Quat::from_array([x, y, z, w].map(|part| part / length))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_camera_looks_where_it_was_turned_to() {
+        for direction in [Vec3::NEG_Z, Vec3::X, Vec3::new(-0.6, 0.1, 0.7), Vec3::new(0.1, -0.15, 1.0)] {
+            let view = StartView { position_m: Vec3::new(1.0, 2.0, 3.0), direction: direction.normalize() };
+            let read = StartView::of_camera(view.position_m.to_array(), view.rotation().to_array());
+            assert!(read.direction.distance(view.direction) < 1e-6, "{read:?}");
+            assert_eq!(read.position_m, view.position_m);
+        }
+    }
 }
