@@ -25,6 +25,7 @@ mod tests;
 use thiserror::Error;
 
 pub use foreground::foreground_glb;
+pub(crate) use glb::split_glb;
 pub use levels::levelled_glb;
 pub use materials::{MaterialSet, Picture, TreeImages, tree_glb};
 pub use scene::{
