@@ -7,15 +7,16 @@ use anyhow::{Context, Result, bail};
 use genescape_cache::{Cache, GcOptions};
 use genescape_schema::{Population, Report, Space, names};
 
-use crate::cli::{BakeArgs, CacheCommand, Cli, Command, RunArgs, WorldArgs};
-use crate::events::{Bar, Event, JsonLines, Listener};
+use crate::cli::{BadInput, BakeArgs, CacheCommand, Cli, Command, RunArgs, WorldArgs};
+use crate::events::{Event, Listener};
 use crate::follow::{self, Audience};
 use crate::plan::Resolution;
+use crate::progress::{JsonLines, ProgressBar};
 use crate::run::RunError;
 use crate::say;
 use crate::session::{Baked, Session, scope};
 use crate::world::{self, World};
-use crate::{bench, breed, lod_file};
+use crate::{bench, breed, lod_command};
 
 /// Set by Ctrl-C.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
@@ -64,11 +65,6 @@ fn exit_code(error: &anyhow::Error) -> u8 {
     if bad_input { BAD_INPUT } else { FAILED }
 }
 
-/// Input that is the person's to mend, not a failure of ours.
-#[derive(Debug, thiserror::Error)]
-#[error("{0}")]
-pub struct BadInput(pub String);
-
 fn dispatch(cli: Cli) -> Result<()> {
     match cli.command {
         None => bake(&cli.bake),
@@ -77,7 +73,7 @@ fn dispatch(cli: Cli) -> Result<()> {
         Some(Command::Params { markdown, world }) => params(&world, markdown),
         Some(Command::Explain { scene, world }) => explain(&world, scene),
         Some(Command::Export { scene, out, world }) => export(&world, &scene, &out),
-        Some(Command::Lod { input, out, crease_deg }) => lod_file::convert(&input, &out, crease_deg),
+        Some(Command::Lod { input, out, crease_deg }) => lod_command::convert(&input, &out, crease_deg),
         Some(Command::Cache { action }) => look_after_cache(&action),
         Some(Command::Bench { runs, threads, size }) => {
             bench::bench(runs, &pool(threads)?, resolution(size)?)
@@ -128,7 +124,7 @@ impl Console {
 
 impl Audience for Console {
     fn listener(&self) -> Box<dyn Listener + '_> {
-        if self.json { Box::new(JsonLines) } else { Box::new(Bar::new()) }
+        if self.json { Box::new(JsonLines) } else { Box::new(ProgressBar::new()) }
     }
 
     fn stopped(&self) -> bool {

@@ -1,5 +1,7 @@
 //! Turns a population of genomes into landscapes: a graph of pure stages run through a content-addressed cache.
 
+mod say;
+
 pub mod bench;
 pub mod breed;
 pub mod cli;
@@ -10,10 +12,11 @@ pub mod gltf;
 pub mod graph;
 pub mod import;
 mod inputs;
-pub mod lod_file;
+pub mod lod_command;
 pub mod model;
 pub mod noise;
 pub mod plan;
+mod progress;
 pub mod run;
 pub mod seed;
 pub mod session;

@@ -7,7 +7,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Digest, Result, error};
+use crate::{Digest, Error, Result};
 
 /// The domain of the hash; its number changes when the meaning of cached results does.
 const DOMAIN: &str = "genescape 2026 cache: action key 1";
@@ -15,7 +15,6 @@ const DOMAIN: &str = "genescape 2026 cache: action key 1";
 /// What an action key was made of.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct KeyFields {
-    /// Name of the stage.
     pub stage: String,
     /// Version of the stage's code: raised whenever its output changes.
     pub version: u32,
@@ -28,17 +27,19 @@ pub struct KeyFields {
 }
 
 impl KeyFields {
-    /// The hash over all fields but `named`.
-    pub fn digest(&self) -> Digest {
-        let mut hash = FramedHash::new();
-        hash.field(self.stage.as_bytes());
-        hash.field(&self.version.to_le_bytes());
-        hash.field(&self.parameters);
-        for (name, digest) in &self.inputs {
-            hash.field(name.as_bytes());
-            hash.field(digest.as_bytes());
+    /// The hash over all fields but `named`, each preceded by its length, and at last over their number.
+    fn digest(&self) -> Digest {
+        let version = self.version.to_le_bytes();
+        let inputs = self.inputs.iter().flat_map(|(name, digest)| [name.as_bytes(), digest.as_bytes()]);
+        let fields = [self.stage.as_bytes(), &version, &self.parameters].into_iter().chain(inputs);
+        let (mut hasher, mut count) = (blake3::Hasher::new_derive_key(DOMAIN), 0_u64);
+        for field in fields {
+            hasher.update(&(field.len() as u64).to_le_bytes());
+            hasher.update(field);
+            count += 1;
         }
-        hash.finish()
+        hasher.update(&count.to_le_bytes());
+        Digest::from_bytes(*hasher.finalize().as_bytes())
     }
 }
 
@@ -61,25 +62,12 @@ impl ActionKey {
         Self { digest: fields.digest(), fields }
     }
 
-    /// The key itself.
     pub fn digest(&self) -> Digest {
         self.digest
     }
 
-    /// What it was made of.
     pub fn fields(&self) -> &KeyFields {
         &self.fields
-    }
-
-    /// Name of the stage.
-    pub fn stage(&self) -> &str {
-        &self.fields.stage
-    }
-}
-
-impl fmt::Display for ActionKey {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} {}", self.fields.stage, self.digest)
     }
 }
 
@@ -97,7 +85,7 @@ impl KeyBuilder {
     /// If they cannot be written as postcard (sequences of unknown length).
     pub fn parameters<P: Serialize + ?Sized>(mut self, parameters: &P) -> Result<Self> {
         let bytes = postcard::to_allocvec(parameters)
-            .map_err(|source| error::Error::Parameters { stage: self.fields.stage.clone(), source })?;
+            .map_err(|source| Error::Parameters { stage: self.fields.stage.clone(), source })?;
         self.fields.parameters.extend_from_slice(&bytes);
         Ok(self)
     }
@@ -116,31 +104,7 @@ impl KeyBuilder {
         self
     }
 
-    /// The key.
     pub fn build(self) -> ActionKey {
         ActionKey::new(self.fields)
-    }
-}
-
-/// A hash over fields, each preceded by its length, and at last their number.
-struct FramedHash {
-    hasher: blake3::Hasher,
-    fields: u64,
-}
-
-impl FramedHash {
-    fn new() -> Self {
-        Self { hasher: blake3::Hasher::new_derive_key(DOMAIN), fields: 0 }
-    }
-
-    fn field(&mut self, bytes: &[u8]) {
-        self.hasher.update(&(bytes.len() as u64).to_le_bytes());
-        self.hasher.update(bytes);
-        self.fields += 1;
-    }
-
-    fn finish(mut self) -> Digest {
-        self.hasher.update(&self.fields.to_le_bytes());
-        Digest::from_bytes(*self.hasher.finalize().as_bytes())
     }
 }

@@ -1,4 +1,4 @@
-//! A finished picture on the device → a PNG file.
+//! A picture on the device → pixels in memory ↔ a PNG file.
 
 use std::path::Path;
 
@@ -59,13 +59,13 @@ pub fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>> {
 
 /// Writes a PNG file; its folder must exist.
 pub fn write_png(path: &Path, pixels: &Pixels) -> Result<()> {
-    let told = || format!("cannot write {}", path.display());
-    let file = std::fs::File::create(path).with_context(told)?;
-    let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), pixels.width_px, pixels.height_px);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    let mut writer = encoder.write_header().with_context(told)?;
-    writer.write_image_data(&pixels.rgba).with_context(told)?;
-    writer.finish().with_context(told)
+    let Pixels { width_px, height_px, rgba } = pixels;
+    image::save_buffer(path, rgba, *width_px, *height_px, image::ExtendedColorType::Rgba8)
+        .with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// Reads a PNG file of any kind of colour.
+pub fn read_png(path: &Path) -> Result<Pixels> {
+    let picture = image::open(path).with_context(|| format!("cannot read {}", path.display()))?.into_rgba8();
+    Ok(Pixels { width_px: picture.width(), height_px: picture.height(), rgba: picture.into_raw() })
 }

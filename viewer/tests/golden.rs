@@ -125,11 +125,7 @@ fn golden(name: &str) -> PathBuf {
 }
 
 fn read(name: &str) -> Pixels {
-    let file = std::fs::File::open(golden(name)).expect("a picture; GENESCAPE_BLESS=1 writes it");
-    let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().expect("a PNG file");
-    let mut rgba = vec![0; reader.output_buffer_size().expect("of some size")];
-    let info = reader.next_frame(&mut rgba).expect("a picture");
-    Pixels { width_px: info.width, height_px: info.height, rgba }
+    picture_file::read_png(&golden(name)).expect("a picture; GENESCAPE_BLESS=1 writes it")
 }
 
 fn difference(a: &Pixels, b: &Pixels) -> f32 {

@@ -14,6 +14,7 @@ use clap::Parser;
 use common::display::{Display, Picture, keys};
 use common::viewer::Viewer;
 use genescape_schema::{Parent, Space, Votes};
+use genescape_viewer::picture_file::{self, Pixels};
 use genescape_viewer::settings::SettingsFile;
 use genescape_viewer::world_files::WorldFiles;
 use serde_json::json;
@@ -249,18 +250,11 @@ fn a_picture_is_saved(stage: &Stage, viewer: &mut Viewer) {
     stage.display.tap(keys::F12);
     let path = stage.path("pictures/genescape-0001.png");
     // It is there at once, but written when its last bytes can be read.
-    let read = || {
-        let mut reader =
-            png::Decoder::new(std::io::BufReader::new(fs::File::open(&path).ok()?)).read_info().ok()?;
-        let mut pixels = vec![0; reader.output_buffer_size()?];
-        let info = reader.next_frame(&mut pixels).ok()?;
-        pixels.truncate(info.buffer_size());
-        Some((info.width, info.height, pixels))
-    };
+    let read = || picture_file::read_png(&path).ok();
     viewer.until("a picture is saved", |_| read().is_some());
-    let (width, height, pixels) = read().expect("it was just there");
-    assert!(width > 600 && height > 350, "{width} × {height}");
-    let distinct: std::collections::BTreeSet<_> = pixels.chunks_exact(4).collect();
+    let Pixels { width_px, height_px, rgba } = read().expect("it was just there");
+    assert!(width_px > 600 && height_px > 350, "{width_px} × {height_px}");
+    let distinct: std::collections::BTreeSet<_> = rgba.chunks_exact(4).collect();
     assert!(distinct.len() > 1000, "{} colours", distinct.len());
 }
 

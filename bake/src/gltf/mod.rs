@@ -24,6 +24,7 @@ mod tests;
 use thiserror::Error;
 
 pub use foreground::foreground_glb;
+pub(crate) use glb::split_glb;
 pub use levels::levelled_glb;
 pub use materials::{MaterialSet, Picture, tree_glb};
 pub use scene::{Blob, GlbBlob, SceneParts, scene_gltf};

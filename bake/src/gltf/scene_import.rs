@@ -5,13 +5,13 @@ use serde_json::{Value, json};
 
 use super::ExportError;
 use super::document::{Document, push};
-use super::glb::{Glb, read_glb};
+use super::glb::{GlbDocument, read_glb};
 use super::scene::GlbBlob;
 
 /// A .glb that a scene uses.
 pub struct GlbImport {
     uri: String,
-    glb: Glb,
+    glb: GlbDocument,
     buffer: usize,
 }
 

@@ -97,8 +97,7 @@ impl Done {
 
     /// The bytes are what they were, but not what this program writes: they are to be made again.
     fn forget(&self, cache: &Cache) -> StageError {
-        cache.forget(&self.key);
-        StageError::InputLost
+        cache.forget(&self.key).map_or_else(StageError::Cache, |()| StageError::InputLost)
     }
 }
 

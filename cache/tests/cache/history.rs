@@ -21,7 +21,7 @@ fn says_which_field_changed() {
     cache.save_history(&history).expect("saved");
 
     let history = cache.history("g0003/scene-0").expect("read");
-    let says = |key: ActionKey, how| history.explain("tree/0", &key, how).to_string();
+    let says = |key: ActionKey, how| history.clone().note("tree/0", &key, how).to_string();
     assert_eq!(says(tree(7.29, 1, "a"), How::Reused), "reused");
     assert_eq!(says(tree(7.29, 1, "a"), How::Built), "rebuilt because the result was missing or damaged");
     assert_eq!(

@@ -7,13 +7,14 @@ use std::sync::{Arc, Mutex, Weak};
 use genescape_cache::Digest;
 
 use super::LoadError;
-use crate::scene::{Heightfield, Template};
+use crate::scene::{HdrPicture, Heightfield, Picture, Template};
 
 /// Read results by name. Nothing in it is kept alive by it.
 #[derive(Debug, Default)]
 pub struct Store {
     bytes: Shelf<[u8]>,
-    pictures: Shelf<Vec<Arc<[u8]>>>,
+    pictures: Shelf<Picture>,
+    hdr_pictures: Shelf<HdrPicture>,
     fields: Shelf<Heightfield>,
     templates: Shelf<Template>,
     reads: Mutex<Vec<String>>,
@@ -49,9 +50,15 @@ impl Kept for Template {
     }
 }
 
-impl Kept for Vec<Arc<[u8]>> {
+impl Kept for Picture {
     fn shelf(store: &Store) -> &Shelf<Self> {
         &store.pictures
+    }
+}
+
+impl Kept for HdrPicture {
+    fn shelf(store: &Store) -> &Shelf<Self> {
+        &store.hdr_pictures
     }
 }
 

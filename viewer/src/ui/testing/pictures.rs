@@ -109,13 +109,7 @@ fn read_back(gpu: &Gpu, texture: &wgpu::Texture) -> Vec<u8> {
 }
 
 fn save(path: &Path, pixels: &[u8], [width, height]: [u32; 2]) {
-    let file = std::fs::File::create(path).expect("the folder can be written");
-    let mut encoder = png::Encoder::new(file, width, height);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.set_compression(png::Compression::Fast);
-    encoder
-        .write_header()
-        .and_then(|mut writer| writer.write_image_data(pixels))
+    image::save_buffer(path, pixels, width, height, image::ExtendedColorType::Rgba8)
         .expect("the file can be written");
 }
 

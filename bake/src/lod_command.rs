@@ -1,19 +1,19 @@
-//! Anyone's mesh file → a .glb with its progressive mesh, distinguished meshes and geomorphs: `bake lod`.
+//! `bake lod`: a mesh file → a .glb with its progressive mesh, distinguished meshes and geomorphs.
 
 use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result};
 
-use crate::commands::BadInput;
+use crate::cli::BadInput;
 use crate::gltf::{self, MaterialSet, Picture};
-use crate::import::{self, Imported};
+use crate::import::{self, Imported, ImportedImage};
 use crate::model::Material;
 use crate::say;
 use crate::stages::{lod, tree};
 use crate::world;
 
-/// Reads `input`, says what had to be repaired, makes all levels and writes them to `out`. Where the file brings no
+/// Reads `input`, prints what had to be repaired, makes all levels and writes them to `out`. Where the file brings no
 /// normals, faces that meet at less than `crease_deg` are smoothed over.
 pub fn convert(input: &Path, out: &Path, crease_deg: f32) -> Result<()> {
     if !(0.0..=180.0).contains(&crease_deg) {
@@ -48,16 +48,13 @@ pub fn convert(input: &Path, out: &Path, crease_deg: f32) -> Result<()> {
 fn materials(imported: &Imported) -> MaterialSet<'_> {
     MaterialSet {
         slots: (0..imported.materials.len() as u32).map(Material::Foreign).collect(),
-        materials: imported.materials.iter().map(|material| material.json.clone()).collect(),
+        materials: imported.materials.clone(),
         textures: imported.textures.clone(),
         samplers: imported.samplers.clone(),
-        images: imported
-            .images
-            .iter()
-            .map(|image| {
-                let picture = Picture::Embedded { bytes: &image.bytes, mime_type: &image.mime_type };
-                (image.name.clone(), picture)
-            })
-            .collect(),
+        images: imported.images.iter().map(|image| (image.name.clone(), embedded(image))).collect(),
     }
+}
+
+fn embedded(image: &ImportedImage) -> Picture<'_> {
+    Picture::Embedded { bytes: &image.bytes, mime_type: &image.mime_type }
 }
