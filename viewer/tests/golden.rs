@@ -13,10 +13,10 @@ use std::sync::Arc;
 
 use genescape_viewer::camera::Camera;
 use genescape_viewer::frame::{FrameInput, Options};
+use genescape_viewer::headless::Headless;
 use genescape_viewer::lod_mode::{TerrainLodMode, TreeLodMode};
 use genescape_viewer::picture_file::{self, Pixels};
 use genescape_viewer::scene::{Apron, Detail, Scene, Trees};
-use genescape_viewer::screenshot::Studio;
 use glam::Vec3;
 
 /// The greatest mean of FLIP that passes.
@@ -109,7 +109,7 @@ fn pictures() -> Vec<(&'static str, [f32; 5], Options)> {
 }
 
 fn shoot(
-    studio: &Studio,
+    studio: &Headless,
     scene: &Scene,
     [x, z, above, yaw_rad, pitch_rad]: [f32; 5],
     options: Options,

@@ -5,12 +5,12 @@ mod made_up;
 use genescape_viewer::camera::{Camera, Frustum};
 use genescape_viewer::frame::Options;
 use genescape_viewer::gpu::Gpu;
+use genescape_viewer::headless::Headless;
 use genescape_viewer::lod::tree::{Control, distance_m, lod_number, simple_error_m};
 use genescape_viewer::lod_mode::TreeLodMode;
 use genescape_viewer::passes::{CullUniform, TreeLists};
 use genescape_viewer::picture_file;
 use genescape_viewer::scene::Trees;
-use genescape_viewer::screenshot::Studio;
 use genescape_viewer::upload::{DrawCommand, SceneBuffers};
 use glam::Vec3;
 use rand::{RngExt, SeedableRng};
@@ -86,7 +86,7 @@ fn fetch(gpu: &Gpu, from: &wgpu::Buffer) -> Vec<u8> {
 
 /// λ of each tree as the device chose it, `None` where it is not seen. Checks lists, counts and commands on the way.
 fn chosen(
-    studio: &Studio,
+    studio: &Headless,
     buffers: &SceneBuffers,
     uniform: &CullUniform,
     forest: &Forest,
@@ -129,7 +129,7 @@ fn margin_m(frustum: &Frustum, center_m: Vec3, radius_m: f32) -> f32 {
         .fold(f32::MAX, f32::min)
 }
 
-fn compare(studio: &Studio, seed: u64) -> [usize; 2] {
+fn compare(studio: &Headless, seed: u64) -> [usize; 2] {
     let mut rng = Pcg32::seed_from_u64(seed);
     let forest = forest(&mut rng);
     let scene = made_up::scene(made_up::field(17, 2.0, 1.0, 0.1), [90; 4], [1.0; 3], forest.trees.clone());

@@ -7,10 +7,12 @@ use std::path::PathBuf;
 use anyhow::Result;
 use strum::VariantArray;
 
-use super::BenchArgs;
-use super::lab::{Cost, Lab, forest, frame_with, way};
+use super::cost::Cost;
+use super::forest::{camera_path, forest};
 use super::report::{Aim, Report};
+use super::{BenchArgs, frame_with};
 use crate::frame::FrameInput;
+use crate::headless::Headless;
 use crate::lod_mode::{LodMode, TerrainLodMode, TreeLodMode};
 use crate::picture_file;
 use crate::view::View;
@@ -52,27 +54,32 @@ struct Run {
     errors: Vec<f64>,
 }
 
-pub(super) fn measure(lab: &Lab, paths: &[PathBuf], args: &BenchArgs, report: &mut Report) -> Result<()> {
+pub(super) fn measure(
+    headless: &Headless,
+    paths: &[PathBuf],
+    args: &BenchArgs,
+    report: &mut Report,
+) -> Result<()> {
     let [width, height] = args.size;
     let mut ratios = Vec::new();
     for path in paths {
-        let scene = forest(&lab.load(path)?, TREES);
+        let scene = forest(&headless.read(path)?, TREES);
         report.section(format!(
             "Levels of detail: {}, {} trees, {width} × {height}, {} places there and back",
             scene.name,
             scene.trees.instances.len(),
             args.steps
         ));
-        let uploaded = lab.upload(&scene)?;
+        let uploaded = headless.upload(&scene)?;
         let start = |case: Case| Run {
-            view: [lab.view(&uploaded, args.size)],
+            view: [headless.view(uploaded.clone(), args.size)],
             frame: frame_with(case.trees, case.terrain),
             costs: Vec::new(),
             errors: Vec::new(),
             case,
         };
         let mut runs: Vec<Run> = cases().into_iter().map(start).collect();
-        walk(lab, &mut runs, &way(&scene, args.steps))?;
+        walk(headless, &mut runs, &camera_path(&scene, args.steps))?;
         ratios.push(tell(&runs, report));
     }
     report.section("Levels of detail pay, over all landscapes");
@@ -84,16 +91,16 @@ pub(super) fn measure(lab: &Lab, paths: &[PathBuf], args: &BenchArgs, report: &m
 }
 
 /// All cases in turn at each place, there and back.
-fn walk(lab: &Lab, runs: &mut [Run], cameras: &[crate::camera::Camera]) -> Result<()> {
+fn walk(headless: &Headless, runs: &mut [Run], cameras: &[crate::camera::Camera]) -> Result<()> {
     for run in runs.iter_mut() {
         // Drivers finish pipelines at the first use.
-        lab.frame(&mut run.view, &run.frame, &cameras[0]);
+        Cost::of_frame(headless, &mut run.view, &run.frame, &cameras[0]);
     }
     for camera in cameras {
         let mut reference = Vec::new();
         for run in runs.iter_mut() {
-            run.costs.push(lab.frame(&mut run.view, &run.frame, camera));
-            let picture = picture_file::read(&lab.gpu, &run.view[0].targets().display)?.rgba;
+            run.costs.push(Cost::of_frame(headless, &mut run.view, &run.frame, camera));
+            let picture = picture_file::read(&headless.gpu, &run.view[0].targets().display)?.rgba;
             if reference.is_empty() {
                 reference = picture.clone();
             }
@@ -102,7 +109,8 @@ fn walk(lab: &Lab, runs: &mut [Run], cameras: &[crate::camera::Camera]) -> Resul
     }
     for (place, camera) in cameras.iter().enumerate().rev() {
         for run in runs.iter_mut() {
-            run.costs[place] = run.costs[place].least(lab.frame(&mut run.view, &run.frame, camera));
+            run.costs[place] =
+                run.costs[place].least(Cost::of_frame(headless, &mut run.view, &run.frame, camera));
         }
     }
     Ok(())
