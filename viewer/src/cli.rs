@@ -2,10 +2,12 @@
 
 use std::path::PathBuf;
 
-use clap::{Parser, Subcommand, ValueEnum};
+use clap::{Parser, Subcommand};
 
 use crate::baker::BakerOptions;
-use crate::frame::{Options, TerrainScheme, TreeScheme};
+use crate::frame::Options;
+use crate::lod_mode::{TerrainLodMode, TreeLodMode};
+use crate::picture_file::parse_size;
 
 /// Shows four landscapes at once: walk through all of them, say which has the best trees, terrain and sky, and breed
 /// four new ones
@@ -56,7 +58,7 @@ pub struct Cli {
     pub screenshot: Option<PathBuf>,
 
     /// Size of the window or the picture
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<[u32; 2]>,
 
     /// With --screenshot: which landscape, 0 to 3
@@ -76,16 +78,13 @@ pub struct Cli {
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
     pub time: f32,
 
-    /// How it is drawn.
     #[command(flatten)]
     pub drawing: Drawing,
 
-    /// Something else than looking.
     #[command(subcommand)]
     pub command: Option<Command>,
 }
 
-/// Other things to do.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Command {
     /// Measure how long pictures take, as ratios of one run
@@ -99,16 +98,16 @@ const EXAMPLES: &str = "Examples:
   viewer --screenshot all.png --all            draw all four to a file, without a window
   viewer --screenshot a.png --scene 2 --camera 0,20,1.6,45,-5 --size 1600x900";
 
-/// How it is drawn; kept by nobody.
+/// How it is drawn; not kept in the settings.
 #[derive(Clone, Debug, clap::Args)]
 #[command(next_help_heading = "Drawing (with --screenshot)")]
 pub struct Drawing {
     /// Levels of detail of trees
     #[arg(long, value_enum, default_value_t)]
-    pub tree_lod: TreeLod,
+    pub tree_lod: TreeLodMode,
     /// Levels of detail of the terrain
     #[arg(long, value_enum, default_value_t)]
-    pub terrain_lod: TerrainLod,
+    pub terrain_lod: TerrainLodMode,
     /// Error that trees may have on the screen, in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = Options::default().tree_error_px)]
     pub tree_error: f32,
@@ -138,47 +137,12 @@ pub struct Drawing {
     pub fov: f32,
 }
 
-/// As [`TreeScheme`].
-#[derive(Clone, Copy, Debug, Default, ValueEnum)]
-pub enum TreeLod {
-    /// Continuous, by error
-    Quality,
-    /// Continuous, by number of vertices
-    #[default]
-    Simple,
-    /// By error, without morphing
-    Discrete,
-    /// None
-    Off,
-}
-
-/// As [`TerrainScheme`].
-#[derive(Clone, Copy, Debug, Default, ValueEnum)]
-pub enum TerrainLod {
-    /// Blocks that morph in the vertex shader
-    #[default]
-    Morph,
-    /// Triangles split by wedgies on the CPU
-    Roam,
-    /// None
-    Off,
-}
-
 impl Drawing {
     /// As options for a frame.
     pub fn options(&self) -> Options {
         Options {
-            tree_scheme: match self.tree_lod {
-                TreeLod::Quality => TreeScheme::Quality,
-                TreeLod::Simple => TreeScheme::Simple,
-                TreeLod::Discrete => TreeScheme::Discrete,
-                TreeLod::Off => TreeScheme::Off,
-            },
-            terrain_scheme: match self.terrain_lod {
-                TerrainLod::Morph => TerrainScheme::Morph,
-                TerrainLod::Roam => TerrainScheme::Roam,
-                TerrainLod::Off => TerrainScheme::Off,
-            },
+            tree_lod: self.tree_lod,
+            terrain_lod: self.terrain_lod,
             tree_error_px: self.tree_error,
             terrain_error_px: self.terrain_error,
             wireframe: self.wireframe,
@@ -219,16 +183,6 @@ fn place(text: &str) -> Result<Place, String> {
     }
 }
 
-pub(crate) fn size(text: &str) -> Result<[u32; 2], String> {
-    let sides: Vec<u32> = text.split(['x', 'X', '×']).filter_map(|side| side.trim().parse().ok()).collect();
-    match sides[..] {
-        [width, height] if (16..=16384).contains(&width) && (16..=16384).contains(&height) => {
-            Ok([width, height])
-        }
-        _ => Err("a size is WIDTHxHEIGHT in pixels, 16 to 16384 each, as in 1280x800".to_owned()),
-    }
-}
-
 fn heightfield(text: &str) -> Result<u32, String> {
     let side = text.parse().ok();
     side.filter(|side| [65, 129, 257, 513, 1025, 2049].contains(side))
@@ -254,15 +208,11 @@ mod tests {
     }
 
     #[test]
-    fn places_and_sizes_are_read_or_refused_with_an_example() {
+    fn places_are_read_or_refused_with_an_example() {
         let read = place("0,20,1.6,45,-5").expect("five numbers");
         assert_eq!(read, Place { x_m: 0.0, z_m: 20.0, height_m: 1.6, yaw_deg: 45.0, pitch_deg: -5.0 });
         for wrong in ["", "1,2,3,4", "1,2,3,4,5,6", "1,2,x,4,5", "1,2,nan,4,5", "1,2,,4,5"] {
             assert!(place(wrong).is_err_and(|text| text.contains("0,20,1.6,45,-5")), "{wrong}");
-        }
-        assert_eq!(size("640x480"), Ok([640, 480]));
-        for wrong in ["640", "0x480", "640x480x3", "x", "99999x10"] {
-            assert!(size(wrong).is_err(), "{wrong}");
         }
     }
 }

@@ -3,13 +3,14 @@
 mod made_up;
 
 use genescape_viewer::camera::{Camera, Frustum};
-use genescape_viewer::frame::{Options, TreeScheme};
+use genescape_viewer::frame::Options;
 use genescape_viewer::gpu::Gpu;
+use genescape_viewer::headless::Headless;
 use genescape_viewer::lod::tree::{Control, distance_m, lod_number, simple_error_m};
+use genescape_viewer::lod_mode::TreeLodMode;
 use genescape_viewer::passes::{CullUniform, TreeLists};
 use genescape_viewer::picture_file;
 use genescape_viewer::scene::Trees;
-use genescape_viewer::screenshot::Studio;
 use genescape_viewer::upload::{DrawCommand, SceneBuffers};
 use glam::Vec3;
 use rand::{RngExt, SeedableRng};
@@ -85,7 +86,7 @@ fn fetch(gpu: &Gpu, from: &wgpu::Buffer) -> Vec<u8> {
 
 /// λ of each tree as the device chose it, `None` where it is not seen. Checks lists, counts and commands on the way.
 fn chosen(
-    studio: &Studio,
+    studio: &Headless,
     buffers: &SceneBuffers,
     uniform: &CullUniform,
     forest: &Forest,
@@ -128,22 +129,22 @@ fn margin_m(frustum: &Frustum, center_m: Vec3, radius_m: f32) -> f32 {
         .fold(f32::MAX, f32::min)
 }
 
-fn compare(studio: &Studio, seed: u64) -> [usize; 2] {
+fn compare(studio: &Headless, seed: u64) -> [usize; 2] {
     let mut rng = Pcg32::seed_from_u64(seed);
     let forest = forest(&mut rng);
     let scene = made_up::scene(made_up::field(17, 2.0, 1.0, 0.1), [90; 4], [1.0; 3], forest.trees.clone());
     let buffers = genescape_viewer::upload::Uploader::new(&studio.gpu).upload(&scene).expect("uploaded");
     let set = buffers.trees.as_ref().expect("trees");
     let mut seen = [0; 2];
-    for scheme in [TreeScheme::Quality, TreeScheme::Simple, TreeScheme::Discrete, TreeScheme::Off] {
+    for mode in [TreeLodMode::Quality, TreeLodMode::Simple, TreeLodMode::Discrete, TreeLodMode::Off] {
         let camera = eye(&mut rng, &forest.trees);
         let frustum = camera.frustum(1.6);
         let control = Control {
-            scheme,
+            mode,
             focal_px: rng.random_range(100.0..900.0f32),
             error_px: rng.random_range(0.3..8.0f32),
         };
-        let options = Options { tree_scheme: scheme, tree_error_px: control.error_px, ..Options::default() };
+        let options = Options { tree_lod: mode, tree_error_px: control.error_px, ..Options::default() };
         let uniform = CullUniform::for_view(set, &frustum, camera.position_m, control.focal_px, &options);
         let device = chosen(studio, &buffers, &uniform, &forest);
         for (tree, lambda) in device.into_iter().enumerate() {
@@ -170,7 +171,7 @@ fn compare(studio: &Studio, seed: u64) -> [usize; 2] {
             // Rounding may tip a tree over the edge of a level.
             let [lower, upper] = [0.999, 1.001].map(|factor| number(&control, factor * away_m));
             let close = (lambda - expected).abs() < ROUNDING || lambda == lower || lambda == upper;
-            assert!(close, "seed {seed}, {scheme:?}, tree {tree}: λ {lambda} instead of {expected}");
+            assert!(close, "seed {seed}, {mode:?}, tree {tree}: λ {lambda} instead of {expected}");
         }
     }
     seen

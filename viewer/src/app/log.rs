@@ -1,5 +1,6 @@
-//! The flight recorder: what happens in the window → one JSON object a line, in the order in which it happened, for
-//! bug reports and for programs that drive the viewer and have to know how it stands. Each line has `t_s` (seconds since
+//! The flight recorder: what happens in the window → one JSON object a line, in the order in which it happened. It is for
+//! bug reports, and it is the protocol by which viewer/tests/window.rs, or any program that drives the viewer, knows what
+//! the viewer did: names and units here are a format. Each line has `t_s` (seconds since
 //! the start), `frame` (frames shown) and `what`; a state is written when it changes, so the last line of each `what` says
 //! how things are. Lengths in metres, angles in radians, places in the window in physical pixels.
 
@@ -60,7 +61,7 @@ pub struct Moment<'a> {
     pub pose: Pose,
     /// Width and height of the window.
     pub size_px: [u32; 2],
-    /// What can be pressed, if anybody asked egui.
+    /// What can be pressed, if egui was asked.
     pub widgets: Option<Value>,
 }
 
@@ -84,20 +85,28 @@ impl Log {
         })
     }
 
-    /// Whether anybody will read it.
     pub fn is_on(&self) -> bool {
         self.file.is_some()
     }
 
     /// Something that happens once.
-    pub fn note(&mut self, what: &'static str, value: Value) {
-        self.write(what, &value);
+    pub fn note(&mut self, what: &str, value: Value) {
+        let Some(file) = &mut self.file else { return };
+        let t_s = self.born.elapsed().as_secs_f64();
+        let mut line = json!({ "t_s": (t_s * 1e3).round() / 1e3, "frame": self.frame, "what": what });
+        if let (Some(line), Value::Object(value)) = (line.as_object_mut(), value) {
+            line.extend(value);
+        }
+        // A full disk ends the log, not the viewer. In one piece, so that a reader meets whole lines.
+        if file.write_all(format!("{line}\n").as_bytes()).is_err() {
+            self.file = None;
+        }
     }
 
-    /// A wish of the person: an event or an action.
-    pub fn wish(&mut self, wish: &impl Debug) {
+    /// What the person asks for: an event or a command.
+    pub fn event(&mut self, event: &impl Debug) {
         if self.is_on() {
-            self.write("wish", &json!({ "wish": format!("{wish:?}") }));
+            self.note("wish", json!({ "wish": format!("{event:?}") }));
         }
     }
 
@@ -136,9 +145,9 @@ impl Log {
         let trees = landscape.and_then(|scene| scene.trees.as_ref()).map_or(0, |trees| trees.count);
         let name = landscape.map(|scene| scene.name.clone());
         self.landscapes[view] = now;
-        self.write(
+        self.note(
             "landscape",
-            &json!({ "view": view, "generation": generation, "name": name, "trees": trees }),
+            json!({ "view": view, "generation": generation, "name": name, "trees": trees }),
         );
     }
 
@@ -153,7 +162,7 @@ impl Log {
         }
         let value = json!({ "fps": frames.count as f32 / span.as_secs_f32(), "worst_ms": frames.worst_ms });
         (frames.since, frames.count, frames.worst_ms) = (now, 0, 0.0);
-        self.write("frames", &value);
+        self.note("frames", value);
     }
 
     /// Written if it changed.
@@ -162,7 +171,7 @@ impl Log {
         if known.is_some_and(|at| self.states[at].value == value) {
             return;
         }
-        self.write(what, &value);
+        self.note(what, value.clone());
         let state = State { what, value, at: Instant::now() };
         match known {
             Some(at) => self.states[at] = state,
@@ -179,19 +188,6 @@ impl Log {
 
     fn rested(&self, what: &str) -> bool {
         self.states.iter().find(|state| state.what == what).is_none_or(|state| state.at.elapsed() >= PAUSE)
-    }
-
-    fn write(&mut self, what: &str, value: &Value) {
-        let Some(file) = &mut self.file else { return };
-        let t_s = self.born.elapsed().as_secs_f64();
-        let mut line = json!({ "t_s": (t_s * 1e3).round() / 1e3, "frame": self.frame, "what": what });
-        if let (Some(line), Some(value)) = (line.as_object_mut(), value.as_object()) {
-            line.extend(value.clone());
-        }
-        // A full disk ends the log, not the viewer. In one piece, so that a reader meets whole lines.
-        if file.write_all(format!("{line}\n").as_bytes()).is_err() {
-            self.file = None;
-        }
     }
 }
 
@@ -243,8 +239,8 @@ fn place(pose: &Pose) -> Value {
     })
 }
 
-/// What can be pressed or dragged, as it is told to people who do not see: its words, and its middle in pixels.
-pub fn widgets(told: &TreeUpdate, pixels_per_point: f32) -> Value {
+/// What can be pressed or dragged, as screen readers know it: its words, and its middle in pixels.
+pub fn widgets(update: &TreeUpdate, pixels_per_point: f32) -> Value {
     let usable = |role: Role| {
         matches!(
             role,
@@ -257,7 +253,7 @@ pub fn widgets(told: &TreeUpdate, pixels_per_point: f32) -> Value {
         )
     };
     let mut listed: Vec<Value> = Vec::new();
-    for (_, node) in told.nodes.iter().filter(|(_, node)| usable(node.role())) {
+    for (_, node) in update.nodes.iter().filter(|(_, node)| usable(node.role())) {
         let (Some(words), Some(place)) = (node.label().or_else(|| node.value()), node.bounds()) else {
             continue;
         };
@@ -291,7 +287,7 @@ mod tests {
             log.state("bake", json!({ "generation": value }));
             log.state("errors", json!({ "count": 0 }));
         }
-        log.wish(&Ballot::Nobody);
+        log.event(&Ballot::Nobody);
         let told: Vec<_> = lines(&path).iter().map(|line| line["what"].clone()).collect();
         assert_eq!(told, ["bake", "errors", "bake", "bake", "wish"]);
         assert_eq!(lines(&path)[2]["generation"], 2);

@@ -8,8 +8,9 @@
 //! beside its own pictures.
 
 mod card;
+mod cost;
 mod detail;
-mod lab;
+mod forest;
 mod record;
 mod report;
 mod serve;
@@ -18,13 +19,15 @@ mod views;
 
 use std::path::PathBuf;
 
-use anyhow::{Result, anyhow, ensure};
+use anyhow::{Result, anyhow};
 use clap::{Args, ValueEnum};
 
 use crate::app::desk::Source;
-use crate::screenshot;
+use crate::frame::{FrameInput, Options};
+use crate::headless::{Headless, scene_files};
+use crate::lod_mode::{TerrainLodMode, TreeLodMode};
+use crate::picture_file::parse_size;
 use crate::shaders::Shaders;
-use lab::Lab;
 use report::Report;
 
 /// What `viewer bench` can be asked for.
@@ -39,7 +42,7 @@ pub struct BenchArgs {
     pub scenes: Vec<PathBuf>,
 
     /// Size of a single picture; of four views, that of all together
-    #[arg(long, value_name = "WxH", default_value = "800x600", value_parser = crate::cli::size)]
+    #[arg(long, value_name = "WxH", default_value = "800x600", value_parser = parse_size)]
     pub size: [u32; 2],
 
     /// Places of the camera on its way across the land; it goes there and back
@@ -64,7 +67,6 @@ pub struct BenchArgs {
     pub serve: bool,
 }
 
-/// A measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Measure {
     /// Recording a picture of 100 and of 100,000 trees
@@ -88,29 +90,28 @@ pub fn run(args: &BenchArgs) -> Result<()> {
         true => Source::of(&args.world).map_err(anyhow::Error::msg)?,
         false => Source::Scenes(args.scenes.clone()),
     };
-    let paths = screenshot::scene_files(&source)?;
-    ensure!(!paths.is_empty(), "there is no landscape to draw");
-    let lab = Lab::open(&args.shaders.clone().map_or_else(Shaders::builtin, Shaders::from_folder))?;
+    let paths = scene_files(&source)?;
+    let first = paths.first().ok_or_else(|| anyhow!("there is no landscape to draw"))?;
+    let headless = Headless::open(&Shaders::from(args.shaders.clone()), 1)?;
     if args.serve {
-        let first = paths.first().ok_or_else(|| anyhow!("there is no landscape to draw"))?;
-        return serve::run(&lab, first, args);
+        return serve::run(&headless, first, args);
     }
-    let wanted = |measure| args.only.is_empty() || args.only.contains(&measure);
-    let mut report = Report::begin(&lab.gpu, args.json);
-    if wanted(Measure::Record) {
-        record::measure(&lab, &paths, args, &mut report)?;
-    }
-    if wanted(Measure::Detail) {
-        detail::measure(&lab, &paths, args, &mut report)?;
-    }
-    if wanted(Measure::Views) {
-        views::measure(&lab, &paths, args, &mut report)?;
-    }
-    if wanted(Measure::Swap) {
-        swap::measure(&lab, &paths, args, &mut report)?;
-    }
-    if wanted(Measure::Card) {
-        card::measure(&lab, &paths, args, &mut report)?;
+    let mut report = Report::begin(&headless.gpu, args.json);
+    let measures = Measure::value_variants().iter();
+    for measure in measures.filter(|measure| args.only.is_empty() || args.only.contains(measure)) {
+        let measure = match measure {
+            Measure::Record => record::measure,
+            Measure::Detail => detail::measure,
+            Measure::Views => views::measure,
+            Measure::Swap => swap::measure,
+            Measure::Card => card::measure,
+        };
+        measure(&headless, &paths, args, &mut report)?;
     }
     report.end()
+}
+
+/// What a frame is drawn from with these LOD modes.
+fn frame_with(tree_lod: TreeLodMode, terrain_lod: TerrainLodMode) -> FrameInput {
+    FrameInput { options: Options { tree_lod, terrain_lod, ..Options::default() }, time_s: 0.0 }
 }

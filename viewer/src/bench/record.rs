@@ -6,9 +6,11 @@ use std::path::PathBuf;
 use anyhow::Result;
 
 use super::BenchArgs;
-use super::lab::{Cost, Lab, forest, way};
+use super::cost::Cost;
+use super::forest::{camera_path, forest};
 use super::report::{Aim, Report, median};
 use crate::frame::FrameInput;
+use crate::headless::Headless;
 
 /// Trees of the two forests.
 const TREES: [usize; 2] = [100, 100_000];
@@ -19,16 +21,21 @@ const DRAWN: usize = 8;
 /// What recording costs does not depend on the size, but drawing does.
 const SIZE_PX: [u32; 2] = [64, 48];
 
-pub(super) fn measure(lab: &Lab, paths: &[PathBuf], args: &BenchArgs, report: &mut Report) -> Result<()> {
+pub(super) fn measure(
+    headless: &Headless,
+    paths: &[PathBuf],
+    args: &BenchArgs,
+    report: &mut Report,
+) -> Result<()> {
     report.section(format!(
         "Recording a picture of {} and of {} trees: milliseconds of this thread, median",
         TREES[0], TREES[1]
     ));
-    let scene = lab.load(&paths[0])?;
-    let cameras = way(&scene, args.steps);
+    let scene = headless.read(&paths[0])?;
+    let cameras = camera_path(&scene, args.steps);
     let mut views = Vec::new();
     for count in TREES {
-        views.push([lab.view(&lab.upload(&forest(&scene, count))?, SIZE_PX)]);
+        views.push([headless.view(headless.upload(&forest(&scene, count))?, SIZE_PX)]);
     }
     let frame = FrameInput::default();
     let mut draws = 0;
@@ -36,21 +43,21 @@ pub(super) fn measure(lab: &Lab, paths: &[PathBuf], args: &BenchArgs, report: &m
     for round in 0..RECORDED {
         let camera = &cameras[round % cameras.len()];
         for (view, times) in views.iter_mut().zip(&mut recorded) {
-            let (ms, (commands, one)) = Cost::of_thread(|| lab.record(view, &frame, camera));
+            let (ms, (commands, one)) = Cost::of_thread(|| headless.record(view, &frame, camera, camera));
             drop(commands);
             // Takes along what was written to buffers, lest it pile up.
-            lab.gpu.queue.submit([]);
+            headless.gpu.queue.submit([]);
             times.push(ms);
             draws = draws.max(one.draws);
         }
-        lab.gpu.wait();
+        headless.gpu.wait();
     }
     for round in 0..DRAWN {
         let camera = &cameras[round % cameras.len()];
         for (view, times) in views.iter_mut().zip(&mut drawn) {
-            let submit = || lab.gpu.queue.submit([lab.record(view, &frame, camera).0]);
+            let submit = || headless.gpu.queue.submit([headless.record(view, &frame, camera, camera).0]);
             times.push(Cost::of_thread(submit).0);
-            lab.gpu.wait();
+            headless.gpu.wait();
         }
     }
     let [few, many] = recorded.map(|times| median(&times));

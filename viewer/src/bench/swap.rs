@@ -6,11 +6,12 @@ use std::sync::Arc;
 use anyhow::{Result, anyhow};
 
 use super::BenchArgs;
-use super::lab::{Cost, Lab, way};
+use super::cost::Cost;
+use super::forest::{camera_path, four_views};
 use super::report::{Aim, Report, median, quantile};
-use super::views::four_views;
 use crate::app::loader::{Loader, Request};
 use crate::frame::FrameInput;
+use crate::headless::Headless;
 use crate::load;
 use crate::upload::Uploader;
 
@@ -21,34 +22,39 @@ const NEIGHBOURS: usize = 10;
 /// Swaps.
 const SWAPS: usize = 4;
 
-pub(super) fn measure(lab: &Lab, paths: &[PathBuf], args: &BenchArgs, report: &mut Report) -> Result<()> {
+pub(super) fn measure(
+    headless: &Headless,
+    paths: &[PathBuf],
+    args: &BenchArgs,
+    report: &mut Report,
+) -> Result<()> {
     report.section(format!(
         "Swap of a landscape in one of four views: {SWAPS} swaps, milliseconds of the clock"
     ));
-    let camera = way(&lab.load(&paths[0])?, 3)[1];
-    let mut views = four_views(lab, paths, args.size)?;
+    let camera = camera_path(&headless.read(&paths[0])?, 3)[1];
+    let mut views = four_views(headless, paths, args.size, None)?;
     let frame = FrameInput::default();
-    parts(lab, &paths[0], report)?;
-    let loader = Loader::start(&lab.gpu, || {})?;
+    parts(headless, &paths[0], report)?;
+    let loader = Loader::start(&headless.gpu, || {})?;
     let (mut all, mut quiet, mut loading, mut shown) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    lab.frame(&mut views, &frame, &camera);
+    Cost::of_frame(headless, &mut views, &frame, &camera);
     for swap in 0..SWAPS {
         for _ in 0..AROUND {
-            quiet.push(lab.frame(&mut views, &frame, &camera).wall_ms);
+            quiet.push(Cost::of_frame(headless, &mut views, &frame, &camera).wall_ms);
             all.push(quiet[quiet.len() - 1]);
         }
         // Each view gets the landscape of the next, by a loader that knows nothing of it yet.
         let path = paths[(swap + 1) % paths.len()].clone();
-        loader.ask(Request { view: swap, generation: 0, path, passes: Arc::clone(&lab.passes) });
+        loader.ask(Request { view: swap, generation: 0, path, passes: Arc::clone(&headless.passes) });
         loop {
             let reply = loader.replies().next();
             let start = std::time::Instant::now();
             let arrived = reply.is_some();
             if let Some(reply) = reply {
                 let ready = reply.result.map_err(|text| anyhow!(text))?;
-                views[reply.view % 4].show(&lab.passes, ready.buffers);
+                views[reply.view % 4].show(&headless.passes, ready.buffers);
             }
-            lab.frame(&mut views, &frame, &camera);
+            Cost::of_frame(headless, &mut views, &frame, &camera);
             let ms = start.elapsed().as_secs_f64() * 1e3;
             all.push(ms);
             if arrived {
@@ -58,7 +64,7 @@ pub(super) fn measure(lab: &Lab, paths: &[PathBuf], args: &BenchArgs, report: &m
             loading.push(ms);
         }
         for _ in 0..AROUND {
-            quiet.push(lab.frame(&mut views, &frame, &camera).wall_ms);
+            quiet.push(Cost::of_frame(headless, &mut views, &frame, &camera).wall_ms);
             all.push(quiet[quiet.len() - 1]);
         }
     }
@@ -73,19 +79,24 @@ pub(super) fn measure(lab: &Lab, paths: &[PathBuf], args: &BenchArgs, report: &m
 
 /// What the loader does for a landscape of which nothing is known yet, piece by piece. The device does one thing after
 /// the other: a frame waits for what of this was submitted before it.
-fn parts(lab: &Lab, path: &std::path::Path, report: &mut Report) -> Result<()> {
+fn parts(headless: &Headless, path: &std::path::Path, report: &mut Report) -> Result<()> {
     let (reading, scene) = Cost::of(|| load::load(path, &load::Store::default()));
     let scene = scene?;
     let (bringing, uploaded) = Cost::of(|| {
-        let uploaded = Uploader::new(&lab.gpu).upload(&scene);
-        lab.gpu.queue.submit([]);
-        lab.gpu.wait();
+        let uploaded = Uploader::new(&headless.gpu).upload(&scene);
+        headless.gpu.queue.submit([]);
+        headless.gpu.wait();
         uploaded
     });
     let uploaded = uploaded.map_err(|text| anyhow!(text))?;
     let (shading, ()) = Cost::of(|| {
-        lab.passes.shadow.bake(&lab.gpu, &lab.passes.layouts, &lab.passes.cull, &uploaded);
-        lab.gpu.wait();
+        headless.passes.shadow.bake(
+            &headless.gpu,
+            &headless.passes.layouts,
+            &headless.passes.cull,
+            &uploaded,
+        );
+        headless.gpu.wait();
     });
     report.figure("alone: reading a landscape", reading.wall_ms, "ms");
     report.figure("alone: bringing it to the device", bringing.wall_ms, "ms");

@@ -10,7 +10,7 @@ use super::icon::Icon;
 use super::model::Genes;
 use super::theme::Palette;
 use super::widgets::sized_icon_button;
-use crate::event::{Event, Phase};
+use crate::event::Event;
 
 /// What is being dragged or typed just now; the model hears of it by events only.
 #[derive(Clone, Debug, Default)]
@@ -126,12 +126,12 @@ fn reset(
     let response =
         ui.add_enabled_ui(!locked, |ui| sized_icon_button(ui, Icon::Reset, label.trim_end(), false, 24.0));
     if response.inner.clicked() {
-        events.push(gene(individual, parameter, bred, Phase::Committed));
+        events.push(gene(individual, parameter, bred));
     }
 }
 
-fn gene(individual: usize, parameter: &Parameter, code: u32, phase: Phase) -> Event {
-    Event::Gene { individual, name: parameter.name.clone(), value: parameter.value(code), phase }
+fn gene(individual: usize, parameter: &Parameter, code: u32) -> Event {
+    Event::Genes { individual, values: vec![(parameter.name.clone(), parameter.value(code))] }
 }
 
 /// The value as text, with its unit behind it; Enter or leaving the field takes what was typed.
@@ -178,7 +178,7 @@ fn value(
         state.typed = None;
         let given_up = ui.input(|input| input.key_pressed(egui::Key::Escape));
         if let Some(typed) = typed.filter(|&typed| typed != code && !locked && !given_up) {
-            events.push(gene(individual, parameter, typed, Phase::Committed));
+            events.push(gene(individual, parameter, typed));
         }
     }
     response.on_hover_text(format!("Type a value: {}", parameter.range_text()));
@@ -225,12 +225,14 @@ fn slider(
     if response.drag_stopped() {
         // A press that moved nothing asks for nothing.
         if state.dragged.take().is_some() || chosen != code {
-            events.push(gene(individual, parameter, chosen, Phase::Committed));
+            events.push(gene(individual, parameter, chosen));
         }
     } else if chosen != code {
-        let phase = if moving { Phase::Dragging } else { Phase::Committed };
+        // While it moves only the panel shows it; it is written when it is let go.
         state.dragged = moving.then(|| (individual, parameter.name.clone(), chosen));
-        events.push(gene(individual, parameter, chosen, phase));
+        if !moving {
+            events.push(gene(individual, parameter, chosen));
+        }
     }
 }
 

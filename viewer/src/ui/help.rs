@@ -6,10 +6,11 @@ use egui::{
 };
 
 use super::icon::Icon;
-use super::model::{KeyGroup, Model};
+use super::model::Model;
 use super::theme::{self, Palette};
 use super::widgets::{icon_button, key_caps};
 use crate::event::{Event, Panel};
+use crate::input::KeyGroup;
 
 /// What to do first.
 const FIRST_STEPS: [(&str, &str); 3] = [

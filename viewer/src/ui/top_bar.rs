@@ -9,6 +9,7 @@ use super::theme::{self, Palette};
 use super::votes;
 use super::widgets::{ICON_BUTTON, icon_button, name_button, primary_button, progress_bar};
 use crate::event::{Arrangement, Event, Panel};
+use crate::input::Command;
 
 /// Height of the bar, in points.
 const HEIGHT: f32 = 40.0;
@@ -53,7 +54,7 @@ fn panels(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
     }
     divider(ui);
     if icon_button(ui, Icon::Camera, "Save a screenshot", false).clicked() {
-        events.push(Event::Screenshot);
+        events.push(Command::Screenshot.into());
     }
 }
 
@@ -80,9 +81,9 @@ fn divider(ui: &mut Ui) {
 }
 
 fn generations(ui: &mut Ui, model: &Model, words: bool, events: &mut Vec<Event>) {
-    step(ui, Icon::Undo, "Undo", model.undo.as_deref(), Event::Undo, events);
+    step(ui, Icon::Undo, "Undo", model.undo.as_deref(), Command::Undo, events);
     if model.redo.is_some() {
-        step(ui, Icon::Redo, "Redo", model.redo.as_deref(), Event::Redo, events);
+        step(ui, Icon::Redo, "Redo", model.redo.as_deref(), Command::Redo, events);
     }
     divider(ui);
     let way_on = if words { 330.0 } else { 36.0 };
@@ -103,13 +104,13 @@ fn generations(ui: &mut Ui, model: &Model, words: bool, events: &mut Vec<Event>)
 }
 
 /// Takes a step back or does it again; `what` says which, `None` that there is none.
-fn step(ui: &mut Ui, icon: Icon, verb: &str, what: Option<&str>, event: Event, events: &mut Vec<Event>) {
+fn step(ui: &mut Ui, icon: Icon, verb: &str, what: Option<&str>, command: Command, events: &mut Vec<Event>) {
     let label = match what {
         Some(what) => format!("{verb}: {what}"),
         None => format!("Nothing to {}", verb.to_lowercase()),
     };
     if ui.add_enabled_ui(what.is_some(), |ui| icon_button(ui, icon, &label, false)).inner.clicked() {
-        events.push(event);
+        events.push(command.into());
     }
 }
 
@@ -174,7 +175,7 @@ fn next(ui: &mut Ui, model: &Model, words: bool, events: &mut Vec<Event>) {
         })
         .inner;
     if response.clicked() {
-        events.push(Event::NextGeneration);
+        events.push(Command::NextGeneration.into());
     }
     match hindrance {
         Some(text) => response.on_disabled_hover_text(text),

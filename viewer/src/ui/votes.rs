@@ -12,6 +12,7 @@ use super::model::Model;
 use super::theme;
 use super::widgets::{name_button, progress_ring};
 use crate::event::{Ballot, Event};
+use crate::input::Command;
 
 /// Height of a vote button, in points.
 const PILL: f32 = 28.0;
@@ -219,7 +220,7 @@ fn next_button(ui: &mut Ui, rect: Rect, words: bool, events: &mut Vec<Event>) {
         ui.painter().text(at, Align2::LEFT_CENTER, "Next generation", word_font(), ink);
     }
     if response.clicked() {
-        events.push(Event::NextGeneration);
+        events.push(Command::NextGeneration.into());
     }
     response.on_hover_text("Breed four new landscapes from what you chose");
 }

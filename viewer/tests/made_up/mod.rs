@@ -7,18 +7,18 @@ mod land;
 use std::sync::Arc;
 
 use genescape_viewer::gpu::GpuError;
+use genescape_viewer::headless::Headless;
 use genescape_viewer::scene::{
     Apron, Detail, Ground, HdrPicture, Heightfield, Instance, Level, Material, Picture, Range, Scene, Sky,
     Surface, Template, TreeVertex, Trees,
 };
-use genescape_viewer::screenshot::Studio;
 use genescape_viewer::shaders::Shaders;
 use genescape_viewer::upload::{SceneBuffers, Uploader};
 pub use land::{hash, land};
 
 /// A device, or nothing, with a word about it, where there is none and `GENESCAPE_NEEDS_GPU` isn't set.
-pub fn studio() -> Option<Studio> {
-    match Studio::open(&Shaders::builtin(), 1) {
+pub fn studio() -> Option<Headless> {
+    match Headless::open(&Shaders::builtin(), 1) {
         Ok(studio) => Some(studio),
         Err(error) => {
             let absent = matches!(error.downcast_ref(), Some(GpuError::NoAdapter(_)));
@@ -30,7 +30,7 @@ pub fn studio() -> Option<Studio> {
 }
 
 /// Brings a landscape to the device, with shadows.
-pub fn upload(studio: &Studio, scene: &Scene) -> Arc<SceneBuffers> {
+pub fn upload(studio: &Headless, scene: &Scene) -> Arc<SceneBuffers> {
     let buffers = Uploader::new(&studio.gpu).upload(scene).expect("a landscape that can be drawn");
     studio.passes.shadow.bake(&studio.gpu, &studio.passes.layouts, &studio.passes.cull, &buffers);
     Arc::new(buffers)

@@ -13,8 +13,8 @@ use genescape_cache::Cache;
 use genescape_schema::{Category, Genome, INDIVIDUALS, Parent, Population, Space, names};
 
 use crate::baker;
+use crate::edit_history::{Edit, History};
 use crate::event::{Ballot, Ballots};
-use crate::history::{Edit, History};
 use crate::settings::WorldSettings;
 use crate::ui::Tone;
 use crate::ui::model::{Baking, FileError, StageEntry};

@@ -1,24 +1,18 @@
 //! Keys, mouse and gamepad → where the one camera of all views is.
 
-use std::sync::Arc;
-
 use glam::Vec3;
-use winit::event::{ElementState, MouseButton};
-use winit::keyboard::KeyCode;
 use winit::window::{CursorGrabMode, Window};
 
 use crate::camera::Camera;
-use crate::event::Comfort;
-use crate::input::{Action, Bindings, Held};
-use crate::settings::Bookmark;
+use crate::input::{Command, Held};
+use crate::settings::{Bookmark, Comfort};
 use crate::walk::{Feel, Land, Mode, Pose, Rig, START_RADIUS_M, start_pose};
 
-/// Whoever steers.
-pub struct Pilot {
+/// What moves the camera.
+pub struct CameraControl {
     rig: Rig,
-    held: Held,
-    /// What keys mean.
-    pub bindings: Bindings,
+    /// Keys and buttons that are down.
+    pub held: Held,
     /// The pointer steers the view.
     captured: bool,
     /// A walk has begun: the place is the person's, no longer ours to choose.
@@ -29,24 +23,23 @@ pub struct Pilot {
     gamepads: crate::gamepad::Gamepads,
 }
 
-impl Pilot {
+impl CameraControl {
     /// At rest in the middle. The text says why no gamepad is heard, where that is so.
-    pub fn new(bindings: Bindings) -> (Self, Option<String>) {
+    pub fn new() -> (Self, Option<String>) {
         #[cfg(feature = "gamepad")]
         let (gamepads, problem) = crate::gamepad::Gamepads::open();
         #[cfg(not(feature = "gamepad"))]
         let problem = None;
-        let pilot = Self {
+        let control = Self {
             rig: Rig::new(Pose::default(), &[]),
             held: Held::default(),
-            bindings,
             captured: false,
             begun: false,
             resting: true,
             #[cfg(feature = "gamepad")]
             gamepads,
         };
-        (pilot, problem)
+        (control, problem)
     }
 
     /// Whether the pointer steers the view.
@@ -54,31 +47,31 @@ impl Pilot {
         self.captured
     }
 
-    /// The landscapes are other ones: whoever has not moved yet goes to their best place, others step out of trunks.
-    pub fn meet(&mut self, lands: &[Arc<Land>], sun: Option<Vec3>) {
+    /// The landscapes are other ones: a camera that has not moved yet goes to their best place, any other steps out of
+    /// trunks.
+    pub fn lands_changed(&mut self, lands: &[&Land], sun: Option<Vec3>) {
         if self.begun {
-            self.rig.settle(&borrowed(lands));
+            self.rig.settle(lands);
         } else {
             self.go_to_start(lands, sun);
         }
     }
 
     /// Goes to where every walk starts.
-    pub fn go_to_start(&mut self, lands: &[Arc<Land>], sun: Option<Vec3>) {
-        let lands = borrowed(lands);
-        self.rig.go(start_pose(&lands, START_RADIUS_M, sun), &lands);
+    pub fn go_to_start(&mut self, lands: &[&Land], sun: Option<Vec3>) {
+        self.rig.go(start_pose(lands, START_RADIUS_M, sun), lands);
     }
 
     /// Moves for a frame of that many seconds; what a gamepad asked for on the way.
-    pub fn step(&mut self, dt_s: f32, comfort: &Comfort, lands: &[Arc<Land>]) -> Vec<Action> {
+    pub fn step(&mut self, dt_s: f32, comfort: &Comfort, lands: &[&Land]) -> Vec<Command> {
         let controls = self.held.controls();
         #[cfg(feature = "gamepad")]
-        let (controls, asked) = {
-            let (of_gamepad, asked) = self.gamepads.poll();
-            (controls.and(of_gamepad), asked)
+        let (controls, commands) = {
+            let (of_gamepad, commands) = self.gamepads.poll();
+            (controls.and(of_gamepad), commands)
         };
         #[cfg(not(feature = "gamepad"))]
-        let asked = Vec::new();
+        let commands = Vec::new();
         self.resting = controls == Default::default();
         self.begun |= !self.resting;
         let usual = Feel::default();
@@ -87,8 +80,8 @@ impl Pilot {
             invert: comfort.invert_y,
             ..usual
         };
-        self.rig.step(dt_s, &controls, &feel, &borrowed(lands));
-        asked
+        self.rig.step(dt_s, &controls, &feel, lands);
+        commands
     }
 
     /// The camera of a view with that land.
@@ -101,15 +94,11 @@ impl Pilot {
         self.rig.pose()
     }
 
-    /// True while anything moves or is held.
-    pub fn mode(&self) -> Mode {
-        self.rig.mode()
-    }
-
-    /// Walk, fly, orbit.
-    pub fn cycle_mode(&mut self, lands: &[Arc<Land>]) {
+    /// Walk, fly, orbit; the mode from now on.
+    pub fn next_mode(&mut self, lands: &[&Land]) -> Mode {
         self.begun = true;
-        self.rig.cycle_mode(&borrowed(lands));
+        self.rig.cycle_mode(lands);
+        self.rig.mode()
     }
 
     /// The place to remember; its height is that of a flight.
@@ -123,13 +112,13 @@ impl Pilot {
         }
     }
 
-    /// The place to come back to at the next start: where somebody who has moved came to rest.
+    /// The place to come back to at the next start, if the camera was moved and has come to rest.
     pub fn rested_at(&self) -> Option<Bookmark> {
         (self.begun && self.resting).then(|| self.bookmark())
     }
 
     /// Goes to a remembered place.
-    pub fn go_to(&mut self, mark: &Bookmark, lands: &[Arc<Land>]) {
+    pub fn go_to(&mut self, mark: &Bookmark, lands: &[&Land]) {
         self.begun = true;
         let [x_m, altitude_m, z_m] = mark.position_m;
         let pose = Pose {
@@ -141,40 +130,15 @@ impl Pilot {
             mode: if mark.flying { Mode::Fly } else { Mode::Walk },
             ..Pose::default()
         };
-        self.rig.go(pose, &borrowed(lands));
+        self.rig.go(pose, lands);
     }
 
-    /// Before landscapes are there: goes to where the person was last, if they were; else the place is ours to choose.
+    /// Before landscapes are there: goes to where the last session ended; without such a place it is ours to choose.
     pub fn return_to(&mut self, place: Option<&Bookmark>) {
         self.begun = false;
         if let Some(place) = place {
             self.go_to(place, &[]);
         }
-    }
-
-    /// A key went down or up.
-    pub fn key(&mut self, code: KeyCode, state: ElementState, repeat: bool) -> Option<Action> {
-        self.held.key(&self.bindings, code, state == ElementState::Pressed, repeat)
-    }
-
-    /// A button of the mouse went down or up.
-    pub fn button(&mut self, button: MouseButton, state: ElementState) -> Option<Action> {
-        self.held.button(&self.bindings, button, state == ElementState::Pressed)
-    }
-
-    /// The mouse moved while it steers.
-    pub fn turn(&mut self, x_px: f32, y_px: f32) {
-        self.held.mouse_moved(x_px, y_px);
-    }
-
-    /// The wheel turned.
-    pub fn wheel(&mut self, lines: f32) {
-        self.held.wheel(lines);
-    }
-
-    /// Keys go elsewhere now.
-    pub fn let_go(&mut self) {
-        self.held.focus_lost();
     }
 
     /// Gives the pointer to the view or takes it back. Where it cannot be locked in place it is kept within the window,
@@ -191,8 +155,4 @@ impl Pilot {
         window.set_cursor_visible(!captured);
         self.captured = captured;
     }
-}
-
-fn borrowed(lands: &[Arc<Land>]) -> Vec<&Land> {
-    lands.iter().map(Arc::as_ref).collect()
 }

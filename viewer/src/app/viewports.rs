@@ -8,13 +8,13 @@ use anyhow::Result;
 use genescape_schema::INDIVIDUALS;
 use wgpu_profiler::{GpuProfiler, GpuProfilerSettings, GpuTimerQueryResult};
 
-use super::loader::Ready;
-use super::pilot::Pilot;
-use super::tally::Tally;
-use crate::frame::{FrameInput, Options};
+use super::camera_control::CameraControl;
+use super::lod_readback::LodReadback;
+use crate::frame::FrameInput;
 use crate::gpu::Gpu;
 use crate::passes::Passes;
 use crate::picture_file::{self, Pixels};
+use crate::scene_loader::Loaded;
 use crate::shaders::{ShaderError, Shaders};
 use crate::ui::arrange::Slot;
 use crate::ui::model::{PassTime, Stats};
@@ -24,13 +24,12 @@ use crate::walk::Land;
 
 /// Frames that statistics look back on.
 const FRAMES: usize = 240;
-/// A view that nobody has given a size yet.
+/// Before the window has given a view its size.
 const FIRST_SIZE_PX: [u32; 2] = [16, 16];
 /// Names of the views for times on the device.
 const LABELS: [&str; INDIVIDUALS] = ["view 1", "view 2", "view 3", "view 4"];
 
-/// The four pictures.
-pub struct Show {
+pub struct Viewports {
     gpu: Gpu,
     passes: Arc<Passes>,
     shaders: Shaders,
@@ -38,20 +37,20 @@ pub struct Show {
     lands: [Option<Arc<Land>>; INDIVIDUALS],
     pictures: [Option<egui::TextureId>; INDIVIDUALS],
     profiler: GpuProfiler,
-    tally: Tally,
+    lod_readback: LodReadback,
     frames_ms: VecDeque<f32>,
     last_frame: Option<Instant>,
     stats: Stats,
 }
 
-impl Show {
+impl Viewports {
     /// Compiles the passes; nothing is shown yet.
-    pub fn new(gpu: &Gpu, shaders: Shaders, options: &Options) -> Result<Self> {
-        let passes = Arc::new(Passes::new(gpu, &shaders, options.samples)?);
+    pub fn new(gpu: &Gpu, shaders: Shaders, samples: u32) -> Result<Self> {
+        let passes = Arc::new(Passes::new(gpu, &shaders, samples)?);
         let views = LABELS.map(|label| View::new(gpu, &passes, label, FIRST_SIZE_PX));
         Ok(Self {
             profiler: GpuProfiler::new(&gpu.device, GpuProfilerSettings::default())?,
-            tally: Tally::new(gpu),
+            lod_readback: LodReadback::new(gpu),
             stats: Stats { adapter: gpu.name.clone(), ..Stats::default() },
             gpu: gpu.clone(),
             passes,
@@ -64,7 +63,6 @@ impl Show {
         })
     }
 
-    /// What draws.
     pub fn passes(&self) -> Arc<Passes> {
         self.passes.clone()
     }
@@ -85,14 +83,14 @@ impl Show {
     }
 
     /// The lands that a walker is in.
-    pub fn lands(&self) -> Vec<Arc<Land>> {
-        self.lands.iter().flatten().cloned().collect()
+    pub fn lands(&self) -> Vec<&Land> {
+        self.lands.iter().flatten().map(Arc::as_ref).collect()
     }
 
     /// Shows a landscape from the next frame on.
-    pub fn put(&mut self, view: usize, ready: Ready) {
-        self.views[view].show(&self.passes, ready.buffers);
-        self.lands[view] = Some(ready.land);
+    pub fn show(&mut self, view: usize, loaded: Loaded) {
+        self.views[view].show(&self.passes, loaded.buffers);
+        self.lands[view] = Some(loaded.land);
     }
 
     /// Shows nothing any more.
@@ -120,9 +118,9 @@ impl Show {
         Ok(())
     }
 
-    /// Follows the number of samples that the person wishes for.
-    pub fn follow(&mut self, options: &Options) -> Result<(), ShaderError> {
-        if options.samples == self.passes.samples { Ok(()) } else { self.reload_shaders(options.samples) }
+    /// Changes the number of samples a pixel, if it is another one.
+    pub fn set_samples(&mut self, samples: u32) -> Result<(), ShaderError> {
+        if samples == self.passes.samples { Ok(()) } else { self.reload_shaders(samples) }
     }
 
     /// Records the pictures that are on the screen.
@@ -132,7 +130,7 @@ impl Show {
         painter: &mut egui_wgpu::Renderer,
         slots: &[Slot],
         frame: &FrameInput,
-        pilot: &Pilot,
+        control: &CameraControl,
     ) {
         let start = Instant::now();
         let fov_y_rad = frame.options.fov_y_deg.to_radians();
@@ -140,27 +138,27 @@ impl Show {
         self.stats.draws = [0; INDIVIDUALS];
         for slot in slots {
             let index = slot.view;
-            let Some(land) = self.lands[index].clone() else { continue };
+            let Some(land) = &self.lands[index] else { continue };
             let view = &mut self.views[index];
             if view.resize(&self.passes, slot.size_px) || self.pictures[index].is_none() {
                 let picture = view.targets().display.create_view(&Default::default());
                 register(&self.gpu, painter, &mut self.pictures[index], &picture);
             }
-            let walker = pilot.camera(&land, fov_y_rad);
+            let walker = control.camera(land, fov_y_rad);
             let camera = if frame.options.overhead { land.overhead(fov_y_rad) } else { walker };
             let drawn = view.record(encoder, &self.passes, frame, &camera, &walker, &self.profiler);
             self.stats.draws[index] = drawn.draws;
             self.stats.triangles[index] = u64::from(drawn.land_triangles);
             if let Some((set, counts)) = view.tree_counts() {
-                self.tally.copy(encoder, index, set, counts);
+                self.lod_readback.copy(encoder, index, set, counts);
             }
         }
         self.profiler.resolve_queries(encoder);
         self.stats.cpu_record_ms = start.elapsed().as_secs_f32() * 1e3;
     }
 
-    /// After the frame was submitted: gathers what the device has told in the meantime.
-    pub fn settle(&mut self) {
+    /// After the frame was submitted: gathers what the device has measured of this and earlier ones.
+    pub fn end_frame(&mut self) {
         let now = Instant::now();
         if let Some(last) = self.last_frame.replace(now) {
             self.frames_ms.push_back((now - last).as_secs_f32() * 1e3);
@@ -169,19 +167,15 @@ impl Show {
             self.frames_ms.pop_front();
         }
         self.stats.frames_ms = self.frames_ms.iter().copied().collect();
-        self.tally.ask();
+        self.lod_readback.map();
         // An error here means a lost device, which the next call reports.
-        let _ = self.device_poll();
-        self.tally.read(&mut self.stats);
+        let _ = self.gpu.device.poll(wgpu::PollType::Poll);
+        self.lod_readback.read(&mut self.stats);
         // A frame without queries is no fault.
         let _ = self.profiler.end_frame();
         while let Some(times) = self.profiler.process_finished_frame(self.gpu.queue.get_timestamp_period()) {
             self.stats.gpu = pass_times(&times);
         }
-    }
-
-    fn device_poll(&self) -> Result<wgpu::PollStatus, wgpu::PollError> {
-        self.gpu.device.poll(wgpu::PollType::Poll)
     }
 
     /// Time went by without pictures: the next frame's duration means nothing.
