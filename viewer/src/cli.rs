@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
-use clap::{Parser, Subcommand, ValueEnum};
+use clap::{Parser, Subcommand};
 
 use crate::baker::BakerOptions;
-use crate::frame::{Options, TerrainScheme, TreeScheme};
+use crate::frame::Options;
+use crate::lod_mode::{TerrainLodMode, TreeLodMode};
 
 /// Shows four landscapes at once: walk through all of them, say which has the best trees, terrain and sky, and breed
 /// four new ones
@@ -105,10 +106,10 @@ const EXAMPLES: &str = "Examples:
 pub struct Drawing {
     /// Levels of detail of trees
     #[arg(long, value_enum, default_value_t)]
-    pub tree_lod: TreeLod,
+    pub tree_lod: TreeLodMode,
     /// Levels of detail of the terrain
     #[arg(long, value_enum, default_value_t)]
-    pub terrain_lod: TerrainLod,
+    pub terrain_lod: TerrainLodMode,
     /// Error that trees may have on the screen, in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = Options::default().tree_error_px)]
     pub tree_error: f32,
@@ -138,47 +139,12 @@ pub struct Drawing {
     pub fov: f32,
 }
 
-/// As [`TreeScheme`].
-#[derive(Clone, Copy, Debug, Default, ValueEnum)]
-pub enum TreeLod {
-    /// Continuous, by error
-    Quality,
-    /// Continuous, by number of vertices
-    #[default]
-    Simple,
-    /// By error, without morphing
-    Discrete,
-    /// None
-    Off,
-}
-
-/// As [`TerrainScheme`].
-#[derive(Clone, Copy, Debug, Default, ValueEnum)]
-pub enum TerrainLod {
-    /// Blocks that morph in the vertex shader
-    #[default]
-    Morph,
-    /// Triangles split by wedgies on the CPU
-    Roam,
-    /// None
-    Off,
-}
-
 impl Drawing {
     /// As options for a frame.
     pub fn options(&self) -> Options {
         Options {
-            tree_scheme: match self.tree_lod {
-                TreeLod::Quality => TreeScheme::Quality,
-                TreeLod::Simple => TreeScheme::Simple,
-                TreeLod::Discrete => TreeScheme::Discrete,
-                TreeLod::Off => TreeScheme::Off,
-            },
-            terrain_scheme: match self.terrain_lod {
-                TerrainLod::Morph => TerrainScheme::Morph,
-                TerrainLod::Roam => TerrainScheme::Roam,
-                TerrainLod::Off => TerrainScheme::Off,
-            },
+            tree_lod: self.tree_lod,
+            terrain_lod: self.terrain_lod,
             tree_error_px: self.tree_error,
             terrain_error_px: self.terrain_error,
             wireframe: self.wireframe,

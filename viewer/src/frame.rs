@@ -1,42 +1,19 @@
-//! What one frame is drawn from, for all views alike: time, choices of the person, level-of-detail schemes.
+//! What one frame is drawn from, for all views alike: time, choices of the person.
 
 use serde::{Deserialize, Serialize};
 
-/// How trees get their level of detail (thesis 4.3.2 and 4.3.3).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum TreeScheme {
-    /// Continuous, by each mesh's error in metres: q(f(d)) ∝ d.
-    Quality,
-    /// Continuous, by the number of vertices alone: 2·log₂ d + β. Of leafy trees it shows more for less, see
-    /// `viewer bench --only detail`.
-    #[default]
-    Simple,
-    /// By error, but without morphing between levels.
-    Discrete,
-    /// Always the finest mesh.
-    Off,
-}
-
-/// How the terrain gets its level of detail (thesis 3.2).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum TerrainScheme {
-    /// Blocks of a quadtree that morph in the vertex shader.
-    #[default]
-    Morph,
-    /// Triangles of a bintree, split by wedgies on the CPU, drawn as one strip.
-    Roam,
-    /// Every sample.
-    Off,
-}
+use crate::lod_mode::{TerrainLodMode, TreeLodMode};
 
 /// What the person has chosen to see, and how.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Options {
-    /// Levels of detail of trees.
-    pub tree_scheme: TreeScheme,
-    /// Levels of detail of the terrain.
-    pub terrain_scheme: TerrainScheme,
+    /// Levels of detail of trees; by its older name in files.
+    #[serde(rename = "tree_scheme")]
+    pub tree_lod: TreeLodMode,
+    /// Levels of detail of the terrain; by its older name in files.
+    #[serde(rename = "terrain_scheme")]
+    pub terrain_lod: TerrainLodMode,
     /// Error that trees may have on the screen, in pixels.
     pub tree_error_px: f32,
     /// Error that the terrain may have on the screen, in pixels.
@@ -66,8 +43,8 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
-            tree_scheme: TreeScheme::default(),
-            terrain_scheme: TerrainScheme::default(),
+            tree_lod: TreeLodMode::default(),
+            terrain_lod: TerrainLodMode::default(),
             tree_error_px: 1.5,
             terrain_error_px: 2.0,
             wireframe: false,

@@ -17,6 +17,7 @@ pub mod history;
 pub mod input;
 pub mod load;
 pub mod lod;
+pub mod lod_mode;
 pub mod passes;
 pub mod picture_file;
 pub mod save;

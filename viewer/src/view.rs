@@ -4,11 +4,12 @@
 use std::sync::Arc;
 
 use crate::camera::{Camera, Frustum};
-use crate::frame::{FrameInput, Options, TerrainScheme};
+use crate::frame::{FrameInput, Options};
 use crate::gpu::Gpu;
 use crate::lod::morph::Detail;
 use crate::lod::quadtree;
 use crate::lod::roam::Roam;
+use crate::lod_mode::TerrainLodMode;
 use crate::passes::grass::{self, Clump};
 use crate::passes::{
     CullUniform, DEPTH, DISPLAY, Land, Layouts, Passes, RADIANCE, TreeGroups, TreeLists, ViewUniform, bind,
@@ -71,7 +72,7 @@ impl LandChoice {
         options: &Options,
     ) -> u32 {
         let field = &shown.scene.ground.field;
-        if options.terrain_scheme == TerrainScheme::Roam {
+        if options.terrain_lod == TerrainLodMode::Roam {
             let [width, height] = size_px.map(|side| side as f32);
             let shape = (width / height, height);
             let stats =
@@ -242,7 +243,7 @@ impl Shown {
     /// How detailed the land is where. Without levels of detail no error is allowed.
     fn detail(&self, camera: &Camera, focal_px: f32, options: &Options) -> Detail {
         let error_px =
-            if options.terrain_scheme == TerrainScheme::Off { 0.0 } else { options.terrain_error_px };
+            if options.terrain_lod == TerrainLodMode::Off { 0.0 } else { options.terrain_error_px };
         let (field, errors) = (&self.scene.ground.field, &self.scene.land.errors);
         quadtree::detail(field, errors, camera.position_m, focal_px, error_px, LARGEST_BLOCK_M)
     }

@@ -4,7 +4,8 @@
 mod made_up;
 
 use genescape_viewer::camera::Camera;
-use genescape_viewer::frame::{FrameInput, TerrainScheme};
+use genescape_viewer::frame::FrameInput;
+use genescape_viewer::lod_mode::TerrainLodMode;
 use genescape_viewer::picture_file::Pixels;
 use genescape_viewer::scene::Trees;
 use glam::Vec3;
@@ -33,14 +34,14 @@ fn camera(seed: u64, height_m: impl Fn(f32, f32) -> f32) -> (Camera, f32) {
     (camera, libm::exp2f(rng.random_range(-1.0..5.0f32)))
 }
 
-fn no_sky_shines_through(scheme: TerrainScheme) {
+fn no_sky_shines_through(mode: TerrainLodMode) {
     let Some(studio) = made_up::studio() else { return };
     let field = made_up::field(257, 0.5, 9.0, 0.7);
     let scene = made_up::scene(field, [30, 200, 30, 255], [2.0, 0.0, 2.0], Trees::default());
     let buffers = made_up::upload(&studio, &scene);
     let mut view = studio.view(buffers, SIZE_PX);
     let mut frame = FrameInput::default();
-    frame.options.terrain_scheme = scheme;
+    frame.options.terrain_lod = mode;
     frame.options.grass = false;
     let up = Camera { position_m: Vec3::Y * 60.0, yaw_rad: 0.0, pitch_rad: 1.2, fov_y_rad: 0.87 };
     let sky = studio.shoot(&mut view, &frame, &up, &up).expect("a picture");
@@ -49,21 +50,21 @@ fn no_sky_shines_through(scheme: TerrainScheme) {
         let (camera, error_px) = camera(seed, |x, z| scene.ground.field.height_m(x, z));
         frame.options.terrain_error_px = error_px;
         let pixels = studio.shoot(&mut view, &frame, &camera, &camera).expect("a picture");
-        assert_eq!(sky_pixels(&pixels), 0, "{scheme:?}, error of {error_px} px, camera {seed}: {camera:?}");
+        assert_eq!(sky_pixels(&pixels), 0, "{mode:?}, error of {error_px} px, camera {seed}: {camera:?}");
     }
 }
 
 #[test]
 fn morphing_blocks_have_no_cracks() {
-    no_sky_shines_through(TerrainScheme::Morph);
+    no_sky_shines_through(TerrainLodMode::Morph);
 }
 
 #[test]
 fn the_strip_of_triangles_has_no_cracks() {
-    no_sky_shines_through(TerrainScheme::Roam);
+    no_sky_shines_through(TerrainLodMode::Roam);
 }
 
 #[test]
 fn the_whole_grid_has_no_cracks() {
-    no_sky_shines_through(TerrainScheme::Off);
+    no_sky_shines_through(TerrainLodMode::Off);
 }

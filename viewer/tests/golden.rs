@@ -12,7 +12,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use genescape_viewer::camera::Camera;
-use genescape_viewer::frame::{FrameInput, Options, TerrainScheme, TreeScheme};
+use genescape_viewer::frame::{FrameInput, Options};
+use genescape_viewer::lod_mode::{TerrainLodMode, TreeLodMode};
 use genescape_viewer::picture_file::{self, Pixels};
 use genescape_viewer::scene::{Apron, Detail, Scene, Trees};
 use genescape_viewer::screenshot::Studio;
@@ -84,7 +85,7 @@ fn frame_of_land(field: &genescape_viewer::scene::Heightfield) -> Apron {
 
 /// What is drawn: name, where from (x, z, above the ground, yaw, pitch), options.
 fn pictures() -> Vec<(&'static str, [f32; 5], Options)> {
-    let trees = Options { tree_scheme: TreeScheme::Quality, tree_error_px: 1.0, ..Options::default() };
+    let trees = Options { tree_lod: TreeLodMode::Quality, tree_error_px: 1.0, ..Options::default() };
     let plain = Options { drift_clouds: false, ..trees };
     vec![
         ("walk", [20.0, 30.0, 1.7, 0.4, -0.1], plain),
@@ -92,12 +93,12 @@ fn pictures() -> Vec<(&'static str, [f32; 5], Options)> {
         (
             "simple",
             [-20.0, 10.0, 4.0, 2.4, -0.2],
-            Options { tree_scheme: TreeScheme::Simple, tree_error_px: 4.0, ..plain },
+            Options { tree_lod: TreeLodMode::Simple, tree_error_px: 4.0, ..plain },
         ),
         (
             "roam",
             [0.0, 55.0, 30.0, 0.0, -0.5],
-            Options { terrain_scheme: TerrainScheme::Roam, grass: false, ..plain },
+            Options { terrain_lod: TerrainLodMode::Roam, grass: false, ..plain },
         ),
         (
             "levels",

@@ -3,9 +3,10 @@
 mod made_up;
 
 use genescape_viewer::camera::{Camera, Frustum};
-use genescape_viewer::frame::{Options, TreeScheme};
+use genescape_viewer::frame::Options;
 use genescape_viewer::gpu::Gpu;
 use genescape_viewer::lod::tree::{Control, distance_m, lod_number, simple_error_m};
+use genescape_viewer::lod_mode::TreeLodMode;
 use genescape_viewer::passes::{CullUniform, TreeLists};
 use genescape_viewer::picture_file;
 use genescape_viewer::scene::Trees;
@@ -135,15 +136,15 @@ fn compare(studio: &Studio, seed: u64) -> [usize; 2] {
     let buffers = genescape_viewer::upload::Uploader::new(&studio.gpu).upload(&scene).expect("uploaded");
     let set = buffers.trees.as_ref().expect("trees");
     let mut seen = [0; 2];
-    for scheme in [TreeScheme::Quality, TreeScheme::Simple, TreeScheme::Discrete, TreeScheme::Off] {
+    for mode in [TreeLodMode::Quality, TreeLodMode::Simple, TreeLodMode::Discrete, TreeLodMode::Off] {
         let camera = eye(&mut rng, &forest.trees);
         let frustum = camera.frustum(1.6);
         let control = Control {
-            scheme,
+            mode,
             focal_px: rng.random_range(100.0..900.0f32),
             error_px: rng.random_range(0.3..8.0f32),
         };
-        let options = Options { tree_scheme: scheme, tree_error_px: control.error_px, ..Options::default() };
+        let options = Options { tree_lod: mode, tree_error_px: control.error_px, ..Options::default() };
         let uniform = CullUniform::for_view(set, &frustum, camera.position_m, control.focal_px, &options);
         let device = chosen(studio, &buffers, &uniform, &forest);
         for (tree, lambda) in device.into_iter().enumerate() {
@@ -170,7 +171,7 @@ fn compare(studio: &Studio, seed: u64) -> [usize; 2] {
             // Rounding may tip a tree over the edge of a level.
             let [lower, upper] = [0.999, 1.001].map(|factor| number(&control, factor * away_m));
             let close = (lambda - expected).abs() < ROUNDING || lambda == lower || lambda == upper;
-            assert!(close, "seed {seed}, {scheme:?}, tree {tree}: λ {lambda} instead of {expected}");
+            assert!(close, "seed {seed}, {mode:?}, tree {tree}: λ {lambda} instead of {expected}");
         }
     }
     seen

@@ -102,7 +102,7 @@ fn uniforms_are_laid_out_alike() {
             templates,
             levels,
             materials,
-            scheme,
+            lod_mode,
             fixed_error_m,
             planes_used,
             first,

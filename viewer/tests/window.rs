@@ -280,14 +280,14 @@ fn the_window_changes_its_size(stage: &Stage, viewer: &mut Viewer) {
 /// What was chosen is there again after a second start, and the window and the walker are as they were.
 fn it_ends_and_remembers(stage: &Stage, mut viewer: Viewer) {
     stage.display.tap(keys::F5);
-    viewer.until("another scheme", |viewer| viewer.get("wish", "wish") == "CycleTreeScheme");
+    viewer.until("another LOD mode", |viewer| viewer.get("wish", "wish") == "CycleTreeScheme");
     stage.display.resize(viewer.window, [600, 440]);
     viewer.until("another size", |viewer| *viewer.get("screen", "size_px") == json!([600, 440]));
     let left = place(&viewer);
     assert_eq!(viewer.quit(&stage.display).code(), Some(0));
     let kept = SettingsFile::open(stage.path("settings.ron"));
     assert_eq!(kept.problem, None);
-    assert_eq!(kept.settings.options.tree_scheme, genescape_viewer::frame::TreeScheme::Discrete);
+    assert_eq!(kept.settings.options.tree_lod, genescape_viewer::lod_mode::TreeLodMode::Discrete);
 
     let mut viewer = stage.viewer(&["--no-bake"]);
     viewer.until("the second start shows all", |viewer| viewer.shows(0));

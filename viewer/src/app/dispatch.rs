@@ -7,8 +7,9 @@ use winit::window::Fullscreen;
 use super::App;
 use super::desk::Source;
 use crate::event::{Arrangement, Ballot, Event, Panel, Phase};
-use crate::frame::{Options, TerrainScheme, TreeScheme};
+use crate::frame::Options;
 use crate::input::Action;
+use crate::lod_mode::LodMode;
 use crate::picture_file::{self, Pixels};
 use crate::screenshot;
 use crate::ui::Tone;
@@ -100,22 +101,13 @@ impl App {
             Action::Screenshot => self.screenshot_wanted = true,
             Action::Quit => self.quit_wanted = true,
             Action::CycleTreeScheme => {
-                options.tree_scheme = match options.tree_scheme {
-                    TreeScheme::Quality => TreeScheme::Simple,
-                    TreeScheme::Simple => TreeScheme::Discrete,
-                    TreeScheme::Discrete => TreeScheme::Off,
-                    TreeScheme::Off => TreeScheme::Quality,
-                };
-                let text = format!("Trees' levels of detail: {:?}", options.tree_scheme);
+                options.tree_lod = options.tree_lod.next();
+                let text = format!("Trees' levels of detail: {}", options.tree_lod.label());
                 self.ui.notify(Tone::Info, text);
             }
             Action::CycleTerrainScheme => {
-                options.terrain_scheme = match options.terrain_scheme {
-                    TerrainScheme::Morph => TerrainScheme::Roam,
-                    TerrainScheme::Roam => TerrainScheme::Off,
-                    TerrainScheme::Off => TerrainScheme::Morph,
-                };
-                let text = format!("Terrain's levels of detail: {:?}", options.terrain_scheme);
+                options.terrain_lod = options.terrain_lod.next();
+                let text = format!("Terrain's levels of detail: {}", options.terrain_lod.label());
                 self.ui.notify(Tone::Info, text);
             }
             Action::ToggleWireframe => options.wireframe ^= true,

@@ -1,38 +1,50 @@
 //! What levels of detail save, and what they cost in likeness: along the thesis's path (section 7), the same pictures
-//! by every scheme. Error: root of the mean square difference over all pixels and channels, of 8-bit values taken as
+//! in every LOD mode. Error: root of the mean square difference over all pixels and channels, of 8-bit values taken as
 //! [0, 1], from the picture without levels of detail.
 
 use std::path::PathBuf;
 
 use anyhow::Result;
+use strum::VariantArray;
 
 use super::BenchArgs;
 use super::lab::{Cost, Lab, forest, frame_with, way};
 use super::report::{Aim, Report};
-use crate::frame::{FrameInput, TerrainScheme, TreeScheme};
+use crate::frame::FrameInput;
+use crate::lod_mode::{LodMode, TerrainLodMode, TreeLodMode};
 use crate::picture_file;
 use crate::view::View;
 
 /// Trees of the forest.
 const TREES: usize = 1500;
 
-/// Schemes by name; the first is what the others are compared with.
-const SCHEMES: [(&str, TreeScheme, TerrainScheme); 7] = [
-    ("none at all", TreeScheme::Off, TerrainScheme::Off),
-    ("trees simple, land morphs", TreeScheme::Simple, TerrainScheme::Morph),
-    ("trees by quality, land morphs", TreeScheme::Quality, TerrainScheme::Morph),
-    ("trees discrete, land morphs", TreeScheme::Discrete, TerrainScheme::Morph),
-    ("trees none, land morphs", TreeScheme::Off, TerrainScheme::Morph),
-    ("trees simple, land by ROAM", TreeScheme::Simple, TerrainScheme::Roam),
-    ("trees simple, land none", TreeScheme::Simple, TerrainScheme::Off),
-];
-/// What the viewer does unless told otherwise.
-const BEST: usize = 1;
-const TREES_NONE: usize = 4;
-const LAND_NONE: usize = 6;
+/// The LOD modes of trees and terrain that are compared, and what the report calls them.
+struct Case {
+    name: String,
+    trees: TreeLodMode,
+    terrain: TerrainLodMode,
+}
 
-/// A scheme under way.
+/// The reference, which has no levels of detail; then the defaults; then every other mode of the one with the other's
+/// default.
+fn cases() -> Vec<Case> {
+    let case = |trees: TreeLodMode, terrain: TerrainLodMode| {
+        let name = format!("trees {}, land {}", trees.label().to_lowercase(), terrain.label().to_lowercase());
+        Case { name, trees, terrain }
+    };
+    let (trees, terrain) = (TreeLodMode::default(), TerrainLodMode::default());
+    let other_trees = TreeLodMode::VARIANTS.iter().filter(|&&other| other != trees);
+    let other_terrain = TerrainLodMode::VARIANTS.iter().filter(|&&other| other != terrain);
+    [case(TreeLodMode::Off, TerrainLodMode::Off), case(trees, terrain)]
+        .into_iter()
+        .chain(other_trees.map(|&other| case(other, terrain)))
+        .chain(other_terrain.map(|&other| case(trees, other)))
+        .collect()
+}
+
+/// A case under way.
 struct Run {
+    case: Case,
     view: [View; 1],
     frame: FrameInput,
     /// For each place the cheaper of there and back.
@@ -52,13 +64,14 @@ pub(super) fn measure(lab: &Lab, paths: &[PathBuf], args: &BenchArgs, report: &m
             args.steps
         ));
         let uploaded = lab.upload(&scene)?;
-        let start = |(_, trees, land)| Run {
+        let start = |case: Case| Run {
             view: [lab.view(&uploaded, args.size)],
-            frame: frame_with(trees, land),
+            frame: frame_with(case.trees, case.terrain),
             costs: Vec::new(),
             errors: Vec::new(),
+            case,
         };
-        let mut runs = SCHEMES.map(start);
+        let mut runs: Vec<Run> = cases().into_iter().map(start).collect();
         walk(lab, &mut runs, &way(&scene, args.steps))?;
         ratios.push(tell(&runs, report));
     }
@@ -70,7 +83,7 @@ pub(super) fn measure(lab: &Lab, paths: &[PathBuf], args: &BenchArgs, report: &m
     Ok(())
 }
 
-/// All schemes in turn at each place, there and back.
+/// All cases in turn at each place, there and back.
 fn walk(lab: &Lab, runs: &mut [Run], cameras: &[crate::camera::Camera]) -> Result<()> {
     for run in runs.iter_mut() {
         // Drivers finish pipelines at the first use.
@@ -95,7 +108,7 @@ fn walk(lab: &Lab, runs: &mut [Run], cameras: &[crate::camera::Camera]) -> Resul
     Ok(())
 }
 
-/// Tells the figures; what the best scheme saves.
+/// Tells the figures; what the default modes save.
 fn tell(runs: &[Run], report: &mut Report) -> f64 {
     let places = runs[0].costs.len() as f64;
     let means: Vec<Cost> = runs
@@ -105,21 +118,29 @@ fn tell(runs: &[Run], report: &mut Report) -> f64 {
             Cost { wall_ms: sum.wall_ms / places, cpu_ms: sum.cpu_ms / places }
         })
         .collect();
-    for ((name, ..), mean) in SCHEMES.iter().zip(&means) {
+    for (Run { case: Case { name, .. }, .. }, mean) in runs.iter().zip(&means) {
         report.figure(format!("{name}: processor"), mean.cpu_ms, "ms a frame");
         report.figure(format!("{name}: clock"), mean.wall_ms, "ms a frame");
     }
-    for ((name, ..), run) in SCHEMES.iter().zip(runs).skip(1) {
+    for run in &runs[1..] {
+        let name = &run.case.name;
         let mean = run.errors.iter().sum::<f64>() / places;
         report.figure(format!("{name}: L2 error"), mean.sqrt(), "of 1");
         let worst = run.errors.iter().copied().fold(0.0, f64::max);
         report.figure(format!("{name}: L2 error, worst place"), worst.sqrt(), "of 1");
     }
-    let pays = |without: usize| means[without].cpu_ms / means[BEST].cpu_ms;
-    report.figure("trees alone: none / simple, processor", pays(TREES_NONE), "×");
-    report.figure("land alone: none / morphs, processor", pays(LAND_NONE), "×");
-    report.aimed("none at all / best, processor", pays(0), "×", Aim::AtLeast(6.0));
-    pays(0)
+    let (trees, terrain) = (TreeLodMode::default(), TerrainLodMode::default());
+    let cpu_ms = |trees: TreeLodMode, terrain: TerrainLodMode| {
+        let at = runs.iter().position(|run| (run.case.trees, run.case.terrain) == (trees, terrain));
+        at.map_or(f64::NAN, |at| means[at].cpu_ms)
+    };
+    let pays =
+        |without_trees, without_terrain| cpu_ms(without_trees, without_terrain) / cpu_ms(trees, terrain);
+    report.figure("trees alone: none / default, processor", pays(TreeLodMode::Off, terrain), "×");
+    report.figure("land alone: none / default, processor", pays(trees, TerrainLodMode::Off), "×");
+    let both = pays(TreeLodMode::Off, TerrainLodMode::Off);
+    report.aimed("none at all / best, processor", both, "×", Aim::AtLeast(6.0));
+    both
 }
 
 /// Mean square difference of colours.

@@ -9,9 +9,10 @@ use cpu_time::{ProcessTime, ThreadTime};
 use glam::{Vec2, Vec3};
 
 use crate::camera::Camera;
-use crate::frame::{FrameInput, Options, TerrainScheme, TreeScheme};
+use crate::frame::{FrameInput, Options};
 use crate::gpu::Gpu;
 use crate::load::{self, Store};
+use crate::lod_mode::{TerrainLodMode, TreeLodMode};
 use crate::passes::Passes;
 use crate::scene::{Instance, Scene};
 use crate::shaders::Shaders;
@@ -130,9 +131,9 @@ impl Lab {
     }
 }
 
-/// What a frame is drawn from with these schemes.
-pub(super) fn frame_with(tree_scheme: TreeScheme, terrain_scheme: TerrainScheme) -> FrameInput {
-    FrameInput { options: Options { tree_scheme, terrain_scheme, ..Options::default() }, time_s: 0.0 }
+/// What a frame is drawn from with these LOD modes.
+pub(super) fn frame_with(tree_lod: TreeLodMode, terrain_lod: TerrainLodMode) -> FrameInput {
+    FrameInput { options: Options { tree_lod, terrain_lod, ..Options::default() }, time_s: 0.0 }
 }
 
 /// The camera's way: straight across the middle of the land, a quarter of its extent to each side, at a walker's height

@@ -11,13 +11,13 @@ use std::io::BufRead;
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail};
+use clap::ValueEnum;
 use genescape_bake::say;
 use serde_json::json;
 
 use super::BenchArgs;
 use super::lab::{Lab, frame_with, way};
 use crate::camera::{Camera, NEAR_M};
-use crate::frame::{TerrainScheme, TreeScheme};
 use crate::picture_file;
 use crate::view::View;
 
@@ -38,7 +38,7 @@ pub(super) fn run(lab: &Lab, path: &Path, args: &BenchArgs) -> Result<()> {
         "haze_extinction_per_m": sky.haze_extinction_per_m, "exposure": sky.exposure,
     });
     say!("{hello}");
-    // A view for each scheme: some go on from their last picture.
+    // A view for each pair of modes: some go on from their last picture.
     let mut views: BTreeMap<String, [View; 1]> = BTreeMap::new();
     for line in std::io::stdin().lock().lines() {
         let line = line.context("standard input broke")?;
@@ -48,7 +48,7 @@ pub(super) fn run(lab: &Lab, path: &Path, args: &BenchArgs) -> Result<()> {
             [verb, trees, land, place, file] => (verb, trees, land, place, Some(file)),
             _ => bail!("{line:?} is none of `frame TREES LAND PLACE`, `picture TREES LAND PLACE FILE`"),
         };
-        let frame = frame_with(tree_scheme(trees)?, terrain_scheme(land)?);
+        let frame = frame_with(mode(trees)?, mode(land)?);
         let camera = place.parse().ok().and_then(|place: usize| cameras.get(place));
         let camera = camera.ok_or_else(|| anyhow!("there is no place {place}"))?;
         let view = views.entry(format!("{trees} {land}")).or_insert_with(|| [lab.view(&uploaded, args.size)]);
@@ -66,21 +66,7 @@ pub(super) fn run(lab: &Lab, path: &Path, args: &BenchArgs) -> Result<()> {
     Ok(())
 }
 
-fn tree_scheme(word: &str) -> Result<TreeScheme> {
-    Ok(match word {
-        "off" => TreeScheme::Off,
-        "quality" => TreeScheme::Quality,
-        "simple" => TreeScheme::Simple,
-        "discrete" => TreeScheme::Discrete,
-        _ => bail!("{word:?} is no scheme for trees"),
-    })
-}
-
-fn terrain_scheme(word: &str) -> Result<TerrainScheme> {
-    Ok(match word {
-        "off" => TerrainScheme::Off,
-        "morph" => TerrainScheme::Morph,
-        "roam" => TerrainScheme::Roam,
-        _ => bail!("{word:?} is no scheme for the land"),
-    })
+/// An LOD mode by its name on the command line.
+fn mode<M: ValueEnum>(word: &str) -> Result<M> {
+    M::from_str(word, false).map_err(|error| anyhow!("{word:?} is no LOD mode: {error}"))
 }

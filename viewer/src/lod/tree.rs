@@ -5,7 +5,7 @@
 //! so λ is where q(λ) = αd/scale. By quality: log q is linear between the levels' errors. Simple: q(λ) = q̂·2^(λ/2),
 //! hence λ = 2·log₂ d + β with β = 2·log₂(α/(scale·q̂)).
 
-use crate::frame::TreeScheme;
+use crate::lod_mode::TreeLodMode;
 
 /// Most levels that a template may have.
 pub const MAX_LEVELS: usize = 12;
@@ -17,7 +17,7 @@ pub const LEAST_DISTANCE_M: f32 = 0.01;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Control {
     /// How levels are chosen.
-    pub scheme: TreeScheme,
+    pub mode: TreeLodMode,
     /// Pixels a radian in the middle of the picture, ½·height/tan(½·fov).
     pub focal_px: f32,
     /// Error allowed on the screen.
@@ -42,11 +42,11 @@ pub fn lod_number(
     scale: f32,
 ) -> f32 {
     let allowed_m = control.error_px / control.focal_px * distance_m / scale;
-    match control.scheme {
-        TreeScheme::Quality => by_quality(errors_m, allowed_m),
-        TreeScheme::Simple => by_count(errors_m.len(), simple_error_m, allowed_m),
-        TreeScheme::Discrete => by_quality(errors_m, allowed_m).floor(),
-        TreeScheme::Off => 0.0,
+    match control.mode {
+        TreeLodMode::Quality => by_quality(errors_m, allowed_m),
+        TreeLodMode::Simple => by_count(errors_m.len(), simple_error_m, allowed_m),
+        TreeLodMode::Discrete => by_quality(errors_m, allowed_m).floor(),
+        TreeLodMode::Off => 0.0,
     }
 }
 
@@ -58,8 +58,8 @@ pub fn lod_split(lambda: f32, k: u32) -> (u32, f32) {
     (level, alpha)
 }
 
-/// q̂ in metres of the simple scheme: such that q̂·2^(i/2) is, on geometric average over the levels, their error. Then
-/// one `error_px` asks as much of both schemes. The error of D_0, which is extrapolated, counts only if it is alone.
+/// q̂ in metres of the simple mode: such that q̂·2^(i/2) is, on geometric average over the levels, their error. Then
+/// one `error_px` asks as much of both modes. The error of D_0, which is extrapolated, counts only if it is alone.
 pub fn simple_error_m(errors_m: &[f32]) -> f32 {
     let first = usize::from(errors_m.len() > 1);
     let count = errors_m.len().saturating_sub(first);
@@ -112,25 +112,25 @@ mod tests {
         }
     }
 
-    fn control(scheme: TreeScheme, error_px: f32) -> Control {
-        Control { scheme, focal_px: 800.0, error_px }
+    fn control(mode: TreeLodMode, error_px: f32) -> Control {
+        Control { mode, focal_px: 800.0, error_px }
     }
 
-    fn scheme() -> impl Strategy<Value = TreeScheme> {
+    fn mode() -> impl Strategy<Value = TreeLodMode> {
         prop::sample::select(vec![
-            TreeScheme::Quality,
-            TreeScheme::Simple,
-            TreeScheme::Discrete,
-            TreeScheme::Off,
+            TreeLodMode::Quality,
+            TreeLodMode::Simple,
+            TreeLodMode::Discrete,
+            TreeLodMode::Off,
         ])
     }
 
     proptest! {
         #[test]
         fn number_is_bounded_and_grows_with_distance(
-            errors in errors(), scheme in scheme(), near in 0.0f32..2000., more in 0.0f32..500., scale in 0.2f32..4.
+            errors in errors(), mode in mode(), near in 0.0f32..2000., more in 0.0f32..500., scale in 0.2f32..4.
         ) {
-            let control = control(scheme, 1.0);
+            let control = control(mode, 1.0);
             let q = simple_error_m(&errors);
             let at = |distance| lod_number(&control, &errors, q, distance, scale);
             let k = errors.len() as f32 - 1.0;
@@ -142,8 +142,8 @@ mod tests {
         fn number_is_continuous_unless_discrete(
             errors in errors(), simple in any::<bool>(), distance in 0.1f32..2000., scale in 0.2f32..4.
         ) {
-            let scheme = if simple { TreeScheme::Simple } else { TreeScheme::Quality };
-            let control = control(scheme, 1.0);
+            let mode = if simple { TreeLodMode::Simple } else { TreeLodMode::Quality };
+            let control = control(mode, 1.0);
             let q = simple_error_m(&errors);
             let at = |distance| lod_number(&control, &errors, q, distance, scale);
             // Steepest where neighbours differ least: log₂(1.0001) / log₂ 1.05.
@@ -155,8 +155,8 @@ mod tests {
             errors in errors(), discrete in any::<bool>(), distance in 0.1f32..2000., scale in 0.2f32..4.,
             error_px in 0.1f32..8.
         ) {
-            let scheme = if discrete { TreeScheme::Discrete } else { TreeScheme::Quality };
-            let control = control(scheme, error_px);
+            let mode = if discrete { TreeLodMode::Discrete } else { TreeLodMode::Quality };
+            let control = control(mode, error_px);
             let lambda = lod_number(&control, &errors, 0.1, distance, scale);
             let (i, alpha) = lod_split(lambda, errors.len() as u32 - 1);
             let next = errors.get(i as usize + 1).copied().unwrap_or(1.0);
@@ -174,10 +174,10 @@ mod tests {
 
         #[test]
         fn no_number_is_poison(
-            errors in errors(), scheme in scheme(), pick in 0usize..6, other in 0usize..6, third in 0usize..6
+            errors in errors(), mode in mode(), pick in 0usize..6, other in 0usize..6, third in 0usize..6
         ) {
             let odd = [f32::NAN, f32::INFINITY, 0.0, -1.0, f32::NEG_INFINITY, 1.0];
-            let control = Control { scheme, focal_px: odd[third], error_px: 1.0 };
+            let control = Control { mode, focal_px: odd[third], error_px: 1.0 };
             let lambda = lod_number(&control, &errors, simple_error_m(&errors), odd[pick], odd[other]);
             prop_assert!(lambda >= 0.0 && lambda <= errors.len() as f32 - 1.0, "{lambda}");
         }
@@ -185,26 +185,26 @@ mod tests {
 
     #[test]
     fn inside_the_crown_every_leaf_is_drawn() {
-        for scheme in [TreeScheme::Quality, TreeScheme::Simple, TreeScheme::Discrete] {
+        for mode in [TreeLodMode::Quality, TreeLodMode::Simple, TreeLodMode::Discrete] {
             let distance = distance_m(3.0, 5.0);
-            assert_eq!(lod_number(&control(scheme, 1.0), &[0.001, 0.01, 0.1], 0.005, distance, 1.0), 0.0);
+            assert_eq!(lod_number(&control(mode, 1.0), &[0.001, 0.01, 0.1], 0.005, distance, 1.0), 0.0);
         }
     }
 
     #[test]
-    fn simple_scheme_asks_as_much_as_quality_if_errors_follow_counts() {
+    fn simple_mode_asks_as_much_as_quality_if_errors_follow_counts() {
         let errors: Vec<f32> = (0..8).map(|i| 0.01 * libm::exp2f(0.5 * i as f32)).collect();
         let q = simple_error_m(&errors);
         for distance in [5.0, 20.0, 37.0, 60.0, 300.0] {
-            let [a, b] = [TreeScheme::Simple, TreeScheme::Quality]
-                .map(|scheme| lod_number(&control(scheme, 1.0), &errors, q, distance, 1.3));
+            let [a, b] = [TreeLodMode::Simple, TreeLodMode::Quality]
+                .map(|mode| lod_number(&control(mode, 1.0), &errors, q, distance, 1.3));
             assert!((a - b).abs() < 1e-3, "{a} {b}");
         }
     }
 
     #[test]
     fn a_tree_without_levels_is_drawn_as_it_is() {
-        assert_eq!(lod_number(&control(TreeScheme::Simple, 1.0), &[], simple_error_m(&[]), 1e9, 1.0), 0.0);
-        assert_eq!(lod_number(&control(TreeScheme::Quality, 1.0), &[0.1], 0.1, 1e9, 1.0), 0.0);
+        assert_eq!(lod_number(&control(TreeLodMode::Simple, 1.0), &[], simple_error_m(&[]), 1e9, 1.0), 0.0);
+        assert_eq!(lod_number(&control(TreeLodMode::Quality, 1.0), &[0.1], 0.1, 1e9, 1.0), 0.0);
     }
 }

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::{Layouts, ViewUniform};
 use crate::camera::Frustum;
-use crate::frame::{Options, TreeScheme};
+use crate::frame::Options;
 use crate::gpu::Gpu;
 use crate::shaders::{ShaderError, Shaders};
 use crate::upload::TreeSet;
@@ -31,7 +31,7 @@ pub struct CullUniform {
     pub templates: u32,
     pub levels: u32,
     pub materials: u32,
-    pub scheme: u32,
+    pub lod_mode: u32,
     pub fixed_error_m: f32,
     pub planes_used: u32,
     pub first: u32,
@@ -40,17 +40,11 @@ pub struct CullUniform {
 impl CullUniform {
     /// For a view: `frustum` and eye of the camera, which sees `focal_px` pixels a radian.
     pub fn for_view(set: &TreeSet, frustum: &Frustum, eye: Vec3, focal_px: f32, options: &Options) -> Self {
-        let scheme = match options.tree_scheme {
-            TreeScheme::Quality => 0,
-            TreeScheme::Simple => 1,
-            TreeScheme::Discrete => 2,
-            TreeScheme::Off => 3,
-        };
         Self {
             planes: frustum.planes.map(Into::into),
             eye: eye.into(),
             error_per_m: options.tree_error_px / focal_px,
-            scheme,
+            lod_mode: options.tree_lod as u32,
             planes_used: 1,
             ..Self::sizes(set)
         }
@@ -59,7 +53,7 @@ impl CullUniform {
     /// For a shadow map with texels of that size: of the trees of these numbers all.
     pub fn for_shadow(set: &TreeSet, texel_m: f32, trees: Range<u32>) -> Self {
         let (first, instances) = (trees.start, trees.end.min(set.count));
-        Self { scheme: 4, fixed_error_m: texel_m, first, instances, ..Self::sizes(set) }
+        Self { lod_mode: 4, fixed_error_m: texel_m, first, instances, ..Self::sizes(set) }
     }
 
     fn sizes(set: &TreeSet) -> Self {

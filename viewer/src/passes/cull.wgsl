@@ -17,7 +17,7 @@ struct Cull {
     levels: u32,
     materials: u32,
     // 0 quality, 1 simple, 2 discrete, 3 none, 4 the level whose error is at most `fixed_error_m`.
-    scheme: u32,
+    lod_mode: u32,
     fixed_error_m: f32,
     // 0 draws all of them, wherever they stand.
     planes_used: u32,
@@ -32,7 +32,7 @@ struct Template {
     // Where its first list starts, and how long each of its lists may get.
     first: u32,
     capacity: u32,
-    // Error that the simple scheme gives its finest mesh.
+    // Error that the simple mode gives its finest mesh.
     simple_error: f32,
 }
 
@@ -59,14 +59,14 @@ struct Command {
 // λ of a tree whose nearest part is `distance` away. The Rust twin is `lod::tree::lod_number`, and a test compares them.
 fn lod_number(kind: u32, scale: f32, distance: f32) -> f32 {
     let last = f32(templates[kind].levels - 1u);
-    if (cull.scheme == 3u) {
+    if (cull.lod_mode == 3u) {
         return 0.0;
     }
     var allowed = cull.error_per_m * distance / scale;
-    if (cull.scheme == 4u) {
+    if (cull.lod_mode == 4u) {
         allowed = cull.fixed_error_m / scale;
     }
-    if (cull.scheme == 1u) {
+    if (cull.lod_mode == 1u) {
         let simple = templates[kind].simple_error;
         if (!(allowed > simple)) {
             return 0.0;
@@ -85,7 +85,7 @@ fn lod_number(kind: u32, scale: f32, distance: f32) -> f32 {
             break;
         }
     }
-    if (cull.scheme == 2u || cull.scheme == 4u) {
+    if (cull.lod_mode == 2u || cull.lod_mode == 4u) {
         return floor(lambda);
     }
     return lambda;

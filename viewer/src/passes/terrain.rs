@@ -1,4 +1,4 @@
-//! Draws the land in one draw, whatever the scheme, and the coarse ring around it in another.
+//! Draws the land in one draw, whatever the mode, and the coarse ring around it in another.
 
 use super::{Layouts, Shape, pipeline};
 use crate::gpu::Gpu;

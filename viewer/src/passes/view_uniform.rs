@@ -3,8 +3,9 @@
 use glam::{Mat4, Vec3, Vec4};
 
 use crate::camera::Camera;
-use crate::frame::{FrameInput, TerrainScheme};
+use crate::frame::FrameInput;
 use crate::lod::morph::Detail;
+use crate::lod_mode::TerrainLodMode;
 use crate::upload::SceneBuffers;
 
 /// `View` of `common.wgsl`, field by field; a test compares the two.
@@ -82,7 +83,7 @@ impl ViewUniform {
             focal_px: focal_px(camera, height),
             flags: flag(options.tint_levels, TINT)
                 | flag(options.drift_clouds, DRIFT)
-                | flag(options.terrain_scheme == TerrainScheme::Morph, MORPH),
+                | flag(options.terrain_lod == TerrainLodMode::Morph, MORPH),
             clouds: scene.heaven.sheets_m,
             lod_eye: lod_camera.position_m.into(),
             unused: 0.0,

@@ -10,7 +10,8 @@ use super::model::Model;
 use super::theme::{self, Palette};
 use super::widgets::{icon_button, section, segmented, switch};
 use crate::event::{Comfort, Event, Panel, Theme};
-use crate::frame::{Options, TerrainScheme, TreeScheme};
+use crate::frame::Options;
+use crate::lod_mode::LodMode;
 
 /// Width of the card, in points.
 const WIDTH: f32 = 330.0;
@@ -62,30 +63,22 @@ fn header(ui: &mut Ui, events: &mut Vec<Event>) {
     });
 }
 
-const TREE_SCHEMES: [(TreeScheme, &str, &str); 4] = [
-    (TreeScheme::Simple, "Simple", "Continuous, by the number of vertices alone"),
-    (TreeScheme::Quality, "Quality", "Continuous, by the error of each mesh on the screen"),
-    (TreeScheme::Discrete, "Discrete", "By error, without morphing between levels"),
-    (TreeScheme::Off, "Off", "Always the finest mesh"),
-];
-
-const TERRAIN_SCHEMES: [(TerrainScheme, &str, &str); 3] = [
-    (TerrainScheme::Morph, "Morph", "Blocks of a quadtree that morph in the vertex shader"),
-    (TerrainScheme::Roam, "ROAM", "Triangles split on the CPU where the land is rough, drawn as one strip"),
-    (TerrainScheme::Off, "Off", "Every sample"),
-];
+/// A choice for each LOD mode.
+fn modes<M: LodMode>() -> Vec<(M, &'static str, &'static str)> {
+    M::VARIANTS.iter().map(|&mode| (mode, mode.label(), mode.help())).collect()
+}
 
 fn options(ui: &mut Ui, current: &Options, events: &mut Vec<Event>) {
     let mut options = *current;
     section(ui, "LEVELS OF DETAIL");
     ui.label("Trees");
-    if let Some(scheme) = segmented(ui, "Tree detail", &TREE_SCHEMES, options.tree_scheme) {
-        options.tree_scheme = scheme;
+    if let Some(mode) = segmented(ui, "Tree detail", &modes(), options.tree_lod) {
+        options.tree_lod = mode;
     }
     number(ui, &mut options.tree_error_px, 0.1..=16.0, "Error allowed on trees", " px", true);
     ui.label("Terrain");
-    if let Some(scheme) = segmented(ui, "Terrain detail", &TERRAIN_SCHEMES, options.terrain_scheme) {
-        options.terrain_scheme = scheme;
+    if let Some(mode) = segmented(ui, "Terrain detail", &modes(), options.terrain_lod) {
+        options.terrain_lod = mode;
     }
     number(ui, &mut options.terrain_error_px, 0.1..=16.0, "Error allowed on terrain", " px", true);
     switch(ui, &mut options.tint_levels, "Colour by level", "Colours say the level of detail");

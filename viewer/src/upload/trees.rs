@@ -42,7 +42,7 @@ pub struct TemplateData {
     pub first: u32,
     /// How many entries each of its lists has room for.
     pub capacity: u32,
-    /// Error of the simple scheme, [`crate::lod::tree::simple_error_m`].
+    /// Error of the simple mode, [`crate::lod::tree::simple_error_m`].
     pub simple_error: f32,
 }
 
