@@ -46,14 +46,10 @@ pub enum Icon {
     Close,
     /// An arrow in a circle.
     Reset,
-    /// A lens.
-    Search,
     /// A triangle with an exclamation mark.
     Warning,
     /// Two sheets.
     Copy,
-    /// A tick.
-    Check,
 }
 
 impl From<Category> for Icon {
@@ -215,7 +211,6 @@ impl Icon {
             Self::Reset => {
                 &[Arc((0.5, 0.54), 0.34, -40.0, 240.0), Line(&[(0.28, 0.02), (0.33, 0.25), (0.1, 0.31)])]
             }
-            Self::Search => &[Arc((0.42, 0.42), 0.3, 0.0, 360.0), Line(&[(0.64, 0.64), (0.92, 0.92)])],
             Self::Warning => &[
                 Line(&[(0.5, 0.1), (0.95, 0.88), (0.05, 0.88), (0.5, 0.1), (0.55, 0.19)]),
                 Line(&[(0.5, 0.38), (0.5, 0.62)]),
@@ -225,7 +220,6 @@ impl Icon {
                 Line(&[(0.1, 0.34), (0.66, 0.34), (0.66, 0.92), (0.1, 0.92), (0.1, 0.3)]),
                 Line(&[(0.34, 0.2), (0.34, 0.08), (0.9, 0.08), (0.9, 0.66), (0.78, 0.66)]),
             ],
-            Self::Check => &[Line(&[(0.12, 0.54), (0.4, 0.82), (0.9, 0.2)])],
         }
     }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use egui::TextureId;
-use genescape_schema::{Category, Genome, INDIVIDUALS, Parameter, Space};
+use genescape_schema::{Genome, INDIVIDUALS, Parameter, Space};
 
 use crate::event::{Arrangement, Ballots, Comfort, Panel};
 use crate::frame::Options;
@@ -116,6 +116,13 @@ pub struct Baking {
     pub total: usize,
 }
 
+impl Baking {
+    /// How much of it is done, 0 to 1.
+    pub fn part(&self) -> f32 {
+        self.done as f32 / self.total.max(1) as f32
+    }
+}
+
 /// Genes of the four landscapes.
 #[derive(Clone, Debug)]
 pub struct Genes {
@@ -137,10 +144,9 @@ impl Genes {
         self.locked_categories[parameter.category as usize] || self.locked.contains(&parameter.name)
     }
 
-    /// How many genes of a category are not as they were bred.
-    pub fn changed(&self, individual: usize, category: Category) -> usize {
-        let (now, bred) = (&self.now[individual], &self.bred[individual]);
-        self.space.category(category).filter(|gene| now.code(gene) != bred.code(gene)).count()
+    /// Whether the four landscapes do not agree on a gene.
+    pub fn differ(&self, parameter: &Parameter) -> bool {
+        self.now.iter().any(|genome| genome.code(parameter) != self.now[0].code(parameter))
     }
 }
 

@@ -6,9 +6,9 @@ use std::collections::BTreeMap;
 
 use egui::style::{HandleShape, ScrollStyle, Selection, WidgetVisuals, Widgets};
 use egui::{
-    Color32, Context, CornerRadius, FontFamily, FontId, Margin, Shadow, Stroke, Style, TextStyle, Visuals,
+    Color32, Context, CornerRadius, FontFamily, FontId, Frame, Margin, Shadow, Stroke, Style, TextStyle,
 };
-use egui::{epaint, vec2};
+use egui::{Visuals, vec2};
 use genescape_schema::Category;
 
 use crate::event;
@@ -226,8 +226,13 @@ fn widgets(palette: &Palette) -> Widgets {
     }
 }
 
+/// A card that lies on pictures or on other panels.
+pub fn card(palette: &Palette) -> Frame {
+    Frame::NONE.fill(palette.raised).corner_radius(10).shadow(card_shadow())
+}
+
 /// Shadow that sets a card off from a picture.
-pub fn card_shadow() -> epaint::Shadow {
+pub fn card_shadow() -> Shadow {
     Shadow { offset: [0, 3], blur: 14, spread: 0, color: Color32::from_black_alpha(90) }
 }
 
