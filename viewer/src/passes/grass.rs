@@ -76,10 +76,6 @@ impl Grass {
 }
 
 impl DrawPass for Grass {
-    fn name(&self) -> &'static str {
-        SHADER.name
-    }
-
     fn is_needed(&self, bound: &BoundScene, options: &Options) -> bool {
         options.draw_terrain && bound.clumps.count > 0
     }

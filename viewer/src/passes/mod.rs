@@ -54,10 +54,10 @@ pub static SHADERS: [&Shader; 8] = [
 
 /// A pass that draws a part of the picture.
 pub trait DrawPass: std::fmt::Debug + Send + Sync {
-    fn name(&self) -> &'static str;
-
     /// Whether there is anything to draw.
-    fn is_needed(&self, scene: &BoundScene, options: &Options) -> bool;
+    fn is_needed(&self, _scene: &BoundScene, _options: &Options) -> bool {
+        true
+    }
 
     /// Records its draws and tells how many they are. Group 0 is set.
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, scene: &BoundScene, options: &Options) -> u32;
@@ -69,8 +69,8 @@ pub struct Passes {
     pub layouts: Layouts,
     pub shadow: Shadow,
     pub cull: Cull,
-    /// In the order in which they draw.
-    pub picture: [Box<dyn DrawPass>; 5],
+    /// By name, in the order in which they draw.
+    pub picture: [(&'static str, Box<dyn DrawPass>); 5],
     pub tone: Tone,
     /// Samples a pixel that they draw.
     pub samples: u32,
@@ -85,12 +85,12 @@ impl Passes {
             shadow: Shadow::new(&compiler)?,
             cull: Cull::new(&compiler)?,
             picture: [
-                Box::new(trees::Trees::new(&compiler)?),
+                (trees::SHADER.name, Box::new(trees::Trees::new(&compiler)?)),
                 // Before the terrain: what it hides needs no light.
-                Box::new(grass::Grass::new(&compiler)?),
-                Box::new(terrain::Terrain::new(&compiler)?),
-                Box::new(sky::Sky::new(&compiler)?),
-                Box::new(water::Water::new(&compiler)?),
+                (grass::SHADER.name, Box::new(grass::Grass::new(&compiler)?)),
+                (terrain::SHADER.name, Box::new(terrain::Terrain::new(&compiler)?)),
+                (sky::SHADER.name, Box::new(sky::Sky::new(&compiler)?)),
+                (water::SHADER.name, Box::new(water::Water::new(&compiler)?)),
             ],
             tone: Tone::new(&compiler)?,
             layouts,

@@ -20,14 +20,6 @@ impl Sky {
 }
 
 impl DrawPass for Sky {
-    fn name(&self) -> &'static str {
-        SHADER.name
-    }
-
-    fn is_needed(&self, _: &BoundScene, _: &Options) -> bool {
-        true
-    }
-
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, _: &BoundScene, _: &Options) -> u32 {
         pass.set_pipeline(&self.pipeline);
         pass.draw(0..3, 0..1);

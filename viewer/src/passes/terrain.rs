@@ -66,10 +66,6 @@ impl Terrain {
 }
 
 impl DrawPass for Terrain {
-    fn name(&self) -> &'static str {
-        SHADER.name
-    }
-
     fn is_needed(&self, _: &BoundScene, options: &Options) -> bool {
         options.draw_terrain
     }

@@ -53,10 +53,6 @@ impl Trees {
 }
 
 impl DrawPass for Trees {
-    fn name(&self) -> &'static str {
-        SHADER.name
-    }
-
     fn is_needed(&self, bound: &BoundScene, options: &Options) -> bool {
         options.draw_trees && bound.trees().is_some()
     }

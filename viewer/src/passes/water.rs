@@ -22,10 +22,6 @@ impl Water {
 }
 
 impl DrawPass for Water {
-    fn name(&self) -> &'static str {
-        SHADER.name
-    }
-
     fn is_needed(&self, bound: &BoundScene, options: &Options) -> bool {
         options.draw_terrain && bound.scene.ground.water_level_m.is_some()
     }

@@ -225,23 +225,22 @@ pub struct Panels {
 }
 
 impl Panels {
-    /// Whether a panel is shown.
-    pub fn is_open(&self, panel: Panel) -> bool {
+    fn one(&mut self, panel: Panel) -> &mut bool {
         match panel {
-            Panel::Genome => self.genome,
-            Panel::Stats => self.stats,
-            Panel::Help => self.help,
-            Panel::Settings => self.settings,
+            Panel::Genome => &mut self.genome,
+            Panel::Stats => &mut self.stats,
+            Panel::Help => &mut self.help,
+            Panel::Settings => &mut self.settings,
         }
+    }
+
+    /// Whether a panel is shown.
+    pub fn is_open(mut self, panel: Panel) -> bool {
+        *self.one(panel)
     }
 
     /// Shows or hides a panel.
     pub fn set(&mut self, panel: Panel, open: bool) {
-        match panel {
-            Panel::Genome => self.genome = open,
-            Panel::Stats => self.stats = open,
-            Panel::Help => self.help = open,
-            Panel::Settings => self.settings = open,
-        }
+        *self.one(panel) = open;
     }
 }

@@ -42,7 +42,13 @@ pub fn flat_button(ui: &mut Ui, size: Vec2, name: &str, active: bool) -> (Rect, 
 
 /// A button that its caller paints; the flag says whether it is to look as under the pointer. `id` tells it from the
 /// others of this [`Ui`].
-pub fn painted_button(ui: &Ui, rect: Rect, id: impl egui::AsIdSalt, name: &str, selected: bool) -> (Response, bool) {
+pub fn painted_button(
+    ui: &Ui,
+    rect: Rect,
+    id: impl egui::AsIdSalt,
+    name: &str,
+    selected: bool,
+) -> (Response, bool) {
     let response = ui.interact(rect, ui.scope_id().with(id), Sense::click());
     name_button(ui, &response, name, selected);
     let lit = is_lit(&response);

@@ -158,8 +158,8 @@ fn draw(
         };
         let mut picture = scope.scoped_render_pass("picture", descriptor);
         picture.set_bind_group(0, &bound.view_group, &[]);
-        for pass in passes.picture.iter().filter(|pass| pass.is_needed(bound, options)) {
-            draws += pass.draw(&mut picture.scope(pass.name()), bound, options);
+        for (name, pass) in passes.picture.iter().filter(|(_, pass)| pass.is_needed(bound, options)) {
+            draws += pass.draw(&mut picture.scope(*name), bound, options);
         }
     }
     let mut pass = scope.scoped_render_pass(Tone::NAME, display_pass(&targets.display()));
