@@ -40,6 +40,40 @@ pub struct Options {
     pub fov_y_deg: f32,
 }
 
+/// A part of [`Options`] that is on or off, as the settings panel shows it.
+pub struct Switch {
+    pub name: &'static str,
+    pub help: &'static str,
+    pub value: fn(&mut Options) -> &mut bool,
+}
+
+/// What makes levels of detail visible.
+pub const LOD_SWITCHES: [Switch; 3] = [
+    Switch {
+        name: "Colour by level",
+        help: "Colours say the level of detail",
+        value: |options| &mut options.tint_levels,
+    },
+    Switch { name: "Wireframe", help: "Edges of triangles only", value: |options| &mut options.wireframe },
+    Switch {
+        name: "From above",
+        help: "The land from above, with the detail chosen for your place",
+        value: |options| &mut options.overhead,
+    },
+];
+
+/// What is in the picture.
+pub const PICTURE_SWITCHES: [Switch; 4] = [
+    Switch { name: "Trees", help: "", value: |options| &mut options.draw_trees },
+    Switch { name: "Terrain", help: "", value: |options| &mut options.draw_terrain },
+    Switch {
+        name: "Grass",
+        help: "Blades around you; a tenth to a quarter of the time where the processor draws",
+        value: |options| &mut options.grass,
+    },
+    Switch { name: "Clouds drift", help: "", value: |options| &mut options.drift_clouds },
+];
+
 impl Default for Options {
     fn default() -> Self {
         Self {

@@ -5,20 +5,10 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use crate::passes::SHADERS;
+
 /// What every pass's shader starts with.
 const COMMON: &str = include_str!("passes/common.wgsl");
-
-/// The sources that were built in, by name.
-const BUILTIN: &[(&str, &str)] = &[
-    ("cull", include_str!("passes/cull.wgsl")),
-    ("grass", include_str!("passes/grass.wgsl")),
-    ("shadow", include_str!("passes/shadow.wgsl")),
-    ("sky", include_str!("passes/sky.wgsl")),
-    ("terrain", include_str!("passes/terrain.wgsl")),
-    ("tone", include_str!("passes/tone.wgsl")),
-    ("trees", include_str!("passes/trees.wgsl")),
-    ("water", include_str!("passes/water.wgsl")),
-];
 
 /// Where sources come from.
 #[derive(Clone, Debug, Default)]
@@ -54,7 +44,7 @@ impl Shaders {
 
     /// Names of all shaders, without "common".
     pub fn names() -> impl Iterator<Item = &'static str> {
-        BUILTIN.iter().map(|(name, _)| *name)
+        SHADERS.iter().map(|shader| shader.name)
     }
 
     fn source(&self, name: &str, builtin: &str) -> Result<String, ShaderError> {
@@ -68,7 +58,7 @@ impl Shaders {
 
     /// The whole text of a shader: common part, then its own.
     pub fn text(&self, name: &str) -> Result<String, ShaderError> {
-        let builtin = BUILTIN.iter().find(|(known, _)| *known == name).map_or("", |(_, text)| text);
+        let builtin = SHADERS.iter().find(|shader| shader.name == name).map_or("", |shader| shader.source);
         Ok(self.source("common", COMMON)? + &self.source(name, builtin)?)
     }
 

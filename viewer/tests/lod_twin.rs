@@ -8,7 +8,7 @@ use genescape_viewer::gpu::Gpu;
 use genescape_viewer::headless::Headless;
 use genescape_viewer::lod::tree::{Control, distance_m, lod_number, simple_error_m};
 use genescape_viewer::lod_mode::TreeLodMode;
-use genescape_viewer::passes::{CullUniform, TreeLists};
+use genescape_viewer::passes::{BoundTrees, CullUniform};
 use genescape_viewer::picture_file;
 use genescape_viewer::scene::Trees;
 use genescape_viewer::upload::{DrawCommand, SceneBuffers};
@@ -93,7 +93,7 @@ fn chosen(
 ) -> Vec<Option<f32>> {
     let gpu = &studio.gpu;
     let set = buffers.trees.as_ref().expect("trees");
-    let lists = TreeLists::new(gpu, &studio.passes.layouts, set);
+    let lists = BoundTrees::new(gpu, &studio.passes.layouts, set);
     lists.set(&gpu.queue, uniform);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     studio.passes.cull.dispatch(&mut encoder.begin_compute_pass(&Default::default()), &lists);

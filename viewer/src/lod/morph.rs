@@ -24,11 +24,10 @@ use crate::scene::Heightfield;
 pub const GAP: f32 = 0.25;
 
 /// The least d₀ in cells: 16√2. Makes λ span at most [i, i+2] in a block of level i, see [`super::quadtree`].
-pub const LEAST_UNIT_CELLS: f32 = 16.0 * std::f32::consts::SQRT_2;
+pub const MIN_UNIT_CELLS: f32 = 16.0 * std::f32::consts::SQRT_2;
 
-/// λ as a function of the place, for one frame of one view. Fit for a uniform buffer.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+/// λ as a function of the place, for one frame of one view.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detail {
     /// Where the eye is: x and z in metres.
     pub eye_m: Vec2,
@@ -38,8 +37,6 @@ pub struct Detail {
     pub unit_m: f32,
     /// The greatest λ, a whole number.
     pub top: f32,
-    /// Unused.
-    pub padding: [f32; 3],
 }
 
 impl Detail {

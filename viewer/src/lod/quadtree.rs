@@ -15,7 +15,7 @@
 use glam::{Vec2, Vec3};
 
 use super::bintree::parents;
-use super::morph::{Detail, LEAST_UNIT_CELLS};
+use super::morph::{Detail, MIN_UNIT_CELLS};
 use crate::camera::Frustum;
 use crate::scene::Heightfield;
 
@@ -35,17 +35,6 @@ pub struct Block {
     pub j: u32,
     /// Its vertices are 2^level samples apart.
     pub level: u32,
-}
-
-/// What a selection amounts to.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Stats {
-    /// Blocks drawn.
-    pub blocks: u32,
-    /// Triangles in them, those that have vanished included.
-    pub triangles: u32,
-    /// Blocks of any size that were found out of sight.
-    pub culled: u32,
 }
 
 /// How far the uniform triangulations of a field are from it: the root of the mean square over all samples of their
@@ -112,25 +101,20 @@ pub fn detail(
     Detail {
         eye_m: Vec2::new(eye_m.x, eye_m.z),
         above_m: (eye_m.y - field.range_m()[1]).max(0.0),
-        unit_m: unit_m.clamp(LEAST_UNIT_CELLS * field.spacing_m, f32::MAX),
+        unit_m: unit_m.clamp(MIN_UNIT_CELLS * field.spacing_m, f32::MAX),
         top: top as f32,
-        padding: [0.0; 3],
     }
 }
 
 /// Replaces `blocks` by those to draw, those that `frustum` doesn't see left out; none is hidden by a later one.
-pub fn select(
-    field: &Heightfield,
-    detail: &Detail,
-    frustum: Option<&Frustum>,
-    blocks: &mut Vec<Block>,
-) -> Stats {
+pub fn select(field: &Heightfield, detail: &Detail, frustum: Option<&Frustum>, blocks: &mut Vec<Block>) {
     blocks.clear();
-    let mut selection = Selection { field, detail, frustum, blocks, culled: 0 };
-    selection.visit(Block { i: 0, j: 0, level: top_level(field) });
-    let culled = selection.culled;
-    let (count, cells) = (blocks.len() as u32, block_cells(field));
-    Stats { blocks: count, triangles: count * 2 * cells * cells, culled }
+    Selection { field, detail, frustum, blocks }.visit(Block { i: 0, j: 0, level: top_level(field) });
+}
+
+/// Triangles in blocks, those that have vanished included.
+pub fn triangles(field: &Heightfield, blocks: &[Block]) -> u32 {
+    blocks.len() as u32 * 2 * block_cells(field).pow(2)
 }
 
 /// Triangles of a block of `cells` × `cells` cells, counter-clockwise from above: vertex row·(cells+1) + column, with
@@ -157,7 +141,6 @@ struct Selection<'a> {
     detail: &'a Detail,
     frustum: Option<&'a Frustum>,
     blocks: &'a mut Vec<Block>,
-    culled: u32,
 }
 
 impl Selection<'_> {
@@ -165,7 +148,6 @@ impl Selection<'_> {
         let size = block_cells(self.field) << block.level;
         let (low_m, high_m) = self.bounds_m(block, size);
         if self.frustum.is_some_and(|frustum| !frustum.sees_box(low_m, high_m)) {
-            self.culled += 1;
             return;
         }
         if block.level == 0 || self.is_far_enough(block.level, low_m, high_m) {
@@ -201,7 +183,8 @@ impl Selection<'_> {
     }
 }
 
-/// The root mean square of the distances between the land and its uniform triangulation of a level. `drawn_m`: room to work in.
+/// The root mean square of the distances between the land and its uniform triangulation of a level. `drawn_m`:
+/// room to work in.
 fn uniform_error_m(field: &Heightfield, level: u32, drawn_m: &mut Vec<f32>) -> f32 {
     drawn_m.clear();
     drawn_m.extend_from_slice(&field.heights_m);

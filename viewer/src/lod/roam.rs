@@ -27,22 +27,11 @@ pub struct Roam {
     nonce: u32,
 }
 
-/// What a triangulation amounts to.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Stats {
-    /// Triangles that are not degenerate.
-    pub triangles: u32,
-    /// Numbers in the strip.
-    pub strip: u32,
-    /// Samples in use, the corners not counted.
-    pub splits: u32,
-}
-
 impl Roam {
     /// Replaces `strip` by a triangle strip over the whole field: entries of its arrays, front faces counter-clockwise
     /// from above with the first triangle as written. `aspect` is the picture's width over its height, `height_px` its
     /// height; `error_px` is how far land and mesh may be apart in the picture: 0 uses every sample in sight that is not
-    /// on the plane around it.
+    /// on the plane around it. Tells how many triangles are not degenerate.
     pub fn triangulate(
         &mut self,
         field: &Heightfield,
@@ -50,15 +39,15 @@ impl Roam {
         (aspect, height_px): (f32, f32),
         error_px: f32,
         strip: &mut Vec<u32>,
-    ) -> Stats {
+    ) -> u32 {
         strip.clear();
         if field.side < 2 {
-            return Stats::default();
+            return 0;
         }
         self.begin(field.heights_m.len());
         let last = field.side - 1;
         let roots = [[[last, last], [0, 0], [0, last]], [[0, 0], [last, last], [last, 0]]];
-        let mut marks = Marks { flags: &mut self.flags, nonce: self.nonce, side: field.side, splits: 0 };
+        let mut marks = Marks { flags: &mut self.flags, nonce: self.nonce, side: field.side };
         let metric = Metric::new(field, camera, (aspect, height_px), error_px);
         for root in roots {
             refine(&metric, &mut marks, root.map(|sample| metric.corner(sample)), ALL_PLANES);
@@ -67,8 +56,7 @@ impl Roam {
         for root in roots {
             walk.visit(root, true);
         }
-        let triangles = walk.triangles;
-        Stats { triangles, strip: strip.len() as u32, splits: marks.splits }
+        walk.triangles
     }
 
     /// As after 2³²−2 frames.
@@ -100,7 +88,6 @@ struct Marks<'a> {
     flags: &'a mut [u32],
     nonce: u32,
     side: u32,
-    splits: u32,
 }
 
 impl Marks<'_> {
@@ -121,7 +108,6 @@ impl Marks<'_> {
             return;
         }
         self.flags[entry] = self.nonce;
-        self.splits += 1;
         let last = self.side - 1;
         for needed in needs(sample, last).into_iter().flatten() {
             // The field's corners are always in use.
@@ -158,8 +144,7 @@ impl<'a> Metric<'a> {
     fn new(field: &'a Heightfield, camera: &Camera, (aspect, height_px): (f32, f32), error_px: f32) -> Self {
         let (right, ahead) = (camera.right(), camera.forward());
         let axes = [right, right.cross(ahead), ahead];
-        let focal_px = 0.5 * height_px / libm::tanf(0.5 * camera.fov_y_rad);
-        let half = 0.5 * error_px.max(0.0) / focal_px;
+        let half = 0.5 * error_px.max(0.0) / camera.focal_px(height_px);
         Self {
             field,
             frustum: camera.frustum(aspect),

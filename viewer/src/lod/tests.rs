@@ -12,7 +12,7 @@ use super::bintree::parents;
 use super::morph::{Detail, sample_m};
 use super::quadtree::{self, Block, Errors, block_cells, block_indices};
 use super::roam::Roam;
-use crate::camera::Camera;
+use crate::camera::{Camera, Frustum};
 use crate::scene::Heightfield;
 
 /// Rough land of a given side: waves and noise from a seed, `relief_m` high.
@@ -127,7 +127,7 @@ proptest! {
     }
 
     #[test]
-    fn whoever_looks_along_the_land_meets_blocks_in_their_order(eye in eye(), yaw in -4f32..4.) {
+    fn a_look_along_the_land_meets_blocks_in_their_order(eye in eye(), yaw in -4f32..4.) {
         let field = Heightfield { side: 1025, spacing_m: 1.0, ..Heightfield::default() };
         let detail = detail_at(&field, eye * field.extent_m(), 1.0);
         let mut blocks = Vec::new();
@@ -245,11 +245,10 @@ proptest! {
         let field = land((1 << depth) + 1, 1.0, relief, seed);
         camera.position_m *= field.extent_m();
         let (mut roam, mut strip) = (Roam::default(), Vec::new());
-        let stats = roam.triangulate(&field, &camera, PICTURE, error_px, &mut strip);
+        let triangles = roam.triangulate(&field, &camera, PICTURE, error_px, &mut strip);
         let mesh = strip_triangles(&field, &strip);
         check_closed(&field, &mesh)?;
-        prop_assert_eq!(stats.triangles as usize, mesh.len());
-        prop_assert_eq!(stats.strip as usize, strip.len());
+        prop_assert_eq!(triangles as usize, mesh.len());
 
         let frustum = camera.frustum(PICTURE.0);
         for entry in 0..field.side * field.side {
@@ -305,42 +304,17 @@ fn more_error_and_less_sight_mean_fewer_triangles() {
         Camera { position_m: Vec3::new(0.0, 30.0, 100.0), yaw_rad: 0.0, pitch_rad: -0.2, fov_y_rad: 1.0 };
     let (mut roam, mut strip, mut blocks) = (Roam::default(), Vec::new(), Vec::new());
     let counts: Vec<u32> = [0.0, 1.0, 4.0, 64.0, 1e9]
-        .map(|error_px| roam.triangulate(&field, &camera, PICTURE, error_px, &mut strip).triangles)
+        .map(|error_px| roam.triangulate(&field, &camera, PICTURE, error_px, &mut strip))
         .to_vec();
     assert!(counts.is_sorted_by(|a, b| a > b), "{counts:?}");
     let detail = detail_at(&field, camera.position_m, 1.0);
-    let all = quadtree::select(&field, &detail, None, &mut blocks);
-    let seen = quadtree::select(&field, &detail, Some(&camera.frustum(1.5)), &mut blocks);
-    assert!(seen.blocks < all.blocks && seen.blocks > 0 && seen.culled > 0, "{seen:?} of {all:?}");
-    let exact = quadtree::detail(&field, &Errors::of(&field), camera.position_m, 500.0, 0.0, f32::MAX);
-    assert_eq!(quadtree::select(&field, &exact, None, &mut blocks).triangles, 128 * 128 * 2);
-}
-
-/// Times: `cargo test -p genescape-viewer --lib lod::tests::speed -- --ignored --nocapture`.
-#[test]
-#[ignore = "prints times"]
-fn speed() {
-    let field = land(513, 2.0, 60.0, 7);
-    let errors = Errors::of(&field);
-    let (mut roam, mut strip, mut blocks) = (Roam::default(), Vec::new(), Vec::new());
-    let time = |name: &str, run: &mut dyn FnMut() -> String| {
-        let said = run();
-        let start = std::time::Instant::now();
-        (0..20).for_each(|_| drop(run()));
-        genescape_bake::say!("{name}: {:.0} us, {said}", start.elapsed().as_secs_f64() * 1e6 / 20.0);
+    let mut count = |frustum: Option<&Frustum>| {
+        quadtree::select(&field, &detail, frustum, &mut blocks);
+        blocks.len()
     };
-    for yaw_rad in [0.0, 2.0] {
-        let eye_m = Vec3::new(50.0, field.height_m(50.0, 90.0) + 1.6, 90.0);
-        let camera = Camera { position_m: eye_m, yaw_rad, pitch_rad: 0.0, fov_y_rad: 1.0 };
-        let frustum = camera.frustum(16.0 / 9.0);
-        let detail = quadtree::detail(&field, &errors, eye_m, 494.0, 1.0, 256.0);
-        time("blocks", &mut || {
-            let stats = quadtree::select(&field, &detail, Some(&frustum), &mut blocks);
-            format!("{stats:?}, d0 {} m", detail.unit_m)
-        });
-        time("roam", &mut || {
-            format!("{:?}", roam.triangulate(&field, &camera, (16.0 / 9.0, 540.0), 1.0, &mut strip))
-        });
-    }
-    time("errors", &mut || format!("{:?}", Errors::of(&field)));
+    let (all, seen) = (count(None), count(Some(&camera.frustum(1.5))));
+    assert!(seen < all && seen > 0, "{seen} of {all}");
+    let exact = quadtree::detail(&field, &Errors::of(&field), camera.position_m, 500.0, 0.0, f32::MAX);
+    quadtree::select(&field, &exact, None, &mut blocks);
+    assert_eq!(quadtree::triangles(&field, &blocks), 128 * 128 * 2);
 }

@@ -7,11 +7,11 @@
 
 use crate::lod_mode::TreeLodMode;
 
-/// Most levels that a template may have.
+/// The most levels that a template may have.
 pub const MAX_LEVELS: usize = 12;
 
 /// The least distance in metres that counts: what is nearer, or around the eye, is drawn from here.
-pub const LEAST_DISTANCE_M: f32 = 0.01;
+pub const MIN_DISTANCE_M: f32 = 0.01;
 
 /// What one frame asks of all trees.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,11 +24,11 @@ pub struct Control {
     pub error_px: f32,
 }
 
-/// Distance in metres from the eye to the sphere around a tree; [`LEAST_DISTANCE_M`] inside it. `center_distance_m`:
+/// Distance in metres from the eye to the sphere around a tree; [`MIN_DISTANCE_M`] inside it. `center_distance_m`:
 /// to the sphere's centre.
 #[inline]
 pub fn distance_m(center_distance_m: f32, radius_m: f32) -> f32 {
-    (center_distance_m - radius_m).max(LEAST_DISTANCE_M)
+    (center_distance_m - radius_m).max(MIN_DISTANCE_M)
 }
 
 /// λ of an instance at [`distance_m`]. `errors_m`: of D_0 … D_k, positive and increasing; `simple_error_m`: of

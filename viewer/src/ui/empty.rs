@@ -7,7 +7,7 @@ use genescape_schema::Category;
 use super::icon::Icon;
 use super::model::{Baking, Model, Situation};
 use super::theme::{self, Palette};
-use super::widgets::{primary_button, progress_bar};
+use super::widgets::{primary_button, progress_bar, small};
 use crate::event::Event;
 
 /// Draws it into what is left of `ui`; false if there is something to look at, and nothing was drawn.
@@ -43,12 +43,11 @@ fn growing(ui: &mut Ui, baking: Option<&Baking>) {
     ui.weak("Each appears as soon as it is ready. What has grown once is kept.");
     ui.add_space(14.0);
     let (rect, _) = ui.allocate_exact_size(vec2(260.0f32.min(ui.available_width()), 6.0), Sense::hover());
-    let (done, total) = baking.map_or((0, 0), |baking| (baking.done, baking.total));
-    let part = done as f32 / total.max(1) as f32;
+    let part = baking.map_or(0.0, Baking::part);
     progress_bar(ui.painter(), rect, part, palette.accent, palette.button);
-    if total > 0 {
+    if let Some(Baking { done, total, .. }) = baking.filter(|baking| baking.total > 0) {
         ui.add_space(4.0);
-        ui.label(RichText::new(format!("{done} of {total} stages")).small().color(palette.weak));
+        small(ui, format!("{done} of {total} stages"));
     }
 }
 

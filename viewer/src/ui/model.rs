@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use egui::TextureId;
-use genescape_schema::{Category, Genome, INDIVIDUALS, Parameter, Space};
+use genescape_schema::{Genome, INDIVIDUALS, Parameter, Space};
 
 use crate::event::{Arrangement, Ballots, Panel};
 use crate::frame::Options;
@@ -118,6 +118,13 @@ pub struct Baking {
     pub total: usize,
 }
 
+impl Baking {
+    /// How much of it is done, 0 to 1.
+    pub fn part(&self) -> f32 {
+        self.done as f32 / self.total.max(1) as f32
+    }
+}
+
 /// Genes of the four landscapes.
 #[derive(Clone, Debug)]
 pub struct Genes {
@@ -139,10 +146,9 @@ impl Genes {
         self.locked_categories[parameter.category as usize] || self.locked.contains(&parameter.name)
     }
 
-    /// How many genes of a category are not as they were bred.
-    pub fn changed(&self, individual: usize, category: Category) -> usize {
-        let (now, bred) = (&self.now[individual], &self.bred[individual]);
-        self.space.category(category).filter(|gene| now.code(gene) != bred.code(gene)).count()
+    /// Whether the four landscapes do not agree on a gene.
+    pub fn differ(&self, parameter: &Parameter) -> bool {
+        self.now.iter().any(|genome| genome.code(parameter) != self.now[0].code(parameter))
     }
 }
 
@@ -212,23 +218,22 @@ pub struct Panels {
 }
 
 impl Panels {
-    /// Whether a panel is shown.
-    pub fn is_open(&self, panel: Panel) -> bool {
+    fn one(&mut self, panel: Panel) -> &mut bool {
         match panel {
-            Panel::Genome => self.genome,
-            Panel::Stats => self.stats,
-            Panel::Help => self.help,
-            Panel::Settings => self.settings,
+            Panel::Genome => &mut self.genome,
+            Panel::Stats => &mut self.stats,
+            Panel::Help => &mut self.help,
+            Panel::Settings => &mut self.settings,
         }
+    }
+
+    /// Whether a panel is shown.
+    pub fn is_open(mut self, panel: Panel) -> bool {
+        *self.one(panel)
     }
 
     /// Shows or hides a panel.
     pub fn set(&mut self, panel: Panel, open: bool) {
-        match panel {
-            Panel::Genome => self.genome = open,
-            Panel::Stats => self.stats = open,
-            Panel::Help => self.help = open,
-            Panel::Settings => self.settings = open,
-        }
+        *self.one(panel) = open;
     }
 }

@@ -32,7 +32,7 @@ pub struct SceneBuffers {
     /// The land.
     pub land: GroundBuffers,
     /// Sky pictures.
-    pub heaven: SkyTextures,
+    pub sky_textures: SkyTextures,
     /// Trees; none if the land is bare.
     pub trees: Option<TreeSet>,
     /// Shadows as seen from the sun; drawn into once.
@@ -59,7 +59,7 @@ impl Uploader {
             ground: scene.ground.clone(),
             sky: scene.sky.clone(),
             land: self.ground(&scene.ground)?,
-            heaven: self.sky(&scene.sky),
+            sky_textures: self.sky(&scene.sky),
             trees: self.trees(&scene.trees),
             shadow_map: self.shadow_map(),
         })

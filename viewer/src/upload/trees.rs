@@ -7,8 +7,7 @@ use glam::{Mat3, Vec3};
 use super::{PictureUse, Uploader};
 use crate::scene::{Instance, Material, Picture, Template, TreeVertex, Trees};
 
-/// The most levels of detail of a kind of tree; as in `cull.wgsl`.
-pub const MAX_LEVELS: usize = 12;
+pub use crate::lod::tree::MAX_LEVELS;
 /// The most materials that all trees of a landscape may have: each is one draw.
 pub const MATERIALS_PER_TREE_SET: usize = 4;
 

@@ -13,8 +13,8 @@ pub(super) const SPEED_MPS: f32 = 12.0;
 const SPEEDS_MPS: [f32; 2] = [0.5, 400.0];
 /// One line of the wheel, as a factor.
 const WHEEL: f32 = 1.2;
-/// Nobody flies higher.
-const CEILING_M: f32 = 10_000.0;
+/// The eye never rises above this.
+const MAX_ALTITUDE_M: f32 = 10_000.0;
 
 /// The speed after a turn of the wheel, in m/s.
 pub(super) fn speed_mps(before_mps: f32, wheel: f32) -> f32 {
@@ -48,5 +48,5 @@ pub(super) fn keep_above(pose: &mut Pose, lands: &[&Land]) {
     if lowest_m.is_finite() {
         pose.altitude_m = pose.altitude_m.max(lowest_m);
     }
-    pose.altitude_m = pose.altitude_m.min(CEILING_M.max(lowest_m.min(f32::MAX)));
+    pose.altitude_m = pose.altitude_m.min(MAX_ALTITUDE_M.max(lowest_m.min(f32::MAX)));
 }

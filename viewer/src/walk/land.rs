@@ -11,7 +11,7 @@ use crate::scene::{Heightfield, Scene};
 /// Height of a walker's eyes above what it stands on.
 pub const EYE_HEIGHT_M: f32 = 1.6;
 /// No eye comes nearer to the ground, in any mode.
-pub const LEAST_HEIGHT_M: f32 = 0.5;
+pub const MIN_HEIGHT_M: f32 = 0.5;
 /// A walker wades no deeper; where a lake is deeper it swims, its feet this far below the surface.
 pub const WADING_DEPTH_M: f32 = 1.2;
 /// Radius of a walker's body.
@@ -70,7 +70,7 @@ impl Land {
     /// No eye may be lower, in metres: above the ground, and above the lake (from below, a lake is only a lid).
     pub fn floor_m(&self, place_m: Vec2) -> f32 {
         let ground_m = self.ground_m(place_m);
-        self.water_level_m.map_or(ground_m, |water_m| ground_m.max(water_m)) + LEAST_HEIGHT_M
+        self.water_level_m.map_or(ground_m, |water_m| ground_m.max(water_m)) + MIN_HEIGHT_M
     }
 }
 

@@ -1,0 +1,53 @@
+//! Camera and LOD mode → the blocks or triangles of the terrain that one picture draws.
+
+use crate::camera::Camera;
+use crate::frame::Options;
+use crate::gpu::Gpu;
+use crate::lod::morph::Detail;
+use crate::lod::quadtree;
+use crate::lod::roam::Roam;
+use crate::lod_mode::TerrainLodMode;
+use crate::passes::BoundScene;
+
+/// No block of the terrain is wider, so that what is not seen can be left out.
+const MAX_BLOCK_M: f32 = 256.0;
+
+/// Lists that are kept from frame to frame.
+#[derive(Debug, Default)]
+pub(super) struct TerrainLod {
+    blocks: Vec<quadtree::Block>,
+    roam: Roam,
+    strip: Vec<u32>,
+}
+
+impl TerrainLod {
+    /// Chooses for `camera` what to draw and writes it to the device. Tells how detailed the terrain is where, and how
+    /// many triangles that takes.
+    pub fn choose(
+        &mut self,
+        bound: &mut BoundScene,
+        gpu: &Gpu,
+        camera: &Camera,
+        [width, height]: [f32; 2],
+        options: &Options,
+    ) -> (Detail, u32) {
+        let (scene, mode) = (&bound.scene, options.terrain_lod);
+        let (field, errors) = (&scene.ground.field, &scene.land.errors);
+        let (focal_px, eye_m) = (camera.focal_px(height), camera.position_m);
+        // Without levels of detail no error is allowed.
+        let error_px = if mode == TerrainLodMode::Off { 0.0 } else { options.terrain_error_px };
+        let detail = quadtree::detail(field, errors, eye_m, focal_px, error_px, MAX_BLOCK_M);
+        let aspect = width / height;
+        let triangles = if mode == TerrainLodMode::Roam {
+            let picture = (aspect, height);
+            let triangles = self.roam.triangulate(field, camera, picture, error_px, &mut self.strip);
+            bound.terrain.write(gpu, &self.strip);
+            triangles
+        } else {
+            quadtree::select(field, &detail, Some(&camera.frustum(aspect)), &mut self.blocks);
+            bound.terrain.write(gpu, &self.blocks);
+            quadtree::triangles(field, &self.blocks)
+        };
+        (detail, triangles)
+    }
+}
