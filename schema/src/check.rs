@@ -7,7 +7,20 @@ use ron::error::SpannedError;
 use serde::de::DeserializeOwned;
 
 use crate::report::{Diagnostic, Report, place};
-use crate::ron_tree::{Field, Node, Value, parse};
+use crate::ron_tree::{Field, Node, Value, parse, prepare};
+
+/// Reads the text of a file, whose name is for messages: what `read` makes of it, or everything that is wrong.
+pub(crate) fn read<T>(
+    file: &str,
+    text: &str,
+    read: impl FnOnce(&mut Checker<'_>, &Node<'_>) -> Option<T>,
+) -> Result<T, Report> {
+    let text = prepare(text);
+    let mut checker = Checker::new(file, &text);
+    let root = checker.parse()?;
+    let result = read(&mut checker, &root);
+    checker.finish(result)
+}
 
 /// The faults found so far in one file.
 pub(crate) struct Checker<'a> {
@@ -31,13 +44,14 @@ impl<'a> Checker<'a> {
         self.faults.push((span.start, Diagnostic::at(self.file, self.text, span, message.into())));
     }
 
-    /// Line and column of a node.
-    pub fn place(&self, node: &Node<'_>) -> (usize, usize) {
-        place(self.text, node.start)
+    /// A remark on a node that is no fault: "g0000.ron:12:5: message".
+    pub fn note(&self, node: &Node<'_>, message: impl Display) -> String {
+        let (line, column) = place(self.text, node.start);
+        format!("{}:{line}:{column}: {message}", self.file)
     }
 
     /// The result if there was no fault.
-    pub fn finish<T>(mut self, result: Option<T>) -> Result<T, Report> {
+    fn finish<T>(mut self, result: Option<T>) -> Result<T, Report> {
         match result {
             Some(result) if self.faults.is_empty() => Ok(result),
             _ => {
@@ -66,7 +80,7 @@ impl<'a> Checker<'a> {
                 let hint = hint(field.name).unwrap_or_else(|| did_you_mean(field.name, known));
                 self.error(span, format!("{what} has no {}{hint}", field.name));
             } else if let Some(first) = unique.iter().find(|first| first.name == field.name) {
-                let (line, _) = self.place(&first.node);
+                let (line, _) = place(self.text, first.node.start);
                 self.error(span, format!("{} is given twice; first in line {line}", field.name));
             } else {
                 unique.push(field);
@@ -108,11 +122,11 @@ impl<'a> Checker<'a> {
         what: &str,
         name: &str,
     ) -> Option<&'n Node<'t>> {
-        let found = fields.iter().find(|field| field.name == name);
+        let found = optional(fields, name);
         if found.is_none() {
             self.error(node.start..node.start + 1, format!("{what} lacks {name}"));
         }
-        found.map(|field| &field.node)
+        found
     }
 
     pub fn number(&mut self, node: &Node<'_>, what: &str) -> Option<f64> {
@@ -124,15 +138,10 @@ impl<'a> Checker<'a> {
     }
 
     /// A whole number that fits `T`.
-    pub fn whole<T: DeserializeOwned + Display>(
-        &mut self,
-        node: &Node<'_>,
-        what: &str,
-        most: T,
-    ) -> Option<T> {
+    pub fn whole<T: DeserializeOwned + Display>(&mut self, node: &Node<'_>, what: &str, max: T) -> Option<T> {
         let whole = matches!(node.value, Value::Number(_)).then(|| ron::from_str(node.text).ok()).flatten();
         if whole.is_none() {
-            self.wrong_kind(node, what, &format!("a whole number from 0 to {most}"));
+            self.wrong_kind(node, what, &format!("a whole number from 0 to {max}"));
         }
         whole
     }
@@ -191,6 +200,11 @@ impl<'a> Checker<'a> {
     }
 }
 
+/// One field, if it is there.
+pub(crate) fn optional<'n, 't>(fields: &[&'n Field<'t>], name: &str) -> Option<&'n Node<'t>> {
+    fields.iter().find(|field| field.name == name).map(|field| &field.node)
+}
+
 /// A value as it was written, cut short.
 pub(crate) fn given(node: &Node<'_>) -> String {
     let first = node.text.lines().next().unwrap_or_default();
@@ -209,7 +223,7 @@ pub(crate) fn did_you_mean(name: &str, known: &[&str]) -> String {
         .map_or(String::new(), |(_, known)| format!("; did you mean {known}?"))
 }
 
-/// ron's messages in the words of somebody who edits a file, to stand after a colon.
+/// ron's messages in the words of a person who edits a file, to stand after a colon.
 fn syntax_message(error: &ron::Error) -> String {
     match error {
         ron::Error::Eof => "a bracket or a quotation mark is still open".into(),
