@@ -19,7 +19,6 @@ pub mod load;
 pub mod lod;
 pub mod passes;
 pub mod picture_file;
-pub mod save;
 pub mod scene;
 pub mod screenshot;
 pub mod settings;
@@ -28,5 +27,12 @@ pub mod ui;
 pub mod upload;
 pub mod view;
 pub mod walk;
-pub mod world_files;
-pub mod world_watch;
+
+/// `println!` that goes on when nothing reads it any more, as in `viewer bench | head`.
+macro_rules! say {
+    ($($words:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stdout().lock(), $($words)*);
+    }};
+}
+use say;

@@ -4,10 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::{Context, Result, anyhow};
-use genescape_bake::say;
+use genescape_world::{Source, World};
 use glam::{Vec2, Vec3};
 
-use crate::app::desk::Source;
 use crate::camera::Camera;
 use crate::cli::Cli;
 use crate::frame::FrameInput;
@@ -15,11 +14,11 @@ use crate::gpu::Gpu;
 use crate::load::{self, Store};
 use crate::passes::Passes;
 use crate::picture_file::{self, Pixels};
+use crate::say;
 use crate::shaders::Shaders;
 use crate::upload::{SceneBuffers, Uploader};
 use crate::view::View;
 use crate::walk::{Land, Rig, START_RADIUS_M, start_pose};
-use crate::world_files::WorldFiles;
 
 /// A device with everything that draws, for pictures without a window.
 pub struct Studio {
@@ -150,7 +149,7 @@ pub(crate) fn scene_files(source: &Source) -> Result<Vec<PathBuf>> {
         Source::Scenes(paths) => return Ok(paths.clone()),
         Source::World(root) => root,
     };
-    let current = WorldFiles::new(root).current()?;
+    let current = World::new(root).current()?;
     let current = current.ok_or_else(|| {
         anyhow!("{} holds nothing baked; `bake --world {}` bakes it", root.display(), root.display())
     })?;

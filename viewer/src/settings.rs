@@ -10,12 +10,12 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use etcetera::{AppStrategy, AppStrategyArgs};
+use genescape_world::atomic_write;
 use ron::value::RawValue;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::frame;
-use crate::save::save;
 
 /// The file's first line.
 const TITLE: &str =
@@ -230,7 +230,8 @@ impl SettingsFile {
             return Ok(());
         }
         let text = format!("{TITLE}{}\n", ron::ser::to_string_pretty(settings, style().struct_names(true))?);
-        save(&self.path, &text).map_err(|source| SettingsError::Write { path: self.path.clone(), source })?;
+        atomic_write::replace(&self.path, &text)
+            .map_err(|source| SettingsError::Write { path: self.path.clone(), source })?;
         self.saved = Some(settings.clone());
         Ok(())
     }

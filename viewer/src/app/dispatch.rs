@@ -1,11 +1,11 @@
 //! Events and actions → their owners. The one place that knows who takes what.
 
 use genescape_schema::Category;
+use genescape_world::Source;
 use winit::event_loop::ActiveEventLoop;
 use winit::window::Fullscreen;
 
 use super::App;
-use super::desk::Source;
 use crate::event::{Arrangement, Ballot, Event, Panel, Phase};
 use crate::frame::{Options, TerrainScheme, TreeScheme};
 use crate::input::Action;
@@ -56,7 +56,7 @@ impl App {
             }
             Event::OpenFolder(path) => match Source::of(&path) {
                 Ok(source) => self.open(source),
-                Err(error) => self.ui.notify(Tone::Error, error),
+                Err(error) => self.ui.notify(Tone::Error, error.to_string()),
             },
             Event::Retry => self.desk.retry(),
             Event::DismissError(index) => self.desk.dismiss(index),

@@ -1,9 +1,9 @@
-//! The application: a window, and a loop that hands each event to its owner. What each does is in its own file: [`desk`]
+//! The application: a window, and a loop that hands each event to its owner. What each does is in its own file: [`editor`]
 //! (the person's work), [`show`] (the pictures), [`pilot`] (the camera), [`screen`] (the window), [`loader`] (files to
 //! device), [`log`] (what happened).
 
-pub mod desk;
 pub mod dispatch;
+pub mod editor;
 pub mod loader;
 pub mod log;
 pub mod model;
@@ -17,6 +17,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
+use genescape_world::{Change, Scope, Source, Watch, World};
 use glam::Vec3;
 use serde_json::json;
 use winit::application::ApplicationHandler;
@@ -34,8 +35,7 @@ use crate::settings::{Settings, SettingsFile};
 use crate::shaders::Shaders;
 use crate::ui::model::{Model, Panels};
 use crate::ui::{self, Tone};
-use crate::world_watch::{Change, WatchOptions, WorldWatch};
-use desk::{Desk, Source, Task};
+use editor::{Editor, Task};
 use loader::{Loader, Request};
 use log::{Log, Moment};
 use pilot::Pilot;
@@ -94,11 +94,11 @@ struct App {
     arrangement: Arrangement,
     chosen: usize,
     panels: Panels,
-    desk: Desk,
+    desk: Editor,
     pilot: Pilot,
     ui: ui::State,
     baker: Option<Baker>,
-    watch: Option<WorldWatch>,
+    watch: Option<Watch>,
     live: Option<Live>,
     notices: Vec<(Tone, String)>,
     typing: bool,
@@ -147,7 +147,7 @@ impl App {
         let kept = settings.worlds.get(&world_key(&start.source)).cloned().unwrap_or_default();
         pilot.return_to(kept.place.as_ref());
         let mut app = Self {
-            desk: Desk::open(start.source.clone(), &kept),
+            desk: Editor::open(start.source.clone(), &kept),
             comfort: comfort.unwrap_or_default(),
             settings_file,
             settings,
@@ -188,8 +188,9 @@ impl App {
     fn follow_source(&mut self) {
         (self.baker, self.watch) = (None, None);
         let Source::World(root) = self.start.source.clone() else { return };
-        let options = WatchOptions { shaders: self.start.shaders.clone(), poll: self.start.poll };
-        match WorldWatch::start(&root, options, self.wake()) {
+        let shaders = self.start.shaders.clone();
+        let scope = Scope { scenes: true, shaders, ..Scope::of(World::new(&root)) };
+        match Watch::start(scope, self.start.poll, self.wake()) {
             Ok(watch) => self.watch = Some(watch),
             Err(error) => {
                 self.notices.push((Tone::Error, format!("{} cannot be watched: {error}", root.display())));
@@ -208,7 +209,7 @@ impl App {
         self.keep_settings();
         self.start.source = source;
         let kept = self.settings.worlds.get(&world_key(&self.start.source)).cloned().unwrap_or_default();
-        self.desk = Desk::open(self.start.source.clone(), &kept);
+        self.desk = Editor::open(self.start.source.clone(), &kept);
         self.pilot.return_to(kept.place.as_ref());
         if let Some(live) = &mut self.live {
             live.show.clear();
@@ -220,7 +221,7 @@ impl App {
     fn gather(&mut self) {
         let events: Vec<_> = self.baker.iter().flat_map(Baker::events).collect();
         events.into_iter().for_each(|event| self.desk.baked(event));
-        let changes: Vec<Change> = self.watch.iter().flat_map(WorldWatch::changes).collect();
+        let changes: Vec<Change> = self.watch.iter().flat_map(Watch::changes).collect();
         for change in changes {
             if change == Change::Shaders {
                 self.reload_shaders();

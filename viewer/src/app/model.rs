@@ -2,7 +2,7 @@
 
 use std::array;
 
-use super::desk::Desk;
+use super::editor::Editor;
 use super::show::Show;
 use crate::event::{Arrangement, Comfort};
 use crate::frame::Options;
@@ -12,7 +12,7 @@ use crate::ui::model::{KeyGroup, Model, Panels, Situation, Stats, ViewModel, Vie
 /// The parts.
 pub struct Parts<'a> {
     /// The person's work.
-    pub desk: &'a Desk,
+    pub desk: &'a Editor,
     /// The pictures, once there is a window.
     pub show: Option<&'a Show>,
     /// What keys mean.

@@ -20,8 +20,8 @@ use std::path::PathBuf;
 
 use anyhow::{Result, anyhow, ensure};
 use clap::{Args, ValueEnum};
+use genescape_world::Source;
 
-use crate::app::desk::Source;
 use crate::screenshot;
 use crate::shaders::Shaders;
 use lab::Lab;
@@ -85,7 +85,7 @@ pub enum Measure {
 /// If nothing can draw, a landscape cannot be read, or nothing is baked.
 pub fn run(args: &BenchArgs) -> Result<()> {
     let source = match args.scenes.is_empty() {
-        true => Source::of(&args.world).map_err(anyhow::Error::msg)?,
+        true => Source::of(&args.world)?,
         false => Source::Scenes(args.scenes.clone()),
     };
     let paths = screenshot::scene_files(&source)?;

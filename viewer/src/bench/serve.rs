@@ -11,7 +11,6 @@ use std::io::BufRead;
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail};
-use genescape_bake::say;
 use serde_json::json;
 
 use super::BenchArgs;
@@ -19,6 +18,7 @@ use super::lab::{Lab, frame_with, way};
 use crate::camera::{Camera, NEAR_M};
 use crate::frame::{TerrainScheme, TreeScheme};
 use crate::picture_file;
+use crate::say;
 use crate::view::View;
 
 pub(super) fn run(lab: &Lab, path: &Path, args: &BenchArgs) -> Result<()> {

@@ -322,7 +322,7 @@ fn speed() {
         let said = run();
         let start = std::time::Instant::now();
         (0..20).for_each(|_| drop(run()));
-        genescape_bake::say!("{name}: {:.0} us, {said}", start.elapsed().as_secs_f64() * 1e6 / 20.0);
+        crate::say!("{name}: {:.0} us, {said}", start.elapsed().as_secs_f64() * 1e6 / 20.0);
     };
     for yaw_rad in [0.0, 2.0] {
         let eye_m = Vec3::new(50.0, field.height_m(50.0, 90.0) + 1.6, 90.0);
