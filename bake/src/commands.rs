@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result, bail};
 use genescape_cache::{Cache, GcOptions};
-use genescape_schema::{Current, Population, Space};
+use genescape_schema::{Current, INDIVIDUALS, Population, Space};
 use genescape_world::{World, WorldError, atomic_write, names};
 use serde_json::Value;
 
@@ -117,10 +117,12 @@ impl Console {
         Self { json: args.json, root: args.world.world.clone() }
     }
 
-    fn made(&self, path: &Path) {
+    /// Bakes a population file that was just made.
+    fn bake_new(&self, session: &Session, path: &Path) -> Result<()> {
         if !self.json {
             say!("made {}", path.display());
         }
+        self.bake(session, path)
     }
 
     /// Bakes one population file and tells the outcome.
@@ -196,8 +198,7 @@ fn random(seed: u64, args: &RunArgs) -> Result<()> {
     let (session, console) = (session(args)?, Console::new(args));
     let (world, space) = (session.world(), session.space());
     let path = world.create_population(space, &Population::random(space, seed, world.next_generation()?))?;
-    console.made(&path);
-    console.bake(&session, &path)
+    console.bake_new(&session, &path)
 }
 
 fn next(from: Option<u32>, args: &RunArgs) -> Result<()> {
@@ -208,8 +209,7 @@ fn next(from: Option<u32>, args: &RunArgs) -> Result<()> {
         None => world.newest_population()?,
     };
     let path = session.breed_file(&parents)?;
-    console.made(&path);
-    console.bake(&session, &path)
+    console.bake_new(&session, &path)
 }
 
 fn params(args: &WorldArgs, markdown: bool) -> Result<()> {
@@ -258,10 +258,10 @@ fn current(world: &World) -> Result<Current> {
 fn explain(args: &WorldArgs, scene: Option<usize>) -> Result<()> {
     let (world, cache) = open_cache(args)?;
     let current = current(&world)?;
-    if scene.is_some_and(|scene| scene >= current.scenes.len()) {
+    if scene.is_some_and(|scene| scene >= INDIVIDUALS) {
         return Err(BadInput("there are scenes 0 to 3".into()).into());
     }
-    for index in (0..current.scenes.len()).filter(|index| scene.is_none_or(|scene| scene == *index)) {
+    for index in scene.map_or(0..INDIVIDUALS, |scene| scene..scene + 1) {
         say!("{} in the last bake:", current.scenes[index]);
         let history = cache.history(&names::scene_id(current.generation, index))?;
         for (stage, explanation) in history.last() {
@@ -318,8 +318,10 @@ fn verify(cache: &Cache) -> Result<()> {
 fn gc(world: &World, cache: &Cache, max_size: u64) -> Result<()> {
     let current = world.current().ok().flatten();
     let mut roots = BTreeSet::new();
-    for (scene, generation) in current.iter().flat_map(|c| (0..c.scenes.len()).map(|s| (s, c.generation))) {
-        roots.extend(cache.roots_of(&names::scene_id(generation, scene))?);
+    if let Some(Current { generation, .. }) = current {
+        for scene in 0..INDIVIDUALS {
+            roots.extend(cache.roots_of(&names::scene_id(generation, scene))?);
+        }
     }
     let options = GcOptions::to(max_size);
     let grace_min = options.grace.as_secs() / 60;
@@ -337,9 +339,9 @@ fn gc(world: &World, cache: &Cache, max_size: u64) -> Result<()> {
             "more is left than asked for: what current scenes use stays, and what was used within {grace_min} min"
         );
     }
-    let kept: Vec<PathBuf> = current.iter().flat_map(|c| &c.scenes).map(|s| world.root().join(s)).collect();
-    for (.., file) in world.scenes()?.into_iter().filter(|(.., file)| !kept.contains(file)) {
-        if !is_whole(&file)? {
+    let is_current = |generation| current.as_ref().is_some_and(|current| current.generation == generation);
+    for (generation, _, file) in world.scenes()? {
+        if !is_current(generation) && !is_whole(&file)? {
             // A scene with holes is worse than none; its population file makes it again.
             fs::remove_file(&file).with_context(|| format!("cannot remove {}", file.display()))?;
             say!("removed {}: parts of it are gone; bake its population to have it again", file.display());

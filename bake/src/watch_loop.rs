@@ -17,7 +17,7 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, anyhow};
 use genescape_schema::{Lineage, Parent, unanswered};
-use genescape_world::{Scope, Snapshot, Watch};
+use genescape_world::{Change, Scope, Snapshot, Watch};
 
 use crate::events::{Event, Listener};
 use crate::run::RunError;
@@ -125,7 +125,7 @@ impl State<'_> {
         if !first && now == known {
             return Ok(());
         }
-        if !first && now.space_changed_since(&known) {
+        if !first && now.changes_since(&known).contains(&Change::Space) {
             self.due.extend(self.shown.clone());
             let reloaded = self.session.reload_space();
             self.space_is_good = reloaded.is_ok();

@@ -44,6 +44,12 @@ impl<'a> Checker<'a> {
         self.faults.push((span.start, Diagnostic::at(self.file, self.text, span, message.into())));
     }
 
+    /// The same in place of a value.
+    pub fn refuse<T>(&mut self, span: Range<usize>, message: impl Into<String>) -> Option<T> {
+        self.error(span, message);
+        None
+    }
+
     /// A remark on a node that is no fault: "g0000.ron:12:5: message".
     pub fn note(&self, node: &Node<'_>, message: impl Display) -> String {
         let (line, column) = place(self.text, node.start);
@@ -70,8 +76,11 @@ impl<'a> Checker<'a> {
         hint: impl Fn(&str) -> Option<String>,
     ) -> Option<Vec<&'n Field<'t>>> {
         let Value::Struct(fields) = &node.value else {
-            self.wrong_kind(node, what, &format!("named values in brackets, as ({}: …)", known.first()?));
-            return None;
+            return self.wrong_kind(
+                node,
+                what,
+                &format!("named values in brackets, as ({}: …)", known.first()?),
+            );
         };
         let mut unique: Vec<&Field<'t>> = Vec::new();
         for field in fields {
@@ -108,8 +117,8 @@ impl<'a> Checker<'a> {
     ) -> Option<Vec<&'n Field<'t>>> {
         let found = node.struct_name();
         if !found.is_empty() && found != name {
-            self.error(node.start..node.start + found.len(), format!("expected {name}(…), found {found}"));
-            return None;
+            let message = format!("expected {name}(…), found {found}");
+            return self.refuse(node.start..node.start + found.len(), message);
         }
         self.record(node, name, known)
     }
@@ -123,43 +132,34 @@ impl<'a> Checker<'a> {
         name: &str,
     ) -> Option<&'n Node<'t>> {
         let found = optional(fields, name);
-        if found.is_none() {
-            self.error(node.start..node.start + 1, format!("{what} lacks {name}"));
-        }
-        found
+        found.or_else(|| self.refuse(node.start..node.start + 1, format!("{what} lacks {name}")))
     }
 
     pub fn number(&mut self, node: &Node<'_>, what: &str) -> Option<f64> {
         match node.value {
-            Value::Number(number) => return Some(number),
+            Value::Number(number) => Some(number),
             _ => self.wrong_kind(node, what, "a number"),
         }
-        None
     }
 
     /// A whole number that fits `T`.
     pub fn whole<T: DeserializeOwned + Display>(&mut self, node: &Node<'_>, what: &str, max: T) -> Option<T> {
         let whole = matches!(node.value, Value::Number(_)).then(|| ron::from_str(node.text).ok()).flatten();
-        if whole.is_none() {
-            self.wrong_kind(node, what, &format!("a whole number from 0 to {max}"));
-        }
-        whole
+        whole.or_else(|| self.wrong_kind(node, what, &format!("a whole number from 0 to {max}")))
     }
 
     pub fn text<'n>(&mut self, node: &'n Node<'_>, what: &str) -> Option<&'n str> {
         match &node.value {
-            Value::Text(text) => return Some(text),
+            Value::Text(text) => Some(text),
             _ => self.wrong_kind(node, what, "a text in quotes"),
         }
-        None
     }
 
     pub fn list<'n, 't>(&mut self, node: &'n Node<'t>, what: &str) -> Option<&'n [Node<'t>]> {
         match &node.value {
-            Value::List(items) => return Some(items),
+            Value::List(items) => Some(items),
             _ => self.wrong_kind(node, what, "a list"),
         }
-        None
     }
 
     /// A word out of a few.
@@ -170,19 +170,15 @@ impl<'a> Checker<'a> {
         known: &[&str],
         find: impl Fn(&str) -> Option<T>,
     ) -> Option<T> {
-        let found = find(node.text);
-        if found.is_none() {
+        find(node.text).or_else(|| {
             let hint = did_you_mean(node.text, known);
-            self.error(node.span(), format!("{what}: {} is none of {}{hint}", given(node), known.join(", ")));
-        }
-        found
+            self.refuse(node.span(), format!("{what}: {} is none of {}{hint}", given(node), known.join(", ")))
+        })
     }
 
-    pub fn wrong_kind(&mut self, node: &Node<'_>, what: &str, expected: &str) {
-        self.error(
-            node.span(),
-            format!("{what}: expected {expected}, found {}: {}", node.kind(), given(node)),
-        );
+    pub fn wrong_kind<T>(&mut self, node: &Node<'_>, what: &str, expected: &str) -> Option<T> {
+        let message = format!("{what}: expected {expected}, found {}: {}", node.kind(), given(node));
+        self.refuse(node.span(), message)
     }
 
     fn syntax(&self, error: SpannedError) -> Report {

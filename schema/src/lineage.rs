@@ -88,17 +88,16 @@ fn read_vote(checker: &mut Checker<'_>, category: Category, node: &Node<'_>) -> 
     let number = unwrapped(node)?;
     match number.value {
         Value::Number(vote) if vote.fract() == 0.0 && (0.0..INDIVIDUALS as f64).contains(&vote) => {
-            return Some(vote as usize);
+            Some(vote as usize)
         }
         Value::Number(_) => {
             let last = INDIVIDUALS - 1;
             let message =
                 format!("votes: {category}: {} is none of the individuals 0 … {last}", given(number));
-            checker.error(number.span(), message);
+            checker.refuse(number.span(), message)
         }
         _ => checker.wrong_kind(number, &format!("votes: {category}"), "None or Some(0) … Some(3)"),
     }
-    None
 }
 
 /// What is in a `Some`; a value that stands without one; nothing for `None`.

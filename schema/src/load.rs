@@ -151,12 +151,10 @@ impl Loader<'_, '_> {
     fn gene(&mut self, parameter: &Parameter, node: &Node<'_>) -> Option<u32> {
         let (name, range) = (&parameter.name, parameter.range_text());
         let Value::Number(value) = node.value else {
-            self.checker.wrong_kind(node, name, &format!("a number, {range}"));
-            return None;
+            return self.checker.wrong_kind(node, name, &format!("a number, {range}"));
         };
         if !parameter.contains(value) {
-            self.checker.error(node.span(), format!("{name}: {} is outside {range}", given(node)));
-            return None;
+            return self.checker.refuse(node.span(), format!("{name}: {} is outside {range}", given(node)));
         }
         let code = parameter.snap(value);
         if !parameter.is_written_as(value, code) {

@@ -32,20 +32,12 @@ pub struct Votes {
 impl Votes {
     /// The vote on one category.
     pub fn get(&self, category: Category) -> Option<usize> {
-        match category {
-            Category::Tree => self.tree,
-            Category::Terrain => self.terrain,
-            Category::Sky => self.sky,
-        }
+        [self.tree, self.terrain, self.sky][category as usize]
     }
 
     /// Changes the vote on one category.
     pub fn set(&mut self, category: Category, vote: Option<usize>) {
-        match category {
-            Category::Tree => self.tree = vote,
-            Category::Terrain => self.terrain = vote,
-            Category::Sky => self.sky = vote,
-        }
+        *[&mut self.tree, &mut self.terrain, &mut self.sky][category as usize] = vote;
     }
 }
 

@@ -121,14 +121,14 @@ fn read_parameter(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<Paramete
     let mut gene =
         Parameter { name, category, bits, range: ends?, scale, unit, help, default: None, offset: 0 };
     if let Some(fault) = range_fault(&gene) {
-        checker.error(range?.span(), format!("{}: {fault}", gene.name));
-        return None;
+        return checker.refuse(range?.span(), format!("{}: {fault}", gene.name));
     }
     if let Some(node) = optional(&fields, "default") {
         let default = checker.number(node, "default")?;
         if !gene.contains(default) {
             let range = gene.range_text();
-            checker.error(node.span(), format!("{}: the default {default} is outside {range}", gene.name));
+            let message = format!("{}: the default {default} is outside {range}", gene.name);
+            return checker.refuse(node.span(), message);
         }
         gene.default = Some(gene.snap(default));
     }
@@ -141,17 +141,15 @@ fn read_name(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<String> {
     if letters && name.starts_with(|c: char| c.is_ascii_lowercase()) {
         return Some(name.to_owned());
     }
-    checker.error(node.span(), format!("name: {name:?} must be lower_case letters, digits and underscores"));
-    None
+    checker.refuse(node.span(), format!("name: {name:?} must be lower_case letters, digits and underscores"))
 }
 
 fn read_bits(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<u32> {
     let bits = checker.whole(node, "bits", 16)?;
-    if (1..=16).contains(&bits) {
-        return Some(bits as u32);
+    match bits {
+        1..=16 => Some(bits),
+        _ => checker.refuse(node.span(), format!("bits: {bits} is outside 1 … 16")),
     }
-    checker.error(node.span(), format!("bits: {bits} is outside 1 … 16"));
-    None
 }
 
 fn read_range(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<(f64, f64)> {
@@ -161,8 +159,7 @@ fn read_range(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<(f64, f64)> 
         let (low, high) = (checker.number(low, "range"), checker.number(high, "range"));
         return low.zip(high);
     }
-    checker.wrong_kind(node, "range", "two numbers, as (0.0, 1.0)");
-    None
+    checker.wrong_kind(node, "range", "two numbers, as (0.0, 1.0)")
 }
 
 /// What is wrong with a range, if anything.

@@ -46,7 +46,8 @@ pub struct Snapshot {
     current: Option<Stamp>,
     scenes: BTreeMap<(u32, usize), Stamp>,
     shaders: BTreeMap<PathBuf, Stamp>,
-    folders: BTreeSet<PathBuf>,
+    /// Folders that files of interest may come into.
+    pub(crate) folders: BTreeSet<PathBuf>,
 }
 
 /// By what a file that was saved differs from what it was.
@@ -136,11 +137,6 @@ impl Snapshot {
         }
     }
 
-    /// Folders that files of interest may come into.
-    pub(crate) fn folders(&self) -> &BTreeSet<PathBuf> {
-        &self.folders
-    }
-
     /// What is different from an earlier moment.
     pub fn changes_since(&self, before: &Self) -> BTreeSet<Change> {
         let mut changes = BTreeSet::new();
@@ -153,10 +149,6 @@ impl Snapshot {
         let replaced = differing(&self.scenes, &before.scenes);
         changes.extend(replaced.map(|&(generation, index)| Change::Scene { generation, index }));
         changes
-    }
-
-    pub fn space_changed_since(&self, before: &Self) -> bool {
-        self.space != before.space
     }
 
     /// The population files.
@@ -300,7 +292,7 @@ mod tests {
         let scope = Scope { population: Some(only.clone()), ..all };
         let now = look(&scope, &Snapshot::default());
         assert_eq!(now.populations().collect::<Vec<_>>(), [&only]);
-        assert!(now.folders().contains(&folder.path().join("elsewhere")));
+        assert!(now.folders.contains(&folder.path().join("elsewhere")));
         fs::remove_file(&only).expect("removed");
         let gone = look(&scope, &now);
         assert!(gone.populations().next().is_none() && gone != now && gone.has_lost_since(&now));

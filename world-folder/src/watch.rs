@@ -118,7 +118,7 @@ impl Observer {
     fn look(&mut self) -> BTreeSet<Change> {
         let mut now = Snapshot::take(&self.scope, &self.seen);
         // What came into a new folder before it was watched is found by looking once more.
-        while self.watch(now.folders()) {
+        while self.watch(&now.folders) {
             now = Snapshot::take(&self.scope, &self.seen);
         }
         let changes = now.changes_since(&self.seen);

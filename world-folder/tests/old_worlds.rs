@@ -1,4 +1,5 @@
-//! A world made by Genescape 0.1 opens, with what was invented since filled in and told.
+//! A world made by Genescape 0.1 opens, with what was invented since filled in and told. The fixture is what the first
+//! bake that wrote a world (54ae208) made from its configs/.
 
 use std::fs;
 use std::path::Path;
