@@ -19,7 +19,7 @@ use crate::stages::{lod, tree};
 /// thesis's tables 1 and 2; then what it takes when nothing, or one category, has changed.
 pub fn bench(runs: u32, pool: &rayon::ThreadPool, resolution: Resolution) -> Result<()> {
     let space = Space::builtin();
-    let starter = Population::load(&space, "configs/starter.ron", crate::world::STARTER_RON)?.population;
+    let starter = Population::load(&space, "configs/starter.ron", genescape_world::STARTER_RON)?.population;
     say!(
         "{} cores, computing on {}; heightfield {}², {} templates a scene; {runs} runs\n",
         std::thread::available_parallelism().map_or(0, usize::from),

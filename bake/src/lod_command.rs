@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result};
+use genescape_world::atomic_write;
 
 use crate::cli::BadInput;
 use crate::gltf::{self, MaterialSet, Picture};
@@ -11,7 +12,6 @@ use crate::import::{self, Imported, ImportedImage};
 use crate::model::Material;
 use crate::say;
 use crate::stages::{lod, tree};
-use crate::world;
 
 /// Reads `input`, prints what had to be repaired, makes all levels and writes them to `out`. Where the file brings no
 /// normals, faces that meet at less than `crease_deg` are smoothed over.
@@ -34,7 +34,7 @@ pub fn convert(input: &Path, out: &Path, crease_deg: f32) -> Result<()> {
     let name = input.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy());
     let glb = gltf::levelled_glb(&name, &levels, &materials(&imported))
         .with_context(|| format!("{}: cannot be written as glTF", input.display()))?;
-    world::write_synced(out, &glb)?;
+    atomic_write::replace(out, &glb).with_context(|| format!("cannot write {}", out.display()))?;
 
     say!("{:<6} {:>10} {:>10} {:>12}", "level", "vertices", "triangles", "error (m)");
     for (index, level) in levels.levels.iter().enumerate() {

@@ -254,7 +254,6 @@ mod tests {
 
     use super::*;
     use crate::plan::Resolution;
-    use crate::world::STARTER_RON;
 
     /// Falls over the first stage that is done.
     #[derive(Default)]
@@ -273,7 +272,8 @@ mod tests {
         let cache = Cache::open(folder.path()).expect("a cache");
         let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
         let space = Space::builtin();
-        let population = Population::load(&space, "starter.ron", STARTER_RON).expect("valid").population;
+        let population =
+            Population::load(&space, "starter.ron", genescape_world::STARTER_RON).expect("valid").population;
         let side = Resolution::of_side(65).expect("a side");
         let plan = Plan::new(&space, &population, side).expect("a plan");
         let runner = Runner {

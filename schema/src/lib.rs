@@ -5,12 +5,12 @@
 //! and told as one [`Report`], each fault with line and column.
 
 mod check;
+mod current;
 pub mod edit;
 mod genome;
 
 mod lineage;
 mod load;
-pub mod names;
 mod parameter;
 mod population;
 mod report;
@@ -20,10 +20,10 @@ mod space;
 mod table;
 mod write;
 
+pub use current::Current;
 pub use genome::{Chromosome, Genome, GenomeError};
-pub use lineage::{Lineage, Parent, unanswered};
-pub use names::Current;
+pub use lineage::{Lineage, unanswered};
 pub use parameter::{Category, Parameter, Scale};
-pub use population::{INDIVIDUALS, Individual, Loaded, LoadedPreset, Population, Snap, TreePreset, Votes};
+pub use population::{INDIVIDUALS, Individual, Loaded, LoadedPreset, Parent, Population, TreePreset, Votes};
 pub use report::{Diagnostic, Report};
 pub use space::Space;

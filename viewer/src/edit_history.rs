@@ -6,8 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use genescape_schema::edit::{EditError, set_gene, set_locked, set_votes};
 use genescape_schema::{Space, Votes};
-
-use crate::world_files::{FileError, WorldFiles};
+use genescape_world::{World, WorldError};
 
 /// Steps that are remembered for each file.
 const STEPS: usize = 200;
@@ -77,7 +76,7 @@ pub enum UndoError {
     },
     /// The file could not be read or written.
     #[error(transparent)]
-    File(#[from] FileError),
+    File(#[from] WorldError),
 }
 
 /// The steps made in this session, for each population file.
@@ -106,16 +105,16 @@ impl History {
     /// A change that the file does not allow, a file that cannot be read or written.
     pub fn apply(
         &mut self,
-        files: &WorldFiles,
+        files: &World,
         space: &Space,
         generation: u32,
         edit: &Edit,
-    ) -> Result<bool, FileError> {
+    ) -> Result<bool, WorldError> {
         let path = files.population_path(generation);
         let before = files.population_text(generation)?;
         let after = edit
             .apply(space, &path.display().to_string(), &before)
-            .map_err(|source| FileError::Edit { path, source })?;
+            .map_err(|error| WorldError::Edit { path, error })?;
         if after == before {
             return Ok(false);
         }
@@ -144,7 +143,7 @@ impl History {
     /// # Errors
     /// [`UndoError::Foreign`] if the file was changed by somebody else since. The step stays: when the file says again
     /// what it said, it can be taken back.
-    pub fn undo(&mut self, files: &WorldFiles, generation: u32) -> Result<String, UndoError> {
+    pub fn undo(&mut self, files: &World, generation: u32) -> Result<String, UndoError> {
         let steps = self.files.get_mut(&generation).ok_or(UndoError::Nothing("undo"))?;
         let step = steps.done.last().ok_or(UndoError::Nothing("undo"))?;
         put_back(files, generation, "undo", step, &step.after, &step.before)?;
@@ -157,7 +156,7 @@ impl History {
     ///
     /// # Errors
     /// As [`History::undo`].
-    pub fn redo(&mut self, files: &WorldFiles, generation: u32) -> Result<String, UndoError> {
+    pub fn redo(&mut self, files: &World, generation: u32) -> Result<String, UndoError> {
         let steps = self.files.get_mut(&generation).ok_or(UndoError::Nothing("redo"))?;
         let step = steps.undone.last().ok_or(UndoError::Nothing("redo"))?;
         put_back(files, generation, "redo", step, &step.before, &step.after)?;
@@ -168,7 +167,7 @@ impl History {
 }
 
 fn put_back(
-    files: &WorldFiles,
+    files: &World,
     generation: u32,
     what: &'static str,
     step: &Step,
@@ -176,7 +175,7 @@ fn put_back(
     to: &str,
 ) -> Result<(), UndoError> {
     files.replace_population(generation, from, to).map_err(|error| match error {
-        FileError::Changed { path } => {
+        WorldError::Changed(path) => {
             UndoError::Foreign { what, step: step.name.clone(), file: path.display().to_string() }
         }
         other => other.into(),
@@ -186,13 +185,13 @@ fn put_back(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::save;
     use genescape_schema::Population;
+    use genescape_world::atomic_write::replace as save;
     use proptest::prelude::*;
 
-    fn world() -> (tempfile::TempDir, WorldFiles) {
+    fn world() -> (tempfile::TempDir, World) {
         let folder = tempfile::tempdir().expect("a temporary folder");
-        let files = WorldFiles::new(folder.path());
+        let files = World::new(folder.path());
         let space = Space::builtin();
         let text = Population::random(&space, 3, 0).to_ron(&space).replacen("seed", "/* mine */ seed", 1);
         save(&files.population_path(0), &text).expect("saved");

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::{Context, Result, anyhow};
+use genescape_world::{Source, World};
 
-use crate::app::desk::Source;
 use crate::camera::Camera;
 use crate::frame::FrameInput;
 use crate::gpu::Gpu;
@@ -16,7 +16,6 @@ use crate::scene_loader::{Loaded, SceneLoader};
 use crate::shaders::Shaders;
 use crate::upload::SceneBuffers;
 use crate::view::{Drawn, View};
-use crate::world_files::WorldFiles;
 
 /// A device with everything that draws.
 pub struct Headless {
@@ -96,7 +95,7 @@ pub fn scene_files(source: &Source) -> Result<Vec<PathBuf>> {
         Source::Scenes(paths) => return Ok(paths.clone()),
         Source::World(root) => root,
     };
-    let current = WorldFiles::new(root).current()?;
+    let current = World::new(root).current()?;
     let current = current.ok_or_else(|| {
         anyhow!("{} holds nothing baked; `bake --world {}` bakes it", root.display(), root.display())
     })?;

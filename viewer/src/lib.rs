@@ -21,7 +21,6 @@ pub mod lod;
 pub mod lod_mode;
 pub mod passes;
 pub mod picture_file;
-pub mod save;
 pub mod scene;
 pub mod scene_loader;
 pub mod screenshot;
@@ -31,5 +30,12 @@ pub mod ui;
 pub mod upload;
 pub mod view;
 pub mod walk;
-pub mod world_files;
-pub mod world_watch;
+
+/// `println!` that goes on when nothing reads it any more, as in `viewer bench | head`.
+macro_rules! say {
+    ($($words:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stdout().lock(), $($words)*);
+    }};
+}
+use say;

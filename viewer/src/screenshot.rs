@@ -3,15 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow};
-use genescape_bake::say;
+use genescape_world::Source;
 use glam::{Vec2, Vec3};
 
-use crate::app::desk::Source;
 use crate::camera::Camera;
 use crate::cli::Cli;
 use crate::frame::FrameInput;
 use crate::headless::{Headless, scene_files};
 use crate::picture_file;
+use crate::say;
 use crate::shaders::Shaders;
 use crate::walk::{Land, Rig, START_RADIUS_M, start_pose};
 

@@ -7,13 +7,13 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use etcetera::{AppStrategy, AppStrategyArgs};
+use genescape_world::atomic_write;
 use ron::value::RawValue;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::frame;
 use crate::input::Bindings;
-use crate::save::save;
 
 /// The file's first line.
 const TITLE: &str =
@@ -244,7 +244,8 @@ impl SettingsFile {
         }
         let style = ron::ser::PrettyConfig::new().indentor("    ").struct_names(true);
         let text = format!("{TITLE}{}\n", ron::ser::to_string_pretty(settings, style)?);
-        save(&self.path, &text).map_err(|source| SettingsError::Write { path: self.path.clone(), source })?;
+        atomic_write::replace(&self.path, &text)
+            .map_err(|source| SettingsError::Write { path: self.path.clone(), source })?;
         self.saved = Some(settings.clone());
         Ok(())
     }

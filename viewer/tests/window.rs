@@ -16,7 +16,7 @@ use common::viewer::Viewer;
 use genescape_schema::{Parent, Space, Votes};
 use genescape_viewer::picture_file::{self, Pixels};
 use genescape_viewer::settings::SettingsFile;
-use genescape_viewer::world_files::WorldFiles;
+use genescape_world::World;
 use serde_json::json;
 
 /// Of the window, in pixels; the screen is as large.
@@ -30,7 +30,7 @@ const IN_PICTURE: [i16; 2] = [160, 140];
 /// A folder of our own with a world in it, and a display.
 struct Stage {
     folder: tempfile::TempDir,
-    files: WorldFiles,
+    files: World,
     display: Display,
 }
 
@@ -44,7 +44,7 @@ impl Stage {
             return None;
         };
         let folder = tempfile::tempdir().expect("a temporary folder");
-        let files = WorldFiles::new(folder.path().join("world"));
+        let files = World::new(folder.path().join("world"));
         Some(Self { folder, files, display })
     }
 
@@ -301,7 +301,7 @@ fn a_baker_that_is_killed_leaves_the_viewer_going_and_another_bakes_the_rest() {
     let mut viewer = stage.viewer(&["--no-bake", "--size", "640x480"]);
     viewer.until("an empty world is told", |viewer| viewer.get("screen", "situation") == "stuck");
     let baker = baker(stage.files.root());
-    let baked = |files: &WorldFiles| (0..4).filter(|scene| files.scene_path(0, *scene).is_file()).count();
+    let baked = |files: &World| (0..4).filter(|scene| files.scene_path(0, *scene).is_file()).count();
     let start = Instant::now();
     while baked(&stage.files) == 0 {
         assert!(start.elapsed() < Duration::from_secs(180), "nothing is baked");

@@ -1,10 +1,10 @@
 //! Events → their owners. The one place that knows who takes what.
 
 use genescape_schema::Category;
+use genescape_world::Source;
 use winit::event_loop::ActiveEventLoop;
 use winit::window::Fullscreen;
 
-use super::desk::Source;
 use super::{App, lands};
 use crate::event::{Arrangement, Ballot, Event, Panel};
 use crate::frame::Options;
@@ -22,13 +22,13 @@ impl App {
         let settings = &mut self.preferences.settings;
         match event {
             Event::Command(_) => {}
-            Event::Vote { category, ballot } => self.desk.vote(category, ballot),
-            Event::GoToGeneration(generation) => self.desk.visit(generation),
+            Event::Vote { category, ballot } => self.editor.vote(category, ballot),
+            Event::GoToGeneration(generation) => self.editor.visit(generation),
             Event::Arrange(arrangement) => self.layout.arrangement = arrangement,
             Event::Choose(individual) => self.layout.chosen = individual,
-            Event::Genes { individual, values } => self.desk.set_genes(individual, values),
-            Event::LockGene { name, locked } => self.desk.lock(&name, locked),
-            Event::LockCategory { category, locked } => self.desk.lock(category.name(), locked),
+            Event::Genes { individual, values } => self.editor.set_genes(individual, values),
+            Event::LockGene { name, locked } => self.editor.lock(&name, locked),
+            Event::LockCategory { category, locked } => self.editor.lock(category.name(), locked),
             Event::Options(options) => settings.options = options,
             Event::Comfort(comfort) => settings.comfort.value = comfort,
             Event::ResetSettings => {
@@ -38,10 +38,10 @@ impl App {
             Event::Panel { panel, open } => self.layout.panels.set(panel, open),
             Event::OpenFolder(path) => match Source::of(&path) {
                 Ok(source) => self.open(source),
-                Err(error) => self.tell(Tone::Error, error),
+                Err(error) => self.tell(Tone::Error, error.to_string()),
             },
-            Event::Retry => self.desk.retry(),
-            Event::DismissError(index) => self.desk.dismiss(index),
+            Event::Retry => self.editor.retry(),
+            Event::DismissError(index) => self.editor.dismiss(index),
             Event::Capture(captured) => self.capture(captured),
         }
     }
@@ -63,9 +63,9 @@ impl App {
             Command::ShowAll => self.layout.arrangement = Arrangement::Grid,
             Command::Compare => self.layout.compare(),
             Command::Vote(Best { category, landscape }) => self.vote_by_key(category, landscape),
-            Command::NextGeneration => self.desk.breed(),
-            Command::Undo => self.desk.undo(),
-            Command::Redo => self.desk.redo(),
+            Command::NextGeneration => self.editor.breed(),
+            Command::Undo => self.editor.undo(),
+            Command::Redo => self.editor.redo(),
             Command::OlderGeneration => self.step_generation(-1),
             Command::NewerGeneration => self.step_generation(1),
             Command::SetBookmark(number) => self.set_bookmark(number),
@@ -102,13 +102,13 @@ impl App {
     /// The same key again takes the vote back.
     fn vote_by_key(&mut self, category: Category, landscape: Option<u8>) {
         let ballot = landscape.map_or(Ballot::Nobody, |landscape| Ballot::For(usize::from(landscape) - 1));
-        let known = self.desk.ballots().get(category);
-        self.desk.vote(category, if known == ballot { Ballot::Open } else { ballot });
+        let known = self.editor.ballots().get(category);
+        self.editor.vote(category, if known == ballot { Ballot::Open } else { ballot });
     }
 
     fn step_generation(&mut self, by: isize) {
-        match self.desk.neighbour(by) {
-            Some(generation) => self.desk.visit(generation),
+        match self.editor.neighbour(by) {
+            Some(generation) => self.editor.visit(generation),
             None => self.tell(Tone::Info, if by < 0 { "This is the first" } else { "This is the newest" }),
         }
     }

@@ -1,10 +1,10 @@
-//! The application: a window, and a loop that hands each event to its owner. What each does is in its own file: [`desk`]
+//! The application: a window, and a loop that hands each event to its owner. What each does is in its own file: [`editor`]
 //! (the person's work), [`viewports`] (the pictures), [`camera_control`], [`screen`] (the window), [`loader`] (files to
 //! device), [`log`] (what happened).
 
 mod camera_control;
-pub mod desk;
 mod dispatch;
+pub mod editor;
 mod layout;
 pub mod loader;
 mod lod_readback;
@@ -19,6 +19,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
+use genescape_world::{Change, Scope, Source, Watch, World};
 use glam::Vec3;
 use serde_json::json;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
@@ -29,9 +30,8 @@ use crate::gpu::Gpu;
 use crate::ui::model::Model;
 use crate::ui::{self, Tone};
 use crate::walk::Land;
-use crate::world_watch::{Change, WatchOptions, WorldWatch};
 use camera_control::CameraControl;
-use desk::{Desk, Source, Task};
+use editor::{Editor, Task};
 use layout::Layout;
 use loader::{Loader, Request};
 use log::{Log, Moment};
@@ -82,7 +82,7 @@ struct App {
     log: Log,
     preferences: Preferences,
     layout: Layout,
-    desk: Desk,
+    editor: Editor,
     camera: CameraControl,
     ui: ui::State,
     focus: Focus,
@@ -105,7 +105,7 @@ struct Live {
 #[derive(Default)]
 struct Background {
     baker: Option<Baker>,
-    watch: Option<WorldWatch>,
+    watch: Option<Watch>,
 }
 
 /// Where keys and wheel go, as the user interface said in its last frame.
@@ -131,7 +131,7 @@ impl App {
         camera.return_to(kept.place.as_ref());
         let now = Instant::now();
         let mut app = Self {
-            desk: Desk::open(start.source.clone(), &kept),
+            editor: Editor::open(start.source.clone(), &kept),
             preferences,
             layout: Layout::default(),
             camera,
@@ -169,8 +169,9 @@ impl App {
     fn start_background(&mut self) {
         self.background = Background::default();
         let Source::World(root) = self.start.source.clone() else { return };
-        let options = WatchOptions { shaders: self.start.shaders.clone(), poll: self.start.poll };
-        match WorldWatch::start(&root, options, self.wake()) {
+        let shaders = self.start.shaders.clone();
+        let scope = Scope { scenes: true, shaders, ..Scope::of(World::new(&root)) };
+        match Watch::start(scope, self.start.poll, self.wake()) {
             Ok(watch) => self.background.watch = Some(watch),
             Err(error) => self.tell(Tone::Error, format!("{} cannot be watched: {error}", root.display())),
         }
@@ -185,7 +186,7 @@ impl App {
     fn open(&mut self, source: Source) {
         self.save_settings();
         let kept = self.preferences.world(&source);
-        self.desk = Desk::open(source.clone(), &kept);
+        self.editor = Editor::open(source.clone(), &kept);
         self.start.source = source;
         self.camera.return_to(kept.place.as_ref());
         if let Some(live) = &mut self.live {
@@ -213,17 +214,17 @@ impl App {
     /// Takes in what other threads have brought.
     fn gather(&mut self) {
         let baked: Vec<_> = self.background.baker.iter().flat_map(Baker::events).collect();
-        baked.into_iter().for_each(|event| self.desk.baked(event));
-        let changes: Vec<Change> = self.background.watch.iter().flat_map(WorldWatch::changes).collect();
+        baked.into_iter().for_each(|event| self.editor.baked(event));
+        let changes: Vec<Change> = self.background.watch.iter().flat_map(Watch::changes).collect();
         for change in changes {
             if change == Change::Shaders {
                 self.reload_shaders();
             }
-            self.desk.changed(change);
+            self.editor.changed(change);
         }
         self.show_loaded();
         if self.live.is_some() {
-            self.desk.take_tasks().into_iter().for_each(|task| self.carry_out(task));
+            self.editor.take_tasks().into_iter().for_each(|task| self.carry_out(task));
         }
     }
 
@@ -233,7 +234,7 @@ impl App {
         let mut changed = false;
         for reply in live.loader.replies() {
             let told = reply.result.as_ref().map(|_| ()).map_err(String::as_str);
-            if self.desk.loaded(reply.view, reply.generation, told)
+            if self.editor.loaded(reply.view, reply.generation, told)
                 && let Ok(loaded) = reply.result
             {
                 live.viewports.show(reply.view, loaded);
@@ -262,10 +263,10 @@ impl App {
         let Some(live) = &mut self.live else { return };
         match live.viewports.reload_shaders(self.preferences.settings.options.samples) {
             Ok(()) => {
-                self.desk.shaders(None);
+                self.editor.shaders(None);
                 self.tell(Tone::Success, "Shaders are new");
             }
-            Err(error) => self.desk.shaders(Some(error.to_string())),
+            Err(error) => self.editor.shaders(Some(error.to_string())),
         }
     }
 
@@ -283,7 +284,7 @@ impl App {
         let options = self.preferences.settings.options;
         let frame = FrameInput { options, time_s: self.clock.start.elapsed().as_secs_f32() };
         if let Err(error) = viewports.set_samples(options.samples) {
-            self.desk.shaders(Some(error.to_string()));
+            self.editor.shaders(Some(error.to_string()));
         }
         ui::theme::follow(&screen.ctx, &model.comfort);
         let input = screen.input.take_egui_input(&screen.window);
@@ -324,7 +325,7 @@ impl App {
     fn pace(&self, events: &ActiveEventLoop, frame: Duration) {
         let Some(live) = &self.live else { return };
         let idle = live.viewports.lands().is_empty();
-        let waiting = self.desk.baking().is_some() || self.desk.awaits_scenes();
+        let waiting = self.editor.baking().is_some() || self.editor.awaits_scenes();
         let shared = live.gpu.software && waiting;
         let rest = match (idle, shared) {
             (true, _) => Duration::from_millis(100),
@@ -342,9 +343,9 @@ impl App {
     fn save_settings(&mut self) {
         let source = &self.start.source;
         let mut kept = self.preferences.world(source);
-        self.desk.keep(&mut kept);
+        self.editor.keep(&mut kept);
         // Not at every step of a walk, or the file would be written for as long as it goes.
-        if self.desk.world().is_some() {
+        if self.editor.world().is_some() {
             kept.place = self.camera.rested_at().or(kept.place);
         }
         if kept != self.preferences.world(source) {
@@ -354,7 +355,7 @@ impl App {
             live.screen.keep(&mut self.preferences.settings.window);
         }
         if let Err(error) = self.preferences.save() {
-            self.desk.settings_fault(error);
+            self.editor.settings_fault(error);
         }
     }
 }

@@ -8,32 +8,32 @@ use crate::ui::model::{Model, Situation, Stats, ViewModel, ViewState};
 impl App {
     /// Fills the model for one frame.
     pub(super) fn model(&self) -> Model {
-        let (desk, settings) = (&self.desk, &self.preferences.settings);
+        let (editor, settings) = (&self.editor, &self.preferences.settings);
         let viewports = self.live.as_ref().map(|live| &live.viewports);
-        let (generation, generations) = desk.generations();
+        let (generation, generations) = editor.generations();
         let views = array::from_fn(|view| {
             let own_name =
                 || viewports.and_then(|viewports| viewports.scene(view)).map(|scene| scene.name.clone());
             ViewModel {
-                name: desk.name(view).map(str::to_owned).or_else(own_name).unwrap_or_default(),
+                name: editor.name(view).map(str::to_owned).or_else(own_name).unwrap_or_default(),
                 picture: viewports.and_then(|viewports| viewports.picture(view)),
-                state: desk.state(view),
+                state: editor.state(view),
             }
         });
         Model {
             situation: self.situation(&views),
             generation,
             generations: generations.to_vec(),
-            baking: desk.baking(),
-            undo: desk.next_undo(),
-            redo: desk.next_redo(),
+            baking: editor.baking(),
+            undo: editor.next_undo(),
+            redo: editor.next_redo(),
             views,
-            ballots: desk.ballots(),
+            ballots: editor.ballots(),
             arrangement: self.layout.arrangement,
             chosen: self.layout.chosen,
-            genes: desk.genes(),
-            bake_log: desk.bake_log().to_vec(),
-            errors: desk.errors(),
+            genes: editor.genes(),
+            bake_log: editor.bake_log().to_vec(),
+            errors: editor.errors(),
             stats: viewports.map_or_else(Stats::default, |viewports| viewports.stats().clone()),
             keys: settings.bindings.value.help(),
             options: settings.options,
@@ -44,7 +44,7 @@ impl App {
     }
 
     fn situation(&self, views: &[ViewModel]) -> Situation {
-        let desk = &self.desk;
+        let editor = &self.editor;
         // A landscape gets its picture in the first frame that has a place for it.
         if self
             .live
@@ -54,14 +54,14 @@ impl App {
             return Situation::Ready;
         }
         let failed = views.iter().all(|view| matches!(view.state, ViewState::Failed { .. }));
-        if let (true, Some(error)) = (failed || desk.is_hindered(), desk.errors().first()) {
+        if let (true, Some(error)) = (failed || editor.is_hindered(), editor.errors().first()) {
             return Situation::Stuck {
                 title: "Nothing to show".to_owned(),
                 what: error.report.clone(),
                 remedy: "Mend what the message names, or drop another world's folder here.".to_owned(),
             };
         }
-        if desk.world().is_some() && self.background.baker.is_none() && desk.generations().1.is_empty() {
+        if editor.world().is_some() && self.background.baker.is_none() && editor.generations().1.is_empty() {
             return Situation::Stuck {
                 title: "No landscapes yet".to_owned(),
                 what: "The world is empty, and this viewer was started with --no-bake.".to_owned(),

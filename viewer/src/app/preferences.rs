@@ -3,7 +3,6 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use super::desk::Source;
 use crate::settings::{Settings, SettingsFile, WorldSettings};
 
 /// Between two looks at whether settings have to be saved.

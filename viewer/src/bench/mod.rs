@@ -21,8 +21,8 @@ use std::path::PathBuf;
 
 use anyhow::{Result, anyhow};
 use clap::{Args, ValueEnum};
+use genescape_world::Source;
 
-use crate::app::desk::Source;
 use crate::frame::{FrameInput, Options};
 use crate::headless::{Headless, scene_files};
 use crate::lod_mode::{TerrainLodMode, TreeLodMode};
@@ -87,7 +87,7 @@ pub enum Measure {
 /// If nothing can draw, a landscape cannot be read, or nothing is baked.
 pub fn run(args: &BenchArgs) -> Result<()> {
     let source = match args.scenes.is_empty() {
-        true => Source::of(&args.world).map_err(anyhow::Error::msg)?,
+        true => Source::of(&args.world)?,
         false => Source::Scenes(args.scenes.clone()),
     };
     let paths = scene_files(&source)?;

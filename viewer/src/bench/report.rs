@@ -1,10 +1,10 @@
 //! Figures → text for people, or a line of JSON.
 
 use anyhow::Result;
-use genescape_bake::say;
 use serde::Serialize;
 
 use crate::gpu::Gpu;
+use crate::say;
 
 /// What a figure should be.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

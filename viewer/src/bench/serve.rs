@@ -12,7 +12,6 @@ use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail};
 use clap::ValueEnum;
-use genescape_bake::say;
 use serde_json::json;
 
 use super::cost::Cost;
@@ -21,6 +20,7 @@ use super::{BenchArgs, frame_with};
 use crate::camera::{Camera, NEAR_M};
 use crate::headless::Headless;
 use crate::picture_file;
+use crate::say;
 use crate::view::View;
 
 pub(super) fn run(headless: &Headless, path: &Path, args: &BenchArgs) -> Result<()> {
