@@ -137,7 +137,7 @@ impl Session {
             if !fs::read(&path).is_ok_and(|there| Digest::of(&there) == blob.digest) {
                 let json = self.cache.get_blob(blob)?;
                 let json = json.ok_or_else(|| anyhow!("the scene vanished from the cache; bake again"))?;
-                let written = atomic_write::replace_unsynced(&path, json);
+                let written = atomic_write::replace_unsynced(&path, &*json);
                 written.with_context(|| format!("cannot write {}", path.display()))?;
             }
             let (name, path) = (population.individuals[scene].name.clone(), path.display().to_string());

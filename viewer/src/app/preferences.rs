@@ -3,6 +3,8 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use genescape_world::Source;
+
 use crate::settings::{Settings, SettingsFile, WorldSettings};
 
 /// Between two looks at whether settings have to be saved.

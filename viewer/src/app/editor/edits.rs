@@ -3,8 +3,8 @@
 use genescape_schema::Category;
 
 use super::Editor;
-use crate::event::{Ballot, Ballots};
 use crate::edit_history::Edit;
+use crate::event::{Ballot, Ballots};
 use crate::ui::Tone;
 
 /// A step that can be taken back.

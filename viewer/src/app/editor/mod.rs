@@ -14,8 +14,8 @@ use genescape_schema::{Genome, INDIVIDUALS, Population, Space};
 use genescape_world::{Change, Source, World, names};
 
 use crate::baker;
-use crate::event::Ballots;
 use crate::edit_history::History;
+use crate::event::Ballots;
 use crate::settings::WorldSettings;
 use crate::ui::Tone;
 use crate::ui::model::FileError;

@@ -4,8 +4,8 @@ use genescape_schema::{Category, INDIVIDUALS, Parent};
 
 use super::Editor;
 use super::edits::Step;
-use crate::event::{Ballot, Ballots};
 use crate::edit_history::Edit;
+use crate::event::{Ballot, Ballots};
 use crate::settings::{RunningVotes, WorldSettings};
 use crate::ui::Tone;
 
