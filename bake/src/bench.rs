@@ -4,7 +4,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use anyhow::Result;
-use genescape_cache::{BlobRef, Cache, How};
+use genescape_cache::{Cache, How};
 use genescape_schema::{Category, Population, Space};
 
 use crate::events::{Event, Listener};
@@ -32,21 +32,23 @@ pub fn bench(runs: u32, pool: &rayon::ThreadPool, resolution: Resolution) -> Res
     for _ in 0..runs.max(1) {
         let folder = tempfile::tempdir()?;
         let cache = Cache::open(folder.path())?;
-        let bench = Bench { space: &space, cache: &cache, pool, resolution };
+        let bake = |population: &Population, listener: &dyn Listener| {
+            bake(&space, population, resolution, &cache, pool, listener)
+        };
         let clock = Stages::default();
-        let (ms, built) = bench.bake(&starter, &clock)?;
+        let (ms, built) = bake(&starter, &clock)?;
         whole.add("four fresh scenes", ms, Some(built));
         for (stage, ms) in clock.0.into_inner().unwrap_or_else(PoisonError::into_inner) {
             stages.add(&stage, ms, None);
         }
-        let (ms, built) = bench.bake(&starter, &Stages::default())?;
+        let (ms, built) = bake(&starter, &Stages::default())?;
         whole.add("unchanged", ms, Some(built));
         for category in [Category::Tree, Category::Terrain, Category::Sky] {
             let mut changed = starter.clone();
             let other = &Population::random(&space, u64::from(runs), 0).individuals[0];
             *changed.individuals[0].genome.chromosome_mut(category) =
                 other.genome.chromosome(category).clone();
-            let (ms, built) = bench.bake(&changed, &Stages::default())?;
+            let (ms, built) = bake(&changed, &Stages::default())?;
             whole.add(&format!("one {} chromosome changed", category.name()), ms, Some(built));
         }
     }
@@ -59,29 +61,21 @@ pub fn bench(runs: u32, pool: &rayon::ThreadPool, resolution: Resolution) -> Res
     Ok(())
 }
 
-struct Bench<'a> {
-    space: &'a Space,
-    cache: &'a Cache,
-    pool: &'a rayon::ThreadPool,
+/// Milliseconds and the number of stages that were built.
+fn bake(
+    space: &Space,
+    population: &Population,
     resolution: Resolution,
-}
-
-impl Bench<'_> {
-    /// Milliseconds and the number of stages that were built.
-    fn bake(&self, population: &Population, listener: &dyn Listener) -> Result<(f64, usize)> {
-        let start = Instant::now();
-        let plan = Plan::new(self.space, population, self.resolution)?;
-        let runner = Runner {
-            cache: self.cache,
-            pool: self.pool,
-            listener,
-            cancelled: &|| false,
-            scene_ready: &|_, _: &BlobRef| Ok(()),
-        };
-        let done = runner.run(&plan)?;
-        let built = done.iter().filter(|d| d.how == How::Built).count();
-        Ok((start.elapsed().as_secs_f64() * 1e3, built))
-    }
+    cache: &Cache,
+    pool: &rayon::ThreadPool,
+    listener: &dyn Listener,
+) -> Result<(f64, usize)> {
+    let start = Instant::now();
+    let plan = Plan::new(space, population, resolution)?;
+    let runner = Runner { cache, pool, listener, cancelled: &|| false, scene_ready: &|_, _| Ok(()) };
+    let done = runner.run(&plan)?;
+    let built = done.iter().filter(|d| d.how == How::Built).count();
+    Ok((start.elapsed().as_secs_f64() * 1e3, built))
 }
 
 /// Collects stage times; templates of trees count as one stage.

@@ -12,9 +12,6 @@ pub enum Error {
     /// The folder or a file in it could not be used; `verb` completes "cannot … PATH".
     #[error("cannot {verb} {}: {source}{}", path.display(), advice(source.kind()))]
     Storage { verb: &'static str, path: PathBuf, source: io::Error },
-    /// Parameters that have no canonical bytes.
-    #[error("the parameters of stage `{stage}` cannot be hashed: {source}")]
-    Parameters { stage: String, source: postcard::Error },
     #[error("`{0}` is no file extension for a blob: use one to eight lower-case letters and digits")]
     Extension(String),
     #[error("stage `{stage}` has two outputs named `{output}`")]

@@ -53,7 +53,9 @@ impl Cache {
     pub fn gc(&self, options: GcOptions, roots: &BTreeSet<Digest>) -> Result<GcReport> {
         let _nothing_is_published = self.locks.removing()?;
         let mut sweep = Sweep::begin(self, options, roots)?;
-        sweep.unnamed_blobs()?;
+        // First those whose records are gone, or were never written because their builder was killed.
+        let blobs: Vec<String> = sweep.blobs.keys().cloned().collect();
+        blobs.iter().try_for_each(|name| sweep.remove_blob_if_free(name))?;
         sweep.oldest_actions()?;
         sweep.abandoned_files()?;
         Ok(sweep.report)
@@ -113,13 +115,6 @@ impl<'a> Sweep<'a> {
         report.bytes_left = report.bytes_before;
         records.sort_by(|(a, _), (b, _)| (a.modified, &a.name).cmp(&(b.modified, &b.name)));
         Ok(Self { cache, options, roots, now: SystemTime::now(), blobs, records, report })
-    }
-
-    /// Blobs whose records are gone, or were never written because their builder was killed.
-    fn unnamed_blobs(&mut self) -> Result<()> {
-        let unnamed = self.blobs.values().filter(|blob| blob.named == 0);
-        let names: Vec<String> = unnamed.map(|blob| blob.entry.name.clone()).collect();
-        names.iter().try_for_each(|name| self.remove_blob_if_free(name))
     }
 
     fn oldest_actions(&mut self) -> Result<()> {

@@ -52,7 +52,7 @@ pub use digest::{Digest, ParseDigestError};
 pub use error::{Error, Result};
 pub use gc::{GcOptions, GcReport};
 pub use history::{Change, Explanation, History};
-pub use key::{ActionKey, KeyBuilder, KeyFields};
+pub use key::{ActionKey, KeyFields};
 pub use notice::{Fault, Notice};
 pub use upkeep::{StageStats, Stats, VerifyReport};
 

@@ -8,7 +8,7 @@ use std::cell::Cell;
 use std::fs::{File, TryLockError};
 use std::io;
 use std::marker::PhantomData;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::{Digest, Error, Result};
@@ -79,17 +79,13 @@ impl Locks {
         Ok(file)
     }
 
-    fn open(&self, path: &PathBuf) -> Result<File> {
+    fn open(&self, path: &Path) -> Result<File> {
         let open = || File::options().create(true).truncate(false).write(true).open(path);
-        open()
-            .or_else(|error| {
-                if error.kind() != io::ErrorKind::NotFound {
-                    return Err(error);
-                }
-                std::fs::create_dir_all(&self.folder)?;
-                open()
-            })
-            .map_err(|source| Error::at("write", path, source))
+        let file = open().or_else(|error| match error.kind() {
+            io::ErrorKind::NotFound => std::fs::create_dir_all(&self.folder).and_then(|()| open()),
+            _ => Err(error),
+        });
+        file.map_err(|source| Error::at("write", path, source))
     }
 }
 

@@ -10,11 +10,18 @@ mod speed;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use genescape_cache::{ActionKey, BlobRef, Bytes, Cache, Digest, Error, Outcome, Output};
+use genescape_cache::{ActionKey, BlobRef, Bytes, Cache, Digest, Error, KeyFields, Outcome, Output};
+
+/// The key of an action of that stage without parameters and inputs but one.
+fn key_with_input(stage: &str, name: &str, input: &[u8]) -> ActionKey {
+    let inputs = vec![(name.to_owned(), Digest::of(input))];
+    ActionKey::new(KeyFields { stage: stage.to_owned(), inputs, ..KeyFields::default() })
+}
 
 /// A key whose only parameter is `n`.
 fn key(n: u32) -> ActionKey {
-    ActionKey::builder("test", 1).parameters(&n).expect("a number has canonical bytes").build()
+    let parameters = n.to_le_bytes().to_vec();
+    ActionKey::new(KeyFields { stage: "test".to_owned(), version: 1, parameters, ..KeyFields::default() })
 }
 
 /// Two outputs for `n`, of `len` bytes each.
@@ -58,7 +65,6 @@ fn is_right(outcome: &Outcome, n: u32, len: usize) -> bool {
 
 /// Stores bytes as the only output of an action.
 fn put(cache: &Cache, bytes: &[u8], ext: &str) -> Result<BlobRef, Error> {
-    let key = ActionKey::builder("put", 1).input("bytes", Digest::of(bytes)).build();
     let output = || Ok::<_, Error>(vec![Output::new("bytes", ext, bytes.to_vec())]);
-    Ok(cache.get_or_build(&key, output)?.record.outputs[0].1.clone())
+    Ok(cache.get_or_build(&key_with_input("put", "bytes", bytes), output)?.record.outputs[0].1.clone())
 }
