@@ -20,12 +20,7 @@ pub enum Edit {
     /// Breeding leaves these genes and categories as they are, and no others.
     Locked(BTreeSet<String>),
     /// Genes of one landscape get other values, in their units.
-    Genes {
-        /// Whose: 0 … 3.
-        individual: usize,
-        /// Names and values.
-        values: Vec<(String, f64)>,
-    },
+    Genes { individual: usize, values: Vec<(String, f64)> },
 }
 
 impl Edit {
@@ -67,14 +62,7 @@ pub enum UndoError {
     Nothing(&'static str),
     /// The file says something else than the step has left.
     #[error("cannot {what} {step}: {file} was changed elsewhere since, and that would be lost")]
-    Foreign {
-        /// "undo" or "redo".
-        what: &'static str,
-        /// The step's name.
-        step: String,
-        /// Which file.
-        file: String,
-    },
+    Foreign { what: &'static str, step: String, file: String },
     /// The file could not be read or written.
     #[error(transparent)]
     File(#[from] FileError),
@@ -142,12 +130,14 @@ impl History {
     /// Takes the last step back; its name.
     ///
     /// # Errors
-    /// [`UndoError::Foreign`] if the file was changed by somebody else since. The step stays: when the file says again
+    /// [`UndoError::Foreign`] if the file was changed by another program since. The step stays: when the file says again
     /// what it said, it can be taken back.
     pub fn undo(&mut self, files: &WorldFiles, generation: u32) -> Result<String, UndoError> {
-        let steps = self.files.get_mut(&generation).ok_or(UndoError::Nothing("undo"))?;
+        let steps = self.files.entry(generation).or_default();
         let step = steps.done.last().ok_or(UndoError::Nothing("undo"))?;
-        put_back(files, generation, "undo", step, &step.after, &step.before)?;
+        files
+            .replace_population(generation, &step.after, &step.before)
+            .map_err(|error| step.failed("undo", error))?;
         let name = step.name.clone();
         steps.undone.extend(steps.done.pop());
         Ok(name)
@@ -158,29 +148,26 @@ impl History {
     /// # Errors
     /// As [`History::undo`].
     pub fn redo(&mut self, files: &WorldFiles, generation: u32) -> Result<String, UndoError> {
-        let steps = self.files.get_mut(&generation).ok_or(UndoError::Nothing("redo"))?;
+        let steps = self.files.entry(generation).or_default();
         let step = steps.undone.last().ok_or(UndoError::Nothing("redo"))?;
-        put_back(files, generation, "redo", step, &step.before, &step.after)?;
+        files
+            .replace_population(generation, &step.before, &step.after)
+            .map_err(|error| step.failed("redo", error))?;
         let name = step.name.clone();
         steps.done.extend(steps.undone.pop());
         Ok(name)
     }
 }
 
-fn put_back(
-    files: &WorldFiles,
-    generation: u32,
-    what: &'static str,
-    step: &Step,
-    from: &str,
-    to: &str,
-) -> Result<(), UndoError> {
-    files.replace_population(generation, from, to).map_err(|error| match error {
-        FileError::Changed { path } => {
-            UndoError::Foreign { what, step: step.name.clone(), file: path.display().to_string() }
+impl Step {
+    fn failed(&self, what: &'static str, error: FileError) -> UndoError {
+        match error {
+            FileError::Changed { path } => {
+                UndoError::Foreign { what, step: self.name.clone(), file: path.display().to_string() }
+            }
+            other => other.into(),
         }
-        other => other.into(),
-    })
+    }
 }
 
 #[cfg(test)]

@@ -108,7 +108,7 @@ pub enum ViewState {
 }
 
 /// Progress of the bake of a whole generation.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Baking {
     /// Which generation.
     pub generation: u32,
@@ -162,7 +162,7 @@ pub struct StageEntry {
 }
 
 /// A fault of a file that the person can mend.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct FileError {
     /// In a few words: "population/g0003.ron: 2 errors".
     pub title: String,
