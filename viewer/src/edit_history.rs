@@ -133,14 +133,9 @@ impl History {
     /// [`UndoError::Foreign`] if the file was changed by another program since. The step stays: when the file says again
     /// what it said, it can be taken back.
     pub fn undo(&mut self, files: &WorldFiles, generation: u32) -> Result<String, UndoError> {
-        let steps = self.files.entry(generation).or_default();
-        let step = steps.done.last().ok_or(UndoError::Nothing("undo"))?;
-        files
-            .replace_population(generation, &step.after, &step.before)
-            .map_err(|error| step.failed("undo", error))?;
-        let name = step.name.clone();
-        steps.undone.extend(steps.done.pop());
-        Ok(name)
+        let Steps { done, undone } = self.files.entry(generation).or_default();
+        let back = |step: &Step| files.replace_population(generation, &step.after, &step.before);
+        take_step("undo", done, undone, back)
     }
 
     /// Makes the step again that was taken back last; its name.
@@ -148,26 +143,29 @@ impl History {
     /// # Errors
     /// As [`History::undo`].
     pub fn redo(&mut self, files: &WorldFiles, generation: u32) -> Result<String, UndoError> {
-        let steps = self.files.entry(generation).or_default();
-        let step = steps.undone.last().ok_or(UndoError::Nothing("redo"))?;
-        files
-            .replace_population(generation, &step.before, &step.after)
-            .map_err(|error| step.failed("redo", error))?;
-        let name = step.name.clone();
-        steps.done.extend(steps.undone.pop());
-        Ok(name)
+        let Steps { done, undone } = self.files.entry(generation).or_default();
+        let forth = |step: &Step| files.replace_population(generation, &step.before, &step.after);
+        take_step("redo", undone, done, forth)
     }
 }
 
-impl Step {
-    fn failed(&self, what: &'static str, error: FileError) -> UndoError {
-        match error {
-            FileError::Changed { path } => {
-                UndoError::Foreign { what, step: self.name.clone(), file: path.display().to_string() }
-            }
-            other => other.into(),
+/// Replaces the file for the last step of `from`, which then is one of `to`.
+fn take_step(
+    what: &'static str,
+    from: &mut Vec<Step>,
+    to: &mut Vec<Step>,
+    replace: impl FnOnce(&Step) -> Result<(), FileError>,
+) -> Result<String, UndoError> {
+    let step = from.last().ok_or(UndoError::Nothing(what))?;
+    let name = step.name.clone();
+    replace(step).map_err(|error| match error {
+        FileError::Changed { path } => {
+            UndoError::Foreign { what, step: name.clone(), file: path.display().to_string() }
         }
-    }
+        other => other.into(),
+    })?;
+    to.extend(from.pop());
+    Ok(name)
 }
 
 #[cfg(test)]

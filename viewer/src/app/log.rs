@@ -18,7 +18,7 @@ use genescape_schema::{Category, INDIVIDUALS};
 use serde_json::{Value, json};
 
 use crate::event::Ballot;
-use crate::ui::model::{Model, Situation};
+use crate::ui::model::Model;
 use crate::upload::SceneBuffers;
 use crate::walk::Pose;
 
@@ -196,13 +196,8 @@ fn ballots(model: &Model) -> Value {
 }
 
 fn screen(model: &Model, size_px: [u32; 2]) -> Value {
-    let situation = match &model.situation {
-        Situation::Ready => "ready",
-        Situation::Growing => "growing",
-        Situation::Stuck { .. } => "stuck",
-    };
     json!({
-        "situation": situation,
+        "situation": <&str>::from(&model.situation),
         "arrangement": format!("{:?}", model.arrangement),
         "chosen": model.chosen,
         "captured": model.captured,

@@ -56,7 +56,8 @@ pub struct Model {
 }
 
 /// Whether there is anything to look at, and if not, why.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum Situation {
     /// Four views, each in its own state.
     Ready,
