@@ -19,12 +19,7 @@ pub enum Edit {
     /// Breeding leaves these genes and categories as they are, and no others.
     Locked(BTreeSet<String>),
     /// Genes of one landscape get other values, in their units.
-    Genes {
-        /// Whose: 0 … 3.
-        individual: usize,
-        /// Names and values.
-        values: Vec<(String, f64)>,
-    },
+    Genes { individual: usize, values: Vec<(String, f64)> },
 }
 
 impl Edit {
@@ -66,14 +61,7 @@ pub enum UndoError {
     Nothing(&'static str),
     /// The file says something else than the step has left.
     #[error("cannot {what} {step}: {file} was changed elsewhere since, and that would be lost")]
-    Foreign {
-        /// "undo" or "redo".
-        what: &'static str,
-        /// The step's name.
-        step: String,
-        /// Which file.
-        file: String,
-    },
+    Foreign { what: &'static str, step: String, file: String },
     /// The file could not be read or written.
     #[error(transparent)]
     File(#[from] WorldError),
@@ -141,15 +129,12 @@ impl History {
     /// Takes the last step back; its name.
     ///
     /// # Errors
-    /// [`UndoError::Foreign`] if the file was changed by somebody else since. The step stays: when the file says again
+    /// [`UndoError::Foreign`] if the file was changed by another program since. The step stays: when the file says again
     /// what it said, it can be taken back.
     pub fn undo(&mut self, files: &World, generation: u32) -> Result<String, UndoError> {
-        let steps = self.files.get_mut(&generation).ok_or(UndoError::Nothing("undo"))?;
-        let step = steps.done.last().ok_or(UndoError::Nothing("undo"))?;
-        put_back(files, generation, "undo", step, &step.after, &step.before)?;
-        let name = step.name.clone();
-        steps.undone.extend(steps.done.pop());
-        Ok(name)
+        let Steps { done, undone } = self.files.entry(generation).or_default();
+        let back = |step: &Step| files.replace_population(generation, &step.after, &step.before);
+        take_step("undo", done, undone, back)
     }
 
     /// Makes the step again that was taken back last; its name.
@@ -157,29 +142,29 @@ impl History {
     /// # Errors
     /// As [`History::undo`].
     pub fn redo(&mut self, files: &World, generation: u32) -> Result<String, UndoError> {
-        let steps = self.files.get_mut(&generation).ok_or(UndoError::Nothing("redo"))?;
-        let step = steps.undone.last().ok_or(UndoError::Nothing("redo"))?;
-        put_back(files, generation, "redo", step, &step.before, &step.after)?;
-        let name = step.name.clone();
-        steps.done.extend(steps.undone.pop());
-        Ok(name)
+        let Steps { done, undone } = self.files.entry(generation).or_default();
+        let forth = |step: &Step| files.replace_population(generation, &step.before, &step.after);
+        take_step("redo", undone, done, forth)
     }
 }
 
-fn put_back(
-    files: &World,
-    generation: u32,
+/// Replaces the file for the last step of `from`, which then is one of `to`.
+fn take_step(
     what: &'static str,
-    step: &Step,
-    from: &str,
-    to: &str,
-) -> Result<(), UndoError> {
-    files.replace_population(generation, from, to).map_err(|error| match error {
+    from: &mut Vec<Step>,
+    to: &mut Vec<Step>,
+    replace: impl FnOnce(&Step) -> Result<(), WorldError>,
+) -> Result<String, UndoError> {
+    let step = from.last().ok_or(UndoError::Nothing(what))?;
+    let name = step.name.clone();
+    replace(step).map_err(|error| match error {
         WorldError::Changed(path) => {
-            UndoError::Foreign { what, step: step.name.clone(), file: path.display().to_string() }
+            UndoError::Foreign { what, step: name.clone(), file: path.display().to_string() }
         }
         other => other.into(),
-    })
+    })?;
+    to.extend(from.pop());
+    Ok(name)
 }
 
 #[cfg(test)]

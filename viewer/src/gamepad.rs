@@ -65,22 +65,6 @@ impl Gamepads {
     }
 }
 
-/// A line of help for each part of the pad: (part, meaning).
-pub fn help() -> &'static [(&'static str, &'static str)] {
-    &[
-        ("left stick", "walk; pressed: run"),
-        ("right stick", "look; pressed: all four landscapes"),
-        ("triggers", "fly up, fly down"),
-        ("directional pad", "one landscape alone: up 1, right 2, left 3, down 4"),
-        ("left shoulder + X Y A B", "best trees: Y 1, B 2, X 3, A 4"),
-        ("right shoulder + X Y A B", "best terrain"),
-        ("both shoulders + X Y A B", "best sky"),
-        ("shoulder + directional pad down", "none of them is best"),
-        ("Y, X, B, A", "walk, fly or orbit; two side by side; undo; all four landscapes"),
-        ("start, select", "breed the next generation; help"),
-    ]
-}
-
 /// Sticks [left, right] with x to the right and y up; triggers [up, down], 0 to 1.
 fn controls(sticks: [Vec2; 2], triggers: [f32; 2], run: bool) -> Controls {
     let [walk, look] = sticks.map(live);

@@ -5,12 +5,13 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result, anyhow};
 use genescape_world::{Source, World};
+use image::RgbaImage;
 
 use crate::camera::Camera;
 use crate::frame::FrameInput;
 use crate::gpu::Gpu;
 use crate::passes::Passes;
-use crate::picture_file::{self, Pixels};
+use crate::picture_file;
 use crate::scene::Scene;
 use crate::scene_loader::{Loaded, SceneLoader};
 use crate::shaders::Shaders;
@@ -82,7 +83,7 @@ impl Headless {
         frame: &FrameInput,
         camera: &Camera,
         lod_camera: &Camera,
-    ) -> Result<Pixels> {
+    ) -> Result<RgbaImage> {
         let (commands, _) = self.record(std::slice::from_mut(view), frame, camera, lod_camera);
         self.gpu.queue.submit([commands]);
         picture_file::read(&self.gpu, &view.targets().display)

@@ -1,22 +1,14 @@
-//! A picture on the device → pixels in memory ↔ a PNG file.
+//! Finished pictures on the device → images in memory → a PNG file.
 
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
+use image::{ImageFormat, RgbaImage};
 
 use crate::gpu::Gpu;
 
-/// Pixels in memory: RGBA, 8 bits, row 0 on top.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Pixels {
-    pub width_px: u32,
-    pub height_px: u32,
-    /// 4 bytes a pixel.
-    pub rgba: Vec<u8>,
-}
-
 /// Copies a texture of 4 bytes a pixel from the device. Waits for it.
-pub fn read(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Pixels> {
+pub fn read(gpu: &Gpu, texture: &wgpu::Texture) -> Result<RgbaImage> {
     let (width, height) = (texture.width(), texture.height());
     let row = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -38,7 +30,7 @@ pub fn read(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Pixels> {
     let bytes = read_buffer(gpu, &buffer)?;
     let rows = bytes.chunks_exact(row as usize);
     let rgba = rows.flat_map(|pixels| &pixels[..width as usize * 4]).copied().collect();
-    Ok(Pixels { width_px: width, height_px: height, rgba })
+    RgbaImage::from_raw(width, height, rgba).context("the device gives too little back")
 }
 
 /// Copies a buffer that can be mapped from the device. Waits for it.
@@ -55,41 +47,30 @@ pub fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Puts pictures of one size side by side, `columns` in a row.
-pub fn contact_sheet(pictures: &[Pixels], columns: usize) -> Option<Pixels> {
-    let first = pictures.first()?;
-    let (width, height) = (first.width_px as usize, first.height_px as usize);
-    let rows = pictures.len().div_ceil(columns);
-    let mut rgba = vec![0; width * columns * height * rows * 4];
-    for (index, picture) in pictures.iter().enumerate() {
-        let (column, row) = (index % columns, index / columns);
-        for y in 0..height {
-            let to = (((row * height + y) * columns + column) * width) * 4;
-            rgba[to..to + width * 4].copy_from_slice(&picture.rgba[y * width * 4..(y + 1) * width * 4]);
-        }
+/// Puts images of one size side by side, `columns` in a row.
+pub fn contact_sheet(images: &[RgbaImage], columns: usize) -> Option<RgbaImage> {
+    let (width, height) = images.first()?.dimensions();
+    let rows = images.len().div_ceil(columns) as u32;
+    let mut sheet = RgbaImage::new(width * columns as u32, height * rows);
+    for (index, image) in images.iter().enumerate() {
+        let (column, row) = ((index % columns) as u32, (index / columns) as u32);
+        image::imageops::replace(&mut sheet, image, (column * width).into(), (row * height).into());
     }
-    Some(Pixels { width_px: (width * columns) as u32, height_px: (height * rows) as u32, rgba })
+    Some(sheet)
 }
 
 /// Writes a PNG file; its folder must exist.
-pub fn write_png(path: &Path, pixels: &Pixels) -> Result<()> {
-    let Pixels { width_px, height_px, rgba } = pixels;
-    image::save_buffer(path, rgba, *width_px, *height_px, image::ExtendedColorType::Rgba8)
-        .with_context(|| format!("cannot write {}", path.display()))
-}
-
-/// Reads a PNG file of any kind of colour.
-pub fn read_png(path: &Path) -> Result<Pixels> {
-    let picture = image::open(path).with_context(|| format!("cannot read {}", path.display()))?.into_rgba8();
-    Ok(Pixels { width_px: picture.width(), height_px: picture.height(), rgba: picture.into_raw() })
+pub fn write_png(path: &Path, image: &RgbaImage) -> Result<()> {
+    let written = image.save_with_format(path, ImageFormat::Png);
+    written.with_context(|| format!("cannot write {}", path.display()))
 }
 
 /// Writes a picture into a folder, made if need be, under the first name that is free there: "genescape-0001.png".
-pub fn write_numbered(folder: &Path, pixels: &Pixels) -> Result<PathBuf> {
+pub fn write_numbered(folder: &Path, image: &RgbaImage) -> Result<PathBuf> {
     std::fs::create_dir_all(folder)?;
     let mut names = (1..10_000).map(|number| folder.join(format!("genescape-{number:04}.png")));
     let path = names.find(|path| !path.exists()).context("there are ten thousand pictures already")?;
-    write_png(&path, pixels)?;
+    write_png(&path, image)?;
     Ok(path)
 }
 
@@ -118,10 +99,10 @@ mod tests {
 
     #[test]
     fn a_contact_sheet_is_filled_row_by_row() {
-        let one = |value: u8| Pixels { width_px: 2, height_px: 1, rgba: vec![value; 8] };
-        let sheet = contact_sheet(&[one(1), one(2), one(3)], 2).expect("pictures");
-        assert_eq!((sheet.width_px, sheet.height_px), (4, 2));
-        assert_eq!(sheet.rgba, [[1; 8], [2; 8], [3; 8], [0; 8]].concat());
+        let one = |value: u8| RgbaImage::from_pixel(2, 1, image::Rgba([value; 4]));
+        let sheet = contact_sheet(&[one(1), one(2), one(3)], 2).expect("images");
+        assert_eq!(sheet.dimensions(), (4, 2));
+        assert_eq!(sheet.into_raw(), [[1; 8], [2; 8], [3; 8], [0; 8]].concat());
         assert_eq!(contact_sheet(&[], 2), None);
     }
 }

@@ -20,7 +20,7 @@ const DEFAULT_SIZE_PX: [u32; 2] = [1280, 800];
 /// Draws what the command line asks for.
 pub fn take(cli: &Cli, source: &Source, out: &Path) -> Result<()> {
     let paths = chosen(cli, scene_files(source)?)?;
-    let options = cli.drawing.options();
+    let options = cli.drawing;
     let headless = Headless::open(&Shaders::from(cli.shaders.clone()), options.samples)?;
     let loaded = paths.iter().map(|path| headless.load(path)).collect::<Result<Vec<_>>>()?;
     let lands: Vec<&Land> = loaded.iter().map(|loaded| &*loaded.land).collect();
@@ -42,13 +42,8 @@ pub fn take(cli: &Cli, source: &Source, out: &Path) -> Result<()> {
     let sheet = picture_file::contact_sheet(&pictures, columns);
     let sheet = sheet.ok_or_else(|| anyhow!("there is nothing to draw"))?;
     picture_file::write_png(out, &sheet)?;
-    say!(
-        "wrote {} ({} × {}), drawn by {}",
-        out.display(),
-        sheet.width_px,
-        sheet.height_px,
-        headless.gpu.name
-    );
+    let (width, height) = sheet.dimensions();
+    say!("wrote {} ({width} × {height}), drawn by {}", out.display(), headless.gpu.name);
     Ok(())
 }
 

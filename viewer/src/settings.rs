@@ -6,6 +6,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use anyhow::{Result, anyhow};
 use etcetera::{AppStrategy, AppStrategyArgs};
 use genescape_world::atomic_write;
 use ron::value::RawValue;
@@ -159,28 +160,11 @@ pub struct SettingsFile {
 /// What was found, and what the person should know about it.
 #[derive(Debug)]
 pub struct Opened {
-    /// Where they are kept.
     pub file: SettingsFile,
     /// The settings; defaults if there are none, or none that can be read.
     pub settings: Settings,
     /// What was wrong, with file and line, and what became of the file.
     pub problems: Vec<String>,
-}
-
-/// Why settings could not be saved.
-#[derive(Debug, thiserror::Error)]
-pub enum SettingsError {
-    /// The system refused.
-    #[error("cannot save the settings in {}: {source}; --settings FILE keeps them elsewhere", path.display())]
-    Write {
-        /// Which file.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
-    /// RON has no words for it: a bug.
-    #[error("the settings cannot be written as RON: {0}")]
-    Format(#[from] ron::Error),
 }
 
 impl SettingsFile {
@@ -228,7 +212,6 @@ impl SettingsFile {
         self.saved.is_none()
     }
 
-    /// Where they are kept.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -238,14 +221,16 @@ impl SettingsFile {
     ///
     /// # Errors
     /// A file that cannot be written; the old one is then untouched.
-    pub fn save(&mut self, settings: &Settings) -> Result<(), SettingsError> {
+    pub fn save(&mut self, settings: &Settings) -> Result<()> {
         if self.saved.as_ref() == Some(settings) {
             return Ok(());
         }
         let style = ron::ser::PrettyConfig::new().indentor("    ").struct_names(true);
         let text = format!("{TITLE}{}\n", ron::ser::to_string_pretty(settings, style)?);
-        atomic_write::replace(&self.path, &text)
-            .map_err(|source| SettingsError::Write { path: self.path.clone(), source })?;
+        atomic_write::replace(&self.path, &text).map_err(|error| {
+            let told = self.path.display();
+            anyhow!("cannot save the settings in {told}: {error}; --settings FILE keeps them elsewhere")
+        })?;
         self.saved = Some(settings.clone());
         Ok(())
     }

@@ -15,9 +15,10 @@ use genescape_viewer::camera::Camera;
 use genescape_viewer::frame::{FrameInput, Options};
 use genescape_viewer::headless::Headless;
 use genescape_viewer::lod_mode::{TerrainLodMode, TreeLodMode};
-use genescape_viewer::picture_file::{self, Pixels};
+use genescape_viewer::picture_file;
 use genescape_viewer::scene::{Apron, Detail, Scene, Trees};
 use glam::Vec3;
+use image::RgbaImage;
 
 /// The greatest mean of FLIP that passes.
 const THRESHOLD: f32 = 0.004;
@@ -113,7 +114,7 @@ fn shoot(
     scene: &Scene,
     [x, z, above, yaw_rad, pitch_rad]: [f32; 5],
     options: Options,
-) -> Pixels {
+) -> RgbaImage {
     let buffers = made_up::upload(studio, scene);
     let position_m = Vec3::new(x, scene.ground.field.height_m(x, z) + above, z);
     let camera = Camera { position_m, yaw_rad, pitch_rad, fov_y_rad: 1.0 };
@@ -125,15 +126,15 @@ fn golden(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name).with_extension("png")
 }
 
-fn read(name: &str) -> Pixels {
-    picture_file::read_png(&golden(name)).expect("a picture; GENESCAPE_BLESS=1 writes it")
+fn read(name: &str) -> RgbaImage {
+    image::open(golden(name)).expect("a picture; GENESCAPE_BLESS=1 writes it").into_rgba8()
 }
 
-fn difference(a: &Pixels, b: &Pixels) -> f32 {
-    assert_eq!((a.width_px, a.height_px), (b.width_px, b.height_px));
-    let image = |pixels: &Pixels| {
-        let rgb: Vec<u8> = pixels.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
-        nv_flip::FlipImageRgb8::with_data(pixels.width_px, pixels.height_px, &rgb)
+fn difference(a: &RgbaImage, b: &RgbaImage) -> f32 {
+    assert_eq!(a.dimensions(), b.dimensions());
+    let image = |image: &RgbaImage| {
+        let rgb: Vec<u8> = image.pixels().flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+        nv_flip::FlipImageRgb8::with_data(image.width(), image.height(), &rgb)
     };
     let map = nv_flip::flip(image(a), image(b), nv_flip::DEFAULT_PIXELS_PER_DEGREE);
     nv_flip::FlipPool::from_image(&map).mean()

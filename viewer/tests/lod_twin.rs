@@ -16,6 +16,7 @@ use glam::Vec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg32;
 use std::sync::Arc;
+use strum::VariantArray;
 
 /// Differences of λ that rounding explains.
 const ROUNDING: f32 = 2e-3;
@@ -136,7 +137,7 @@ fn compare(studio: &Headless, seed: u64) -> [usize; 2] {
     let buffers = genescape_viewer::upload::Uploader::new(&studio.gpu).upload(&scene).expect("uploaded");
     let set = buffers.trees.as_ref().expect("trees");
     let mut seen = [0; 2];
-    for mode in [TreeLodMode::Quality, TreeLodMode::Simple, TreeLodMode::Discrete, TreeLodMode::Off] {
+    for &mode in TreeLodMode::VARIANTS {
         let camera = eye(&mut rng, &forest.trees);
         let frustum = camera.frustum(1.6);
         let control = Control {

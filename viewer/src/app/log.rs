@@ -4,6 +4,7 @@
 //! the start), `frame` (frames shown) and `what`; a state is written when it changes, so the last line of each `what` says
 //! how things are. Lengths in metres, angles in radians, places in the window in physical pixels.
 
+use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::fs::File;
 use std::io::Write;
@@ -12,12 +13,12 @@ use std::sync::{Arc, Weak};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
-use egui::accesskit::{Role, TreeUpdate};
+use egui::accesskit::{Node, Role, TreeUpdate};
 use genescape_schema::{Category, INDIVIDUALS};
 use serde_json::{Value, json};
 
 use crate::event::Ballot;
-use crate::ui::model::{Model, Situation};
+use crate::ui::model::Model;
 use crate::upload::SceneBuffers;
 use crate::walk::Pose;
 
@@ -31,16 +32,10 @@ pub struct Log {
     file: Option<File>,
     born: Instant,
     frame: u64,
-    states: Vec<State>,
+    /// What was written last of each state, and when.
+    states: BTreeMap<&'static str, (Value, Instant)>,
     landscapes: [Weak<SceneBuffers>; INDIVIDUALS],
     frames: Frames,
-}
-
-/// What was written last of one kind.
-struct State {
-    what: &'static str,
-    value: Value,
-    at: Instant,
 }
 
 /// Frames since the last line about them.
@@ -79,7 +74,7 @@ impl Log {
             file: path.map(create).transpose()?,
             born: now,
             frame: 0,
-            states: Vec::new(),
+            states: BTreeMap::new(),
             landscapes: Default::default(),
             frames: Frames { since: now, last: now, count: 0, worst_ms: 0.0 },
         })
@@ -122,10 +117,13 @@ impl Log {
         }
         self.state("generations", json!({ "shown": model.generation, "all": model.generations }));
         self.state("ballots", ballots(model));
-        self.state("bake", bake(model));
-        self.state("errors", errors(model));
+        self.state(
+            "bake",
+            model.baking.as_ref().map_or(json!({ "generation": null }), |baking| json!(baking)),
+        );
+        self.state("errors", json!({ "count": model.errors.len(), "errors": model.errors }));
         self.state("screen", screen(model, size_px));
-        self.seldom("pose", || place(&pose));
+        self.seldom("pose", || json!(pose));
         if let Some(widgets) = widgets {
             self.seldom("widgets", || widgets);
         }
@@ -167,15 +165,9 @@ impl Log {
 
     /// Written if it changed.
     fn state(&mut self, what: &'static str, value: Value) {
-        let known = self.states.iter().position(|state| state.what == what);
-        if known.is_some_and(|at| self.states[at].value == value) {
-            return;
-        }
-        self.note(what, value.clone());
-        let state = State { what, value, at: Instant::now() };
-        match known {
-            Some(at) => self.states[at] = state,
-            None => self.states.push(state),
+        if self.states.get(what).is_none_or(|(known, _)| *known != value) {
+            self.note(what, value.clone());
+            self.states.insert(what, (value, Instant::now()));
         }
     }
 
@@ -187,7 +179,7 @@ impl Log {
     }
 
     fn rested(&self, what: &str) -> bool {
-        self.states.iter().find(|state| state.what == what).is_none_or(|state| state.at.elapsed() >= PAUSE)
+        self.states.get(what).is_none_or(|(_, at)| at.elapsed() >= PAUSE)
     }
 }
 
@@ -203,26 +195,9 @@ fn ballots(model: &Model) -> Value {
     Value::Object(Category::ALL.map(entry).into_iter().collect())
 }
 
-fn bake(model: &Model) -> Value {
-    match &model.baking {
-        Some(bake) => json!({ "generation": bake.generation, "done": bake.done, "total": bake.total }),
-        None => json!({ "generation": null }),
-    }
-}
-
-fn errors(model: &Model) -> Value {
-    let error = |error: &crate::ui::model::FileError| json!({ "title": error.title, "report": error.report });
-    json!({ "count": model.errors.len(), "errors": model.errors.iter().map(error).collect::<Vec<_>>() })
-}
-
 fn screen(model: &Model, size_px: [u32; 2]) -> Value {
-    let situation = match &model.situation {
-        Situation::Ready => "ready",
-        Situation::Growing => "growing",
-        Situation::Stuck { .. } => "stuck",
-    };
     json!({
-        "situation": situation,
+        "situation": <&str>::from(&model.situation),
         "arrangement": format!("{:?}", model.arrangement),
         "chosen": model.chosen,
         "captured": model.captured,
@@ -232,41 +207,22 @@ fn screen(model: &Model, size_px: [u32; 2]) -> Value {
     })
 }
 
-fn place(pose: &Pose) -> Value {
-    json!({
-        "x_m": pose.x_m, "z_m": pose.z_m, "yaw_rad": pose.yaw_rad, "pitch_rad": pose.pitch_rad,
-        "altitude_m": pose.altitude_m, "mode": format!("{:?}", pose.mode),
-    })
-}
-
 /// What can be pressed or dragged, as screen readers know it: its words, and its middle in pixels.
 pub fn widgets(update: &TreeUpdate, pixels_per_point: f32) -> Value {
-    let usable = |role: Role| {
-        matches!(
-            role,
-            Role::Button
-                | Role::Slider
-                | Role::SpinButton
-                | Role::CheckBox
-                | Role::RadioButton
-                | Role::TextInput
-        )
-    };
-    let mut listed: Vec<Value> = Vec::new();
-    for (_, node) in update.nodes.iter().filter(|(_, node)| usable(node.role())) {
-        let (Some(words), Some(place)) = (node.label().or_else(|| node.value()), node.bounds()) else {
-            continue;
-        };
-        let pixels = |low: f64, high: f64| (0.5 * (low + high) * f64::from(pixels_per_point)).round();
-        let size = |low: f64, high: f64| ((high - low) * f64::from(pixels_per_point)).round();
-        listed.push(json!({
+    use Role::*;
+    let usable = [Button, Slider, SpinButton, CheckBox, RadioButton, TextInput];
+    let pixels = |points: f64| (points * f64::from(pixels_per_point)).round();
+    let widget = |node: &Node| {
+        let (words, place) = (node.label().or_else(|| node.value())?, node.bounds()?);
+        Some(json!({
             "label": words,
             "role": format!("{:?}", node.role()),
-            "at_px": [pixels(place.x0, place.x1), pixels(place.y0, place.y1)],
-            "size_px": [size(place.x0, place.x1), size(place.y0, place.y1)],
-        }));
-    }
-    json!({ "widgets": listed })
+            "at_px": [pixels(0.5 * (place.x0 + place.x1)), pixels(0.5 * (place.y0 + place.y1))],
+            "size_px": [pixels(place.width()), pixels(place.height())],
+        }))
+    };
+    let nodes = update.nodes.iter().map(|(_, node)| node).filter(|node| usable.contains(&node.role()));
+    json!({ "widgets": nodes.filter_map(widget).collect::<Vec<_>>() })
 }
 
 #[cfg(test)]
@@ -301,7 +257,7 @@ mod tests {
         let mut log = Log::create(Some(&path)).expect("a file");
         for x in 0..50 {
             log.seldom("pose", || json!({ "x_m": x }));
-            log.states[0].at -= PAUSE / 10;
+            log.states.get_mut("pose").expect("written").1 -= PAUSE / 10;
         }
         let told = lines(&path);
         assert!((5..=50 / 4).contains(&told.len()), "{} lines", told.len());

@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use anyhow::Result;
 use genescape_schema::INDIVIDUALS;
+use image::RgbaImage;
 use wgpu_profiler::{GpuProfiler, GpuProfilerSettings, GpuTimerQueryResult};
 
 use super::camera_control::CameraControl;
@@ -13,7 +14,7 @@ use super::lod_readback::LodReadback;
 use crate::frame::FrameInput;
 use crate::gpu::Gpu;
 use crate::passes::Passes;
-use crate::picture_file::{self, Pixels};
+use crate::picture_file;
 use crate::scene_loader::Loaded;
 use crate::shaders::{ShaderError, Shaders};
 use crate::ui::arrange::Slot;
@@ -50,7 +51,7 @@ impl Viewports {
         let views = LABELS.map(|label| View::new(gpu, &passes, label, FIRST_SIZE_PX));
         Ok(Self {
             profiler: GpuProfiler::new(&gpu.device, GpuProfilerSettings::default())?,
-            lod_readback: LodReadback::new(gpu),
+            lod_readback: LodReadback::new(),
             stats: Stats { adapter: gpu.name.clone(), ..Stats::default() },
             gpu: gpu.clone(),
             passes,
@@ -100,7 +101,7 @@ impl Viewports {
     }
 
     /// The finished pictures of some views, copied from the device; views without a landscape are left out.
-    pub fn pixels(&self, views: &[usize]) -> Result<Vec<Pixels>> {
+    pub fn pixels(&self, views: &[usize]) -> Result<Vec<RgbaImage>> {
         let shown = views.iter().filter(|view| self.views[**view].scene().is_some());
         shown.map(|&view| picture_file::read(&self.gpu, &self.views[view].targets().display)).collect()
     }
@@ -149,9 +150,6 @@ impl Viewports {
             let drawn = view.record(encoder, &self.passes, frame, &camera, &walker, &self.profiler);
             self.stats.draws[index] = drawn.draws;
             self.stats.triangles[index] = u64::from(drawn.land_triangles);
-            if let Some((set, counts)) = view.tree_counts() {
-                self.lod_readback.copy(encoder, index, set, counts);
-            }
         }
         self.profiler.resolve_queries(encoder);
         self.stats.cpu_record_ms = start.elapsed().as_secs_f32() * 1e3;
@@ -167,7 +165,11 @@ impl Viewports {
             self.frames_ms.pop_front();
         }
         self.stats.frames_ms = self.frames_ms.iter().copied().collect();
-        self.lod_readback.map();
+        for (index, view) in self.views.iter().enumerate().filter(|(view, _)| self.stats.draws[*view] > 0) {
+            if let Some((set, counts)) = view.tree_counts() {
+                self.lod_readback.request(&self.gpu, index, set, counts);
+            }
+        }
         // An error here means a lost device, which the next call reports.
         let _ = self.gpu.device.poll(wgpu::PollType::Poll);
         self.lod_readback.read(&mut self.stats);
@@ -202,24 +204,25 @@ fn pass_times(views: &[GpuTimerQueryResult]) -> Vec<PassTime> {
     let mut passes: Vec<PassTime> = Vec::new();
     for view in views {
         let Some(index) = LABELS.iter().position(|label| *label == view.label) else { continue };
-        add_times(&mut passes, index, &view.nested_queries);
+        for (name, ms) in timed(&view.nested_queries) {
+            let at = passes.iter().position(|pass| pass.name == name).unwrap_or_else(|| {
+                passes.push(PassTime { name, ms: [0.0; INDIVIDUALS] });
+                passes.len() - 1
+            });
+            passes[at].ms[index] += ms;
+        }
     }
     passes
 }
 
-fn add_times(passes: &mut Vec<PassTime>, view: usize, queries: &[GpuTimerQueryResult]) {
-    for query in queries {
-        // A pass that is timed in parts is told in parts.
-        let parts: Vec<_> = query.nested_queries.iter().filter(|part| part.time.is_some()).collect();
-        if !parts.is_empty() {
-            add_times(passes, view, &query.nested_queries);
-            continue;
+/// Names and milliseconds; of a pass that is timed in parts, those of its parts.
+fn timed(queries: &[GpuTimerQueryResult]) -> Vec<(String, f32)> {
+    let of = |query: &GpuTimerQueryResult| {
+        if query.nested_queries.iter().any(|part| part.time.is_some()) {
+            return timed(&query.nested_queries);
         }
-        let Some(time) = &query.time else { continue };
-        let at = passes.iter().position(|pass| pass.name == query.label).unwrap_or_else(|| {
-            passes.push(PassTime { name: query.label.clone(), ms: [0.0; INDIVIDUALS] });
-            passes.len() - 1
-        });
-        passes[at].ms[view] += ((time.end - time.start) * 1e3) as f32;
-    }
+        let ms = query.time.as_ref().map(|time| ((time.end - time.start) * 1e3) as f32);
+        ms.map(|ms| (query.label.clone(), ms)).into_iter().collect()
+    };
+    queries.iter().flat_map(of).collect()
 }

@@ -1,34 +1,11 @@
 //! Where is measured: forests of any number of trees, and the camera's path across a land.
 
-use std::path::PathBuf;
-
-use anyhow::Result;
 use glam::{Vec2, Vec3};
 
 use crate::camera::Camera;
 use crate::frame::Options;
-use crate::headless::Headless;
 use crate::scene::{Instance, Scene};
-use crate::view::View;
 use crate::walk::{EYE_HEIGHT_M, Land, nearest_free};
-
-/// Landscapes for four views of together `size_px`, from the first again if they are fewer; with so many trees, or their
-/// own.
-pub(super) fn four_views(
-    headless: &Headless,
-    paths: &[PathBuf],
-    size_px: [u32; 2],
-    trees: Option<usize>,
-) -> Result<Vec<View>> {
-    let half_px = size_px.map(|side| (side / 2).max(1));
-    let mut uploaded = Vec::new();
-    for path in paths.iter().take(4) {
-        let scene = headless.read(path)?;
-        let scene = trees.map_or_else(|| scene.clone(), |count| forest(&scene, count));
-        uploaded.push(headless.upload(&scene)?);
-    }
-    Ok(uploaded.iter().cycle().take(4).map(|scene| headless.view(scene.clone(), half_px)).collect())
-}
 
 /// The camera's path: straight across the middle of the land, a quarter of its extent to each side, at a walker's height
 /// and clear of trunks, with the sun behind and to the side (thesis section 7).

@@ -23,11 +23,15 @@ use anyhow::{Result, anyhow};
 use clap::{Args, ValueEnum};
 use genescape_world::Source;
 
+use crate::camera::Camera;
 use crate::frame::{FrameInput, Options};
 use crate::headless::{Headless, scene_files};
 use crate::lod_mode::{TerrainLodMode, TreeLodMode};
 use crate::picture_file::parse_size;
+use crate::scene::Scene;
 use crate::shaders::Shaders;
+use crate::view::View;
+use cost::Cost;
 use report::Report;
 
 /// What `viewer bench` can be asked for.
@@ -96,19 +100,53 @@ pub fn run(args: &BenchArgs) -> Result<()> {
     if args.serve {
         return serve::run(&headless, first, args);
     }
-    let mut report = Report::begin(&headless.gpu, args.json);
+    let report = Report::begin(&headless.gpu, args.json);
+    let mut bench = Bench { headless, paths, size_px: args.size, steps: args.steps, report };
     let measures = Measure::value_variants().iter();
     for measure in measures.filter(|measure| args.only.is_empty() || args.only.contains(measure)) {
-        let measure = match measure {
-            Measure::Record => record::measure,
-            Measure::Detail => detail::measure,
-            Measure::Views => views::measure,
-            Measure::Swap => swap::measure,
-            Measure::Card => card::measure,
-        };
-        measure(&headless, &paths, args, &mut report)?;
+        match measure {
+            Measure::Record => record::measure(&mut bench)?,
+            Measure::Detail => detail::measure(&mut bench)?,
+            Measure::Views => views::measure(&mut bench)?,
+            Measure::Swap => swap::measure(&mut bench)?,
+            Measure::Card => card::measure(&mut bench)?,
+        }
     }
-    report.end()
+    bench.report.end()
+}
+
+/// What measurements have in common.
+struct Bench {
+    headless: Headless,
+    /// Scene files; at least one.
+    paths: Vec<PathBuf>,
+    size_px: [u32; 2],
+    /// Places on the camera's path.
+    steps: u32,
+    report: Report,
+}
+
+impl Bench {
+    fn first_scene(&self) -> Result<Scene> {
+        self.headless.read(&self.paths[0])
+    }
+
+    /// A view of a landscape.
+    fn view(&self, scene: &Scene, size_px: [u32; 2]) -> Result<View> {
+        Ok(self.headless.view(self.headless.upload(scene)?, size_px))
+    }
+
+    /// Landscapes for four views of together `size_px`, from the first again if they are fewer.
+    fn four_views(&self, size_px: [u32; 2], of: impl Fn(Scene) -> Scene) -> Result<Vec<View>> {
+        let paths = self.paths.iter().cycle().take(4);
+        let half_px = size_px.map(|side| (side / 2).max(1));
+        paths.map(|path| self.view(&of(self.headless.read(path)?), half_px)).collect()
+    }
+
+    /// What one picture of each view takes, waited for.
+    fn frame(&self, views: &mut [View], frame: &FrameInput, camera: &Camera) -> Cost {
+        Cost::of_frame(&self.headless, views, frame, camera)
+    }
 }
 
 /// What a frame is drawn from with these LOD modes.

@@ -53,13 +53,10 @@ const NUMPAD: [&str; 16] =
     ["0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "Plus", "Minus", "Times", "Divide", "Point", "Enter"];
 
 /// Buttons of the mouse that have a name.
-const BUTTONS: [(MouseButton, &str); 5] = [
-    (MouseButton::Left, "Mouse Left"),
-    (MouseButton::Right, "Mouse Right"),
-    (MouseButton::Middle, "Mouse Middle"),
-    (MouseButton::Back, "Mouse Back"),
-    (MouseButton::Forward, "Mouse Forward"),
-];
+const BUTTONS: [MouseButton; 5] = {
+    use MouseButton::*;
+    [Left, Right, Middle, Back, Forward]
+};
 
 impl Input {
     /// Every key and button that has a name.
@@ -68,7 +65,7 @@ impl Input {
         // These signs have no key of their own on a US keyboard.
         let absent = [Colon, Plus, Pipe, Questionmark, Exclamationmark, OpenCurlyBracket, CloseCurlyBracket];
         let keys = Key::ALL.iter().filter(move |key| !absent.contains(key)).map(|key| Self::Key(*key));
-        let buttons = BUTTONS.iter().map(|(button, _)| Self::Mouse(*button));
+        let buttons = BUTTONS.map(Self::Mouse);
         keys.chain((0..NUMPAD.len()).map(Self::Numpad)).chain(buttons)
     }
 
@@ -95,9 +92,7 @@ impl fmt::Display for Input {
             Self::Key(key) => f.write_str(&key_name(*key)),
             Self::Numpad(index) => write!(f, "Numpad {}", NUMPAD[*index]),
             Self::Mouse(MouseButton::Other(number)) => write!(f, "Mouse {number}"),
-            Self::Mouse(button) => {
-                f.write_str(BUTTONS.iter().find(|(known, _)| known == button).map_or("?", |(_, name)| name))
-            }
+            Self::Mouse(button) => write!(f, "Mouse {button:?}"),
         }
     }
 }

@@ -56,7 +56,8 @@ pub struct Model {
 }
 
 /// Whether there is anything to look at, and if not, why.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum Situation {
     /// Four views, each in its own state.
     Ready,
@@ -108,7 +109,7 @@ pub enum ViewState {
 }
 
 /// Progress of the bake of a whole generation.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Baking {
     /// Which generation.
     pub generation: u32,
@@ -168,7 +169,7 @@ pub struct StageEntry {
 }
 
 /// A fault of a file that the person can mend.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct FileError {
     /// In a few words: "population/g0003.ron: 2 errors".
     pub title: String,
