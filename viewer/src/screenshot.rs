@@ -13,7 +13,7 @@ use crate::headless::{Headless, scene_files};
 use crate::picture_file;
 use crate::say;
 use crate::shaders::Shaders;
-use crate::walk::{Land, Rig, START_RADIUS_M, start_pose};
+use crate::walk::{Land, Rig, start_pose};
 
 const DEFAULT_SIZE_PX: [u32; 2] = [1280, 800];
 
@@ -24,8 +24,7 @@ pub fn take(cli: &Cli, source: &Source, out: &Path) -> Result<()> {
     let headless = Headless::open(&Shaders::from(cli.shaders.clone()), options.samples)?;
     let loaded = paths.iter().map(|path| headless.load(path)).collect::<Result<Vec<_>>>()?;
     let lands: Vec<&Land> = loaded.iter().map(|loaded| &*loaded.land).collect();
-    let sun = loaded.first().map(|loaded| Vec3::from(loaded.buffers.sky.sun_direction));
-    let rig = Rig::new(start_pose(&lands, START_RADIUS_M, sun), &lands);
+    let rig = Rig::new(start_pose(&lands), &lands);
 
     let [width, height] = cli.size.unwrap_or(DEFAULT_SIZE_PX);
     let columns = if loaded.len() > 1 { 2 } else { 1 };

@@ -16,7 +16,7 @@ use genescape_viewer::frame::{FrameInput, Options};
 use genescape_viewer::headless::Headless;
 use genescape_viewer::lod_mode::{TerrainLodMode, TreeLodMode};
 use genescape_viewer::picture_file;
-use genescape_viewer::scene::{Apron, Detail, Scene, Trees};
+use genescape_viewer::scene::{Apron, GroundDetail, Heightfield, Picture, Scene, Trees};
 use glam::Vec3;
 use image::RgbaImage;
 
@@ -51,16 +51,16 @@ fn landscape() -> Scene {
     });
     ground.surface.details = (0..5).map(tile).collect();
     ground.apron = Arc::new(frame_of_land(&ground.field));
-    scene.sky.haze_extinction_per_m = 0.002;
+    scene.sky.light.haze_extinction_per_m = 0.002;
     scene
 }
 
 /// A tiling texture of soft blots.
-fn tile(layer: u32) -> Detail {
+fn tile(layer: u32) -> GroundDetail<Picture> {
     let blot = move |i: u32, j: u32| {
         0.5 * made_up::hash(i % 16, j % 16, layer) + 0.5 * made_up::hash(i / 2, j / 2, layer)
     };
-    Detail {
+    GroundDetail {
         name: format!("blots {layer}"),
         detail: made_up::picture(&format!("blots {layer}"), 16, |i, j| [(90.0 + 76.0 * blot(i, j)) as u8; 4]),
         normal: made_up::picture(&format!("bumps {layer}"), 16, |i, j| {
@@ -71,7 +71,7 @@ fn tile(layer: u32) -> Detail {
 }
 
 /// Level land from the field's border outwards.
-fn frame_of_land(field: &genescape_viewer::scene::Heightfield) -> Apron {
+fn frame_of_land(field: &Heightfield) -> Apron {
     let half = 0.5 * field.extent_m();
     let ring = |half: f32, y: f32| [[-half, y, -half], [half, y, -half], [half, y, half], [-half, y, half]];
     Apron {
@@ -169,7 +169,7 @@ fn what_should_be_noticed_is_and_nothing_else() {
     let before = shoot(&studio, &scene, *walk, *plain);
     assert_eq!(shoot(&studio, &scene, *walk, *plain), before, "run-to-run noise is 0");
     let mut later = scene.clone();
-    later.sky.sun_direction = turned(scene.sky.sun_direction, 5f32.to_radians());
+    later.sky.light.sun_direction = turned(scene.sky.light.sun_direction, 5f32.to_radians());
     let from_above = shoot(&studio, &scene, *above, *coarse);
     // Levels of the land hardly show, which is their purpose; in the picture that tints them they do.
     let (_, levels, tinted) = pictures()[4];
@@ -188,7 +188,8 @@ fn what_should_be_noticed_is_and_nothing_else() {
 }
 
 /// About the vertical.
-fn turned([x, y, z]: [f32; 3], by_rad: f32) -> [f32; 3] {
+fn turned(direction: Vec3, by_rad: f32) -> Vec3 {
+    let [x, y, z] = direction.to_array();
     let (sin, cos) = libm::sincosf(by_rad);
-    [cos * x + sin * z, y, cos * z - sin * x]
+    Vec3::new(cos * x + sin * z, y, cos * z - sin * x)
 }

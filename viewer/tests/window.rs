@@ -14,7 +14,6 @@ use clap::Parser;
 use common::display::{Display, Picture, keys};
 use common::viewer::Viewer;
 use genescape_schema::{Parent, Space, Votes};
-use genescape_viewer::picture_file::{self, Pixels};
 use genescape_viewer::settings::SettingsFile;
 use genescape_world::World;
 use serde_json::json;
@@ -250,11 +249,12 @@ fn a_picture_is_saved(stage: &Stage, viewer: &mut Viewer) {
     stage.display.tap(keys::F12);
     let path = stage.path("pictures/genescape-0001.png");
     // It is there at once, but written when its last bytes can be read.
-    let read = || picture_file::read_png(&path).ok();
+    let read = || image::open(&path).ok().map(image::DynamicImage::into_rgba8);
     viewer.until("a picture is saved", |_| read().is_some());
-    let Pixels { width_px, height_px, rgba } = read().expect("it was just there");
+    let image = read().expect("it was just there");
+    let (width_px, height_px) = image.dimensions();
     assert!(width_px > 600 && height_px > 350, "{width_px} × {height_px}");
-    let distinct: std::collections::BTreeSet<_> = rgba.chunks_exact(4).collect();
+    let distinct: std::collections::BTreeSet<_> = image.as_raw().chunks_exact(4).collect();
     assert!(distinct.len() > 1000, "{} colours", distinct.len());
 }
 

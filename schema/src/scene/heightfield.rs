@@ -1,5 +1,7 @@
 //! `GSC_heightfield`, on the terrain's node: the land as a heightfield with its levels of detail and its surface.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -83,7 +85,7 @@ impl Heightfield {
 /// `GSC_heightfield` says which sample splits which triangle of the bintree.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TerrainLod {
-    pub field: Heightfield,
+    pub field: Arc<Heightfield>,
     /// Half thickness in metres of the wedgie of the triangles that a sample splits: how far the sample lies off the
     /// middle of their hypotenuse plus the greatest wedgie among the samples that split their halves. So a wedgie
     /// holds those of its children. The four corners, which split nothing, hold the greatest of all. Indexed like

@@ -16,6 +16,8 @@
 //! | | n² × f32 | wedgie half thicknesses in metres |
 //! | | Σ 4^l × 2 × f32, l = 0 … k−1 | lowest and highest height of each block in metres |
 
+use std::sync::Arc;
+
 use thiserror::Error;
 
 use super::{Heightfield, TerrainLod};
@@ -107,7 +109,7 @@ impl TerrainLod {
         let blocks = (cells as usize * cells as usize - 1) / 3;
         let ranges = array(2, "the block ranges", 2 * blocks)?;
         Ok(Self {
-            field: Heightfield { side, spacing_m, heights_m: array(0, "the heights", samples)? },
+            field: Arc::new(Heightfield { side, spacing_m, heights_m: array(0, "the heights", samples)? }),
             wedgies_m: array(1, "the wedgies", samples)?,
             block_ranges_m: ranges.as_chunks().0.to_vec(),
         })

@@ -1,12 +1,11 @@
 //! Keys, mouse and gamepad → where the one camera of all views is.
 
-use glam::Vec3;
 use winit::window::{CursorGrabMode, Window};
 
 use crate::camera::Camera;
 use crate::input::{Command, Held};
 use crate::settings::{Bookmark, Comfort};
-use crate::walk::{Feel, Land, Mode, Pose, Rig, START_RADIUS_M, start_pose};
+use crate::walk::{Feel, Land, Mode, Pose, Rig, start_pose};
 
 /// What moves the camera.
 pub struct CameraControl {
@@ -49,17 +48,17 @@ impl CameraControl {
 
     /// The landscapes are other ones: a camera that has not moved yet goes to their best place, any other steps out of
     /// trunks.
-    pub fn lands_changed(&mut self, lands: &[&Land], sun: Option<Vec3>) {
+    pub fn lands_changed(&mut self, lands: &[&Land]) {
         if self.begun {
             self.rig.settle(lands);
         } else {
-            self.go_to_start(lands, sun);
+            self.go_to_start(lands);
         }
     }
 
     /// Goes to where every walk starts.
-    pub fn go_to_start(&mut self, lands: &[&Land], sun: Option<Vec3>) {
-        self.rig.go(start_pose(lands, START_RADIUS_M, sun), lands);
+    pub fn go_to_start(&mut self, lands: &[&Land]) {
+        self.rig.go(start_pose(lands), lands);
     }
 
     /// Moves for a frame of that many seconds; what a gamepad asked for on the way.

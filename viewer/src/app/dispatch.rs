@@ -58,7 +58,7 @@ impl App {
                 self.tell(Tone::Info, format!("{mode:?}"));
             }
             Command::ReleaseMouse => self.capture(false),
-            Command::GoToStart => self.camera.go_to_start(&lands(&self.live), None),
+            Command::GoToStart => self.camera.go_to_start(&lands(&self.live)),
             Command::Maximise(landscape) => self.layout.maximise(usize::from(landscape) - 1),
             Command::ShowAll => self.layout.arrangement = Arrangement::Grid,
             Command::Compare => self.layout.compare(),

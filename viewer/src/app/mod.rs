@@ -20,7 +20,6 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use genescape_world::{Change, Scope, Source, Watch, World};
-use glam::Vec3;
 use serde_json::json;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 
@@ -242,9 +241,7 @@ impl App {
             }
         }
         if changed {
-            let scene = live.viewports.scene(self.layout.chosen);
-            let sun = scene.map(|scene| Vec3::from(scene.sky.sun_direction));
-            self.camera.lands_changed(&live.viewports.lands(), sun);
+            self.camera.lands_changed(&live.viewports.lands());
         }
     }
 

@@ -11,7 +11,7 @@ use crate::walk::{EYE_HEIGHT_M, Land, nearest_free};
 /// and clear of trunks, with the sun behind and to the side (thesis section 7).
 pub(super) fn camera_path(scene: &Scene, steps: u32) -> Vec<Camera> {
     let land = Land::of(scene);
-    let [x, _, z] = scene.sky.sun_direction;
+    let [x, _, z] = scene.sky.light.sun_direction.to_array();
     let away = Vec2::new(-x, -z).normalize_or(Vec2::NEG_Y);
     let ahead = Vec2::from_angle(0.6).rotate(away);
     let half_m = 0.25 * scene.ground.field.extent_m();

@@ -27,7 +27,7 @@ pub(super) fn run(headless: &Headless, path: &Path, args: &BenchArgs) -> Result<
     let scene = headless.read(path)?;
     let cameras = camera_path(&scene, args.steps);
     let uploaded = headless.upload(&scene)?;
-    let sky = &scene.sky;
+    let sky = &scene.sky.light;
     let told = |camera: &Camera| {
         json!({ "position_m": camera.position_m.to_array(), "yaw_rad": camera.yaw_rad,
                 "pitch_rad": camera.pitch_rad, "fov_y_rad": camera.fov_y_rad })
@@ -35,7 +35,7 @@ pub(super) fn run(headless: &Headless, path: &Path, args: &BenchArgs) -> Result<
     let hello = json!({
         "device": headless.gpu.name, "software": headless.gpu.software, "size_px": args.size, "near_m": NEAR_M,
         "trees": scene.trees.instances.len(), "cameras": cameras.iter().map(told).collect::<Vec<_>>(),
-        "sun_direction": sky.sun_direction, "sun_irradiance_linear": sky.sun_irradiance_linear,
+        "sun_direction": sky.sun_direction.to_array(), "sun_irradiance_linear": sky.sun_irradiance_linear,
         "sky_irradiance_linear": sky.sky_irradiance_linear, "haze_linear": sky.haze_linear,
         "haze_extinction_per_m": sky.haze_extinction_per_m, "exposure": sky.exposure,
     });

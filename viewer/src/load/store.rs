@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, Weak};
 use genescape_cache::Digest;
 
 use super::LoadError;
-use crate::scene::{HdrPicture, Heightfield, Picture, Template};
+use crate::scene::{HdrPicture, Picture, Template, TerrainLod};
 
 /// Read results by name. Nothing in it is kept alive by it.
 #[derive(Debug, Default)]
@@ -15,7 +15,7 @@ pub struct Store {
     bytes: Shelf<[u8]>,
     pictures: Shelf<Picture>,
     hdr_pictures: Shelf<HdrPicture>,
-    fields: Shelf<Heightfield>,
+    fields: Shelf<TerrainLod>,
     templates: Shelf<Template>,
     reads: Mutex<Vec<String>>,
 }
@@ -38,7 +38,7 @@ pub(super) trait Kept: Send + Sync + 'static {
     fn shelf(store: &Store) -> &Shelf<Self>;
 }
 
-impl Kept for Heightfield {
+impl Kept for TerrainLod {
     fn shelf(store: &Store) -> &Shelf<Self> {
         &store.fields
     }

@@ -15,9 +15,9 @@
 //!   arrived is overtaken by the edge between its parents when one of these leaves the line.)
 //! - rounding in another machine's log₂ is harmless: it cannot eat the gap.
 
+use genescape_schema::scene::bintree::{Sample, first_parent, level};
 use glam::{Vec2, Vec3};
 
-use super::bintree::{Sample, level, slides_to};
 use crate::scene::Heightfield;
 
 /// Part of each level's band of λ in which its vertices have arrived and the next level's still stand.
@@ -66,7 +66,7 @@ impl Detail {
         let mut slide = self.slide(field, vertex);
         for _ in 0..2 {
             if slide >= 1.0 {
-                vertex = slides_to(vertex);
+                vertex = first_parent(vertex);
                 slide = self.slide(field, vertex);
             }
         }
@@ -74,7 +74,7 @@ impl Detail {
         if slide <= 0.0 {
             return from;
         }
-        from + (sample_m(field, slides_to(vertex)) - from) * slide
+        from + (sample_m(field, first_parent(vertex)) - from) * slide
     }
 }
 

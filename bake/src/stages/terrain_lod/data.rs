@@ -3,6 +3,8 @@
 //! Wedgies after Duchaineau et al., "ROAMing terrain" (1997), equation 1; displacements after Vlietinck,
 //! "Trilinear displacement mapping of a flat surface with a v1.1 vertex shader" (2003).
 
+use std::sync::Arc;
+
 use genescape_schema::scene::bintree::parents;
 use rayon::prelude::*;
 
@@ -14,7 +16,7 @@ pub fn lod(field: &Heightfield) -> TerrainLod {
     TerrainLod {
         wedgies_m: wedgies(field.side, &displacements_m),
         block_ranges_m: block_ranges(field, &displacements_m),
-        field: field.clone(),
+        field: Arc::new(field.clone()),
     }
 }
 
