@@ -31,7 +31,7 @@ fn landscape() -> Scene {
         kinds.iter().map(|errors_m| Arc::new(made_up::template(&format!("{errors_m:?}"), errors_m)));
     let tree = |n: u32| {
         let [x, z] = [n, n + 500].map(|n| 120.0 * made_up::hash(n, 3, 4) - 60.0);
-        let y = field.height_m(x, z);
+        let y = field.field.height_m(x, z);
         (y > -1.0).then(|| made_up::instance(n % 2, [x, y, z], 0.7 + 0.6 * made_up::hash(n, 1, 2), n as f32))
     };
     let instances = (0..140).filter_map(tree).collect();
