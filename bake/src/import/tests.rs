@@ -6,7 +6,8 @@ use serde_json::{Value, json};
 
 use super::{ImportError, Imported, Repair, read_mesh};
 use crate::model::{Material, Mesh, PartKind};
-use crate::stages::lod::{LodOptions, levels, progressive};
+use crate::stages::lod::progressive::reader;
+use crate::stages::lod::{LodOptions, levels};
 
 fn nothing(name: &str) -> io::Result<Vec<u8>> {
     Err(io::Error::new(io::ErrorKind::NotFound, format!("no {name}")))
@@ -270,7 +271,7 @@ fn real_meshes_keep_their_shape() {
             continue;
         };
         let made = levels(&mesh, &LodOptions::default());
-        assert_eq!(progressive::decode(&made.progressive).unwrap().rebuild(usize::MAX), mesh, "{name}");
+        assert_eq!(reader::decode(&made.progressive).unwrap().rebuild(usize::MAX), mesh, "{name}");
         let bounds = mesh.bounds();
         let diagonal = (bounds.max - bounds.min).length();
         for level in &made.levels {

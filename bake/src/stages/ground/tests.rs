@@ -3,6 +3,7 @@
 use std::sync::LazyLock;
 
 use super::*;
+use crate::math::srgb_from_linear;
 use crate::model::Material;
 use crate::stages::land::{LandParams, landform};
 
@@ -160,19 +161,6 @@ fn textures_have_their_mean_and_point_outwards() {
             let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
             assert!((length - 1.0).abs() < 0.03 && n[2] > 0.0, "{} has the normal {n:?}", t.name);
         }
-    }
-}
-
-#[test]
-#[ignore = "writes pictures"]
-fn texture_pictures() {
-    use crate::stages::land::{cpu_s, write_picture};
-    let begin = cpu_s();
-    let made = textures();
-    eprintln!("textures: {:.0} ms", 1e3 * (cpu_s() - begin));
-    for t in &made {
-        write_picture(&format!("{}-detail", t.name), 512, 512, &t.detail.data);
-        write_picture(&format!("{}-normal", t.name), 512, 512, &t.normal.data);
     }
 }
 

@@ -4,7 +4,6 @@
 
 use super::LandParams;
 use super::grid::{self, Grid};
-use super::thermal::settle;
 use crate::noise::hash01;
 use crate::seed::noise_seed;
 
@@ -33,11 +32,9 @@ pub(super) fn carve_valleys(land: &mut Grid, loose: &mut Grid, params: &LandPara
             drainage.cut(&mut after, base_m);
             creep(&mut after, params.talus_angle_deg + 10.0);
         }
-        let mut gained = before.map(|_| 0.0);
-        settle(&mut gained, &before, &after);
+        let gained = after.zip(&before, |after, before| (after - before).max(0.0)).resized(land.side);
         grid::add_change(land, &before, &after);
-        let gained = gained.resized(land.side);
-        loose.values.iter_mut().zip(&gained.values).for_each(|(l, g)| *l += g.max(0.0));
+        *loose = loose.zip(&gained, |loose, gained| loose + gained.max(0.0));
     }
 }
 
@@ -46,8 +43,8 @@ pub(super) fn flow(land: &Grid, side: u32) -> Grid {
     let coarse = land.resized(side);
     let cell = coarse.spacing_m * coarse.spacing_m;
     let areas = Drainage::new(&coarse, 0).spread_areas(&coarse);
-    let most = areas.iter().fold(cell, |a, &b| a.max(b));
-    let scale = 1.0 / libm::logf(most / (4.0 * cell)).max(1.0);
+    let greatest = areas.iter().fold(cell, |a, &b| a.max(b));
+    let scale = 1.0 / libm::logf(greatest / (4.0 * cell)).max(1.0);
     let values = areas.iter().map(|a| (libm::logf((a / (4.0 * cell)).max(1.0)) * scale).min(1.0)).collect();
     Grid { values, ..coarse }.smoothed()
 }

@@ -1,9 +1,9 @@
-//! A tree's coarse mesh and the sun → its shadow as a small picture of transmittance (0–1), in the plane across the
+//! A tree's coarse mesh and the sun → its shadow as a small image of transmittance (0–1), in the plane across the
 //! light, in metres of the tree's own space.
 //!
 //! Coordinates in that plane, from the tree's foot: `a` to the right as the sun sees it, `c` up. Front faces count
 //! like back faces, so that the ground under the trunk is shadowed and no gap opens at its base (thesis 4.4.2).
-//! The picture is drawn finely and then filtered: by a texel of the light map as the sun sees it, so that edges are
+//! The image is drawn finely and then filtered: by a texel of the light map as the sun sees it, so that edges are
 //! smooth; and by the sun's disc, more the higher a part stands, so that the trunk's shadow is sharp and the
 //! crown's is soft.
 
@@ -16,12 +16,13 @@ use crate::model::{Material, Mesh};
 
 /// Part of the light that a leaf card holds back: cards are about half empty.
 const LEAF_OPACITY: f32 = 0.55;
-/// Cells of a picture, at most, across and up.
-const MOST_CELLS: [usize; 2] = [96, 192];
+/// Greatest number of cells of an image, across and up.
+const MAX_CELLS: [usize; 2] = [96, 192];
 /// Cells per texel of the light map.
 const CELLS_PER_TEXEL: f32 = 4.0;
 /// Triangles wholly below this height are roots in the ground.
-const LOWEST_M: f32 = -0.25;
+const MIN_HEIGHT_M: f32 = -0.25;
+
 /// What a crown hides of the sky, as a sphere squashed to its height.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Crown {
@@ -62,7 +63,7 @@ fn opacity(material: Material) -> f32 {
     if matches!(material, Material::Leaf | Material::Blossom) { LEAF_OPACITY } else { 1.0 }
 }
 
-/// The picture.
+/// A tree's shadow.
 pub(super) struct Shadow {
     /// Rows from low `c` to high.
     pub transmittance: Vec<f32>,
@@ -98,7 +99,7 @@ impl Shadow {
         let high = [high[0] + border[0], high[1] + border[1]];
         let cells = |axis: usize, texel_m: f32| {
             let wanted = ((high[axis] - low[axis]) * CELLS_PER_TEXEL / texel_m) as usize + 1;
-            wanted.clamp(4, MOST_CELLS[axis])
+            wanted.clamp(4, MAX_CELLS[axis])
         };
         let (columns, rows) = (cells(0, texel_m), cells(1, texel_m * sun.sin_elevation.max(0.02)));
         let cells_per_m = [columns as f32 / (high[0] - low[0]), rows as f32 / (high[1] - low[1])];
@@ -140,7 +141,7 @@ impl Shadow {
             for triangle in &part.triangles {
                 let heights = triangle.map(|v| mesh.positions[v as usize][1]);
                 let middle = (heights[0] + heights[1] + heights[2]) / 3.0;
-                if middle >= range[0] && middle < range[1] && heights.iter().any(|&y| y > LOWEST_M) {
+                if middle >= range[0] && middle < range[1] && heights.iter().any(|&y| y > MIN_HEIGHT_M) {
                     let rows = self.fill(triangle.map(|v| grid[v as usize]), left, layer);
                     let before = drawn.unwrap_or(rows.clone());
                     drawn = Some(before.start.min(rows.start)..before.end.max(rows.end));
@@ -238,20 +239,20 @@ struct Filter {
     texel_m: [f32; 2],
     /// Radius of the sun's disc on the ground's side, per metre of height.
     spread: f32,
-    most_m: f32,
+    max_disc_m: f32,
 }
 
 impl Filter {
     fn new(sun: &Sun, texel_m: f32, top_m: f32) -> Self {
         let sin_elevation = sun.sin_elevation.max(0.02);
         let texel_m = [texel_m, texel_m * sin_elevation];
-        Self { texel_m, spread: sun.sin_radius / sin_elevation, most_m: 0.6 * top_m.max(0.0) }
+        Self { texel_m, spread: sun.sin_radius / sin_elevation, max_disc_m: 0.6 * top_m.max(0.0) }
     }
 
     /// Widths across and up of a box that, applied twice, spreads as much as a texel and the disc together, for
     /// parts at a height (the variance of a box is width²/12, of a disc radius²/4).
     fn widths(&self, height_m: f32) -> [f32; 2] {
-        let disc = (height_m * self.spread).min(self.most_m);
+        let disc = (height_m * self.spread).min(self.max_disc_m);
         self.texel_m.map(|texel| (6.0 * (disc * disc / 4.0 + texel * texel / 4.0)).sqrt())
     }
 

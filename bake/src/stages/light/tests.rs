@@ -8,7 +8,7 @@ use crate::model::{Heightfield, Instance, Material, Part, PartKind};
 use crate::noise::fbm2;
 
 /// A sky without clouds whose sun stands at an elevation and azimuth (clockwise from north), in degrees.
-pub(super) fn light(elevation_deg: f32, azimuth_deg: f32, sun_size_deg: f32) -> SkyLight {
+fn light(elevation_deg: f32, azimuth_deg: f32, sun_size_deg: f32) -> SkyLight {
     let (sin, cos) = libm::sincosf(elevation_deg.to_radians());
     let (east, north) = libm::sincosf(azimuth_deg.to_radians());
     SkyLight {
@@ -24,7 +24,7 @@ pub(super) fn light(elevation_deg: f32, azimuth_deg: f32, sun_size_deg: f32) -> 
 }
 
 /// Land of 1024 m with heights by a function of (x, z), its apron likewise.
-pub(super) fn land(side: u32, height_m: impl Fn(f32, f32) -> f32) -> Landform {
+fn land(side: u32, height_m: impl Fn(f32, f32) -> f32) -> Landform {
     let field = |side: u32, spacing_m: f32| {
         let place = |k: u32| (k as f32 - 0.5 * (side - 1) as f32) * spacing_m;
         let heights_m = (0..side * side).map(|k| height_m(place(k % side), place(k / side))).collect();
@@ -51,7 +51,7 @@ fn trunk(radius_m: f32, height_m: f32) -> Mesh {
     mesh
 }
 
-pub(super) fn at(template: u32, x: f32, y: f32, z: f32, turn_rad: f32, scale: f32) -> Instance {
+fn at(template: u32, x: f32, y: f32, z: f32, turn_rad: f32, scale: f32) -> Instance {
     let (sin, cos) = libm::sincosf(turn_rad);
     let world_from_tree =
         [[cos * scale, 0.0, sin * scale, x], [0.0, scale, 0.0, y], [-sin * scale, 0.0, cos * scale, z]];

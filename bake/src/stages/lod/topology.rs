@@ -11,12 +11,10 @@ pub const BOUNDARY: u8 = 1;
 pub const LOCKED: u8 = 2;
 
 /// A connected piece of surface.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Piece {
     /// Its triangles at full detail, a range of `Topology::piece_triangles`.
     pub triangles: std::ops::Range<usize>,
-    /// How many of them live.
-    pub living_triangles: usize,
     /// Its living vertices.
     pub living_vertices: usize,
     /// Mean width across its longest extent, in metres: a twig's diameter.
@@ -25,7 +23,7 @@ pub struct Piece {
     pub extent_m: f64,
 }
 
-/// Points, corners and pieces; updated by `collapse`.
+/// Points, corners and pieces; updated by `merge`.
 pub struct Topology {
     /// Taken from all positions, so that double precision is used near zero.
     pub origin: DVec3,
@@ -90,7 +88,7 @@ impl Topology {
         [self.point_of[p as usize], self.point_of[q as usize], self.point_of[r as usize]]
     }
 
-    /// The living corners at a point; forgets dead ones.
+    /// The living corners at a point; forgets removed ones.
     pub fn star(&mut self, state: &State, point: u32, corners: &mut Vec<u32>) {
         corners.clear();
         let (mut before, mut corner) = (NONE, self.head[point as usize]);
@@ -126,6 +124,38 @@ impl Topology {
         (self.head[gone], self.tail[gone]) = (NONE, NONE);
     }
 
+    /// The points that share an edge with `point`, whose corners are `star`.
+    pub fn ring(&self, state: &State, point: u32, star: &[u32], seen: &mut PointSet, found: &mut Vec<u32>) {
+        seen.clear();
+        seen.insert(point);
+        let points = star.iter().flat_map(|&corner| self.points_from(state, corner));
+        found.clear();
+        found.extend(points.filter(|&other| seen.insert(other)));
+    }
+
+    /// Whether the triangles around a point hang together by edges; stars of over 64 triangles count as torn.
+    pub fn is_one_fan(&self, state: &State, point: u32, star: &[u32]) -> bool {
+        if star.len() > 64 {
+            return false;
+        }
+        let (all, mut reached) = (u64::MAX >> (64 - star.len().max(1)), 1_u64);
+        let mut front = reached;
+        while front != 0 {
+            let index = front.trailing_zeros() as usize;
+            front &= front - 1;
+            let [_, p, q] = self.points_from(state, star[index]);
+            for (other, &corner) in star.iter().enumerate() {
+                let seen = reached >> other & 1 == 1;
+                let [_, r, s] = self.points_from(state, corner);
+                if !seen && [p, q].iter().any(|&end| end != point && (end == r || end == s)) {
+                    reached |= 1 << other;
+                    front |= 1 << other;
+                }
+            }
+        }
+        reached == all
+    }
+
     fn chain_corners(&mut self, state: &State) {
         for t in surface_triangles(state) {
             for k in 0..3 {
@@ -155,14 +185,7 @@ impl Topology {
             let root = find(&mut union, point as u32) as usize;
             if root == point {
                 self.piece_of[point] = self.pieces.len() as u32;
-                let none = Piece {
-                    triangles: 0..0,
-                    living_triangles: 0,
-                    living_vertices: 0,
-                    thickness_m: 0.0,
-                    extent_m: 0.0,
-                };
-                self.pieces.push(none);
+                self.pieces.push(Piece::default());
             }
             self.piece_of[point] = self.piece_of[root];
             self.pieces[self.piece_of[point] as usize].living_vertices += self.wedges[point] as usize;
@@ -173,17 +196,16 @@ impl Topology {
 
     fn collect_piece_triangles(&mut self, state: &State) {
         let piece = |t: usize| self.piece_of[self.point_of[state.triangles[t][0] as usize] as usize] as usize;
-        let mut count = 0;
         for t in surface_triangles(state) {
-            self.pieces[piece(t)].living_triangles += 1;
-            count += 1;
+            self.pieces[piece(t)].triangles.end += 1;
         }
         let mut start = 0;
         for piece in &mut self.pieces {
+            let count = piece.triangles.len();
             piece.triangles = start..start;
-            start += piece.living_triangles;
+            start += count;
         }
-        self.piece_triangles = vec![0; count];
+        self.piece_triangles = vec![0; start];
         for t in surface_triangles(state) {
             let range = &mut self.pieces[piece(t)].triangles;
             self.piece_triangles[range.end] = t as u32;
@@ -207,6 +229,33 @@ impl Topology {
             self.pieces[index].thickness_m = thickness_m.min(extent_m);
             self.pieces[index].extent_m = extent_m;
         }
+    }
+}
+
+/// A set of points that is emptied in constant time.
+pub struct PointSet {
+    stamps: Vec<u32>,
+    now: u32,
+}
+
+impl PointSet {
+    pub fn new(points: usize) -> Self {
+        Self { stamps: vec![0; points], now: 0 }
+    }
+
+    pub fn clear(&mut self) {
+        self.now += 1;
+    }
+
+    /// Whether the point is new.
+    #[inline]
+    pub fn insert(&mut self, point: u32) -> bool {
+        std::mem::replace(&mut self.stamps[point as usize], self.now) != self.now
+    }
+
+    #[inline]
+    pub fn contains(&self, point: u32) -> bool {
+        self.stamps[point as usize] == self.now
     }
 }
 

@@ -4,7 +4,8 @@
 
 use super::SkyParams;
 use super::billow::{BILLOWS, Billows};
-use super::math::{lerp, smoothstep, split};
+use super::math::range;
+use crate::math::{lerp, smoothstep, split};
 use crate::noise;
 use crate::seed::noise_seed;
 
@@ -161,17 +162,17 @@ impl CloudField {
         let coarse = self.billows.sample(x * k, y * k, z * k);
         // The base stays nearly flat.
         let rough = 2.0 * reach * (0.3 + 0.7 * smoothstep(0.0, 0.5 * self.billow_m, y));
-        let least = shape.depth_m + rough * (coarse * 0.74 - 0.56);
-        if !fine {
-            return ((least + rough * 0.26 * coarse) / ramp).clamp(0.0, 1.0);
+        let min = shape.depth_m + rough * (coarse * 0.74 - 0.56);
+        let mut small = coarse;
+        if fine {
+            // Small billows matter only where they decide.
+            if min >= ramp || min + 0.26 * rough <= 0.0 {
+                return if min >= ramp { 1.0 } else { 0.0 };
+            }
+            let f = k * self.fine_factor;
+            small = self.billows.sample(z * f + 0.3, x * f, y * f + 0.7);
         }
-        // Small billows matter only where they decide.
-        if least >= ramp || least + 0.26 * rough <= 0.0 {
-            return if least >= ramp { 1.0 } else { 0.0 };
-        }
-        let f = k * self.fine_factor;
-        let small = self.billows.sample(z * f + 0.3, x * f, y * f + 0.7);
-        ((least + rough * 0.26 * small) / ramp).clamp(0.0, 1.0)
+        ((min + rough * 0.26 * small) / ramp).clamp(0.0, 1.0)
     }
 
     /// Density without billows, for shadows: what counts there is the mean.
@@ -196,7 +197,6 @@ fn cover_map(seed: u32) -> Vec<f32> {
             map.push(cells + 0.22 * broad + 0.14 * mid);
         }
     }
-    let low = map.iter().fold(f32::MAX, |a, &b| a.min(b));
-    let high = map.iter().fold(f32::MIN, |a, &b| a.max(b));
+    let (low, high) = range(&map);
     map.iter().map(|v| (v - low) / (high - low)).collect()
 }

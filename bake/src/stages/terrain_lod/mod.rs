@@ -16,8 +16,6 @@ mod verify;
 #[cfg(test)]
 mod tests;
 
-pub use apron::WATER_TILE_M;
 pub use data::lod;
 pub use near::{default_error_m, mesh};
 pub use stage::{TerrainFiles, TerrainStage};
-pub use verify::max_error_m;

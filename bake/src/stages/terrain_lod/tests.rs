@@ -7,6 +7,7 @@ use proptest::prelude::*;
 use genescape_schema::scene::{HeightfieldError, bintree};
 
 use super::data::displacements_m;
+use super::verify::max_error_m;
 use super::*;
 use crate::model::{Heightfield, Landform, Mesh, TerrainLod};
 use crate::noise::fbm2;

@@ -1,20 +1,12 @@
-//! The payload of `GSC_progressive_mesh`: the coarsest mesh and the records that lead back to the original, one
-//! vertex split (or one piece that appears) each. Specified in `schema/docs/GSC_progressive_mesh.md`.
-//!
-//! After Hoppe, "Progressive meshes" (1996). All values are stored exactly, so at full count the original comes back
-//! bit for bit, every vertex and triangle in its own place. Metres; little-endian.
+//! The reference reader of `GSC_progressive_mesh`, which proves in tests that the payload holds what it should: at any
+//! number of vertices a sound mesh, at a mark's the distinguished mesh, at all the original bit for bit.
 
 use thiserror::Error;
 
+use super::super::log::{Log, Record};
+use super::super::state::{Attributes, NONE, PartSpan, State, Vertex};
+use super::{MAGIC, Mark, VERSION};
 use crate::model::{Material, Mesh, PartKind};
-
-use super::sequence::Sequence;
-use super::state::{Attributes, Log, NONE, PartSpan, Record, State, Vertex};
-
-/// The first bytes of a payload.
-pub const MAGIC: [u8; 8] = *b"GSCPMESH";
-/// The version written and read.
-pub const VERSION: u32 = 1;
 
 /// Why a payload can't be read.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
@@ -36,96 +28,6 @@ pub enum ProgressiveError {
         /// What is wrong.
         what: &'static str,
     },
-}
-
-/// A distinguished mesh's place in the sequence.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Mark {
-    /// Its vertices.
-    pub vertices: u32,
-    /// Its triangles.
-    pub triangles: u32,
-    /// Records to apply to the coarsest mesh to get to it.
-    pub records: u32,
-    /// Its error in metres.
-    pub error_m: f32,
-    /// For each part, the elements of it that live and their scale; (0, 1) for surfaces.
-    pub parts: Vec<(u32, f32)>,
-}
-
-impl Mark {
-    /// The present state, with records counted from the original.
-    pub(super) fn of(sequence: &Sequence, error_m: f32) -> Self {
-        let mut parts = vec![(0, 1.0); sequence.state.parts.len()];
-        for (part, span) in parts.iter_mut().zip(&sequence.state.parts) {
-            part.0 = span.elements().map_or(0, |(elements, ..)| elements);
-        }
-        Self {
-            vertices: sequence.state.vertex_count as u32,
-            triangles: sequence.state.triangle_lives.iter().filter(|&&lives| lives).count() as u32,
-            records: sequence.log.len() as u32,
-            error_m,
-            parts,
-        }
-    }
-
-    /// The present state with aggregates' elements scaled so that coverage is kept.
-    pub(super) fn calibrated(sequence: &mut Sequence) -> Self {
-        let mut mark = Self::of(sequence, 0.0);
-        for aggregate in &mut sequence.aggregates {
-            mark.parts[aggregate.part] = (aggregate.living() as u32, aggregate.calibrated_scale());
-        }
-        mark
-    }
-
-    /// Scale of each part's elements.
-    pub fn scales(&self) -> Vec<f32> {
-        self.parts.iter().map(|part| part.1).collect()
-    }
-}
-
-/// Writes a payload. `state` is the coarsest mesh, `log` leads from the original to it, `marks` are in the order of
-/// levels with records counted from the original.
-pub(super) fn encode(state: &State, log: &Log, marks: &[Mark]) -> Vec<u8> {
-    let data = 12 + attribute_bytes(state.attributes);
-    let mut out =
-        Writer::new(state.attributes, log.born.len() * (data + 4) + log.restored.len() * (data + 2));
-    let living = |lives: &[bool]| lives.iter().filter(|&&lives| lives).count() as u32;
-    out.bytes.extend(MAGIC);
-    let flags = [state.attributes.normals, state.attributes.uvs, state.attributes.colors];
-    out.words(&[
-        VERSION,
-        flags.iter().enumerate().map(|(bit, &flag)| u32::from(flag) << bit).sum(),
-        state.vertices.len() as u32,
-        state.triangles.len() as u32,
-        state.parts.len() as u32,
-        marks.len() as u32,
-        state.vertex_count as u32,
-        living(&state.triangle_lives),
-        log.len() as u32,
-        0,
-    ]);
-    for span in &state.parts {
-        let (_, per_vertices, per_triangles) = span.elements().unwrap_or((0, 0, 0));
-        let kind = u32::from(span.kind != PartKind::Surface);
-        let material = material_code(span.material);
-        out.words(&[material, kind, span.first_triangle, span.triangles]);
-        out.words(&[span.first_vertex, per_vertices, per_triangles, 0]);
-    }
-    for mark in marks {
-        let records = log.len() as u32 - mark.records;
-        out.words(&[mark.vertices, mark.triangles, records, mark.error_m.to_bits()]);
-        mark.parts.iter().for_each(|&(elements, scale)| out.words(&[elements, scale.to_bits()]));
-    }
-    for id in (0..state.vertices.len()).filter(|&id| state.vertex_lives[id]) {
-        out.vertex_id(id as u32);
-        out.vertex(&state.vertices[id]);
-    }
-    for id in (0..state.triangles.len()).filter(|&id| state.triangle_lives[id]) {
-        out.triangle(id as u32, state.triangles[id]);
-    }
-    (0..log.len()).rev().for_each(|index| out.record(&log.record(index)));
-    out.bytes
 }
 
 /// A progressive mesh that can be rebuilt at any number of vertices.
@@ -153,7 +55,7 @@ impl Progressive {
         let mut state = self.base.clone();
         for index in 0..self.log.len() {
             let record = self.log.record(index);
-            if state.vertex_count + record.born.len() > vertices {
+            if state.vertex_count + record.removed.len() > vertices {
                 break;
             }
             apply(&mut state, &record);
@@ -196,6 +98,9 @@ pub fn decode(bytes: &[u8]) -> Result<Progressive, ProgressiveError> {
         triangles: vec![[0; 3]; head.triangles],
         triangle_lives: vec![false; head.triangles],
         vertex_count: 0,
+        log: Log::default(),
+        merged_into: Vec::new(),
+        collapsed_to: Vec::new(),
     };
     for _ in 0..head.parts {
         let span = reader.part(&head)?;
@@ -219,10 +124,10 @@ pub fn decode(bytes: &[u8]) -> Result<Progressive, ProgressiveError> {
     Ok(Progressive { base, log, marks })
 }
 
-/// Gives back what a record holds.
+/// Undoes the step that a record was made of.
 fn apply(state: &mut State, record: &Record<'_>) {
-    record.restored.iter().for_each(|&(id, vertex)| state.vertices[id as usize] = vertex);
-    for &(id, _, vertex) in record.born {
+    record.changed.iter().for_each(|&(id, vertex)| state.vertices[id as usize] = vertex);
+    for &(id, _, vertex) in record.removed {
         state.vertices[id as usize] = vertex;
         state.vertex_lives[id as usize] = true;
         state.vertex_count += 1;
@@ -240,122 +145,27 @@ fn apply(state: &mut State, record: &Record<'_>) {
 fn fault(state: &State, record: &Record<'_>) -> Option<&'static str> {
     let known = |id: u32| (id as usize) < state.vertices.len();
     let lives = |id: u32| known(id) && state.vertex_lives[id as usize];
-    let born = |id: u32| record.born.iter().any(|vertex| vertex.0 == id);
+    let added = |id: u32| record.removed.iter().any(|vertex| vertex.0 == id);
     let triangle_lives = |id: u32| state.triangle_lives.get(id as usize).copied();
-    if !record.restored.iter().all(|vertex| lives(vertex.0)) {
+    if !record.changed.iter().all(|vertex| lives(vertex.0)) {
         return Some("it changes a vertex that isn't there");
     }
-    if !record.born.iter().all(|vertex| known(vertex.0) && !lives(vertex.0)) {
+    if !record.removed.iter().all(|vertex| known(vertex.0) && !lives(vertex.0)) {
         return Some("it adds a vertex that can't be added");
     }
-    if !record.corners.iter().all(|&(c, v)| triangle_lives(c / 3) == Some(true) && (lives(v) || born(v))) {
+    if !record.corners.iter().all(|&(c, v)| triangle_lives(c / 3) == Some(true) && (lives(v) || added(v))) {
         return Some("it changes a corner that isn't there");
     }
-    let whole = |triangle: &[u32; 3]| triangle.iter().all(|&v| lives(v) || born(v));
+    let whole = |triangle: &[u32; 3]| triangle.iter().all(|&v| lives(v) || added(v));
     if !record.triangles.iter().all(|(id, triangle)| triangle_lives(*id) == Some(false) && whole(triangle)) {
         return Some("it adds a triangle that can't be added");
     }
     None
 }
 
-fn attribute_bytes(attributes: Attributes) -> usize {
-    12 * usize::from(attributes.normals)
-        + 8 * usize::from(attributes.uvs)
-        + 4 * usize::from(attributes.colors)
-}
-
-fn material_code(material: Material) -> u32 {
-    match material {
-        Material::Bark => 0,
-        Material::Leaf => 1,
-        Material::Blossom => 2,
-        Material::Ground => 3,
-        Material::Water => 4,
-        Material::Foreign(n) => n.saturating_add(16),
-    }
-}
-
 fn material_of(code: u32) -> Option<Material> {
     let known = [Material::Bark, Material::Leaf, Material::Blossom, Material::Ground, Material::Water];
     known.get(code as usize).copied().or_else(|| code.checked_sub(16).map(Material::Foreign))
-}
-
-/// Bytes with the running numbers from which ids are counted.
-struct Writer {
-    bytes: Vec<u8>,
-    attributes: Attributes,
-    vertex: u32,
-    triangle: u32,
-}
-
-impl Writer {
-    fn new(attributes: Attributes, capacity: usize) -> Self {
-        Self { bytes: Vec::with_capacity(capacity), attributes, vertex: 0, triangle: 0 }
-    }
-
-    fn words(&mut self, words: &[u32]) {
-        words.iter().for_each(|word| self.bytes.extend(word.to_le_bytes()));
-    }
-
-    fn varint(&mut self, mut value: u32) {
-        while value >= 0x80 {
-            self.bytes.push(value as u8 | 0x80);
-            value >>= 7;
-        }
-        self.bytes.push(value as u8);
-    }
-
-    fn delta(&mut self, value: u32, from: u32) {
-        let difference = value.wrapping_sub(from) as i32;
-        self.varint((difference << 1 ^ difference >> 31) as u32);
-    }
-
-    fn vertex_id(&mut self, id: u32) {
-        self.delta(id, self.vertex);
-        self.vertex = id;
-    }
-
-    fn vertex(&mut self, vertex: &Vertex) {
-        self.bytes.extend_from_slice(bytemuck::bytes_of(&vertex.position.map(f32::to_bits).map(u32::to_le)));
-        if self.attributes.normals {
-            self.bytes
-                .extend_from_slice(bytemuck::bytes_of(&vertex.normal.map(f32::to_bits).map(u32::to_le)));
-        }
-        if self.attributes.uvs {
-            self.bytes.extend_from_slice(bytemuck::bytes_of(&vertex.uv.map(f32::to_bits).map(u32::to_le)));
-        }
-        if self.attributes.colors {
-            self.bytes.extend_from_slice(&vertex.color);
-        }
-    }
-
-    fn triangle(&mut self, id: u32, triangle: [u32; 3]) {
-        self.delta(id, self.triangle);
-        self.triangle = id;
-        triangle.iter().for_each(|&v| self.vertex_id(v));
-    }
-
-    fn record(&mut self, record: &Record<'_>) {
-        let counts = [record.restored.len(), record.born.len(), record.corners.len(), record.triangles.len()];
-        counts.iter().for_each(|&count| self.varint(count as u32));
-        for (id, vertex) in record.restored {
-            self.vertex_id(*id);
-            self.vertex(vertex);
-        }
-        for (id, parent, vertex) in record.born {
-            self.vertex_id(*id);
-            // A vertex is never its own parent, so no distance means no parent.
-            self.delta(if *parent == NONE { *id } else { *parent }, *id);
-            self.vertex(vertex);
-        }
-        for &(corner, vertex) in record.corners {
-            self.delta(corner / 3, self.triangle);
-            self.triangle = corner / 3;
-            self.varint(corner % 3);
-            self.vertex_id(vertex);
-        }
-        record.triangles.iter().for_each(|&(id, triangle)| self.triangle(id, triangle));
-    }
 }
 
 struct Header {
@@ -516,14 +326,14 @@ impl<'a> Reader<'a> {
         let mut log = Log::default();
         for _ in 0..head.base_vertices {
             let id = self.vertex_id()?;
-            log.born.push((id, NONE, self.vertex()?));
+            log.removed.push((id, NONE, self.vertex()?));
         }
         for _ in 0..head.base_triangles {
             log.triangles.push(self.triangle()?);
         }
         log.finish_record();
         let record = log.record(0);
-        for &(id, _, vertex) in record.born {
+        for &(id, _, vertex) in record.removed {
             let lives = base.vertex_lives.get_mut(id as usize);
             match lives {
                 Some(lives) if !*lives => *lives = true,
@@ -547,12 +357,12 @@ impl<'a> Reader<'a> {
         let counts = [self.varint()?, self.varint()?, self.varint()?, self.varint()?];
         for _ in 0..counts[0] {
             let id = self.vertex_id()?;
-            log.restored.push((id, self.vertex()?));
+            log.changed.push((id, self.vertex()?));
         }
         for _ in 0..counts[1] {
             let id = self.vertex_id()?;
             let parent = self.delta(id)?;
-            log.born.push((id, if parent == id { NONE } else { parent }, self.vertex()?));
+            log.removed.push((id, if parent == id { NONE } else { parent }, self.vertex()?));
         }
         for _ in 0..counts[2] {
             self.triangle = self.delta(self.triangle)?;

@@ -11,16 +11,15 @@ const LEAF_BUDGET: u32 = 10_600;
 const BARK_BUDGET: f32 = 7_600.0;
 const BARE_BUDGET: f32 = 16_000.0;
 /// Triangles of bark that are never exceeded.
-const BARK_MOST: u32 = 12_500;
-const BARE_MOST: u32 = 22_500;
+const MAX_BARK: u32 = 12_500;
+const MAX_BARE_BARK: u32 = 22_500;
 /// What a stem of level 2 and one of level 3 cost, in triangles.
 const SECONDARY_COST: f32 = 16.0;
 const TERTIARY_COST: f32 = 10.0;
 
-/// Numbers of things.
+/// How many of everything a tree may have.
 #[derive(Clone, Debug)]
-pub(super) struct Plan {
-    /// How foliage is set out.
+pub(super) struct Budget {
     pub habit: Habit,
     /// Levels of stems that are really grown.
     pub levels: u32,
@@ -29,18 +28,16 @@ pub(super) struct Plan {
     /// Segments of a stem by level.
     pub segments: [u32; 4],
     /// Arms that one stem may fork into, by level.
-    pub most_arms: [u32; 4],
+    pub max_arms: [u32; 4],
     /// Primary branches of the whole tree.
     pub primaries: f32,
-    /// Greatest numbers of secondary branches on a primary one and of tertiary on a secondary one.
-    pub children: [f32; 2],
-    /// Greatest number of cards.
-    pub cards: u32,
-    /// Greatest number of triangles of bark.
-    pub bark_triangles: u32,
+    /// Greatest numbers of secondary branches on a primary one and of tertiary ones on a secondary one.
+    pub max_children: [f32; 2],
+    pub max_cards: u32,
+    pub max_bark_triangles: u32,
 }
 
-impl Plan {
+impl Budget {
     /// Shares out the budget.
     pub fn new(params: &TreeParams) -> Self {
         let habit = Habit::of(params.leaf_shape, params.levels);
@@ -64,17 +61,24 @@ impl Plan {
             levels,
             bare,
             segments: [if palm { 14 } else { 12 }, inner, if levels == 4 { 3 } else { 4 }, 3],
-            most_arms: [8, 3, 1, 1],
+            max_arms: [8, 3, 1, 1],
             primaries,
-            children: children(params, levels, bare, habit, arms, left),
-            cards: LEAF_BUDGET / habit.triangles(),
-            bark_triangles: if bare { BARE_MOST } else { BARK_MOST },
+            max_children: max_children(params, levels, bare, habit, arms, left),
+            max_cards: LEAF_BUDGET / habit.triangles(),
+            max_bark_triangles: if bare { MAX_BARE_BARK } else { MAX_BARK },
         }
     }
 }
 
 /// Greatest numbers of children of primary and of secondary branches that `left` triangles pay for.
-fn children(params: &TreeParams, levels: u32, bare: bool, habit: Habit, arms: f32, left: f32) -> [f32; 2] {
+fn max_children(
+    params: &TreeParams,
+    levels: u32,
+    bare: bool,
+    habit: Habit,
+    arms: f32,
+    left: f32,
+) -> [f32; 2] {
     if levels < 3 {
         return [0.0, 0.0];
     }
