@@ -2,21 +2,21 @@
 //! twenty trees without levels of detail, textures, land, light or files. The viewer: its pictures with and without
 //! levels of detail, then beside three.js drawing the same scene file.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
 
 use crate::setup;
-use crate::tools::{cargo, is_installed, program, root, run};
+use crate::tools::{files, fresh, is_installed, program, release, root, run};
 
 /// Trees in four scenes: five templates each.
 const TREES: &str = "20";
 /// Whole bakes; the fastest counts, as it does for the peer.
 const BAKES: u32 = 3;
-/// The most that a whole bake may take, in times of the peer's trees.
-const MOST: f64 = 6.0;
+/// What a whole bake may take, in times of the peer's trees.
+const MAX_RATIO: f64 = 6.0;
 
 /// Prints `bake bench`, then what the peer takes, then the ratios and whether they are what they should be; then the
 /// same of the viewer.
@@ -28,9 +28,7 @@ pub fn bench(runs: u32) -> Result<()> {
     let world = root().join("target/bench-world");
     let mut ours_ms = f64::MAX;
     for _ in 0..BAKES {
-        if world.exists() {
-            std::fs::remove_dir_all(&world).context("cannot remove the last bake")?;
-        }
+        fresh(world.clone())?;
         let start = Instant::now();
         let output = program(&bake).arg("--world").arg(&world).output().context("cannot start bake")?;
         ensure!(output.status.success(), "bake failed: {}", String::from_utf8_lossy(&output.stderr));
@@ -48,10 +46,10 @@ pub fn bench(runs: u32) -> Result<()> {
         peer.ms / peer.trees
     );
     println!(
-        "our four scenes take {ratio:.1} times as long as their {TREES} trees; at most {MOST:.0} is the aim"
+        "our four scenes take {ratio:.1} times as long as their {TREES} trees; at most {MAX_RATIO:.0} is the aim"
     );
     pictures(&world)?;
-    std::fs::remove_dir_all(&world).context("cannot remove the bake")
+    fresh(world).map(drop)
 }
 
 /// The viewer's figures on the world that was just baked, then each of its scenes beside three.js where Chromium is
@@ -64,7 +62,7 @@ fn pictures(world: &Path) -> Result<()> {
         println!("three.js is left out: Chromium is not installed (Debian: chromium)");
         return Ok(());
     }
-    for scene in crate::tools::files(&world.join("baked"), &["scene.gltf"])? {
+    for scene in files(&world.join("baked"), &["scene.gltf"])? {
         println!("\n{}", scene.display());
         let script = root().join("tests/peers/three_viewer.mjs");
         let status = program("node").arg(script).arg(&scene).arg("--viewer").arg(&viewer).status()?;
@@ -76,13 +74,6 @@ fn pictures(world: &Path) -> Result<()> {
 
 /// What Chromium is called.
 const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
-
-/// Builds a program and says where it is.
-fn release(package: &str, name: &str) -> Result<PathBuf> {
-    run(&mut cargo(&["build", "--release", "--quiet", "--package", package, "--bin", name]))?;
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
-    Ok(target.join("release").join(format!("{name}{}", std::env::consts::EXE_SUFFIX)))
-}
 
 struct Peer {
     trees: f64,

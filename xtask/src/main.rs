@@ -1,11 +1,16 @@
-//! A developer's chores: the whole check (`test`), times beside those of a peer (`bench`), set-up of the programs that
-//! these need (`setup`), and the picture in the README (`pictures`). Knows nothing of landscapes: it runs other programs and reports.
+//! A developer's chores: the whole check (`test`) and what it compares with (`bless`), lines of code (`lines`), times
+//! beside those of a peer (`bench`), set-up of the programs that these need (`setup`), and the picture in the README
+//! (`pictures`). Knows nothing of landscapes: it runs other programs and reports.
 #![expect(clippy::print_stdout, reason = "a command line program")]
 
 mod bench;
 mod check;
+mod lines;
 mod pictures;
 mod setup;
+mod source;
+#[cfg(test)]
+mod tidy;
 mod tools;
 
 use std::process::ExitCode;
@@ -23,13 +28,15 @@ struct Cli {
 #[derive(Subcommand)]
 enum Chore {
     /// Everything that must hold before a change is merged; ends with "N passed, N failed".
-    Test {
-        /// Also open a bake's files with Blender, three.js and F3D (first time: installs about 1 GB in .interop/).
-        #[arg(long)]
-        interop: bool,
-        /// Only formatting, lints and tests.
-        #[arg(long, conflicts_with = "interop")]
-        quick: bool,
+    Test(check::Extent),
+    /// Write anew what tests compare with, after it was meant to change.
+    Bless { what: check::Blessing },
+    /// Count lines of Rust: code, tests (folders `tests` and `examples`, and what is behind `cfg(test)`), comments, blank;
+    /// as the review of commit 4d67e5a did, which found 31749 lines of code.
+    Lines {
+        /// Also list that many files with the most code.
+        #[arg(long, default_value_t = 0)]
+        largest: usize,
     },
     /// Install the programs that `test --interop` and `pictures` need into .interop/.
     Setup,
@@ -50,7 +57,9 @@ enum Chore {
 
 fn main() -> ExitCode {
     let done = match Cli::parse().chore {
-        Chore::Test { interop, quick } => check::run(interop, quick),
+        Chore::Test(extent) => Ok(check::run(extent)),
+        Chore::Bless { what } => check::bless(what).map(|()| true),
+        Chore::Lines { largest } => lines::run(largest).map(|()| true),
         Chore::Bench { runs } => bench::bench(runs).map(|()| true),
         Chore::Setup => setup::all().map(|()| true),
         Chore::Pictures { samples } => pictures::run(samples).map(|()| true),

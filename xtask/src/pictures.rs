@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, ensure};
 
-use crate::tools::{cargo, files, program, python, root, script};
-use crate::{setup, tools};
+use crate::setup;
+use crate::tools::{files, fresh, program, python, release, root, run as run_program, script};
 
 const SIZE: &str = "640x400";
 
@@ -13,23 +13,8 @@ const SIZE: &str = "640x400";
 pub fn run(samples: u32) -> Result<()> {
     setup::blender()?;
     let folder = root().join("target/interop/pictures");
-    let world = folder.join("world");
-    if world.exists() {
-        // The starters may have changed since.
-        std::fs::remove_dir_all(&world).context("cannot remove the last pictures' world")?;
-    }
-    let mut bake = cargo(&[
-        "run",
-        "--quiet",
-        "--release",
-        "--package",
-        "genescape-bake",
-        "--bin",
-        "bake",
-        "--",
-        "--world",
-    ]);
-    tools::run(bake.arg(&world))?;
+    let world = fresh(folder.join("world"))?;
+    run_program(program(release("genescape-bake", "bake")?).arg("--world").arg(&world))?;
     let scenes = files(&world.join("baked"), &["scene.gltf"])?;
     ensure!(scenes.len() >= 4, "the bake made {} scenes instead of four", scenes.len());
     let mut pictures: Vec<PathBuf> = Vec::new();
@@ -38,12 +23,12 @@ pub fn run(samples: u32) -> Result<()> {
         let samples = samples.to_string();
         let mut render = program(python());
         render.arg(script("blender_render.py")).arg(scene).arg(&picture).args([SIZE, &samples]);
-        tools::run(&mut render)?;
+        run_program(&mut render)?;
         pictures.push(picture);
     }
     let sheet = root().join("docs/pictures/starters.jpg");
     std::fs::create_dir_all(sheet.parent().context("a path in the workspace has a parent")?)?;
-    tools::run(program(python()).arg(script("sheet.py")).arg(&sheet).args(&pictures))?;
+    run_program(program(python()).arg(script("sheet.py")).arg(&sheet).args(&pictures))?;
     println!("{}", sheet.display());
     Ok(())
 }

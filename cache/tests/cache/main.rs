@@ -6,7 +6,6 @@ mod faults;
 mod history;
 mod keys;
 mod processes;
-mod speed;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -19,12 +19,13 @@ fn until(what: &str, mut ready: impl FnMut() -> bool) {
     }
 }
 
-/// This test program again, to build action 5: slowly if `slow`, and leaving a file `started-PID` first.
-fn child(folder: &Path, slow: bool) -> Child {
-    Command::new(std::env::current_exe().expect("this test"))
-        .args(["--exact", "processes::child_builds", "--ignored", "--nocapture"])
+/// This test program again, with a test that begins with [`is_child`], to build action 5 in this time, leaving a file
+/// `started-PID` first.
+fn child(test: &str, folder: &Path, pause_ms: u64) -> Child {
+    Command::new(std::env::current_exe().expect("this program"))
+        .args(["--exact", test, "--nocapture"])
         .env("GENESCAPE_TEST_FOLDER", folder)
-        .env("GENESCAPE_TEST_SLOW", if slow { "1" } else { "0" })
+        .env("GENESCAPE_TEST_PAUSE_MS", pause_ms.to_string())
         .stdout(Stdio::piped())
         .spawn()
         .expect("starts")
@@ -35,26 +36,31 @@ fn started(folder: &Path) -> usize {
     names.filter(|entry| entry.file_name().to_string_lossy().starts_with("started-")).count()
 }
 
-#[test]
-#[ignore = "run by other tests, in a process of its own"]
-fn child_builds() {
-    let Ok(folder) = std::env::var("GENESCAPE_TEST_FOLDER") else { return };
+/// Whether this process is a [`child`]; then it has done its work.
+fn is_child() -> bool {
+    let Ok(folder) = std::env::var("GENESCAPE_TEST_FOLDER") else { return false };
     let folder = Path::new(&folder);
-    let pause = if std::env::var("GENESCAPE_TEST_SLOW").as_deref() == Ok("1") { 60_000 } else { 300 };
+    let pause_ms = std::env::var("GENESCAPE_TEST_PAUSE_MS").expect("set with the folder");
+    let pause = Duration::from_millis(pause_ms.parse().expect("a number"));
     let cache = Cache::open(folder.join("baked")).expect("opens");
     let slowly = || {
         std::fs::write(folder.join(format!("started-{}", std::process::id())), "").expect("written");
-        std::thread::sleep(Duration::from_millis(pause));
+        std::thread::sleep(pause);
         Ok(outputs(5, 3000))
     };
     let outcome = build_by(&cache, 5, slowly).expect("builds");
     assert!(is_right(&outcome, 5, 3000));
+    true
 }
 
 #[test]
 fn of_several_processes_one_builds() {
+    if is_child() {
+        return;
+    }
     let world = tempfile::tempdir().expect("a temporary folder");
-    let children: Vec<Child> = (0..3).map(|_| child(world.path(), false)).collect();
+    let children: Vec<Child> =
+        (0..3).map(|_| child("processes::of_several_processes_one_builds", world.path(), 300)).collect();
     for child in children {
         let output = child.wait_with_output().expect("ends");
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
@@ -64,8 +70,11 @@ fn of_several_processes_one_builds() {
 
 #[test]
 fn a_killed_builder_is_replaced() {
+    if is_child() {
+        return;
+    }
     let world = tempfile::tempdir().expect("a temporary folder");
-    let mut victim = child(world.path(), true);
+    let mut victim = child("processes::a_killed_builder_is_replaced", world.path(), 60_000);
     until("the first child builds", || started(world.path()) == 1);
     let cache = Cache::open(world.path().join("baked")).expect("opens");
     std::thread::scope(|scope| {
@@ -103,8 +112,11 @@ fn of_several_threads_one_builds() {
 
 #[test]
 fn patience_ends_a_wait() {
+    if is_child() {
+        return;
+    }
     let world = tempfile::tempdir().expect("a temporary folder");
-    let mut sleeper = child(world.path(), true);
+    let mut sleeper = child("processes::patience_ends_a_wait", world.path(), 60_000);
     until("the child builds", || started(world.path()) == 1);
     let cache =
         Cache::open(world.path().join("baked")).expect("opens").with_patience(Duration::from_millis(20));

@@ -1,11 +1,9 @@
 //! The meshes that both algorithms draw, taken apart: closed, unfolded, near the land, and calm.
 
-#[path = "../../tests/made_up/land.rs"]
-mod made_up;
-
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use genescape_bake::stages::terrain_lod;
 use genescape_schema::scene::bintree::parents;
 use glam::{Vec2, Vec3};
 use proptest::prelude::*;
@@ -22,9 +20,17 @@ fn land(side: u32, spacing_m: f32, relief_m: f32, seed: u32) -> TerrainLod {
         let (x, z, turn) = (i as f32 / side as f32, j as f32 / side as f32, seed as f32);
         let waves =
             libm::sinf(7.0 * x + turn) * libm::cosf(5.0 * z - turn) + 0.4 * libm::sinf(23.0 * (x + z));
-        relief_m * (0.5 * waves + 0.05 * made_up::hash(i, j, seed))
+        relief_m * (0.5 * waves + 0.05 * hash(i, j, seed))
     };
-    made_up::land(side, spacing_m, height)
+    let heights_m = (0..side * side).map(|n| height(n % side, n / side)).collect();
+    terrain_lod::lod(&Heightfield { side, spacing_m, heights_m })
+}
+
+/// In [0, 1), of two coordinates and a seed.
+fn hash(i: u32, j: u32, seed: u32) -> f32 {
+    let mixed = i.wrapping_mul(0x9e37_79b9) ^ j.wrapping_mul(0x85eb_ca6b) ^ seed.wrapping_mul(0x27d4_eb2f);
+    let mixed = (mixed ^ mixed >> 15).wrapping_mul(0xc2b2_ae35);
+    ((mixed ^ mixed >> 13).wrapping_mul(0x27d4_eb2f) >> 8) as f32 / (1 << 24) as f32
 }
 
 type Triangle = [Vec3; 3];

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 use x11rb::protocol::xproto::Window;
 
-use super::display::Display;
+use crate::display::Display;
 
 /// The longest that anything may take: the machine may be slow and busy.
 const LIMIT: Duration = Duration::from_secs(120);

@@ -1,17 +1,15 @@
 //! Files that a person got wrong: told clearly, all at once, and nothing of theirs touched.
 
-mod common;
-
 use std::fs;
 use std::process::Command;
 
-use common::{Baked, World};
+use crate::world::{Baked, World};
 
 /// Bakes after `change` and gives what was said; the file must be untouched and the exit code 2.
 fn refused(change: impl FnOnce(String) -> String) -> String {
     let world = World::new();
     fs::create_dir_all(world.file("population")).expect("a folder");
-    let starter = include_str!("../configs/starter.ron");
+    let starter = include_str!("../../../configs/starter.ron");
     let text = change(starter.to_owned());
     fs::write(world.population(0), &text).expect("written");
     let baked = world.bake(&[]);
@@ -48,8 +46,7 @@ fn empty_files_and_empty_populations() {
 
 #[test]
 fn no_votes() {
-    let world = World::new();
-    world.bake(&[]).ok();
+    let world = World::starters();
     let baked = world.bake(&["next"]);
     assert_eq!(baked.code, Some(2));
     assert!(baked.stderr.contains("vote"), "{}", baked.stderr);

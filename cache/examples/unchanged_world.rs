@@ -1,21 +1,24 @@
-//! What an unchanged world costs: printed, never asserted.
-//! `cargo test --release -p genescape-cache -- --ignored --nocapture unchanged`
+//! Prints what an unchanged world costs: `cargo run --release -p genescape-cache --example unchanged_world`
 
-use std::sync::atomic::AtomicUsize;
 use std::time::Instant;
 
-use genescape_cache::{Cache, How};
+use genescape_cache::{ActionKey, Cache, Error, How, Output};
 
-use crate::{build, key};
+fn key(n: u32) -> ActionKey {
+    ActionKey::builder("test", 1).parameters(&n).expect("a number has canonical bytes").build()
+}
 
-#[test]
-#[ignore = "a measurement"]
-fn unchanged_world() {
+fn outputs(n: u32) -> Vec<Output> {
+    let bytes = |salt: u32| [n, salt].map(u32::to_le_bytes).as_flattened().repeat(50_000 / 8);
+    vec![Output::new("mesh", "glb", bytes(0)), Output::new("picture", "png", bytes(1))]
+}
+
+fn main() {
     let world = tempfile::tempdir().expect("a temporary folder");
     let cache = Cache::open(world.path()).expect("opens");
     let start = Instant::now();
     for n in 0..120 {
-        build(&cache, n, 50_000, &AtomicUsize::new(0)).expect("builds");
+        cache.get_or_build::<Error>(&key(n), || Ok(outputs(n))).expect("builds");
     }
     eprintln!("120 actions of 2 blobs of 50 kB, fresh: {:.2?}", start.elapsed());
     for _ in 0..5 {

@@ -2,6 +2,7 @@
 //! can see they are real), and pictures of what would be on the screen. Places are pixels from the upper left corner.
 
 use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
 use x11rb::connection::Connection;
@@ -52,8 +53,8 @@ pub struct Picture {
 }
 
 impl Display {
-    /// Starts a server on a free display; `None` where no Xvfb is installed.
-    pub fn start(size: [u16; 2]) -> Option<Self> {
+    /// Starts a server on a free display.
+    pub fn start(size: [u16; 2]) -> Self {
         let [width, height] = size;
         let mut server = Command::new("Xvfb")
             .args(["-displayfd", "1", "-nolisten", "tcp", "-screen", "0", &format!("{width}x{height}x24")])
@@ -61,7 +62,7 @@ impl Display {
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()
-            .ok()?;
+            .expect("Xvfb; on Debian and Ubuntu: apt-get install xvfb");
         // It writes its number when it is ready for us.
         let mut number = String::new();
         let output = server.stdout.take().expect("piped");
@@ -69,7 +70,7 @@ impl Display {
         let name = format!(":{}", number.trim());
         let (connection, screen) = x11rb::connect(Some(&name)).expect("Xvfb takes us in");
         let root = connection.setup().roots[screen].root;
-        Some(Self { server, name, connection, root, size })
+        Self { server, name, connection, root, size }
     }
 
     /// The viewer's window, once it is there.
@@ -169,7 +170,7 @@ impl Drop for Display {
 impl Picture {
     /// Writes it for people to look at.
     pub fn save(&self, name: &str) {
-        let path = super::pictures().join(name);
+        let path = pictures().join(name);
         let [width, height] = self.size.map(|side| side as u32);
         image::save_buffer(path, self.pixels.as_flattened(), width, height, image::ExtendedColorType::Rgb8)
             .expect("written");
@@ -198,4 +199,11 @@ impl Picture {
         let count = (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y))).filter(|(x, y)| differs(at(*x, *y)));
         count.count() as f64 / all as f64
     }
+}
+
+/// Where pictures of the window go, for people to look at.
+fn pictures() -> PathBuf {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/window-test");
+    std::fs::create_dir_all(&folder).expect("the target folder is ours");
+    folder
 }

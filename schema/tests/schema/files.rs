@@ -6,7 +6,7 @@ use genescape_schema::{
 };
 use proptest::prelude::*;
 
-const STARTER: &str = include_str!("../../configs/starter.ron");
+const STARTER: &str = include_str!("../../../configs/starter.ron");
 
 fn faults(text: &str) -> Report {
     Population::load(&Space::builtin(), "p.ron", text).expect_err("a faulty file was accepted")

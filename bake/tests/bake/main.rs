@@ -1,0 +1,10 @@
+//! Whole bakes, by the program as a person runs it and by the library that it is made of.
+
+mod bad_input;
+mod faults;
+mod library;
+mod random_genomes;
+mod stage_digests;
+mod watch;
+mod whole_bake;
+mod world;

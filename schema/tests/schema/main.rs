@@ -1,0 +1,4 @@
+//! The contract as other crates use it: files as people write them, and genes.
+
+mod files;
+mod genes;

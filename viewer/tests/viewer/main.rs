@@ -1,0 +1,11 @@
+//! What is drawn, on a device and in a window. All but the shaders' test need a Vulkan driver, and the window an X server
+//! without a screen: `cargo xtask test` installs both where it may, and runs them.
+
+mod cracks;
+mod display;
+mod golden;
+mod lod_twin;
+mod made_up;
+mod program;
+mod shaders;
+mod window;
