@@ -23,7 +23,7 @@ pub(super) struct Texel {
 
 /// Blades of grass that lean in tufts over moss.
 pub(super) fn grass() -> Pattern {
-    let mut pattern = from_texels([waves(11, 24, 3, 0.6)], |_, _, [moss]| {
+    let mut pattern = from_texels([Waves(11, 24, 3, 0.6)], |_, _, [moss]| {
         let moss = 0.5 + 0.5 * moss;
         let tone = 30.0 + 34.0 * moss;
         (0.16 * moss, [tone * 1.05, tone, tone * 0.9])
@@ -97,7 +97,7 @@ impl Blade {
 
 /// Fractured rock: folds of sharp creases within folds, ledges, and a few open cracks.
 pub(super) fn rock() -> Pattern {
-    from_texels([waves(21, 5, 2, 0.5), waves(27, 90, 2, 0.7)], |u, v, [a, rough]| {
+    from_texels([Waves(21, 5, 2, 0.5), Waves(27, 90, 2, 0.7)], |u, v, [a, rough]| {
         let (wu, wv) = (u + 0.05 * a, v - 0.04 * a);
         // Each octave shifts the next, so that creases break off where they meet.
         let (mut relief, mut shift, mut amplitude) = (0.0, 0.0, 0.5);
@@ -121,7 +121,7 @@ pub(super) fn rock() -> Pattern {
 
 /// Stones of all sizes, the larger on top.
 pub(super) fn scree() -> Pattern {
-    let mut pattern = from_texels([waves(31, 64, 2, 0.7)], |_, _, [grit]| {
+    let mut pattern = from_texels([Waves(31, 64, 2, 0.7)], |_, _, [grit]| {
         let grit = 0.5 + 0.5 * grit;
         let tone = 34.0 + 40.0 * grit;
         (0.10 * grit, [tone * 1.04, tone, tone * 0.95])
@@ -207,7 +207,7 @@ impl Stone {
 
 /// Soft drifts, ripples that the wind left, and grain.
 pub(super) fn snow() -> Pattern {
-    let noise = [waves(41, 6, 2, 0.5), waves(42, 8, 3, 0.5), waves(44, 5, 1, 0.5), waves(45, 128, 2, 0.8)];
+    let noise = [Waves(41, 6, 2, 0.5), Waves(42, 8, 3, 0.5), Waves(44, 5, 1, 0.5), Waves(45, 128, 2, 0.8)];
     from_texels(noise, |u, v, [bend, drift, still, grain]| {
         // Ripples: the same noise drawn out across the wind, bent by it.
         let ripple = gradient2(43, u * 12.0 + 0.6 * bend, v * 48.0 + 3.0 * bend, 12);
@@ -236,7 +236,7 @@ fn plate(seed: u32, u: f32, v: f32, cells: i32) -> Plate {
 
 /// Mud that dried and cracked, with finer cracks inside its plates.
 pub(super) fn mud() -> Pattern {
-    let noise = [waves(51, 9, 2, 0.55), waves(52, 9, 2, 0.55), waves(55, 70, 2, 0.65)];
+    let noise = [Waves(51, 9, 2, 0.55), Waves(52, 9, 2, 0.55), Waves(55, 70, 2, 0.65)];
     from_texels(noise, |u, v, [a, b, silt]| {
         let plate_here = plate(53, u + 0.03 * a, v + 0.03 * b, 13);
         // Only some plates split again, and cracks close here and there.
@@ -254,17 +254,8 @@ pub(super) fn mud() -> Pattern {
     })
 }
 
-/// Fractal noise that tiles the pattern.
-struct Waves {
-    seed: u32,
-    cells: i32,
-    octaves: u32,
-    gain: f32,
-}
-
-fn waves(seed: u32, cells: i32, octaves: u32, gain: f32) -> Waves {
-    Waves { seed, cells, octaves, gain }
-}
+/// Fractal noise that tiles the pattern: seed, cells a side, octaves and gain.
+struct Waves(u32, i32, u32, f32);
 
 /// A pattern from each texel's (u, v) in 0..1 and the noise there.
 fn from_texels<const N: usize>(
@@ -273,12 +264,12 @@ fn from_texels<const N: usize>(
 ) -> Pattern {
     let part = |i: usize| i as f32 / SIDE as f32;
     let xs: Vec<Vec<f32>> =
-        noise.iter().map(|w| (0..SIDE).map(|i| part(i) * w.cells as f32).collect()).collect();
+        noise.iter().map(|waves| (0..SIDE).map(|i| part(i) * waves.1 as f32).collect()).collect();
     raster(SIDE, SIDE, |j| {
         let (texel, v) = (&texel, part(j));
         let mut values = [[0.0; SIDE]; N];
-        for ((w, xs), values) in noise.iter().zip(&xs).zip(&mut values) {
-            fbm2_row(w.seed, xs, v * w.cells as f32, w.octaves, w.gain, w.cells, values);
+        for ((&Waves(seed, cells, octaves, gain), xs), values) in noise.iter().zip(&xs).zip(&mut values) {
+            fbm2_row(seed, xs, v * cells as f32, octaves, gain, cells, values);
         }
         move |i| {
             let (height, tone) = texel(part(i), v, std::array::from_fn(|k| values[k][i]));

@@ -14,7 +14,7 @@ use crate::raster::raster;
 use crate::seed::noise_seed;
 
 /// Wavelength in metres of the finest octave.
-const FINEST_M: f32 = 6.0;
+const MIN_WAVELENGTH_M: f32 = 6.0;
 /// Wavelength in metres from which on octaves are computed on every second sample only.
 const BROAD_M: f32 = 40.0;
 /// Greatest part of its wavelength that a landform may rise before a massif carries the rest of the relief.
@@ -100,7 +100,7 @@ impl Shape {
         let (mut wavelength_m, mut amplitude, mut ridged) =
             (p.wavelength_m * (1.0 + 0.7 * p.ridged), 1.0f32, p.ridged);
         // An octave lower than 2 cm is not worth its time.
-        while wavelength_m >= FINEST_M && amplitude * p.relief_m > 0.04 {
+        while wavelength_m >= MIN_WAVELENGTH_M && amplitude * p.relief_m > 0.04 {
             let walkable = amplitude.min(1.6 * walkable_amplitude_m(wavelength_m) / (share * p.relief_m));
             let octave = Octave::new(seed(0), octaves.len() as u32, wavelength_m, walkable);
             octaves.push(Octave { ridged, ..octave });

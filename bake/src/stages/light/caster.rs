@@ -9,7 +9,7 @@
 
 use std::ops::Range;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::sun::Sun;
 use crate::model::{Material, Mesh};
@@ -70,11 +70,11 @@ pub(super) struct Shadow {
     pub columns: usize,
     pub rows: usize,
     /// Plane coordinates of the first cell's middle, and cells per metre.
-    pub origin: [f32; 2],
-    pub cells_per_m: [f32; 2],
+    pub origin: Vec2,
+    pub cells_per_m: Vec2,
     /// Least and greatest (a, c) that it covers.
-    pub low: [f32; 2],
-    pub high: [f32; 2],
+    pub low: Vec2,
+    pub high: Vec2,
     /// Greatest distance of the tree's parts from its axis in metres.
     pub reach_m: f32,
 }
@@ -84,29 +84,28 @@ impl Shadow {
     pub fn draw(mesh: &Mesh, sun: &Sun, front: [f32; 2], texel_m: f32) -> Option<Self> {
         let project = |p: &[f32; 3]| {
             let (away, right) = (p[0] * front[0] + p[2] * front[1], p[2] * front[0] - p[0] * front[1]);
-            [right, p[1] * sun.cos_elevation - away * sun.sin_elevation]
+            Vec2::new(right, p[1] * sun.cos_elevation - away * sun.sin_elevation)
         };
-        let points: Vec<[f32; 2]> = mesh.positions.iter().map(project).collect();
-        let first = points.first()?;
-        let fold = |f: fn(f32, f32) -> f32| points.iter().fold(*first, |m, p| [f(m[0], p[0]), f(m[1], p[1])]);
-        let (low, high) = (fold(f32::min), fold(f32::max));
+        let points: Vec<Vec2> = mesh.positions.iter().map(project).collect();
+        let first = *points.first()?;
+        let (low, high) = points.iter().fold((first, first), |(low, high), &p| (low.min(p), high.max(p)));
         let squares = mesh.positions.iter().map(|p| p[0] * p[0] + p[2] * p[2]);
         let reach_m = squares.fold(0.0, f32::max).sqrt();
         let top_m = mesh.positions.iter().fold(0.0_f32, |top, p| top.max(p[1]));
         let filter = Filter::new(sun, texel_m, top_m);
-        let border = filter.widths(top_m).map(|width| width + texel_m * 0.25);
-        let low = [low[0] - border[0], low[1] - border[1]];
-        let high = [high[0] + border[0], high[1] + border[1]];
+        let border = Vec2::from_array(filter.widths(top_m)) + texel_m * 0.25;
+        let (low, high) = (low - border, high + border);
         let cells = |axis: usize, texel_m: f32| {
             let wanted = ((high[axis] - low[axis]) * CELLS_PER_TEXEL / texel_m) as usize + 1;
             wanted.clamp(4, MAX_CELLS[axis])
         };
         let (columns, rows) = (cells(0, texel_m), cells(1, texel_m * sun.sin_elevation.max(0.02)));
-        let cells_per_m = [columns as f32 / (high[0] - low[0]), rows as f32 / (high[1] - low[1])];
-        let origin = [low[0] + 0.5 / cells_per_m[0], low[1] + 0.5 / cells_per_m[1]];
+        let cells_per_m = Vec2::new(columns as f32, rows as f32) / (high - low);
+        let origin = low + 0.5 / cells_per_m;
         let transmittance = vec![1.0; columns * rows];
         let mut shadow = Self { transmittance, columns, rows, origin, cells_per_m, low, high, reach_m };
-        let grid: Vec<[f32; 2]> = points.iter().map(|&p| shadow.cell(p)).collect();
+        // In cells; whole numbers are middles.
+        let grid: Vec<Vec2> = points.iter().map(|&p| (p - origin) * cells_per_m).collect();
         let slabs = filter.slabs(top_m);
         for (slab, range) in slabs.windows(2).enumerate() {
             let mut layer = vec![1.0; columns * rows];
@@ -122,16 +121,11 @@ impl Shadow {
         Some(shadow)
     }
 
-    /// Plane coordinates → cells; whole numbers are middles.
-    fn cell(&self, [a, c]: [f32; 2]) -> [f32; 2] {
-        [(a - self.origin[0]) * self.cells_per_m[0], (c - self.origin[1]) * self.cells_per_m[1]]
-    }
-
     /// Draws the triangles whose middle lies in a range of heights; the rows that it touched.
     fn draw_slab(
         &self,
         mesh: &Mesh,
-        grid: &[[f32; 2]],
+        grid: &[Vec2],
         range: [f32; 2],
         layer: &mut [f32],
     ) -> Option<Range<usize>> {
@@ -153,18 +147,17 @@ impl Shadow {
 
     /// Multiplies the cells whose middle lies in a triangle; edges belong to one of the triangles that share them.
     /// Returns its rows.
-    fn fill(&self, [a, b, c]: [[f32; 2]; 3], left: f32, layer: &mut [f32]) -> Range<usize> {
-        let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-        let corners = if area > 0.0 { [a, b, c] } else { [a, c, b] };
+    fn fill(&self, [a, b, c]: [Vec2; 3], left: f32, layer: &mut [f32]) -> Range<usize> {
+        let corners = if (b - a).perp_dot(c - a) > 0.0 { [a, b, c] } else { [a, c, b] };
         // Each edge as its crossing with row 0 and its run per row; rising edges bound the right, falling the left.
         let edges: [(f32, f32, f32); 3] = std::array::from_fn(|k| {
             let (p, q) = (corners[k], corners[(k + 1) % 3]);
-            let rise = q[1] - p[1];
-            let run = if rise == 0.0 { 0.0 } else { (q[0] - p[0]) / rise };
-            (p[0] - p[1] * run, run, rise)
+            let rise = q.y - p.y;
+            let run = if rise == 0.0 { 0.0 } else { (q.x - p.x) / rise };
+            (p.x - p.y * run, run, rise)
         });
-        let low = ceil(a[1].min(b[1]).min(c[1]));
-        let high = ceil(a[1].max(b[1]).max(c[1])).min(self.rows);
+        let low = ceil(a.y.min(b.y).min(c.y));
+        let high = ceil(a.y.max(b.y).max(c.y)).min(self.rows);
         for row in low..high {
             let (mut from, mut to) = (0.0_f32, self.columns as f32);
             for (start, run, rise) in edges {

@@ -166,14 +166,12 @@ impl Pose {
     }
 }
 
-/// A shadow in its place on the ground. `u` and `v` are world metres in the plane across the light from the tree's foot, to the
-/// right as the sun sees it and up; `away` is metres in plan from the foot away from the sun.
+/// A shadow in its place on the ground. `u` and `v` are world metres in the plane across the light from the tree's foot,
+/// to the right as the sun sees it and up; `away` is metres in plan from the foot away from the sun.
 struct PlacedShadow<'a> {
     shadow: &'a Shadow,
+    sun: &'a Sun,
     foot: Vec3,
-    towards: [f32; 2],
-    sin_elevation: f32,
-    cos_elevation: f32,
     /// Cells of the shadow per metre of u and of v, and the foot's cell.
     per_u: Vec2,
     per_v: Vec2,
@@ -184,13 +182,11 @@ struct PlacedShadow<'a> {
 }
 
 impl<'a> PlacedShadow<'a> {
-    fn of(pose: &Pose, shadow: &'a Shadow, sun: &Sun, ground: &Ground) -> Option<Self> {
+    fn of(pose: &Pose, shadow: &'a Shadow, sun: &'a Sun, ground: &Ground) -> Option<Self> {
         let [fx, fz] = sun.towards;
         let project = |p: Vec3| {
-            Vec2::new(
-                p.z * fx - p.x * fz,
-                p.y * sun.cos_elevation - (p.x * fx + p.z * fz) * sun.sin_elevation,
-            )
+            let up = p.y * sun.cos_elevation - (p.x * fx + p.z * fz) * sun.sin_elevation;
+            Vec2::new(p.z * fx - p.x * fz, up)
         };
         // Directions of the tree's space that stand for the image's a and c: c is the trunk's direction while
         // the sun sees it from the side, and that away from the sun when it stands overhead.
@@ -201,27 +197,25 @@ impl<'a> PlacedShadow<'a> {
             Vec3::new(-pose.front[0], 0.0, -pose.front[1]) / sun.sin_elevation
         };
         let (a, c) = (project(pose.world_from_tree * right), project(pose.world_from_tree * up));
-        let area = a.x * c.y - a.y * c.x;
+        let area = a.perp_dot(c);
         if !area.is_finite() || area.abs() < 1.0e-6 {
             return None;
         }
         let (mut low, mut high) = (Vec2::MAX, Vec2::MIN);
-        for ka in [shadow.low[0], shadow.high[0]] {
-            for kc in [shadow.low[1], shadow.high[1]] {
+        for ka in [shadow.low.x, shadow.high.x] {
+            for kc in [shadow.low.y, shadow.high.y] {
                 let corner = a * ka + c * kc;
                 (low, high) = (low.min(corner), high.max(corner));
             }
         }
-        let cells = Vec2::from_array(shadow.cells_per_m);
+        let cells = shadow.cells_per_m;
         let mut placed = Self {
             shadow,
+            sun,
             foot: pose.foot,
-            towards: sun.towards,
-            sin_elevation: sun.sin_elevation,
-            cos_elevation: sun.cos_elevation,
             per_u: Vec2::new(c.y, -a.y) / area * cells,
             per_v: Vec2::new(-c.x, a.x) / area * cells,
-            foot_cell: (Vec2::ZERO - Vec2::from_array(shadow.origin)) * cells,
+            foot_cell: (Vec2::ZERO - shadow.origin) * cells,
             u: [low.x, high.x],
             away: [-(shadow.reach_m * pose.widening() + 2.0 * ground.texels.texel_m()), 0.0],
             rows: [0, 0],
@@ -241,7 +235,7 @@ impl<'a> PlacedShadow<'a> {
             let lit = |u: f32| {
                 let (x, z) = self.place(u, away);
                 let height = ground.height_m(x, z)?;
-                Some((height - self.foot.y) * self.cos_elevation + away * self.sin_elevation > top)
+                Some((height - self.foot.y) * self.sun.cos_elevation + away * self.sun.sin_elevation > top)
             };
             if lines.iter().all(|&u| lit(u).unwrap_or(true)) {
                 return away + step_m;
@@ -253,7 +247,7 @@ impl<'a> PlacedShadow<'a> {
 
     /// World (x, z) at u and away.
     fn place(&self, u: f32, away: f32) -> (f32, f32) {
-        let [fx, fz] = self.towards;
+        let [fx, fz] = self.sun.towards;
         (self.foot.x - fz * u - fx * away, self.foot.z + fx * u - fz * away)
     }
 
@@ -274,7 +268,7 @@ impl<'a> PlacedShadow<'a> {
     fn darken(&self, ground: &Ground, first: usize, band: &mut [f32]) {
         let side = ground.texels.side;
         let rows = self.rows[0].max(first)..self.rows[1].min(first + band.len() / side);
-        let [fx, fz] = self.towards;
+        let [fx, fz] = self.sun.towards;
         let texel_m = ground.texels.texel_m();
         for j in rows {
             let dz = ground.texels.place(j) - self.foot.z;
@@ -285,8 +279,8 @@ impl<'a> PlacedShadow<'a> {
                 continue;
             }
             let column = |dx: f32| ground.texels.texel(self.foot.x + dx).clamp(-1.0, side as f32);
-            let (from, to) = (column(span[0]).ceil().max(0.0) as usize, (column(span[1]) + 1.0) as usize);
-            let to = to.min(side);
+            let from = column(span[0]).ceil().max(0.0) as usize;
+            let to = ((column(span[1]) + 1.0) as usize).min(side);
             if from >= to {
                 continue;
             }
@@ -296,8 +290,8 @@ impl<'a> PlacedShadow<'a> {
             for (k, (texel, height)) in texels.iter_mut().zip(heights).enumerate() {
                 let dx = start + k as f32 * texel_m;
                 let u = dz * fx - dx * fz;
-                let v =
-                    (height - self.foot.y) * self.cos_elevation - (dx * fx + dz * fz) * self.sin_elevation;
+                let v = (height - self.foot.y) * self.sun.cos_elevation
+                    - (dx * fx + dz * fz) * self.sun.sin_elevation;
                 *texel *= self.transmittance(u, v);
             }
         }
@@ -305,14 +299,10 @@ impl<'a> PlacedShadow<'a> {
 
     #[inline]
     fn transmittance(&self, u: f32, v: f32) -> f32 {
-        let column = self.foot_cell.x + self.per_u.x * u + self.per_v.x * v + 0.5;
-        let row = self.foot_cell.y + self.per_u.y * u + self.per_v.y * v + 0.5;
-        if column >= 0.0 && row >= 0.0 && column < self.shadow.columns as f32 && row < self.shadow.rows as f32
-        {
-            self.shadow.transmittance[row as usize * self.shadow.columns + column as usize]
-        } else {
-            1.0
-        }
+        let Shadow { columns, rows, transmittance, .. } = self.shadow;
+        let cell = self.foot_cell + self.per_u * u + self.per_v * v + 0.5;
+        let inside = cell.x >= 0.0 && cell.y >= 0.0 && cell.x < *columns as f32 && cell.y < *rows as f32;
+        if inside { transmittance[cell.y as usize * columns + cell.x as usize] } else { 1.0 }
     }
 }
 

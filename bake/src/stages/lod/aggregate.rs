@@ -9,7 +9,7 @@
 use glam::Vec3;
 
 use super::coverage::{Element, Silhouettes};
-use super::state::{PartSpan, State};
+use super::state::{PartSpan, State, Vertex};
 
 /// No part keeps fewer elements than this.
 const MIN_ELEMENTS: usize = 6;
@@ -23,8 +23,8 @@ pub struct Aggregate {
     /// Elements in the order in which they are removed, without those that always stay.
     order: Vec<u32>,
     removed: usize,
-    /// Elements at full detail, and vertices and triangles of each.
-    pub elements: (u32, u32, u32),
+    /// Elements at full detail.
+    elements: usize,
     /// Error in metres per unit of growth.
     weight_m: f64,
     max_scale: f32,
@@ -38,7 +38,6 @@ impl Aggregate {
     /// Plans the removal of a part's elements; `None` for surfaces and for empty parts.
     pub fn new(state: &State, part: usize, weight: f32, fill: f32) -> Option<Self> {
         let span = &state.parts[part];
-        let elements = span.elements()?;
         let places = places(state, span)?;
         let count = places.len();
         let radius = places.iter().map(|place| f64::from(place.radius)).sum::<f64>() / count as f64;
@@ -51,7 +50,7 @@ impl Aggregate {
             part,
             order: removal_order(&places, (low + high) * 0.5),
             removed: 0,
-            elements,
+            elements: count,
             weight_m: f64::from(weight) * radius,
             max_scale: (MAX_GROWN * extent / radius as f32).max(1.0),
             silhouettes: Silhouettes::new(shapes, low, high, fill),
@@ -61,13 +60,13 @@ impl Aggregate {
     }
 
     pub fn living(&self) -> usize {
-        self.elements.0 as usize - self.removed
+        self.elements - self.removed
     }
 
     /// The error in metres once the next element is removed: by how much elements will have grown to keep the area.
     pub fn next_cost_m(&self) -> Option<f64> {
         (self.removed < self.order.len()).then(|| {
-            let ratio = f64::from(self.elements.0) / (self.living() - 1) as f64;
+            let ratio = self.elements as f64 / (self.living() - 1) as f64;
             self.weight_m * (ratio.sqrt() - 1.0)
         })
     }
@@ -116,10 +115,10 @@ struct Place {
 
 fn places(state: &State, span: &PartSpan) -> Option<Vec<Place>> {
     let (count, per, _) = span.elements()?;
-    let place = |e: u32| {
-        let ids = (span.first_vertex + e * per) as usize..(span.first_vertex + (e + 1) * per) as usize;
+    let place = |element: u32| {
+        let [ids, _] = span.element(element);
         let centre = Vec3::from_array(state.centre(ids.clone()));
-        let square = |v: &super::state::Vertex| Vec3::from_array(v.position).distance_squared(centre);
+        let square = |v: &Vertex| Vec3::from_array(v.position).distance_squared(centre);
         let sum: f32 = state.vertices[ids].iter().map(square).sum();
         Place { centre, radius: (sum / per as f32).sqrt() }
     };
@@ -128,15 +127,15 @@ fn places(state: &State, span: &PartSpan) -> Option<Vec<Place>> {
     (sound && places.iter().any(|p| p.radius > 0.0)).then_some(places)
 }
 
-fn element(state: &State, span: &PartSpan, e: usize, place: &Place) -> Element {
-    let (_, per, triangles) = span.elements().unwrap_or_default();
-    let start = span.first_vertex as usize + e * per as usize;
-    let vertices = &state.vertices[start..start + per as usize];
-    let offsets = vertices.iter().map(|v| Vec3::from_array(v.position) - place.centre).collect();
-    let first = span.first_triangle as usize + e * triangles as usize;
-    let of_element = &state.triangles[first..first + triangles as usize];
-    let triangles = of_element.iter().map(|t| t.map(|v| v - start as u32)).collect();
-    Element { centre: place.centre, offsets, triangles }
+fn element(state: &State, span: &PartSpan, element: usize, place: &Place) -> Element {
+    let [vertices, triangles] = span.element(element as u32);
+    let start = vertices.start as u32;
+    let offset = |v: &Vertex| Vec3::from_array(v.position) - place.centre;
+    Element {
+        centre: place.centre,
+        offsets: state.vertices[vertices].iter().map(offset).collect(),
+        triangles: state.triangles[triangles].iter().map(|t| t.map(|v| v - start)).collect(),
+    }
 }
 
 /// Elements in the order in which they are removed; the last few never are.

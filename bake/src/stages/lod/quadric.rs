@@ -124,7 +124,7 @@ impl Quadrics {
     }
 
     /// After the collapse of an edge, `kept` stands for both ends.
-    pub fn merge(&mut self, kept: usize, gone: usize) {
-        self.0[kept] = self.0[kept].plus(&self.0[gone]);
+    pub fn merge(&mut self, kept: usize, removed: usize) {
+        self.0[kept] = self.0[kept].plus(&self.0[removed]);
     }
 }

@@ -53,8 +53,8 @@ impl Sequence {
         let mut used = vec![false; state.vertices.len()];
         state.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
         for span in &state.parts {
-            let Some((elements, per, _)) = span.elements() else { continue };
-            used[span.first_vertex as usize..][..(elements * per) as usize].fill(true);
+            let elements = span.elements().map_or(0, |(elements, ..)| elements);
+            (0..elements).for_each(|element| used[span.element(element)[0].clone()].fill(true));
         }
         let mut sequence = Self {
             versions: vec![0; surface.topology.positions.len()],
@@ -219,18 +219,13 @@ impl Sequence {
 
     fn drop_element(&mut self, index: usize, cost_m: f64) {
         let aggregate = &mut self.aggregates[index];
-        let (_, per, triangles) = aggregate.elements;
         let Some(element) = aggregate.take_next() else { return };
-        let span = &self.state.parts[aggregate.part];
-        let first = span.first_vertex + element * per;
-        let first_triangle = span.first_triangle + element * triangles;
-        let centre = self.state.centre(first as usize..(first + per) as usize);
-        for t in first_triangle..first_triangle + triangles {
-            self.state.remove_triangle(t);
-        }
-        for v in first..first + per {
-            self.state.remove_vertex(v, NONE);
-            self.state.collapsed_to[v as usize] = centre;
+        let [vertices, triangles] = self.state.parts[aggregate.part].element(element);
+        let centre = self.state.centre(vertices.clone());
+        triangles.for_each(|t| self.state.remove_triangle(t as u32));
+        for v in vertices {
+            self.state.remove_vertex(v as u32, NONE);
+            self.state.collapsed_to[v] = centre;
         }
         self.state.end_step();
         self.error_m = self.error_m.max(cost_m);

@@ -3,6 +3,8 @@
 //! Vertices and triangles keep the numbers that they have in the original mesh; what is removed is only marked. So the
 //! log read backwards gives the original back bit for bit, in its own order. Metres.
 
+use std::ops::Range;
+
 use bytemuck::{NoUninit, bytes_of};
 
 use super::log::Log;
@@ -42,6 +44,20 @@ pub struct PartSpan {
 }
 
 impl PartSpan {
+    /// Its triangles in the common list.
+    pub fn range(&self) -> Range<usize> {
+        self.first_triangle as usize..(self.first_triangle + self.triangles) as usize
+    }
+
+    /// Vertices and triangles of an element; none for surfaces.
+    pub fn element(&self, element: u32) -> [Range<usize>; 2] {
+        let (_, vertices, triangles) = self.elements().unwrap_or_default();
+        [(self.first_vertex, vertices), (self.first_triangle, triangles)].map(|(first, each)| {
+            let start = (first + element * each) as usize;
+            start..start + each as usize
+        })
+    }
+
     /// Elements at full detail and vertices and triangles of each; `None` for surfaces.
     pub fn elements(&self) -> Option<(u32, u32, u32)> {
         match self.kind {
@@ -173,9 +189,7 @@ impl State {
             }
         }
         for (span, &scale) in self.parts.iter().zip(scales) {
-            let first = span.first_triangle as usize;
-            let ids = first..first + span.triangles as usize;
-            let living = ids.filter(|&t| self.triangle_lives[t]);
+            let living = span.range().filter(|&t| self.triangle_lives[t]);
             let triangles = living.map(|t| self.triangles[t].map(|v| now[v as usize])).collect();
             mesh.parts.push(Part { material: span.material, kind: span.kind, triangles });
             self.scale_elements(span, scale, &now, &mut mesh);
@@ -184,12 +198,9 @@ impl State {
     }
 
     fn scale_elements(&self, span: &PartSpan, scale: f32, now: &[u32], mesh: &mut Mesh) {
-        let Some((elements, per, _)) = span.elements() else { return };
-        if scale == 1.0 {
-            return;
-        }
-        for e in 0..elements {
-            let ids = (span.first_vertex + e * per) as usize..(span.first_vertex + (e + 1) * per) as usize;
+        let Some((elements, ..)) = span.elements().filter(|_| scale != 1.0) else { return };
+        for element in 0..elements {
+            let [ids, _] = span.element(element);
             if !self.vertex_lives[ids.start] {
                 continue;
             }
@@ -203,7 +214,7 @@ impl State {
     }
 
     /// The mean of consecutive vertices' positions.
-    pub fn centre(&self, ids: std::ops::Range<usize>) -> [f32; 3] {
+    pub fn centre(&self, ids: Range<usize>) -> [f32; 3] {
         let mut sum = [0.0_f32; 3];
         for vertex in &self.vertices[ids.clone()] {
             (0..3).for_each(|k| sum[k] += vertex.position[k]);

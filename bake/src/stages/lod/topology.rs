@@ -1,9 +1,12 @@
 //! Which points, edges and pieces the surface parts of a mesh have: vertices with bit-identical positions in one
 //! part are one point, and a point's triangles are a chain of corners that two points can join in constant time.
 
-use glam::DVec3;
+use std::collections::HashMap;
+use std::ops::Range;
 
-use super::state::{NONE, State};
+use glam::{DVec3, Vec3};
+
+use super::state::{NONE, PartSpan, State};
 
 /// The surface ends here.
 pub const BOUNDARY: u8 = 1;
@@ -14,7 +17,7 @@ pub const LOCKED: u8 = 2;
 #[derive(Clone, Debug, Default)]
 pub struct Piece {
     /// Its triangles at full detail, a range of `Topology::piece_triangles`.
-    pub triangles: std::ops::Range<usize>,
+    pub triangles: Range<usize>,
     /// Its living vertices.
     pub living_vertices: usize,
     /// Mean width across its longest extent, in metres: a twig's diameter.
@@ -111,17 +114,17 @@ impl Topology {
         self.tail[point as usize] = before;
     }
 
-    /// Gives all corners of `gone` to `kept`.
-    pub fn join(&mut self, kept: u32, gone: u32) {
-        let (kept, gone) = (kept as usize, gone as usize);
+    /// Gives all corners of `removed` to `kept`.
+    pub fn join(&mut self, kept: u32, removed: u32) {
+        let (kept, removed) = (kept as usize, removed as usize);
         match self.tail[kept] {
-            NONE => self.head[kept] = self.head[gone],
-            tail => self.next[tail as usize] = self.head[gone],
+            NONE => self.head[kept] = self.head[removed],
+            tail => self.next[tail as usize] = self.head[removed],
         }
-        if self.tail[gone] != NONE {
-            self.tail[kept] = self.tail[gone];
+        if self.tail[removed] != NONE {
+            self.tail[kept] = self.tail[removed];
         }
-        (self.head[gone], self.tail[gone]) = (NONE, NONE);
+        (self.head[removed], self.tail[removed]) = (NONE, NONE);
     }
 
     /// The points that share an edge with `point`, whose corners are `star`.
@@ -261,8 +264,7 @@ impl PointSet {
 
 /// Triangles of surface parts, by number.
 pub fn surface_triangles(state: &State) -> impl Iterator<Item = usize> {
-    let surfaces = state.parts.iter().filter(|span| span.elements().is_none());
-    surfaces.flat_map(|span| span.first_triangle as usize..(span.first_triangle + span.triangles) as usize)
+    state.parts.iter().filter(|span| span.elements().is_none()).flat_map(PartSpan::range)
 }
 
 fn find(union: &mut [u32], mut point: u32) -> u32 {
@@ -273,45 +275,25 @@ fn find(union: &mut [u32], mut point: u32) -> u32 {
     point
 }
 
+/// Numbers the points in the order in which triangles use them: the point of each vertex, where points lie, and the
+/// origin from which that is measured.
 fn number_points(state: &State) -> (Vec<u32>, Vec<DVec3>, DVec3) {
     let mut point_of = vec![NONE; state.vertices.len()];
-    let mut firsts: Vec<(u32, u32)> = Vec::new();
-    let slots = (2 * state.vertices.len()).next_power_of_two().max(2);
-    let mut table = vec![NONE; slots];
-    for (index, span) in state.parts.iter().enumerate().filter(|(_, span)| span.elements().is_none()) {
-        let range = span.first_triangle as usize..(span.first_triangle + span.triangles) as usize;
-        for &vertex in state.triangles[range].iter().flatten() {
+    let mut known: HashMap<(usize, [u32; 3]), u32> = HashMap::with_capacity(state.vertices.len());
+    let mut places = Vec::new();
+    for (part, span) in state.parts.iter().enumerate().filter(|(_, span)| span.elements().is_none()) {
+        for &vertex in state.triangles[span.range()].iter().flatten() {
             if point_of[vertex as usize] != NONE {
                 continue;
             }
-            let bits = state.vertices[vertex as usize].position.map(f32::to_bits);
-            let mut slot = hash(bits, index as u32) as usize & (slots - 1);
-            let same = |point: u32| {
-                let (other, part) = firsts[point as usize];
-                part == index as u32 && state.vertices[other as usize].position.map(f32::to_bits) == bits
-            };
-            while table[slot] != NONE && !same(table[slot]) {
-                slot = (slot + 1) & (slots - 1);
-            }
-            if table[slot] == NONE {
-                table[slot] = firsts.len() as u32;
-                firsts.push((vertex, index as u32));
-            }
-            point_of[vertex as usize] = table[slot];
+            let position = state.vertices[vertex as usize].position;
+            point_of[vertex as usize] =
+                *known.entry((part, position.map(f32::to_bits))).or_insert_with(|| {
+                    places.push(Vec3::from_array(position).as_dvec3());
+                    places.len() as u32 - 1
+                });
         }
     }
-    let exact =
-        |first: &(u32, u32)| DVec3::from_array(state.vertices[first.0 as usize].position.map(f64::from));
-    let origin = firsts.first().map_or(DVec3::ZERO, exact);
-    let positions = firsts.iter().map(|first| exact(first) - origin).collect();
-    (point_of, positions, origin)
-}
-
-fn hash(bits: [u32; 3], part: u32) -> u32 {
-    let mut h = part.wrapping_mul(0x9E37_79B9);
-    for word in bits {
-        h = (h ^ word).wrapping_mul(0x85EB_CA6B);
-        h ^= h >> 15;
-    }
-    h.wrapping_mul(0xC2B2_AE35) ^ (h >> 13)
+    let origin = places.first().copied().unwrap_or(DVec3::ZERO);
+    (point_of, places.into_iter().map(|place| place - origin).collect(), origin)
 }

@@ -13,8 +13,8 @@ use super::{EDGE_MARGIN_M, PlacementParams};
 /// Height in metres that trees keep above the lake.
 pub(super) const WATER_MARGIN_M: f32 = 0.3;
 /// Drained area, as `Landform::flow` scales it, above which a bed is too wet, and from which trees get fewer.
-pub(super) const WETTEST_FLOW: f32 = 0.9;
-const WET_FLOW: f32 = 0.75;
+pub(super) const MAX_FLOW: f32 = 0.9;
+const EDGE_FLOW: f32 = 0.75;
 /// Degrees of slope over which trees get fewer towards the limit.
 const SLOPE_EDGE_DEG: f32 = 6.0;
 /// Part of the relief over which trees get fewer and smaller towards the lowest tree line.
@@ -83,7 +83,7 @@ impl<'a> Site<'a> {
             return None;
         }
         let gentle = 1.0 - smoothstep(self.slopes[0], self.slopes[1], self.slope(x_m, z_m));
-        let dry = 1.0 - smoothstep(WET_FLOW, WETTEST_FLOW, self.flow(x_m, z_m));
+        let dry = 1.0 - smoothstep(EDGE_FLOW, MAX_FLOW, self.flow(x_m, z_m));
         let mild = 1.0 - smoothstep(self.tree_line_m[0], self.tree_line_m[1], y);
         let limits = gentle * dry * mild;
         if limits <= 0.0 {

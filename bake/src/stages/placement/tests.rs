@@ -7,7 +7,7 @@ use crate::model::{Heightfield, Instance, Landform};
 use crate::noise::fbm2;
 use crate::stages::start::{CLEARING_M, clear_around, start_spot};
 
-use super::site::{Site, WATER_MARGIN_M, WETTEST_FLOW};
+use super::site::{MAX_FLOW, Site, WATER_MARGIN_M};
 use super::{EDGE_MARGIN_M, MAX_TREES, PlacementParams, TreeFootprint, place};
 
 /// Rolling land 1024 m wide with one river from north to south, and a lake if `water` is above 0.
@@ -116,7 +116,7 @@ proptest! {
             prop_assert!(slope <= params.steepest_slope_deg + 0.01, "{slope}°");
             let altitude = (land.field.height_m(p.x, p.z) - base) / (high - base);
             prop_assert!(altitude <= params.altitude_limit + 1e-4, "at {altitude} of the relief");
-            prop_assert!(site.flow(p.x, p.z) < WETTEST_FLOW);
+            prop_assert!(site.flow(p.x, p.z) < MAX_FLOW);
             prop_assert!(p.x.abs().max(p.z.abs()) <= half);
         }
         let start = start_spot(&land, &instances);

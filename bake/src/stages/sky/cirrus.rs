@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use super::SkyParams;
 use super::clear::ClearSky;
 use super::clouds::{Marched, distance_to_height, through_air};
-use super::math::{dot, exp, henyey_greenstein};
-use crate::math::{lerp, smoothstep, split};
+use super::math::{bilinear, dot, exp, henyey_greenstein};
+use crate::math::{lerp, smoothstep};
 use crate::noise;
 use crate::raster::raster;
 use crate::seed::noise_seed;
@@ -76,14 +76,6 @@ impl Cirrus {
         let marched = Marched { light: light * (1.0 - through), through, distance_m: t };
         through_air(&marched, direction, ALTITUDE_M, sky)
     }
-}
-
-fn bilinear(texels: &[f32], side: usize, u: f32, v: f32) -> f32 {
-    let ((iu, du), (iv, dv)) = (split(u), split(v));
-    let (iu, iv) = (iu as usize, iv as usize);
-    let (x0, x1) = (iu & (side - 1), iu.wrapping_add(1) & (side - 1));
-    let (y0, y1) = ((iv & (side - 1)) * side, (iv.wrapping_add(1) & (side - 1)) * side);
-    lerp(lerp(texels[y0 + x0], texels[y0 + x1], du), lerp(texels[y1 + x0], texels[y1 + x1], du), dv)
 }
 
 /// Every texel of a square.

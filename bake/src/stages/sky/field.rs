@@ -4,13 +4,12 @@
 
 use super::SkyParams;
 use super::billow::{BILLOWS, Billows};
-use super::math::range;
-use crate::math::{lerp, smoothstep, split};
+use super::math::{bilinear, range};
+use crate::math::{lerp, smoothstep};
 use crate::noise;
 use crate::seed::noise_seed;
 
 const MAP: usize = 128;
-const MASK: usize = MAP - 1;
 /// Clouds along one side of the cover map.
 const CELLS: i32 = 8;
 
@@ -102,26 +101,17 @@ impl CloudField {
     }
 
     #[inline]
-    fn map_at(&self, x: f32, z: f32) -> f32 {
-        let ((ix, dx), (iz, dz)) = (split(x), split(z));
-        let (ix, iz) = (ix as usize, iz as usize);
-        let (x0, x1) = (ix & MASK, ix.wrapping_add(1) & MASK);
-        let (z0, z1) = ((iz & MASK) * MAP, (iz.wrapping_add(1) & MASK) * MAP);
-        let map = &self.map[..MAP * MAP];
-        lerp(lerp(map[z0 + x0], map[z0 + x1], dx), lerp(map[z1 + x0], map[z1 + x1], dx), dz)
-    }
-
-    #[inline]
     fn cover_at(&self, x: f32, z: f32) -> f32 {
         let texels = MAP as f32 / self.tile_m;
         let (u, v) = ((x + self.offset[0]) * texels, (z + self.offset[1]) * texels);
-        let fine = self.map_at(u, v);
+        let map = |u: f32, v: f32| bilinear(&self.map, MAP, u, v);
+        let fine = map(u, v);
         if self.macro_weight == 0.0 {
             return fine;
         }
         // Turned by 37° and 3.7 times as large: fields of clouds with gaps between.
         let (s, c) = (0.601_815 / 3.7, 0.798_636 / 3.7);
-        fine + self.macro_weight * (self.map_at(u * c - v * s + 31.0, u * s + v * c + 77.0) - 0.5)
+        fine + self.macro_weight * (map(u * c - v * s + 31.0, u * s + v * c + 77.0) - 0.5)
     }
 
     /// The undisplaced cloud at a point.

@@ -3,6 +3,8 @@
 
 use glam::Vec3A;
 
+use crate::math::{lerp, split};
+
 /// e^x to a relative error of 1e-7 · (4 + |x|); 0 below −87.
 #[inline]
 pub fn exp(x: f32) -> f32 {
@@ -47,6 +49,17 @@ pub fn turn(y: f32, x: f32) -> f32 {
     let a = if x < 0.0 { 0.5 - a } else { a };
     let a = if y < 0.0 { 1.0 - a } else { a };
     if a >= 1.0 { 0.0 } else { a }
+}
+
+/// A tiling square of `side` texels (a power of two) a side, at a point in texels, interpolated.
+#[inline]
+pub fn bilinear(texels: &[f32], side: usize, u: f32, v: f32) -> f32 {
+    let ((iu, du), (iv, dv)) = (split(u), split(v));
+    let (iu, iv) = (iu as usize, iv as usize);
+    let (x0, x1) = (iu & (side - 1), iu.wrapping_add(1) & (side - 1));
+    let (y0, y1) = ((iv & (side - 1)) * side, (iv.wrapping_add(1) & (side - 1)) * side);
+    let texels = &texels[..side * side];
+    lerp(lerp(texels[y0 + x0], texels[y0 + x1], du), lerp(texels[y1 + x0], texels[y1 + x1], du), dv)
 }
 
 /// The least and the greatest of some values.

@@ -31,6 +31,8 @@ pub(super) struct Card {
     pub width_m: f32,
     /// Angle by which it bends down over its length.
     pub droop_rad: f32,
+    /// Which primary branch bears it, as [`Stem::clump`].
+    clump: u32,
     /// Middle of the mass of leaves that it belongs to.
     pub mass: Vec3,
     /// Middle of the crown.
@@ -65,22 +67,21 @@ pub(super) fn place(params: &TreeParams, budget: &Budget, skeleton: &Skeleton, d
         _ => twigs(params, budget, skeleton, dice),
     };
     let masses = masses(skeleton, &cards);
-    for (card, clump) in &mut cards {
-        card.crown = masses[0];
-        card.mass = masses[*clump as usize];
+    for card in &mut cards {
+        (card.crown, card.mass) = (masses[0], masses[card.clump as usize]);
     }
-    cards.into_iter().map(|(card, _)| card).collect()
+    cards
 }
 
 /// Middles of the crown (entry 0) and of the leaves of each primary branch.
-fn masses(skeleton: &Skeleton, cards: &[(Card, u32)]) -> Vec<Vec3> {
+fn masses(skeleton: &Skeleton, cards: &[Card]) -> Vec<Vec3> {
     let mut sums = vec![(Vec3::ZERO, 0.0_f32); skeleton.clumps as usize + 1];
-    for (card, clump) in cards {
-        for i in [0, *clump as usize] {
+    for card in cards {
+        for i in [0, card.clump as usize] {
             sums[i].0 += card.middle();
             sums[i].1 += 1.0;
         }
-        if *clump == 0 {
+        if card.clump == 0 {
             sums[0].1 -= 1.0;
             sums[0].0 -= card.middle();
         }
@@ -106,7 +107,7 @@ fn bearers(budget: &Budget, skeleton: &Skeleton) -> Vec<Bearer> {
     shared.collect()
 }
 
-fn twigs(params: &TreeParams, budget: &Budget, skeleton: &Skeleton, dice: &mut Dice) -> Vec<(Card, u32)> {
+fn twigs(params: &TreeParams, budget: &Budget, skeleton: &Skeleton, dice: &mut Dice) -> Vec<Card> {
     let bearers = bearers(budget, skeleton);
     let outer = skeleton.stems.iter().filter(|stem| stem.level == budget.levels - 1).count();
     let wish = (params.leaves_per_stem * outer as u32) as f32 * 1.15;
@@ -134,7 +135,7 @@ fn twigs(params: &TreeParams, budget: &Budget, skeleton: &Skeleton, dice: &mut D
             turn += GOLDEN_RAD + 0.4 * dice.signed();
             let twig = Twig { z, turn, ends: k == 0, length_m };
             let card = twig.card(budget.habit, skeleton, stem, dice);
-            cards.push((painter.paint(card, stem.clump, dice), stem.clump));
+            cards.push(painter.paint(card, stem.clump, dice));
         }
     }
     cards
@@ -197,6 +198,7 @@ impl Card {
             length_m,
             width_m: length_m * aspect,
             droop_rad,
+            clump: 0,
             mass: root,
             crown: root,
             tint: Vec3::ONE,
@@ -207,7 +209,7 @@ impl Card {
 }
 
 /// Fronds around the top of a trunk that has no branches.
-fn palm(params: &TreeParams, budget: &Budget, skeleton: &Skeleton, dice: &mut Dice) -> Vec<(Card, u32)> {
+fn palm(params: &TreeParams, budget: &Budget, skeleton: &Skeleton, dice: &mut Dice) -> Vec<Card> {
     let mut painter = Painter::new(params);
     let mut cards = Vec::new();
     let crowns = skeleton.stems.len().max(1) as u32;
@@ -227,14 +229,14 @@ fn palm(params: &TreeParams, budget: &Budget, skeleton: &Skeleton, dice: &mut Di
             let droop_rad = (62.0 + 26.0 * age - 14.0 * params.tropism + 10.0 * dice.signed()).to_radians();
             let grown = (0.7 + 0.6 * age).min(1.0) * (1.0 + 0.1 * dice.signed());
             let card = frond(root + side * (0.3 * radius_m), axis, length_m * grown, droop_rad);
-            cards.push((painter.paint(card, 0, dice), 0));
+            cards.push(painter.paint(card, 0, dice));
         }
     }
     cards
 }
 
 /// A rosette of fronds at the tip of every outer stem.
-fn tufts(params: &TreeParams, budget: &Budget, skeleton: &Skeleton, dice: &mut Dice) -> Vec<(Card, u32)> {
+fn tufts(params: &TreeParams, budget: &Budget, skeleton: &Skeleton, dice: &mut Dice) -> Vec<Card> {
     let stems = &skeleton.stems;
     let each =
         (budget.max_cards as usize / stems.len().max(1)).min(3 + params.leaves_per_stem as usize / 6).max(2);
@@ -254,7 +256,7 @@ fn tufts(params: &TreeParams, budget: &Budget, skeleton: &Skeleton, dice: &mut D
             let axis = (along * (1.1 - 0.9 * age) + side + Vec3::Y * 0.35).normalize_or(side);
             let droop_rad = (45.0 + 45.0 * age).to_radians();
             let size = length_m * (1.0 + 0.18 * dice.signed());
-            cards.push((painter.paint(frond(root, axis, size, droop_rad), stem.clump, dice), stem.clump));
+            cards.push(painter.paint(frond(root, axis, size, droop_rad), stem.clump, dice));
         }
     }
     cards
@@ -296,6 +298,7 @@ impl Painter {
         let light = 0.9 + 0.06 * bright;
         card.tint = Vec3::new(1.0 + spread * hue, 1.0 - 0.4 * spread * hue, 1.0 - spread * hue) * light;
         // Blossom comes before the leaves are grown.
+        card.clump = clump;
         let size = if card.blossom { 1.3 } else { 1.0 - 0.7 * self.blossom };
         card.length_m *= size;
         card.width_m *= size;

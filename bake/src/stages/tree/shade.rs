@@ -2,7 +2,7 @@
 //!
 //! Leaf area is gathered in a coarse grid over the crown; light falls through it from above and from four sides
 //! with Beer–Lambert extinction (Monsi & Saeki 1953). Leaves let light pass, so nothing gets darker than
-//! [`DARKEST`].
+//! [`MIN_LIGHT`].
 
 use glam::Vec3;
 
@@ -13,9 +13,9 @@ use crate::math::lerp;
 /// Cells a side.
 const SIDE: usize = 14;
 /// The smallest factor on colours inside a crown.
-const DARKEST: f32 = 0.62;
+const MIN_LIGHT: f32 = 0.62;
 
-/// Light in [`DARKEST`]..1 on a grid over the crown, and the crown's own shape.
+/// Light in [`MIN_LIGHT`]..1 on a grid over the crown, and the crown's own shape.
 pub(super) struct Shade {
     low: Vec3,
     cell_m: Vec3,
@@ -83,5 +83,5 @@ fn fall(area: &[f32], cell_m: Vec3) -> Vec<f32> {
             }
         }
     }
-    light.iter().map(|&l| DARKEST + (1.0 - DARKEST) * (l * 1.45).min(1.0)).collect()
+    light.iter().map(|&l| MIN_LIGHT + (1.0 - MIN_LIGHT) * (l * 1.45).min(1.0)).collect()
 }

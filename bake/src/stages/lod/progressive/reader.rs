@@ -67,8 +67,8 @@ impl Progressive {
     /// Between marks, the square of the scale is linear in the inverse of the number of elements.
     fn scale(&self, state: &State, part: usize) -> f32 {
         let span = &state.parts[part];
-        let Some((elements, per, _)) = span.elements() else { return 1.0 };
-        let lives = |e: &u32| state.vertex_lives[(span.first_vertex + e * per) as usize];
+        let Some((elements, ..)) = span.elements() else { return 1.0 };
+        let lives = |e: &u32| state.vertex_lives[span.element(*e)[0].start];
         let now = (0..elements).filter(lives).count() as u32;
         let at = |mark: &Mark| mark.parts[part];
         let Some(coarse) = self.marks.iter().position(|mark| at(mark).0 <= now) else {
