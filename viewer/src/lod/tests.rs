@@ -8,7 +8,8 @@ use std::collections::HashMap;
 use glam::{Vec2, Vec3};
 use proptest::prelude::*;
 
-use super::morph::{Detail, sample_m};
+use super::bintree::{Sample, level, slides_to};
+use super::morph::{Detail, GAP, sample_m};
 use super::quadtree::{self, Block, Errors, block_cells, block_indices};
 use super::roam::Roam;
 use crate::camera::{Camera, Frustum};
@@ -25,6 +26,31 @@ fn land(side: u32, spacing_m: f32, relief_m: f32, seed: u32) -> Heightfield {
     made_up::land(side, spacing_m, height)
 }
 
+/// λ at (x, z), as the shader has it.
+fn lambda(detail: &Detail, at_m: Vec2) -> f32 {
+    let distance_m = detail.distance_squared_m2(at_m).sqrt();
+    libm::log2f(distance_m / detail.unit_m).clamp(0.0, detail.top)
+}
+
+/// The way a vertex has gone to its parent, 0 to 1, as the shader has it.
+fn slide(detail: &Detail, field: &Heightfield, sample: Sample) -> f32 {
+    let [x, z] = sample.map(|line| field.place_m(line));
+    ((lambda(detail, Vec2::new(x, z)) - level(sample) as f32) * (1.0 / (1.0 - GAP))).clamp(0.0, 1.0)
+}
+
+/// Where a vertex is drawn, as the shader has it. Two steps suffice in a block of level i: λ ≤ i+2, and vertices have
+/// levels ≥ i.
+fn drawn_m(detail: &Detail, field: &Heightfield, sample: Sample) -> Vec3 {
+    let mut vertex = sample;
+    for _ in 0..2 {
+        if slide(detail, field, vertex) >= 1.0 {
+            vertex = slides_to(vertex);
+        }
+    }
+    let (from, part) = (sample_m(field, vertex), slide(detail, field, vertex));
+    if part <= 0.0 { from } else { from + (sample_m(field, slides_to(vertex)) - from) * part }
+}
+
 type Triangle = [Vec3; 3];
 
 /// What the GPU draws of some blocks.
@@ -36,7 +62,7 @@ fn drawn(field: &Heightfield, detail: &Detail, blocks: &[Block]) -> Vec<Triangle
         let vertex = |number: u32| {
             let step = 1 << block.level;
             let (column, row) = (number % (cells + 1), number / (cells + 1));
-            detail.place_m(field, [block.i + column * step, block.j + row * step])
+            drawn_m(detail, field, [block.i + column * step, block.j + row * step])
         };
         let vertices: Vec<Vec3> = (0..(cells + 1) * (cells + 1)).map(vertex).collect();
         let corners = indices.chunks_exact(3).map(|t| [0, 1, 2].map(|c| vertices[t[c] as usize]));
@@ -119,7 +145,7 @@ proptest! {
         // The greatest λ is at a corner, for distance is convex.
         for ([x, z], block) in [[0, 0], [16, 0], [0, 16], [16, 16], [x, z]].iter().flat_map(|v| blocks.iter().map(move |b| (v, b))) {
             let place = |from: u32, by: u32| field.place_m(from + (by << block.level));
-            let lambda = detail.lambda(Vec2::new(place(block.i, *x), place(block.j, *z)));
+            let lambda = lambda(&detail, Vec2::new(place(block.i, *x), place(block.j, *z)));
             let level = block.level as f32;
             prop_assert!(lambda >= level - 1e-4 && lambda <= level + 2.0 + 1e-4, "{lambda} in {block:?}");
         }
@@ -173,7 +199,7 @@ proptest! {
             let mut blocks = Vec::new();
             quadtree::select(&field, &detail, None, &mut blocks);
             let mesh = drawn(&field, &detail, &blocks);
-            let vertices: Vec<Vec3> = (0..65 * 65).map(|n| detail.place_m(&field, [n % 65, n / 65])).collect();
+            let vertices: Vec<Vec3> = (0..65 * 65).map(|n| drawn_m(&detail, &field, [n % 65, n / 65])).collect();
             let heights: Vec<f32> =
                 places.iter().map(|&at| height_in(&mesh, at).expect("the mesh covers the square")).collect();
             if let Some((vertices_before, heights_before)) = &before {
