@@ -41,7 +41,7 @@ const AROUND_M: f32 = 1.2 * CELL_M;
 /// Bytes of rock, scree, snow and mud together beyond which no grass grows.
 const BARE: u32 = 190;
 
-/// So many blades of a cell, as the shader reads them.
+/// [`BLADES`] blades of a cell, as the shader reads them.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Clump {

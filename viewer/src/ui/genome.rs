@@ -7,7 +7,7 @@ use genescape_schema::{Category, INDIVIDUALS, Parameter};
 use super::icon::Icon;
 use super::model::{Genes, Model};
 use super::theme::{self, Palette};
-use super::widgets::{close_button, ends, painted_button, segmented, sized_icon_button};
+use super::widgets::{Asks, close_button, ends, painted_button, segmented, sized_icon_button};
 use super::{bake_log, gene_row};
 use crate::event::{Event, Panel};
 
@@ -158,10 +158,8 @@ fn category_head(
     *unfolded ^= response.clicked();
     let fill = if response.hovered() { palette.hovered } else { color.gamma_multiply(0.16) };
     ui.painter().rect_filled(rect, CornerRadius::same(theme::RADIUS), fill);
-    let icon_rect = Rect::from_center_size(pos2(rect.left() + 18.0, rect.center().y), vec2(17.0, 17.0));
-    Icon::from(category).paint(ui.painter(), icon_rect, color);
-    let font = egui::FontId::proportional(15.0);
-    let at = pos2(rect.left() + 34.0, rect.center().y);
+    Icon::from(category).paint_at(ui.painter(), rect.left_center() + vec2(18.0, 0.0), 17.0, color);
+    let (at, font) = (rect.left_center() + vec2(34.0, 0.0), egui::FontId::proportional(15.0));
     ui.painter().text(at, egui::Align2::LEFT_CENTER, title, font, palette.text);
     let layout = Layout::right_to_left(Align::Center);
     let mut corner = ui.new_child(egui::UiBuilder::new().max_rect(rect.shrink(2.0)).layout(layout));
@@ -169,9 +167,8 @@ fn category_head(
     let locked = genes.locked_categories[category as usize];
     let (icon, verb) = if locked { (Icon::Locked, "Unlock all") } else { (Icon::Unlocked, "Lock all") };
     let label = format!("{verb}: {}", title.to_lowercase());
-    if sized_icon_button(&mut corner, icon, &label, locked, 26.0).clicked() {
-        events.push(Event::LockCategory { category, locked: !locked });
-    }
+    sized_icon_button(&mut corner, icon, &label, locked, 26.0)
+        .asks(events, Event::LockCategory { category, locked: !locked });
     reset_category(&mut corner, genes, individual, category, events);
 }
 

@@ -8,7 +8,7 @@ use egui::{Align2, Area, Id, Margin, Rect, RichText, Slider, Ui, vec2};
 use super::icon::Icon;
 use super::model::Model;
 use super::theme::{self, Palette};
-use super::widgets::{close_button, icon_button, scrolled, section, segmented, switch};
+use super::widgets::{Asks, close_button, icon_button, scrolled, section, segmented, switch};
 use crate::event::{Comfort, Event, Panel, Theme};
 use crate::frame::{LOD_SWITCHES, Options, PICTURE_SWITCHES, Switch};
 use crate::lod_mode::LodMode;
@@ -42,9 +42,7 @@ fn header(ui: &mut Ui, events: &mut Vec<Event>) {
     ui.label(RichText::new("Settings").heading());
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
         close_button(ui, "Close the settings", Panel::Settings, events);
-        if icon_button(ui, Icon::Reset, "Reset all settings", false).clicked() {
-            events.push(Event::ResetSettings);
-        }
+        icon_button(ui, Icon::Reset, "Reset all settings", false).asks(events, Event::ResetSettings);
     });
 }
 
