@@ -9,7 +9,6 @@ pub mod bench;
 pub mod camera;
 pub mod cli;
 pub mod event;
-pub mod frame;
 #[cfg(feature = "gamepad")]
 pub mod gamepad;
 pub mod gpu;
@@ -18,6 +17,7 @@ pub mod input;
 pub mod load;
 pub mod lod;
 pub mod lod_mode;
+pub mod options;
 pub mod passes;
 pub mod picture_file;
 pub mod save;

@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use super::bintree::{Sample, level, slides_to};
 use super::morph::{Detail, GAP, sample_m};
 use super::quadtree::{self, Block, Errors, block_cells, block_indices};
-use super::roam::Roam;
+use super::roam::triangulate;
 use crate::camera::{Camera, Frustum};
 use crate::scene::Heightfield;
 
@@ -269,8 +269,8 @@ proptest! {
     ) {
         let field = land((1 << depth) + 1, 1.0, relief, seed);
         camera.position_m *= field.extent_m();
-        let (mut roam, mut strip) = (Roam::default(), Vec::new());
-        let triangles = roam.triangulate(&field, &camera, PICTURE, error_px, &mut strip);
+        let mut strip = Vec::new();
+        let triangles = triangulate(&field, &camera, PICTURE, error_px, &mut strip);
         let mesh = strip_triangles(&field, &strip);
         check_closed(&field, &mesh)?;
         prop_assert_eq!(triangles as usize, mesh.len());
@@ -292,29 +292,13 @@ proptest! {
         let field = land(33, 1.0, 20.0, seed);
         camera.position_m *= field.extent_m();
         let mut strip = Vec::new();
-        Roam::default().triangulate(&field, &camera, PICTURE, 0.0, &mut strip);
+        triangulate(&field, &camera, PICTURE, 0.0, &mut strip);
         let frustum = camera.frustum(PICTURE.0);
         for entry in 0..field.side * field.side {
             let flat = field.displacements_m[entry as usize] == 0.0;
             let seen = frustum.sees_sphere(sample_m(&field, [entry % field.side, entry / field.side]), 0.0);
             prop_assert!(flat || !seen || strip.contains(&entry), "sample {entry}");
         }
-    }
-
-    #[test]
-    fn flags_of_earlier_frames_do_not_show(mut camera in camera(), mut other in camera(), wrap in any::<bool>()) {
-        let field = land(33, 1.0, 20.0, 5);
-        camera.position_m *= field.extent_m();
-        other.position_m *= field.extent_m();
-        let (mut fresh, mut used, mut worn) = (Vec::new(), Vec::new(), Roam::default());
-        worn.triangulate(&field, &other, PICTURE, 1.0, &mut used);
-        if wrap {
-            worn.wear();
-            worn.triangulate(&field, &other, PICTURE, 1e9, &mut used);
-        }
-        worn.triangulate(&field, &camera, PICTURE, 2.0, &mut used);
-        Roam::default().triangulate(&field, &camera, PICTURE, 2.0, &mut fresh);
-        prop_assert_eq!(fresh, used);
     }
 }
 
@@ -323,9 +307,9 @@ fn more_error_and_less_sight_mean_fewer_triangles() {
     let field = land(129, 2.0, 40.0, 3);
     let camera =
         Camera { position_m: Vec3::new(0.0, 30.0, 100.0), yaw_rad: 0.0, pitch_rad: -0.2, fov_y_rad: 1.0 };
-    let (mut roam, mut strip, mut blocks) = (Roam::default(), Vec::new(), Vec::new());
+    let (mut strip, mut blocks) = (Vec::new(), Vec::new());
     let counts: Vec<u32> = [0.0, 1.0, 4.0, 64.0, 1e9]
-        .map(|error_px| roam.triangulate(&field, &camera, PICTURE, error_px, &mut strip))
+        .map(|error_px| triangulate(&field, &camera, PICTURE, error_px, &mut strip))
         .to_vec();
     assert!(counts.is_sorted_by(|a, b| a > b), "{counts:?}");
     let detail = detail_at(&field, camera.position_m, 1.0);

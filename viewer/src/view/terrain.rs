@@ -1,12 +1,11 @@
 //! Camera and LOD mode → the blocks or triangles of the terrain that one picture draws.
 
 use crate::camera::Camera;
-use crate::frame::Options;
 use crate::gpu::Gpu;
 use crate::lod::morph::Detail;
-use crate::lod::quadtree;
-use crate::lod::roam::Roam;
+use crate::lod::{quadtree, roam};
 use crate::lod_mode::TerrainLodMode;
+use crate::options::Options;
 use crate::passes::BoundScene;
 
 /// No block of the terrain is wider, so that what is not seen can be left out.
@@ -16,7 +15,6 @@ const MAX_BLOCK_M: f32 = 256.0;
 #[derive(Debug, Default)]
 pub(super) struct TerrainLod {
     blocks: Vec<quadtree::Block>,
-    roam: Roam,
     strip: Vec<u32>,
 }
 
@@ -40,7 +38,7 @@ impl TerrainLod {
         let aspect = width / height;
         let triangles = if mode == TerrainLodMode::Roam {
             let picture = (aspect, height);
-            let triangles = self.roam.triangulate(field, camera, picture, error_px, &mut self.strip);
+            let triangles = roam::triangulate(field, camera, picture, error_px, &mut self.strip);
             bound.terrain.write(gpu, &self.strip);
             triangles
         } else {

@@ -17,7 +17,7 @@ use super::model::{
 use super::model::{ViewModel, ViewState};
 use super::{Output, State, theme};
 use crate::event::{Arrangement, Ballots, Comfort, Event};
-use crate::frame::Options;
+use crate::options::Options;
 
 /// A window's content without a window.
 pub struct Bench {
