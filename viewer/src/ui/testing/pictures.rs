@@ -261,7 +261,7 @@ fn the_interface_looks_as_it_did() {
             picture_file::write_png(&golden, &drawn).expect("written");
         }
         let off = difference(&read_png(&golden), &drawn);
-        // A button elsewhere by two points, or of another grey, is 0.0005.
+        // An accent a shade redder is 0.004.
         assert!(off < 2e-4, "{name}: FLIP {off}");
     }
 }
