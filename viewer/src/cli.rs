@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 
 use crate::baker::BakerOptions;
+use crate::frame::Options;
 use crate::lod_mode::{TerrainLodMode, TreeLodMode};
-use crate::options::Options;
 
 /// Shows four landscapes at once: walk through all of them, say which has the best trees, terrain and sky, and breed
 /// four new ones

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use genescape_schema::{Category, INDIVIDUALS, Votes};
 use serde::{Deserialize, Serialize};
 
-use crate::options::Options;
+use crate::frame::Options;
 
 /// One wish of the person.
 #[derive(Clone, Debug, PartialEq)]

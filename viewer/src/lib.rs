@@ -9,6 +9,7 @@ pub mod bench;
 pub mod camera;
 pub mod cli;
 pub mod event;
+pub mod frame;
 #[cfg(feature = "gamepad")]
 pub mod gamepad;
 pub mod gpu;
@@ -17,7 +18,7 @@ pub mod input;
 pub mod load;
 pub mod lod;
 pub mod lod_mode;
-pub mod options;
+
 pub mod passes;
 pub mod picture_file;
 pub mod save;

@@ -14,7 +14,7 @@ use ron::value::RawValue;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::options;
+use crate::frame;
 use crate::save::save;
 
 /// The file's first line.
@@ -26,7 +26,7 @@ const TITLE: &str =
 #[serde(default)]
 pub struct Settings {
     /// What is drawn, and how.
-    pub options: options::Options,
+    pub options: frame::Options,
     /// How the program feels in the hand.
     pub comfort: Opaque,
     /// What keys, mouse and gamepad do.

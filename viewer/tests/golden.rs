@@ -12,8 +12,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use genescape_viewer::camera::Camera;
+use genescape_viewer::frame::{FrameInput, Options};
 use genescape_viewer::lod_mode::{TerrainLodMode, TreeLodMode};
-use genescape_viewer::options::{FrameInput, Options};
 use genescape_viewer::picture_file::{self, Pixels};
 use genescape_viewer::scene::{Apron, Detail, Scene, Trees};
 use genescape_viewer::screenshot::Studio;

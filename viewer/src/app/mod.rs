@@ -27,9 +27,9 @@ use winit::window::{WindowAttributes, WindowId};
 
 use crate::baker::{Baker, BakerOptions};
 use crate::event::{Arrangement, Comfort, Event};
+use crate::frame::FrameInput;
 use crate::gpu::Gpu;
 use crate::input::Bindings;
-use crate::options::FrameInput;
 use crate::settings::{Settings, SettingsFile};
 use crate::shaders::Shaders;
 use crate::ui::model::{Model, Panels};

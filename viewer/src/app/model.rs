@@ -5,8 +5,8 @@ use std::array;
 use super::desk::Desk;
 use super::show::Show;
 use crate::event::{Arrangement, Comfort};
+use crate::frame::Options;
 use crate::input::Bindings;
-use crate::options::Options;
 use crate::ui::model::{KeyGroup, Model, Panels, Situation, Stats, ViewModel, ViewState};
 
 /// The parts.

@@ -7,7 +7,7 @@ use anyhow::Result;
 use super::BenchArgs;
 use super::lab::{Lab, forest, way};
 use super::report::{Aim, Report, median, quantile};
-use crate::options::FrameInput;
+use crate::frame::FrameInput;
 
 /// Trees of each landscape.
 const TREES: usize = 10_000;

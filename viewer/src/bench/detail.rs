@@ -10,8 +10,8 @@ use strum::VariantArray;
 use super::BenchArgs;
 use super::lab::{Cost, Lab, forest, frame_with, way};
 use super::report::{Aim, Report};
+use crate::frame::FrameInput;
 use crate::lod_mode::{LodMode, TerrainLodMode, TreeLodMode};
-use crate::options::FrameInput;
 use crate::picture_file;
 use crate::view::View;
 

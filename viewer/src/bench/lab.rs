@@ -9,10 +9,10 @@ use cpu_time::{ProcessTime, ThreadTime};
 use glam::{Vec2, Vec3};
 
 use crate::camera::Camera;
+use crate::frame::{FrameInput, Options};
 use crate::gpu::Gpu;
 use crate::load::{self, Store};
 use crate::lod_mode::{TerrainLodMode, TreeLodMode};
-use crate::options::{FrameInput, Options};
 use crate::passes::Passes;
 use crate::scene::{Instance, Scene};
 use crate::shaders::Shaders;

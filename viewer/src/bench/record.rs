@@ -8,7 +8,7 @@ use anyhow::Result;
 use super::BenchArgs;
 use super::lab::{Cost, Lab, forest, way};
 use super::report::{Aim, Report, median};
-use crate::options::FrameInput;
+use crate::frame::FrameInput;
 
 /// Trees of the two forests.
 const TREES: [usize; 2] = [100, 100_000];

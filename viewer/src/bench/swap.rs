@@ -10,8 +10,8 @@ use super::lab::{Cost, Lab, way};
 use super::report::{Aim, Report, median, quantile};
 use super::views::four_views;
 use crate::app::loader::{Loader, Request};
+use crate::frame::FrameInput;
 use crate::load;
-use crate::options::FrameInput;
 use crate::upload::Uploader;
 
 /// Frames before a landscape is asked for, and after it is shown.

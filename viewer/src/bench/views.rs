@@ -7,7 +7,7 @@ use anyhow::Result;
 use super::BenchArgs;
 use super::lab::{Cost, Lab, way};
 use super::report::{Aim, Report, median};
-use crate::options::FrameInput;
+use crate::frame::FrameInput;
 use crate::view::View;
 
 /// Each picture is drawn so often; the cheapest counts.

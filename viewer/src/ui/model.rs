@@ -8,7 +8,7 @@ use egui::TextureId;
 use genescape_schema::{Genome, INDIVIDUALS, Parameter, Space};
 
 use crate::event::{Arrangement, Ballots, Comfort, Panel};
-use crate::options::Options;
+use crate::frame::Options;
 
 /// Everything that is on the screen.
 #[derive(Clone, Debug)]

@@ -17,7 +17,7 @@ use super::model::{
 use super::model::{ViewModel, ViewState};
 use super::{Output, State, theme};
 use crate::event::{Arrangement, Ballots, Comfort, Event};
-use crate::options::Options;
+use crate::frame::Options;
 
 /// A window's content without a window.
 pub struct Bench {
