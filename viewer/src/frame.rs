@@ -1,42 +1,57 @@
 //! What one frame is drawn from, for all views alike: time, choices of the person.
 
+use clap::ArgAction;
 use serde::{Deserialize, Serialize};
 
 use crate::lod_mode::{TerrainLodMode, TreeLodMode};
 
-/// What the person has chosen to see, and how.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// What is drawn, and how: chosen in the settings panel, or on the command line, whose help these comments are.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, clap::Args)]
 #[serde(default)]
+#[command(next_help_heading = "Drawing (with --screenshot)")]
 pub struct Options {
-    /// Levels of detail of trees; by its older name in files.
+    /// Levels of detail of trees
     #[serde(rename = "tree_scheme")]
+    #[arg(long, value_enum, default_value_t)]
     pub tree_lod: TreeLodMode,
-    /// Levels of detail of the terrain; by its older name in files.
+    /// Levels of detail of the terrain
     #[serde(rename = "terrain_scheme")]
+    #[arg(long, value_enum, default_value_t)]
     pub terrain_lod: TerrainLodMode,
-    /// Error that trees may have on the screen, in pixels.
+    /// Error that trees may have on the screen, in pixels
+    #[arg(long = "tree-error", value_name = "PIXELS", default_value_t = Self::default().tree_error_px)]
     pub tree_error_px: f32,
-    /// Error that the terrain may have on the screen, in pixels.
+    /// Error that the terrain may have on the screen, in pixels
+    #[arg(long = "terrain-error", value_name = "PIXELS", default_value_t = Self::default().terrain_error_px)]
     pub terrain_error_px: f32,
-    /// Edges of triangles only.
+    /// Edges of triangles only
+    #[arg(long)]
     pub wireframe: bool,
-    /// Colours say the level of detail.
+    /// Colours that say the level of detail
+    #[arg(long = "tint")]
     pub tint_levels: bool,
-    /// The land from above, with what the walking camera's choice of detail drew (thesis figures 12 and 13).
+    /// From above, with what was chosen for the eye
+    // Thesis, figures 12 and 13.
+    #[arg(long)]
     pub overhead: bool,
-    /// Clouds move.
+    /// Clouds move
+    #[arg(skip = true)]
     pub drift_clouds: bool,
-    /// Trees are drawn.
+    #[arg(skip = true)]
     pub draw_trees: bool,
-    /// Grass is drawn near by.
+    /// No blades of grass around the eye
+    #[arg(long = "no-grass", action = ArgAction::SetFalse)]
     pub grass: bool,
-    /// The land is drawn.
+    #[arg(skip = true)]
     pub draw_terrain: bool,
-    /// Factor on the scene's own exposure.
+    /// Factor on the landscape's own exposure
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
     pub exposure: f32,
-    /// Samples a pixel: 1 or 4.
+    /// Samples a pixel
+    #[arg(long, default_value_t = 4, value_parser = parse_samples)]
     pub samples: u32,
-    /// Vertical field of view in degrees.
+    /// Vertical field of view in degrees
+    #[arg(long = "fov", value_name = "DEGREES", default_value_t = Self::default().fov_y_deg)]
     pub fov_y_deg: f32,
 }
 
@@ -62,6 +77,11 @@ pub const PICTURE_SWITCHES: [Switch; 4] = [
     ("Clouds drift", "", |options| &mut options.drift_clouds),
 ];
 
+fn parse_samples(text: &str) -> Result<u32, String> {
+    let samples = text.parse().ok().filter(|samples| [1, 4].contains(samples));
+    samples.ok_or_else(|| "1 or 4 samples a pixel".to_owned())
+}
+
 impl Default for Options {
     fn default() -> Self {
         Self {
@@ -86,7 +106,6 @@ impl Default for Options {
 /// What one frame is drawn from; the same for all views.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrameInput {
-    /// The person's wishes.
     pub options: Options,
     /// Seconds for which clouds have drifted and waves have run.
     pub time_s: f32,

@@ -21,26 +21,19 @@ pub struct Shaders {
 pub enum ShaderError {
     /// naga refuses it.
     #[error("{name}.wgsl is wrong:\n{text}")]
-    Wrong {
-        /// Its name without ending.
-        name: String,
-        /// What and where.
-        text: String,
-    },
+    Wrong { name: String, text: String },
     /// A pipeline cannot be made from it.
     #[error("a shader does not fit its pipeline: {text}")]
-    Refused {
-        /// What the device says.
-        text: String,
-    },
-    /// It cannot be read.
+    Refused { text: String },
     #[error("cannot read {path}: {source}")]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
+    Unreadable { path: PathBuf, source: std::io::Error },
+}
+
+/// From a folder, if there is one; any shader that is not in it is taken from the built-in ones.
+impl From<Option<PathBuf>> for Shaders {
+    fn from(folder: Option<PathBuf>) -> Self {
+        Self { folder }
+    }
 }
 
 impl Shaders {
@@ -49,12 +42,7 @@ impl Shaders {
         Self::default()
     }
 
-    /// Those in `folder`; any that is not there is taken from the built-in ones.
-    pub fn from_folder(folder: PathBuf) -> Self {
-        Self { folder: Some(folder) }
-    }
-
-    /// Names of all shaders.
+    /// Names of all shaders, without "common".
     pub fn names() -> impl Iterator<Item = &'static str> {
         SHADERS.iter().map(|shader| shader.name)
     }
@@ -82,12 +70,13 @@ impl Shaders {
             name: name.to_owned(),
             text: format!("{error}(its first {common_lines} lines are those of common.wgsl)"),
         };
+        let path = format!("{name}.wgsl");
         let module = naga::front::wgsl::parse_str(&text)
-            .map_err(|error| wrong(error.emit_to_string_with_path(&text, &format!("{name}.wgsl"))))?;
+            .map_err(|error| wrong(error.emit_to_string_with_path(&text, &path)))?;
         let flags = naga::valid::ValidationFlags::all();
         let info = naga::valid::Validator::new(flags, naga::valid::Capabilities::all())
             .validate(&module)
-            .map_err(|error| wrong(error.emit_to_string_with_path(&text, &format!("{name}.wgsl"))))?;
+            .map_err(|error| wrong(error.emit_to_string_with_path(&text, &path)))?;
         Ok((module, info))
     }
 

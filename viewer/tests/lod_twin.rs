@@ -6,18 +6,19 @@ mod made_up;
 use genescape_viewer::camera::{Camera, Frustum};
 use genescape_viewer::frame::Options;
 use genescape_viewer::gpu::Gpu;
+use genescape_viewer::headless::Headless;
 use genescape_viewer::lod::tree::{MAX_LEVELS, MIN_DISTANCE_M, simple_error_m};
 use genescape_viewer::lod_mode::TreeLodMode;
 use genescape_viewer::passes::{BoundTrees, CullUniform};
 use genescape_viewer::picture_file;
 use genescape_viewer::scene::Trees;
-use genescape_viewer::screenshot::Studio;
 use genescape_viewer::upload::{DrawCommand, SceneBuffers};
 use glam::Vec3;
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg32;
 use std::sync::Arc;
+use strum::VariantArray;
 
 /// Differences of λ that rounding explains.
 const ROUNDING: f32 = 2e-3;
@@ -88,7 +89,7 @@ fn fetch(gpu: &Gpu, from: &wgpu::Buffer) -> Vec<u8> {
 
 /// λ of each tree as the device chose it, `None` where it is not seen. Checks lists, counts and commands on the way.
 fn chosen(
-    studio: &Studio,
+    studio: &Headless,
     buffers: &SceneBuffers,
     uniform: &CullUniform,
     forest: &Forest,
@@ -131,14 +132,14 @@ fn margin_m(frustum: &Frustum, center_m: Vec3, radius_m: f32) -> f32 {
         .fold(f32::MAX, f32::min)
 }
 
-fn compare(studio: &Studio, seed: u64) -> [usize; 2] {
+fn compare(studio: &Headless, seed: u64) -> [usize; 2] {
     let mut rng = Pcg32::seed_from_u64(seed);
     let forest = forest(&mut rng);
     let scene = made_up::scene(made_up::field(17, 2.0, 1.0, 0.1), [90; 4], [1.0; 3], forest.trees.clone());
     let buffers = genescape_viewer::upload::Uploader::new(&studio.gpu).upload(&scene).expect("uploaded");
     let set = buffers.trees.as_ref().expect("trees");
     let mut seen = [0; 2];
-    for mode in [TreeLodMode::Quality, TreeLodMode::Simple, TreeLodMode::Discrete, TreeLodMode::Off] {
+    for &mode in TreeLodMode::VARIANTS {
         let camera = eye(&mut rng, &forest.trees);
         let frustum = camera.frustum(1.6);
         let control = Control {

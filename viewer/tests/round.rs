@@ -6,9 +6,8 @@ use std::time::{Duration, Instant};
 
 use genescape_schema::{Category, Parent, Space, Votes};
 use genescape_viewer::baker::{Baker, BakerOptions, Event};
-use genescape_viewer::history::{Edit, History};
-use genescape_viewer::world_files::WorldFiles;
-use genescape_viewer::world_watch::{Change, WatchOptions, WorldWatch};
+use genescape_viewer::edit_history::{Edit, History};
+use genescape_world::{Change, Scope, Watch, World};
 
 struct Round {
     _folder: tempfile::TempDir,

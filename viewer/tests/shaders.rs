@@ -53,7 +53,7 @@ fn every_shader_is_valid_and_one_that_is_not_is_told_with_its_line() {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("sky.wgsl"), "\n\nfn broken() -> f32 { return 1u; }\n")
         .expect("written");
-    let error = Shaders::from_folder(folder.path().to_owned()).check("sky").expect_err("it is wrong");
+    let error = Shaders::from(Some(folder.path().to_owned())).check("sky").expect_err("it is wrong");
     assert!(error.to_string().contains("sky.wgsl") && error.to_string().contains("1u"), "{error}");
 }
 

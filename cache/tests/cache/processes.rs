@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use genescape_cache::{Cache, How};
 
-use crate::{build, is_right, key, outputs};
+use crate::{build, build_by, is_right, outputs};
 
 /// Waits until `ready`, or fails after a generous while.
 fn until(what: &str, mut ready: impl FnMut() -> bool) {
@@ -42,13 +42,12 @@ fn child_builds() {
     let folder = Path::new(&folder);
     let pause = if std::env::var("GENESCAPE_TEST_SLOW").as_deref() == Ok("1") { 60_000 } else { 300 };
     let cache = Cache::open(folder.join("baked")).expect("opens");
-    let outcome = cache
-        .get_or_build_bytes::<genescape_cache::Error>(&key(5), || {
-            std::fs::write(folder.join(format!("started-{}", std::process::id())), "").expect("written");
-            std::thread::sleep(Duration::from_millis(pause));
-            Ok(outputs(5, 3000))
-        })
-        .expect("builds");
+    let slowly = || {
+        std::fs::write(folder.join(format!("started-{}", std::process::id())), "").expect("written");
+        std::thread::sleep(Duration::from_millis(pause));
+        Ok(outputs(5, 3000))
+    };
+    let outcome = build_by(&cache, 5, slowly).expect("builds");
     assert!(is_right(&outcome, 5, 3000));
 }
 
@@ -103,7 +102,7 @@ fn of_several_threads_one_builds() {
 }
 
 #[test]
-fn nobody_waits_longer_than_their_patience() {
+fn patience_ends_a_wait() {
     let world = tempfile::tempdir().expect("a temporary folder");
     let mut sleeper = child(world.path(), true);
     until("the child builds", || started(world.path()) == 1);
@@ -121,12 +120,11 @@ fn a_builder_that_asks_for_its_own_key_does_not_wait_for_itself() {
     let world = tempfile::tempdir().expect("a temporary folder");
     let cache = Cache::open(world.path()).expect("opens");
     let builds = AtomicUsize::new(0);
-    let outer = cache
-        .get_or_build_bytes::<genescape_cache::Error>(&key(9), || {
-            let inner = build(&cache, 9, 64, &builds)?;
-            assert_eq!(inner.how, How::Built);
-            Ok(outputs(9, 64))
-        })
-        .expect("builds");
+    let outer = || {
+        let inner = build(&cache, 9, 64, &builds)?;
+        assert_eq!(inner.how, How::Built);
+        Ok(outputs(9, 64))
+    };
+    let outer = build_by(&cache, 9, outer).expect("builds");
     assert!(is_right(&outer, 9, 64));
 }

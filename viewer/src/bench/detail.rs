@@ -2,15 +2,14 @@
 //! in every LOD mode. Error: root of the mean square difference over all pixels and channels, of 8-bit values taken as
 //! [0, 1], from the picture without levels of detail.
 
-use std::path::PathBuf;
-
 use anyhow::Result;
 use strum::VariantArray;
 
-use super::BenchArgs;
-use super::lab::{Cost, Lab, forest, frame_with, way};
+use super::cost::Cost;
+use super::forest::{camera_path, forest};
 use super::report::{Aim, Report};
-use crate::frame::FrameInput;
+use super::{Bench, frame_with};
+use crate::camera::Camera;
 use crate::lod_mode::{LodMode, TerrainLodMode, TreeLodMode};
 use crate::picture_file;
 use crate::view::View;
@@ -18,63 +17,61 @@ use crate::view::View;
 /// Trees of the forest.
 const TREES: usize = 1500;
 
-/// The LOD modes of trees and terrain that are compared, and what the report calls them.
-struct Case {
-    name: String,
-    trees: TreeLodMode,
-    terrain: TerrainLodMode,
-}
+/// LOD modes of trees and terrain that are compared.
+type Modes = (TreeLodMode, TerrainLodMode);
 
-/// The reference, which has no levels of detail; then the defaults; then every other mode of the one with the other's
-/// default.
-fn cases() -> Vec<Case> {
-    let case = |trees: TreeLodMode, terrain: TerrainLodMode| {
-        let name = format!("trees {}, land {}", trees.label().to_lowercase(), terrain.label().to_lowercase());
-        Case { name, trees, terrain }
-    };
-    let (trees, terrain) = (TreeLodMode::default(), TerrainLodMode::default());
-    let other_trees = TreeLodMode::VARIANTS.iter().filter(|&&other| other != trees);
-    let other_terrain = TerrainLodMode::VARIANTS.iter().filter(|&&other| other != terrain);
-    [case(TreeLodMode::Off, TerrainLodMode::Off), case(trees, terrain)]
-        .into_iter()
-        .chain(other_trees.map(|&other| case(other, terrain)))
-        .chain(other_terrain.map(|&other| case(trees, other)))
-        .collect()
+const OFF: Modes = (TreeLodMode::Off, TerrainLodMode::Off);
+
+/// First the reference, which has no levels of detail; then the defaults; then every other mode of the one with the
+/// other's default.
+fn cases() -> Vec<Modes> {
+    let (trees, terrain) = Modes::default();
+    let with_terrain = TreeLodMode::VARIANTS.iter().map(|&trees| (trees, terrain));
+    let with_trees = TerrainLodMode::VARIANTS.iter().map(|&terrain| (trees, terrain));
+    let others = with_terrain.chain(with_trees).filter(|&modes| modes != Modes::default());
+    [OFF, Modes::default()].into_iter().chain(others).collect()
 }
 
 /// A case under way.
 struct Run {
-    case: Case,
+    modes: Modes,
     view: [View; 1],
-    frame: FrameInput,
     /// For each place the cheaper of there and back.
     costs: Vec<Cost>,
     errors: Vec<f64>,
 }
 
-pub(super) fn measure(lab: &Lab, paths: &[PathBuf], args: &BenchArgs, report: &mut Report) -> Result<()> {
-    let [width, height] = args.size;
+impl Run {
+    fn draw(&mut self, bench: &Bench, camera: &Camera) -> Cost {
+        bench.frame(&mut self.view, &frame_with(self.modes.0, self.modes.1), camera)
+    }
+
+    fn mean_cost(&self) -> Cost {
+        let (sum, places): (Cost, _) = (self.costs.iter().copied().sum(), self.costs.len() as f64);
+        Cost { wall_ms: sum.wall_ms / places, cpu_ms: sum.cpu_ms / places }
+    }
+}
+
+pub(super) fn measure(bench: &mut Bench) -> Result<()> {
+    let [width, height] = bench.size_px;
     let mut ratios = Vec::new();
-    for path in paths {
-        let scene = forest(&lab.load(path)?, TREES);
-        report.section(format!(
-            "Levels of detail: {}, {} trees, {width} × {height}, {} places there and back",
-            scene.name,
-            scene.trees.instances.len(),
-            args.steps
+    for path in bench.paths.clone() {
+        let scene = forest(&bench.headless.read(&path)?, TREES);
+        let (name, trees) = (&scene.name, scene.trees.instances.len());
+        bench.report.section(format!(
+            "Levels of detail: {name}, {trees} trees, {width} × {height}, {} places there and back",
+            bench.steps
         ));
-        let uploaded = lab.upload(&scene)?;
-        let start = |case: Case| Run {
-            view: [lab.view(&uploaded, args.size)],
-            frame: frame_with(case.trees, case.terrain),
-            costs: Vec::new(),
-            errors: Vec::new(),
-            case,
+        let uploaded = bench.headless.upload(&scene)?;
+        let start = |modes| {
+            let view = [bench.headless.view(uploaded.clone(), bench.size_px)];
+            Run { modes, view, costs: Vec::new(), errors: Vec::new() }
         };
         let mut runs: Vec<Run> = cases().into_iter().map(start).collect();
-        walk(lab, &mut runs, &way(&scene, args.steps))?;
-        ratios.push(tell(&runs, report));
+        walk(bench, &mut runs, &camera_path(&scene, bench.steps))?;
+        ratios.push(tell(&runs, &mut bench.report));
     }
+    let report = &mut bench.report;
     report.section("Levels of detail pay, over all landscapes");
     let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
     report.aimed("none at all / best, processor time, mean", mean, "×", Aim::AtLeast(6.0));
@@ -84,16 +81,17 @@ pub(super) fn measure(lab: &Lab, paths: &[PathBuf], args: &BenchArgs, report: &m
 }
 
 /// All cases in turn at each place, there and back.
-fn walk(lab: &Lab, runs: &mut [Run], cameras: &[crate::camera::Camera]) -> Result<()> {
+fn walk(bench: &Bench, runs: &mut [Run], cameras: &[Camera]) -> Result<()> {
     for run in runs.iter_mut() {
         // Drivers finish pipelines at the first use.
-        lab.frame(&mut run.view, &run.frame, &cameras[0]);
+        run.draw(bench, &cameras[0]);
     }
     for camera in cameras {
         let mut reference = Vec::new();
         for run in runs.iter_mut() {
-            run.costs.push(lab.frame(&mut run.view, &run.frame, camera));
-            let picture = picture_file::read(&lab.gpu, &run.view[0].targets().display)?.rgba;
+            let cost = run.draw(bench, camera);
+            run.costs.push(cost);
+            let picture = picture_file::read(&bench.headless.gpu, &run.view[0].targets().display)?.into_raw();
             if reference.is_empty() {
                 reference = picture.clone();
             }
@@ -102,45 +100,38 @@ fn walk(lab: &Lab, runs: &mut [Run], cameras: &[crate::camera::Camera]) -> Resul
     }
     for (place, camera) in cameras.iter().enumerate().rev() {
         for run in runs.iter_mut() {
-            run.costs[place] = run.costs[place].least(lab.frame(&mut run.view, &run.frame, camera));
+            run.costs[place] = run.costs[place].least(run.draw(bench, camera));
         }
     }
     Ok(())
 }
 
-/// Tells the figures; what the default modes save.
+/// Reports the figures; what the default modes save.
 fn tell(runs: &[Run], report: &mut Report) -> f64 {
-    let places = runs[0].costs.len() as f64;
-    let means: Vec<Cost> = runs
-        .iter()
-        .map(|run| {
-            let sum: Cost = run.costs.iter().copied().sum();
-            Cost { wall_ms: sum.wall_ms / places, cpu_ms: sum.cpu_ms / places }
-        })
-        .collect();
-    for (Run { case: Case { name, .. }, .. }, mean) in runs.iter().zip(&means) {
-        report.figure(format!("{name}: processor"), mean.cpu_ms, "ms a frame");
-        report.figure(format!("{name}: clock"), mean.wall_ms, "ms a frame");
+    let name = |(trees, terrain): Modes| {
+        format!("trees {}, land {}", trees.label().to_lowercase(), terrain.label().to_lowercase())
+    };
+    for run in runs {
+        let (name, cost) = (name(run.modes), run.mean_cost());
+        report.figure(format!("{name}: processor"), cost.cpu_ms, "ms a frame");
+        report.figure(format!("{name}: clock"), cost.wall_ms, "ms a frame");
     }
     for run in &runs[1..] {
-        let name = &run.case.name;
-        let mean = run.errors.iter().sum::<f64>() / places;
+        let (name, errors) = (name(run.modes), &run.errors);
+        let mean = errors.iter().sum::<f64>() / errors.len() as f64;
         report.figure(format!("{name}: L2 error"), mean.sqrt(), "of 1");
-        let worst = run.errors.iter().copied().fold(0.0, f64::max);
+        let worst = errors.iter().copied().fold(0.0, f64::max);
         report.figure(format!("{name}: L2 error, worst place"), worst.sqrt(), "of 1");
     }
-    let (trees, terrain) = (TreeLodMode::default(), TerrainLodMode::default());
-    let cpu_ms = |trees: TreeLodMode, terrain: TerrainLodMode| {
-        let at = runs.iter().position(|run| (run.case.trees, run.case.terrain) == (trees, terrain));
-        at.map_or(f64::NAN, |at| means[at].cpu_ms)
+    let (trees, terrain) = Modes::default();
+    let cpu_ms = |modes: Modes| {
+        runs.iter().find(|run| run.modes == modes).map_or(f64::NAN, |run| run.mean_cost().cpu_ms)
     };
-    let pays =
-        |without_trees, without_terrain| cpu_ms(without_trees, without_terrain) / cpu_ms(trees, terrain);
-    report.figure("trees alone: none / default, processor", pays(TreeLodMode::Off, terrain), "×");
-    report.figure("land alone: none / default, processor", pays(trees, TerrainLodMode::Off), "×");
-    let both = pays(TreeLodMode::Off, TerrainLodMode::Off);
-    report.aimed("none at all / best, processor", both, "×", Aim::AtLeast(6.0));
-    both
+    let pays = |without: Modes| cpu_ms(without) / cpu_ms((trees, terrain));
+    report.figure("trees alone: none / default, processor", pays((TreeLodMode::Off, terrain)), "×");
+    report.figure("land alone: none / default, processor", pays((trees, TerrainLodMode::Off)), "×");
+    report.aimed("none at all / best, processor", pays(OFF), "×", Aim::AtLeast(6.0));
+    pays(OFF)
 }
 
 /// Mean square difference of colours.

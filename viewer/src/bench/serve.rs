@@ -12,28 +12,30 @@ use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail};
 use clap::ValueEnum;
-use genescape_bake::say;
 use serde_json::json;
 
-use super::BenchArgs;
-use super::lab::{Lab, frame_with, way};
+use super::cost::Cost;
+use super::forest::camera_path;
+use super::{BenchArgs, frame_with};
 use crate::camera::{Camera, NEAR_M};
+use crate::headless::Headless;
 use crate::picture_file;
+use crate::say;
 use crate::view::View;
 
-pub(super) fn run(lab: &Lab, path: &Path, args: &BenchArgs) -> Result<()> {
-    let scene = lab.load(path)?;
-    let cameras = way(&scene, args.steps);
-    let uploaded = lab.upload(&scene)?;
-    let sky = &scene.sky;
+pub(super) fn run(headless: &Headless, path: &Path, args: &BenchArgs) -> Result<()> {
+    let scene = headless.read(path)?;
+    let cameras = camera_path(&scene, args.steps);
+    let uploaded = headless.upload(&scene)?;
+    let sky = &scene.sky.light;
     let told = |camera: &Camera| {
         json!({ "position_m": camera.position_m.to_array(), "yaw_rad": camera.yaw_rad,
                 "pitch_rad": camera.pitch_rad, "fov_y_rad": camera.fov_y_rad })
     };
     let hello = json!({
-        "device": lab.gpu.name, "software": lab.gpu.software, "size_px": args.size, "near_m": NEAR_M,
+        "device": headless.gpu.name, "software": headless.gpu.software, "size_px": args.size, "near_m": NEAR_M,
         "trees": scene.trees.instances.len(), "cameras": cameras.iter().map(told).collect::<Vec<_>>(),
-        "sun_direction": sky.sun_direction, "sun_irradiance_linear": sky.sun_irradiance_linear,
+        "sun_direction": sky.sun_direction.to_array(), "sun_irradiance_linear": sky.sun_irradiance_linear,
         "sky_irradiance_linear": sky.sky_irradiance_linear, "haze_linear": sky.haze_linear,
         "haze_extinction_per_m": sky.haze_extinction_per_m, "exposure": sky.exposure,
     });
@@ -51,12 +53,14 @@ pub(super) fn run(lab: &Lab, path: &Path, args: &BenchArgs) -> Result<()> {
         let frame = frame_with(mode(trees)?, mode(land)?);
         let camera = place.parse().ok().and_then(|place: usize| cameras.get(place));
         let camera = camera.ok_or_else(|| anyhow!("there is no place {place}"))?;
-        let view = views.entry(format!("{trees} {land}")).or_insert_with(|| [lab.view(&uploaded, args.size)]);
-        let cost = lab.frame(view, &frame, camera);
+        let view = views
+            .entry(format!("{trees} {land}"))
+            .or_insert_with(|| [headless.view(uploaded.clone(), args.size)]);
+        let cost = Cost::of_frame(headless, view, &frame, camera);
         match (verb, file) {
             ("frame", None) => {}
             ("picture", Some(file)) => {
-                let picture = picture_file::read(&lab.gpu, &view[0].targets().display)?;
+                let picture = picture_file::read(&headless.gpu, &view[0].targets().display)?;
                 picture_file::write_png(Path::new(file), &picture)?;
             }
             _ => bail!("{line:?} asks for nothing that is known"),

@@ -15,9 +15,9 @@
 //!   arrived is overtaken by the edge between its parents when one of these leaves the line.)
 //! - rounding in another machine's log₂ is harmless: it cannot eat the gap.
 
+use genescape_schema::scene::bintree::Sample;
 use glam::{Vec2, Vec3};
 
-use super::bintree::Sample;
 use crate::scene::Heightfield;
 
 /// Part of each level's band of λ in which its vertices have arrived and the next level's still stand.

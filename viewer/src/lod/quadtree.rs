@@ -12,12 +12,12 @@
 //!   their parents, which lie on the edge as well, and both blocks draw the same points.
 //! - *No pop.* A block is split when somewhere λ < i; then the new vertices, of level i−1, still sit on their parents.
 
+use genescape_schema::scene::bintree::parents;
 use glam::{Vec2, Vec3};
 
-use super::bintree::parents;
 use super::morph::{Detail, MIN_UNIT_CELLS};
 use crate::camera::Frustum;
-use crate::scene::Heightfield;
+use crate::scene::{Heightfield, TerrainLod};
 
 /// log₂ of a block's cells a side.
 pub const BLOCK_BITS: u32 = 4;
@@ -86,13 +86,14 @@ pub fn block_cells(field: &Heightfield) -> u32 {
 /// `error_px`: what may be seen of the simplification, 0 for every sample; `max_block_m`: no block is wider, so that
 /// enough can be culled.
 pub fn detail(
-    field: &Heightfield,
+    lod: &TerrainLod,
     errors: &Errors,
     eye_m: Vec3,
     focal_px: f32,
     error_px: f32,
     max_block_m: f32,
 ) -> Detail {
+    let field = &lod.field;
     let width_m = block_cells(field) as f32 * field.spacing_m;
     let fits = |level: &u32| width_m * (1u32 << level) as f32 <= max_block_m;
     let exact = error_px.is_nan() || error_px <= 0.0;
@@ -100,16 +101,16 @@ pub fn detail(
     let unit_m = if exact { 0.0 } else { errors.unit_m(focal_px, error_px) };
     Detail {
         eye_m: Vec2::new(eye_m.x, eye_m.z),
-        above_m: (eye_m.y - field.range_m()[1]).max(0.0),
+        above_m: (eye_m.y - lod.range_m()[1]).max(0.0),
         unit_m: unit_m.clamp(MIN_UNIT_CELLS * field.spacing_m, f32::MAX),
         top: top as f32,
     }
 }
 
 /// Replaces `blocks` by those to draw, those that `frustum` doesn't see left out; none is hidden by a later one.
-pub fn select(field: &Heightfield, detail: &Detail, frustum: Option<&Frustum>, blocks: &mut Vec<Block>) {
+pub fn select(lod: &TerrainLod, detail: &Detail, frustum: Option<&Frustum>, blocks: &mut Vec<Block>) {
     blocks.clear();
-    Selection { field, detail, frustum, blocks }.visit(Block { i: 0, j: 0, level: top_level(field) });
+    Selection { lod, detail, frustum, blocks }.visit(Block { i: 0, j: 0, level: top_level(&lod.field) });
 }
 
 /// Triangles in blocks, those that have vanished included.
@@ -137,7 +138,7 @@ pub fn block_indices(cells: u32) -> Vec<u16> {
 }
 
 struct Selection<'a> {
-    field: &'a Heightfield,
+    lod: &'a TerrainLod,
     detail: &'a Detail,
     frustum: Option<&'a Frustum>,
     blocks: &'a mut Vec<Block>,
@@ -145,7 +146,7 @@ struct Selection<'a> {
 
 impl Selection<'_> {
     fn visit(&mut self, block: Block) {
-        let size = block_cells(self.field) << block.level;
+        let size = block_cells(&self.lod.field) << block.level;
         let (low_m, high_m) = self.bounds_m(block, size);
         if self.frustum.is_some_and(|frustum| !frustum.sees_box(low_m, high_m)) {
             return;
@@ -173,11 +174,12 @@ impl Selection<'_> {
 
     /// The box of what may be drawn of a block of `size` cells.
     fn bounds_m(&self, block: Block, size: u32) -> (Vec3, Vec3) {
-        let field = self.field;
+        let field = &self.lod.field;
         let across = (field.side - 1) / size;
         let before = (across as usize * across as usize - 1) / 3;
         let number = before + (block.j / size * across + block.i / size) as usize;
-        let [lowest_m, highest_m] = field.block_ranges_m.get(number).copied().unwrap_or(field.range_m());
+        let [lowest_m, highest_m] =
+            self.lod.block_ranges_m.get(number).copied().unwrap_or(self.lod.range_m());
         let corner = |i, height_m, j| Vec3::new(field.place_m(i), height_m, field.place_m(j));
         (corner(block.i, lowest_m, block.j), corner(block.i + size, highest_m, block.j + size))
     }

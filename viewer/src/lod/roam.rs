@@ -9,12 +9,12 @@
 //! across an edge of the one before: one strip (Lindstrom et al., "Real-time, continuous level of detail rendering of
 //! height fields", 1996), where a corner is turned by repeating a vertex.
 
+use genescape_schema::scene::bintree::{Sample, requires};
 use glam::Vec3;
 
-use super::bintree::{Sample, needs};
 use super::morph::sample_m;
 use crate::camera::{Camera, Frustum};
-use crate::scene::Heightfield;
+use crate::scene::TerrainLod;
 
 /// All planes of a frustum still to be tested.
 const ALL_PLANES: u32 = (1 << 5) - 1;
@@ -24,12 +24,13 @@ const ALL_PLANES: u32 = (1 << 5) - 1;
 /// height; `error_px` is how far land and mesh may be apart in the picture: 0 uses every sample in sight that is not
 /// on the plane around it. Tells how many triangles are not degenerate.
 pub fn triangulate(
-    field: &Heightfield,
+    lod: &TerrainLod,
     camera: &Camera,
     (aspect, height_px): (f32, f32),
     error_px: f32,
     strip: &mut Vec<u32>,
 ) -> u32 {
+    let field = &lod.field;
     strip.clear();
     if field.side < 2 {
         return 0;
@@ -37,7 +38,7 @@ pub fn triangulate(
     let last = field.side - 1;
     let roots = [[[last, last], [0, 0], [0, last]], [[0, 0], [last, last], [last, 0]]];
     let mut marks = Marks { used: vec![false; field.heights_m.len()], side: field.side };
-    let metric = Metric::new(field, camera, (aspect, height_px), error_px);
+    let metric = Metric::new(lod, camera, (aspect, height_px), error_px);
     for root in roots {
         refine(&metric, &mut marks, root.map(|sample| metric.corner(sample)), ALL_PLANES);
     }
@@ -79,7 +80,7 @@ impl Marks {
             return;
         }
         let last = self.side - 1;
-        for needed in needs(sample, last).into_iter().flatten() {
+        for needed in requires(sample, last).into_iter().flatten() {
             // The field's corners are always in use.
             if !(needed[0] % last == 0 && needed[1] % last == 0) {
                 self.enable(needed);
@@ -99,7 +100,7 @@ struct Corner {
 
 /// The bound on the screen, ready for tests without roots or divisions.
 struct Metric<'a> {
-    field: &'a Heightfield,
+    lod: &'a TerrainLod,
     frustum: Frustum,
     position_m: Vec3,
     /// Rows: right, up, ahead.
@@ -111,12 +112,12 @@ struct Metric<'a> {
 }
 
 impl<'a> Metric<'a> {
-    fn new(field: &'a Heightfield, camera: &Camera, (aspect, height_px): (f32, f32), error_px: f32) -> Self {
+    fn new(lod: &'a TerrainLod, camera: &Camera, (aspect, height_px): (f32, f32), error_px: f32) -> Self {
         let (right, ahead) = (camera.right(), camera.forward());
         let axes = [right, right.cross(ahead), ahead];
         let half = 0.5 * error_px.max(0.0) / camera.focal_px(height_px);
         Self {
-            field,
+            lod,
             frustum: camera.frustum(aspect),
             position_m: camera.position_m,
             axes,
@@ -126,7 +127,7 @@ impl<'a> Metric<'a> {
     }
 
     fn corner(&self, sample: Sample) -> Corner {
-        let world_m = sample_m(self.field, sample);
+        let world_m = sample_m(&self.lod.field, sample);
         let from_eye_m = world_m - self.position_m;
         Corner { sample, world_m, eye_m: Vec3::from_array(self.axes.map(|axis| axis.dot(from_eye_m))) }
     }
@@ -178,7 +179,7 @@ impl<'a> Metric<'a> {
 fn refine(metric: &Metric<'_>, marks: &mut Marks, corners: [Corner; 3], planes: u32) {
     let [a, b, apex] = corners;
     let Some(sample) = middle(a.sample, b.sample) else { return };
-    let half_m = metric.field.wedgies_m[marks.entry(sample)];
+    let half_m = metric.lod.wedgies_m[marks.entry(sample)];
     let Some(planes) = metric.cutting(&corners, half_m, planes) else { return };
     if !metric.exceeds(&corners, half_m) {
         return;

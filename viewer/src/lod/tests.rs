@@ -4,19 +4,20 @@
 mod made_up;
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
+use genescape_schema::scene::bintree::{Sample, first_parent, level, parents};
 use glam::{Vec2, Vec3};
 use proptest::prelude::*;
 
-use super::bintree::{Sample, level, slides_to};
 use super::morph::{Detail, GAP, sample_m};
 use super::quadtree::{self, Block, Errors, block_cells, block_indices};
 use super::roam::triangulate;
 use crate::camera::{Camera, Frustum};
-use crate::scene::Heightfield;
+use crate::scene::{Heightfield, TerrainLod};
 
 /// Rough land of a given side: waves and noise from a seed, `relief_m` high.
-fn land(side: u32, spacing_m: f32, relief_m: f32, seed: u32) -> Heightfield {
+fn land(side: u32, spacing_m: f32, relief_m: f32, seed: u32) -> TerrainLod {
     let height = |i: u32, j: u32| {
         let (x, z, turn) = (i as f32 / side as f32, j as f32 / side as f32, seed as f32);
         let waves =
@@ -44,11 +45,11 @@ fn drawn_m(detail: &Detail, field: &Heightfield, sample: Sample) -> Vec3 {
     let mut vertex = sample;
     for _ in 0..2 {
         if slide(detail, field, vertex) >= 1.0 {
-            vertex = slides_to(vertex);
+            vertex = first_parent(vertex);
         }
     }
     let (from, part) = (sample_m(field, vertex), slide(detail, field, vertex));
-    if part <= 0.0 { from } else { from + (sample_m(field, slides_to(vertex)) - from) * part }
+    if part <= 0.0 { from } else { from + (sample_m(field, first_parent(vertex)) - from) * part }
 }
 
 type Triangle = [Vec3; 3];
@@ -107,8 +108,8 @@ fn check_closed(field: &Heightfield, triangles: &[Triangle]) -> Result<(), TestC
 }
 
 /// λ with the least d₀ that is allowed, times `unit`.
-fn detail_at(field: &Heightfield, eye_m: Vec3, unit: f32) -> Detail {
-    let mut detail = quadtree::detail(field, &Errors::default(), eye_m, 500.0, 1.0, f32::MAX);
+fn detail_at(lod: &TerrainLod, eye_m: Vec3, unit: f32) -> Detail {
+    let mut detail = quadtree::detail(lod, &Errors::default(), eye_m, 500.0, 1.0, f32::MAX);
     detail.unit_m *= unit;
     detail
 }
@@ -127,19 +128,21 @@ proptest! {
     fn morphed_blocks_close_without_folds(
         depth in 2u32..9, eye in eye(), unit in 1f32..1.5, relief in 0f32..30., seed in 0u32..99
     ) {
-        let field = land((1 << depth) + 1, 0.5, relief, seed);
-        let detail = detail_at(&field, eye * field.extent_m(), unit);
+        let lod = land((1 << depth) + 1, 0.5, relief, seed);
+        let field = &*lod.field;
+        let detail = detail_at(&lod, eye * field.extent_m(), unit);
         let mut blocks = Vec::new();
-        quadtree::select(&field, &detail, None, &mut blocks);
+        quadtree::select(&lod, &detail, None, &mut blocks);
         check_closed(&field, &drawn(&field, &detail, &blocks))?;
     }
 
     #[test]
     fn level_of_detail_spans_two_levels_in_a_block(eye in eye(), unit in 1f32..3., x in 0u32..=16, z in 0u32..=16) {
-        let field = Heightfield { side: 1025, spacing_m: 1.0, ..Heightfield::default() };
-        let detail = detail_at(&field, eye * field.extent_m(), unit);
+        let field = Arc::new(Heightfield { side: 1025, spacing_m: 1.0, ..Heightfield::default() });
+        let lod = TerrainLod { field: field.clone(), ..TerrainLod::default() };
+        let detail = detail_at(&lod, eye * field.extent_m(), unit);
         let mut blocks = Vec::new();
-        quadtree::select(&field, &detail, None, &mut blocks);
+        quadtree::select(&lod, &detail, None, &mut blocks);
         let cells: u64 = blocks.iter().map(|block| (16u64 << block.level) * (16u64 << block.level)).sum();
         prop_assert_eq!(cells, 1024 * 1024);
         // The greatest λ is at a corner, for distance is convex.
@@ -153,10 +156,11 @@ proptest! {
 
     #[test]
     fn a_look_along_the_land_meets_blocks_in_their_order(eye in eye(), yaw in -4f32..4.) {
-        let field = Heightfield { side: 1025, spacing_m: 1.0, ..Heightfield::default() };
-        let detail = detail_at(&field, eye * field.extent_m(), 1.0);
+        let field = Arc::new(Heightfield { side: 1025, spacing_m: 1.0, ..Heightfield::default() });
+        let lod = TerrainLod { field: field.clone(), ..TerrainLod::default() };
+        let detail = detail_at(&lod, eye * field.extent_m(), 1.0);
         let mut blocks = Vec::new();
-        quadtree::select(&field, &detail, None, &mut blocks);
+        quadtree::select(&lod, &detail, None, &mut blocks);
         let holds = |block: &Block, place_m: Vec2| {
             let side = 16u32 << block.level;
             let [low, high] = [0, side].map(|by| Vec2::new(field.place_m(block.i + by), field.place_m(block.j + by)));
@@ -185,7 +189,8 @@ proptest! {
     /// Over the walk vertices arrive and blocks change their levels; a pop would be as high as a displacement, metres here.
     #[test]
     fn land_moves_little_when_the_eye_does(eye in eye(), seed in 0u32..99) {
-        let field = land(65, 1.0, 30.0, seed);
+        let lod = land(65, 1.0, 30.0, seed);
+        let field = &*lod.field;
         let steps = (0..64u32).flat_map(|j| (0..64).map(move |i| [i, j]));
         let steepest = steps.fold(0f32, |most, [i, j]| {
             let here = field.at(i, j);
@@ -195,9 +200,9 @@ proptest! {
         let places: Vec<Vec2> = (0..20).map(|n| Vec2::new((n * 7 % 20) as f32, n as f32) * 3.1 - 30.0).collect();
         let mut before: Option<(Vec<Vec3>, Vec<f32>)> = None;
         for step in 0..12 {
-            let detail = detail_at(&field, start + Vec3::new(0.6, 0.0, 0.8) * (step_m * step as f32), 1.0);
+            let detail = detail_at(&lod, start + Vec3::new(0.6, 0.0, 0.8) * (step_m * step as f32), 1.0);
             let mut blocks = Vec::new();
-            quadtree::select(&field, &detail, None, &mut blocks);
+            quadtree::select(&lod, &detail, None, &mut blocks);
             let mesh = drawn(&field, &detail, &blocks);
             let vertices: Vec<Vec3> = (0..65 * 65).map(|n| drawn_m(&detail, &field, [n % 65, n / 65])).collect();
             let heights: Vec<f32> =
@@ -218,11 +223,12 @@ proptest! {
     fn blocks_look_on_average_as_near_to_the_land_as_asked(
         eye in eye(), relief in 1f32..20., error_px in 0.5f32..8., seed in 0u32..99
     ) {
-        let field = land(129, 1.0, relief, seed);
+        let lod = land(129, 1.0, relief, seed);
+        let field = &*lod.field;
         let eye_m = eye * field.extent_m();
-        let detail = quadtree::detail(&field, &Errors::of(&field), eye_m, 300.0, error_px, f32::MAX);
+        let detail = quadtree::detail(&lod, &Errors::of(&field), eye_m, 300.0, error_px, f32::MAX);
         let mut blocks = Vec::new();
-        quadtree::select(&field, &detail, None, &mut blocks);
+        quadtree::select(&lod, &detail, None, &mut blocks);
         let mesh = drawn(&field, &detail, &blocks);
         let squares_px2 = (0..400u32).map(|n| {
             let land_m = sample_m(&field, [n * 37 % 129, n * 53 % 128]);
@@ -267,10 +273,11 @@ proptest! {
     fn strip_is_a_closed_mesh_near_the_land(
         depth in 1u32..7, mut camera in camera(), relief in 0f32..20., error_px in 0.3f32..20., seed in 0u32..99
     ) {
-        let field = land((1 << depth) + 1, 1.0, relief, seed);
+        let lod = land((1 << depth) + 1, 1.0, relief, seed);
+        let field = &*lod.field;
         camera.position_m *= field.extent_m();
         let mut strip = Vec::new();
-        let triangles = triangulate(&field, &camera, PICTURE, error_px, &mut strip);
+        let triangles = triangulate(&lod, &camera, PICTURE, error_px, &mut strip);
         let mesh = strip_triangles(&field, &strip);
         check_closed(&field, &mesh)?;
         prop_assert_eq!(triangles as usize, mesh.len());
@@ -289,14 +296,19 @@ proptest! {
 
     #[test]
     fn without_an_allowed_error_all_that_is_seen_is_drawn(mut camera in camera(), seed in 0u32..99) {
-        let field = land(33, 1.0, 20.0, seed);
+        let lod = land(33, 1.0, 20.0, seed);
+        let field = &*lod.field;
         camera.position_m *= field.extent_m();
         let mut strip = Vec::new();
-        triangulate(&field, &camera, PICTURE, 0.0, &mut strip);
+        triangulate(&lod, &camera, PICTURE, 0.0, &mut strip);
         let frustum = camera.frustum(PICTURE.0);
         for entry in 0..field.side * field.side {
-            let flat = field.displacements_m[entry as usize] == 0.0;
-            let seen = frustum.sees_sphere(sample_m(&field, [entry % field.side, entry / field.side]), 0.0);
+            let sample = [entry % field.side, entry / field.side];
+            let corner = sample.map(|line| line % (field.side - 1)) == [0, 0];
+            let height_m = |[i, j]: [u32; 2]| field.at(i, j);
+            let middle_m = || parents(sample).map(height_m).iter().sum::<f32>() / 2.0;
+            let flat = corner || middle_m() == height_m(sample);
+            let seen = frustum.sees_sphere(sample_m(&field, sample), 0.0);
             prop_assert!(flat || !seen || strip.contains(&entry), "sample {entry}");
         }
     }
@@ -304,22 +316,23 @@ proptest! {
 
 #[test]
 fn more_error_and_less_sight_mean_fewer_triangles() {
-    let field = land(129, 2.0, 40.0, 3);
+    let lod = land(129, 2.0, 40.0, 3);
+    let field = &*lod.field;
     let camera =
         Camera { position_m: Vec3::new(0.0, 30.0, 100.0), yaw_rad: 0.0, pitch_rad: -0.2, fov_y_rad: 1.0 };
     let (mut strip, mut blocks) = (Vec::new(), Vec::new());
     let counts: Vec<u32> = [0.0, 1.0, 4.0, 64.0, 1e9]
-        .map(|error_px| triangulate(&field, &camera, PICTURE, error_px, &mut strip))
+        .map(|error_px| triangulate(&lod, &camera, PICTURE, error_px, &mut strip))
         .to_vec();
     assert!(counts.is_sorted_by(|a, b| a > b), "{counts:?}");
-    let detail = detail_at(&field, camera.position_m, 1.0);
+    let detail = detail_at(&lod, camera.position_m, 1.0);
     let mut count = |frustum: Option<&Frustum>| {
-        quadtree::select(&field, &detail, frustum, &mut blocks);
+        quadtree::select(&lod, &detail, frustum, &mut blocks);
         blocks.len()
     };
     let (all, seen) = (count(None), count(Some(&camera.frustum(1.5))));
     assert!(seen < all && seen > 0, "{seen} of {all}");
-    let exact = quadtree::detail(&field, &Errors::of(&field), camera.position_m, 500.0, 0.0, f32::MAX);
-    quadtree::select(&field, &exact, None, &mut blocks);
+    let exact = quadtree::detail(&lod, &Errors::of(&field), camera.position_m, 500.0, 0.0, f32::MAX);
+    quadtree::select(&lod, &exact, None, &mut blocks);
     assert_eq!(quadtree::triangles(&field, &blocks), 128 * 128 * 2);
 }

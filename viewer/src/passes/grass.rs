@@ -149,7 +149,7 @@ fn is_bare(weights: &Picture, middle_m: Vec2, half_m: f32) -> bool {
 mod tests {
     use super::*;
     use crate::camera::Camera;
-    use crate::scene::{Apron, Heightfield, Surface};
+    use crate::scene::{Apron, GroundSurface, Heightfield};
     use glam::Vec3Swizzles;
     use proptest::prelude::*;
     use std::sync::Arc;
@@ -168,8 +168,9 @@ mod tests {
         Ground {
             name: String::new(),
             field: Arc::new(field),
+            lod: Arc::default(),
             water_level_m: Some(8.0),
-            surface: Surface { color, weights: pixels(255), light, details: Vec::new() },
+            surface: GroundSurface { color, weights: pixels(255), light, details: Vec::new() },
             apron: Arc::new(Apron::default()),
         }
     }

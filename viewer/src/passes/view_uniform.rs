@@ -65,7 +65,7 @@ impl ViewUniform {
             ray_from_clip: at_origin.clip_from_world(width / height).inverse().to_cols_array_2d(),
             eye: camera.position_m.into(),
             time_s: frame.time_s,
-            sun_direction: sky.sun_direction,
+            sun_direction: sky.sun_direction.to_array(),
             sun_angular_radius: sky.sun_angular_radius_rad,
             sun_irradiance: sky.sun_irradiance_linear,
             exposure: sky.exposure * options.exposure,
@@ -93,7 +93,12 @@ impl ViewUniform {
         let field = &scene.ground.field;
         Self {
             shadow_from_world: shadow_from_world(scene).to_cols_array_2d(),
-            field: [field.side as f32, field.spacing_m, 0.5 * field.extent_m(), field.range_m()[1]],
+            field: [
+                field.side as f32,
+                field.spacing_m,
+                0.5 * field.extent_m(),
+                scene.ground.lod.range_m()[1],
+            ],
             ..Default::default()
         }
     }
@@ -105,13 +110,13 @@ const MAX_TREE_HEIGHT_M: f32 = 60.0;
 /// The sun's view of the whole field, trees included: x and y in [−1, 1], depth in [0, 1] away from the sun.
 pub fn shadow_from_world(scene: &SceneBuffers) -> Mat4 {
     let field = &scene.ground.field;
-    let to_sun = Vec3::from(scene.sky.sun_direction).normalize_or(Vec3::Y);
+    let to_sun = scene.sky.sun_direction.normalize_or(Vec3::Y);
     // Any direction that is never parallel to the sun's.
     let aside = if to_sun.y.abs() < 0.9 { Vec3::Y } else { Vec3::X };
     let right = aside.cross(to_sun).normalize();
     let up = to_sun.cross(right);
     let half = 0.5 * field.extent_m();
-    let [low, high] = field.range_m();
+    let [low, high] = scene.ground.lod.range_m();
     let (mut min, mut max) = (Vec3::MAX, Vec3::MIN);
     for corner in 0..8 {
         let pick = |bit: u32, a: f32, b: f32| if corner >> bit & 1 == 0 { a } else { b };

@@ -11,7 +11,7 @@ use super::icon::Icon;
 use super::model::Genes;
 use super::theme::Palette;
 use super::widgets::{Asks, sized_icon_button, small};
-use crate::event::{Event, Phase};
+use crate::event::Event;
 
 /// What is being dragged or typed just now; the model hears of it by events only.
 #[derive(Clone, Debug, Default)]
@@ -66,9 +66,9 @@ pub fn show(
 }
 
 impl Row<'_> {
-    fn event(&self, code: u32, phase: Phase) -> Event {
+    fn event(&self, code: u32) -> Event {
         let (name, value) = (self.parameter.name.clone(), self.parameter.value(code));
-        Event::Gene { individual: self.individual, name, value, phase }
+        Event::Genes { individual: self.individual, values: vec![(name, value)] }
     }
 
     fn name(&self, ui: &mut Ui) {
@@ -119,7 +119,7 @@ impl Row<'_> {
         let Parameter { name, unit, .. } = self.parameter;
         let label = format!("Reset {name} to {} {unit}", self.parameter.text(self.bred));
         let button = |ui: &mut Ui| sized_icon_button(ui, Icon::Reset, label.trim_end(), false, 24.0);
-        ui.add_enabled_ui(!self.locked, button).inner.asks(events, self.event(self.bred, Phase::Committed));
+        ui.add_enabled_ui(!self.locked, button).inner.asks(events, self.event(self.bred));
     }
 
     /// The value as text, with its unit behind it; Enter or leaving the field takes what was typed.
@@ -152,7 +152,7 @@ impl Row<'_> {
             let given_up = ui.input(|input| input.key_pressed(egui::Key::Escape));
             let typed = parse(&text, parameter).map(|value| parameter.snap(value));
             if let Some(typed) = typed.filter(|&typed| typed != self.code && !self.locked && !given_up) {
-                events.push(self.event(typed, Phase::Committed));
+                events.push(self.event(typed));
             }
         }
         response.on_hover_text(format!("Type a value: {}", parameter.range_text()));
@@ -188,12 +188,14 @@ impl Row<'_> {
         if response.drag_stopped() {
             // A press that moved nothing asks for nothing.
             if state.dragged.take().is_some() || chosen != self.code {
-                events.push(self.event(chosen, Phase::Committed));
+                events.push(self.event(chosen));
             }
         } else if chosen != self.code {
-            let phase = if moving { Phase::Dragging } else { Phase::Committed };
+            // While it moves only the panel shows it; it is written when it is let go.
             state.dragged = moving.then(|| (self.individual, parameter.name.clone(), chosen));
-            events.push(self.event(chosen, phase));
+            if !moving {
+                events.push(self.event(chosen));
+            }
         }
     }
 

@@ -3,10 +3,11 @@
 use egui::{Align2, Area, Color32, CornerRadius, Id, Order, Rect, RichText, Sense, Ui, vec2};
 
 use super::icon::Icon;
-use super::model::{KeyGroup, Model};
+use super::model::Model;
 use super::theme::{self, Palette};
 use super::widgets::{icon_button, key_caps, scrolled};
 use crate::event::{Event, Panel};
+use crate::input::KeyGroup;
 
 /// What to do first.
 const FIRST_STEPS: [(&str, &str); 3] = [

@@ -7,8 +7,10 @@ use std::sync::Arc;
 use egui::TextureId;
 use genescape_schema::{Genome, INDIVIDUALS, Parameter, Space};
 
-use crate::event::{Arrangement, Ballots, Comfort, Panel};
+use crate::event::{Arrangement, Ballots, Panel};
 use crate::frame::Options;
+use crate::input::KeyGroup;
+use crate::settings::Comfort;
 
 /// Everything that is on the screen.
 #[derive(Clone, Debug)]
@@ -21,9 +23,9 @@ pub struct Model {
     pub generations: Vec<u32>,
     /// What is being baked, if anything.
     pub baking: Option<Baking>,
-    /// The step that [`crate::event::Event::Undo`] would take back, in a few words: "vote on trees".
+    /// The step that [`crate::input::Command::Undo`] would take back, in a few words: "vote on trees".
     pub undo: Option<String>,
-    /// The step that [`crate::event::Event::Redo`] would do again.
+    /// The step that [`crate::input::Command::Redo`] would do again.
     pub redo: Option<String>,
     /// The four landscapes.
     pub views: [ViewModel; INDIVIDUALS],
@@ -54,7 +56,8 @@ pub struct Model {
 }
 
 /// Whether there is anything to look at, and if not, why.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum Situation {
     /// Four views, each in its own state.
     Ready,
@@ -106,7 +109,7 @@ pub enum ViewState {
 }
 
 /// Progress of the bake of a whole generation.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Baking {
     /// Which generation.
     pub generation: u32,
@@ -166,7 +169,7 @@ pub struct StageEntry {
 }
 
 /// A fault of a file that the person can mend.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct FileError {
     /// In a few words: "population/g0003.ron: 2 errors".
     pub title: String,
@@ -200,15 +203,6 @@ pub struct PassTime {
     pub name: String,
     /// In milliseconds, by view.
     pub ms: [f32; INDIVIDUALS],
-}
-
-/// Keys that belong together.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct KeyGroup {
-    /// "Walking".
-    pub title: String,
-    /// Keys ("W A S D") and what they do ("walk").
-    pub keys: Vec<(String, String)>,
 }
 
 /// Which panels are shown.

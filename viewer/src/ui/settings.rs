@@ -9,9 +9,10 @@ use super::icon::Icon;
 use super::model::Model;
 use super::theme::{self, Palette};
 use super::widgets::{Asks, close_button, icon_button, scrolled, section, segmented, switch};
-use crate::event::{Comfort, Event, Panel, Theme};
+use crate::event::{Event, Panel};
 use crate::frame::{LOD_SWITCHES, Options, PICTURE_SWITCHES, Switch};
 use crate::lod_mode::LodMode;
+use crate::settings::{Comfort, Theme};
 
 /// Width of the card, in points.
 const WIDTH: f32 = 330.0;

@@ -11,7 +11,7 @@ use egui::{
 use egui::{Visuals, vec2};
 use genescape_schema::Category;
 
-use crate::event;
+use crate::settings;
 
 /// A colour as in CSS.
 const fn rgb(hex: u32) -> Color32 {
@@ -129,11 +129,11 @@ pub fn install(ctx: &Context) {
 }
 
 /// Follows the person's choice of theme and scale; every frame.
-pub fn follow(ctx: &Context, comfort: &event::Comfort) {
+pub fn follow(ctx: &Context, comfort: &settings::Comfort) {
     let preference = match comfort.theme {
-        event::Theme::System => egui::ThemePreference::System,
-        event::Theme::Light => egui::ThemePreference::Light,
-        event::Theme::Dark => egui::ThemePreference::Dark,
+        settings::Theme::System => egui::ThemePreference::System,
+        settings::Theme::Light => egui::ThemePreference::Light,
+        settings::Theme::Dark => egui::ThemePreference::Dark,
     };
     ctx.set_theme(preference);
     ctx.set_zoom_factor(comfort.ui_scale.clamp(0.5, 2.5));

@@ -9,6 +9,7 @@ use super::theme::Palette;
 use super::votes;
 use super::widgets::{Asks, ICON_BUTTON, flat_button, icon_button, primary_button, progress_bar};
 use crate::event::{Arrangement, Event, Panel};
+use crate::input::Command;
 
 /// Height of the bar, in points.
 const HEIGHT: f32 = 40.0;
@@ -50,7 +51,7 @@ fn panels(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
         response.asks(events, Event::Panel { panel, open: !open });
     }
     divider(ui);
-    icon_button(ui, Icon::Camera, "Save a screenshot", false).asks(events, Event::Screenshot);
+    icon_button(ui, Icon::Camera, "Save a screenshot", false).asks(events, Command::Screenshot.into());
 }
 
 fn arrangements(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
@@ -76,9 +77,9 @@ fn divider(ui: &mut Ui) {
 }
 
 fn generations(ui: &mut Ui, model: &Model, words: bool, events: &mut Vec<Event>) {
-    step(ui, Icon::Undo, "Undo", model.undo.as_deref(), Event::Undo, events);
+    step(ui, Icon::Undo, "Undo", model.undo.as_deref(), Command::Undo, events);
     if model.redo.is_some() {
-        step(ui, Icon::Redo, "Redo", model.redo.as_deref(), Event::Redo, events);
+        step(ui, Icon::Redo, "Redo", model.redo.as_deref(), Command::Redo, events);
     }
     divider(ui);
     let way_on = if words { 330.0 } else { 36.0 };
@@ -97,12 +98,14 @@ fn generations(ui: &mut Ui, model: &Model, words: bool, events: &mut Vec<Event>)
 }
 
 /// Takes a step back or does it again; `what` says which, `None` that there is none.
-fn step(ui: &mut Ui, icon: Icon, verb: &str, what: Option<&str>, event: Event, events: &mut Vec<Event>) {
+fn step(ui: &mut Ui, icon: Icon, verb: &str, what: Option<&str>, command: Command, events: &mut Vec<Event>) {
     let label = match what {
         Some(what) => format!("{verb}: {what}"),
         None => format!("Nothing to {}", verb.to_lowercase()),
     };
-    ui.add_enabled_ui(what.is_some(), |ui| icon_button(ui, icon, &label, false)).inner.asks(events, event);
+    ui.add_enabled_ui(what.is_some(), |ui| icon_button(ui, icon, &label, false))
+        .inner
+        .asks(events, command.into());
 }
 
 /// The line of generations, the newest at the right; scrolls when it is longer than `room`.
@@ -158,7 +161,7 @@ fn next(ui: &mut Ui, model: &Model, words: bool, events: &mut Vec<Event>) {
             false => icon_button(ui, Icon::Next, "Next generation", true),
         })
         .inner;
-    response.asks(events, Event::NextGeneration);
+    response.asks(events, Command::NextGeneration.into());
     match hindrance {
         Some(text) => response.on_disabled_hover_text(text),
         None => response.on_hover_text("Breed four new landscapes from what you chose"),

@@ -12,6 +12,7 @@ use super::model::Model;
 use super::theme;
 use super::widgets::{Asks, painted_button, progress_ring};
 use crate::event::{Ballot, Event};
+use crate::input::Command;
 
 /// Height of a vote button, in points.
 const PILL: f32 = 28.0;
@@ -159,7 +160,7 @@ fn next_button(ui: &mut Ui, rect: Rect, words: bool, events: &mut Vec<Event>) {
         let at = pos2(rect.left() + 14.0, rect.center().y);
         ui.painter().text(at, Align2::LEFT_CENTER, "Next generation", word_font(), ink);
     }
-    response.asks(events, Event::NextGeneration);
+    response.asks(events, Command::NextGeneration.into());
     response.on_hover_text("Breed four new landscapes from what you chose");
 }
 

@@ -6,7 +6,7 @@ mod terrain;
 use std::sync::Arc;
 
 pub use targets::Targets;
-use terrain::TerrainLod;
+use terrain::TerrainChoice;
 
 use crate::camera::Camera;
 use crate::frame::{FrameInput, Options};
@@ -24,7 +24,7 @@ pub struct View {
     /// The targets were made anew and no caller has been told.
     fresh: bool,
     bound: Option<BoundScene>,
-    terrain: TerrainLod,
+    terrain: TerrainChoice,
     /// Clumps of grass, kept from frame to frame.
     clumps: Vec<Clump>,
 }
@@ -49,7 +49,7 @@ impl View {
             targets: Targets::new(gpu, passes, label, size_px),
             fresh: false,
             bound: None,
-            terrain: TerrainLod::default(),
+            terrain: TerrainChoice::default(),
             clumps: Vec::new(),
         }
     }

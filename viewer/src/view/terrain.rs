@@ -13,12 +13,12 @@ const MAX_BLOCK_M: f32 = 256.0;
 
 /// Lists that are kept from frame to frame.
 #[derive(Debug, Default)]
-pub(super) struct TerrainLod {
+pub(super) struct TerrainChoice {
     blocks: Vec<quadtree::Block>,
     strip: Vec<u32>,
 }
 
-impl TerrainLod {
+impl TerrainChoice {
     /// Chooses for `camera` what to draw and writes it to the device. Tells how detailed the terrain is where, and how
     /// many triangles that takes.
     pub fn choose(
@@ -30,21 +30,21 @@ impl TerrainLod {
         options: &Options,
     ) -> (Detail, u32) {
         let (scene, mode) = (&bound.scene, options.terrain_lod);
-        let (field, errors) = (&scene.ground.field, &scene.land.errors);
+        let (lod, errors) = (&scene.ground.lod, &scene.land.errors);
         let (focal_px, eye_m) = (camera.focal_px(height), camera.position_m);
         // Without levels of detail no error is allowed.
         let error_px = if mode == TerrainLodMode::Off { 0.0 } else { options.terrain_error_px };
-        let detail = quadtree::detail(field, errors, eye_m, focal_px, error_px, MAX_BLOCK_M);
+        let detail = quadtree::detail(lod, errors, eye_m, focal_px, error_px, MAX_BLOCK_M);
         let aspect = width / height;
         let triangles = if mode == TerrainLodMode::Roam {
             let picture = (aspect, height);
-            let triangles = roam::triangulate(field, camera, picture, error_px, &mut self.strip);
+            let triangles = roam::triangulate(lod, camera, picture, error_px, &mut self.strip);
             bound.terrain.write(gpu, &self.strip);
             triangles
         } else {
-            quadtree::select(field, &detail, Some(&camera.frustum(aspect)), &mut self.blocks);
+            quadtree::select(lod, &detail, Some(&camera.frustum(aspect)), &mut self.blocks);
             bound.terrain.write(gpu, &self.blocks);
-            quadtree::triangles(field, &self.blocks)
+            quadtree::triangles(&lod.field, &self.blocks)
         };
         (detail, triangles)
     }

@@ -23,7 +23,7 @@ use glam::{Vec2, Vec3, Vec3Swizzles};
 use serde::{Deserialize, Serialize};
 
 pub use land::{BODY_RADIUS_M, EDGE_M, EYE_HEIGHT_M, Land, MIN_HEIGHT_M, WADING_DEPTH_M, reach_m, within};
-pub use start::{START_RADIUS_M, start_pose};
+pub use start::start_pose;
 pub use steps::{advance, free, nearest_free};
 pub use trunks::{Trunk, Trunks};
 

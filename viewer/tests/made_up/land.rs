@@ -1,9 +1,7 @@
 //! Land of any height with its levels of detail, for tests within the crate and beside it.
 
-use genescape_bake::model;
 use genescape_bake::stages::terrain_lod;
-
-use super::Heightfield;
+use genescape_schema::scene::{Heightfield, TerrainLod};
 
 /// In [0, 1), of two coordinates and a seed.
 pub fn hash(i: u32, j: u32, seed: u32) -> f32 {
@@ -13,17 +11,7 @@ pub fn hash(i: u32, j: u32, seed: u32) -> f32 {
 }
 
 /// The land whose sample (i, j) is `height_m(i, j)` high.
-pub fn land(side: u32, spacing_m: f32, height_m: impl Fn(u32, u32) -> f32) -> Heightfield {
+pub fn land(side: u32, spacing_m: f32, height_m: impl Fn(u32, u32) -> f32) -> TerrainLod {
     let heights_m = (0..side * side).map(|n| height_m(n % side, n / side)).collect();
-    let field = model::Heightfield { side, spacing_m, heights_m };
-    let lod = terrain_lod::lod(&field);
-    Heightfield {
-        side,
-        spacing_m,
-        heights_m: field.heights_m,
-        wedgies_m: lod.wedgies_m,
-        displacements_m: lod.displacements_m,
-        levels: lod.levels,
-        block_ranges_m: lod.block_ranges_m,
-    }
+    terrain_lod::lod(&Heightfield { side, spacing_m, heights_m })
 }

@@ -99,7 +99,7 @@ pub(super) struct Climate {
 impl Climate {
     pub fn new(params: &GroundParams, land: &Landform) -> Self {
         let seed = noise_seed(params.terrain_seed.into(), "ground climate", 0);
-        let (lo, hi) = land.field.range_m();
+        let [lo, hi] = land.field.range_m();
         let chance = |salt| hash01(seed, salt, 0, 0);
         // Where snow lies low it is cold and moist.
         let dryness = (chance(1) * 0.95 - 0.35 * (0.8 - params.snow_line).max(0.0)).clamp(0.0, 1.0);

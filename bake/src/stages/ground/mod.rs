@@ -11,6 +11,7 @@ mod foreground;
 mod grain;
 mod grass;
 mod patterns;
+mod stage;
 #[cfg(test)]
 mod tests;
 mod textures;
@@ -24,6 +25,7 @@ use cover::{Climate, Noise};
 pub use foreground::{BLOCK_M, foreground};
 use grain::Grain;
 pub use grass::BLADE_WHITE;
+pub use stage::{ForegroundStage, GroundMapsStage, GroundTextureFiles, GroundTexturesStage};
 pub use textures::{TEXTURES, textures, tile_srgb};
 use traits::{Patches, Traits, TraitsMap};
 
@@ -39,7 +41,7 @@ pub struct GroundParams {
 }
 
 /// Paints the field on `side_px`² texels: albedo and blend weights.
-pub fn maps(params: &GroundParams, land: &Landform, side_px: u32) -> GroundMaps {
+pub fn maps(params: &GroundParams, land: &Landform, side_px: u32) -> GroundMaps<Image8> {
     let side_px = side_px.max(1);
     let climate = Climate::new(params, land);
     let traits =
@@ -61,7 +63,7 @@ pub fn maps(params: &GroundParams, land: &Landform, side_px: u32) -> GroundMaps 
             weights[4 * i..][..4].copy_from_slice(&cover.bytes());
         }
     });
-    GroundMaps { color_srgb, weights }
+    GroundMaps { color: color_srgb, weights }
 }
 
 /// Colours the apron: linear red, green, blue and 255 for each of its samples, row by row, 0 to 255 for 0 to 1. On

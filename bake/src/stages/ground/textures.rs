@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::patterns::{self, Pattern};
 use super::{SrgbTable, cover::KINDS};
-use crate::model::{GroundTexture, GroundTextures, Image8};
+use crate::model::{GroundDetail, Image8};
 
 /// Texels a side.
 pub(super) const SIDE: usize = 512;
@@ -33,7 +33,7 @@ pub fn tile_srgb(kind: usize, detail: &Image8) -> Image8 {
 }
 
 /// Makes the five textures; they are the same for every scene.
-pub fn textures() -> GroundTextures {
+pub fn textures() -> Vec<GroundDetail<Image8>> {
     type Make = fn() -> Pattern;
     let kinds: [(f32, Make); KINDS] = [
         (2.2, patterns::grass),
@@ -42,16 +42,15 @@ pub fn textures() -> GroundTextures {
         (3.2, patterns::snow),
         (2.4, patterns::mud),
     ];
-    let textures = kinds
+    kinds
         .into_par_iter()
         .zip(TEXTURES.into_par_iter().zip(TILE_M))
         .map(|((depth_px, make), (name, tile_m))| {
             let pattern = make();
             let (detail_srgb, normal) = (detail(&pattern), normals(&pattern.height, depth_px));
-            GroundTexture { name: name.into(), detail_srgb, normal, tile_m }
+            GroundDetail { name: name.into(), detail: detail_srgb, normal, tile_m }
         })
-        .collect();
-    GroundTextures { textures }
+        .collect()
 }
 
 /// Tones as bytes of mean 128.

@@ -13,6 +13,7 @@ mod grid;
 #[cfg(test)]
 mod pictures;
 mod shape;
+mod stage;
 mod streams;
 #[cfg(test)]
 mod tests;
@@ -27,6 +28,7 @@ use serde::{Deserialize, Serialize};
 use crate::model::{Heightfield, Landform};
 use grid::Grid;
 use shape::Shape;
+pub use stage::LandStage;
 
 /// Metres from edge to edge of the walkable field.
 pub const FIELD_M: f32 = 1024.0;

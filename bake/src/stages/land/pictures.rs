@@ -171,8 +171,7 @@ fn paint(params: &LandParams, land: &Landform) -> Paint {
     };
     let maps = ground::maps(&ground, land, 1024);
     let linear = |c: u8| libm::powf(f32::from(c) / 255.0, 2.2);
-    let field =
-        maps.color_srgb.data.chunks_exact(3).map(|c| [linear(c[0]), linear(c[1]), linear(c[2])]).collect();
+    let field = maps.color.data.chunks_exact(3).map(|c| [linear(c[0]), linear(c[1]), linear(c[2])]).collect();
     Paint { field, apron: ground::apron_colors(&ground, land) }
 }
 
@@ -190,7 +189,7 @@ fn plan(land: &Landform, colors: &Paint) -> Vec<u8> {
 
 /// From the south, 160 m above the highest land, or standing in the middle, 720×400.
 fn view(land: &Landform, colors: &Paint) -> Vec<u8> {
-    let (_, hi) = land.field.range_m();
+    let [_, hi] = land.field.range_m();
     let eye = [0.0, hi * 0.8 + 120.0, 820.0];
     let mut out = Vec::new();
     for j in 0..400 {

@@ -10,6 +10,7 @@
 mod caster;
 mod horizon;
 mod sky;
+mod stage;
 mod sun;
 mod trees;
 
@@ -18,9 +19,12 @@ mod pictures;
 #[cfg(test)]
 mod tests;
 
+use std::borrow::Borrow;
+
 use rayon::prelude::*;
 
-use crate::model::{Image8, Landform, LightMap, Mesh, Placement, SkyLight};
+use crate::model::{Image8, Instance, Landform, LightMap, Mesh, SkyLight};
+pub use stage::LightMapStage;
 use sun::Sun;
 
 /// Texels a side of the light map by default: one per metre.
@@ -34,10 +38,11 @@ pub const DEFAULT_SIDE_PX: u32 = 1024;
 pub fn light_map(
     light: &SkyLight,
     land: &Landform,
-    placement: &Placement,
-    casters: &[Mesh],
+    trees: &[Instance],
+    casters: &[impl Borrow<Mesh>],
     side_px: u32,
 ) -> LightMap {
+    let casters: Vec<&Mesh> = casters.iter().map(Borrow::borrow).collect();
     let side = side_px.max(1) as usize;
     let sun = Sun::of(light);
     let samples = land.field.side as usize;
@@ -47,7 +52,7 @@ pub fn light_map(
     let sky_side = sky::side(land);
     let sky_on_land = sky::on_land(light, land, sky_side);
     let to_sky = Resampling::from_samples(side, sky_side);
-    let shade = trees::shade(&sun, land, placement, casters, &ground_m, side);
+    let shade = trees::shade(&sun, land, trees, &casters, &ground_m, side);
     let to_crowns = Resampling::from_texels(side, shade.crown_side);
     let mut image = Image8::new(side as u32, side as u32, 3);
     image.data.par_chunks_mut(3 * side).enumerate().for_each(|(j, row)| {

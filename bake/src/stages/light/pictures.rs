@@ -41,7 +41,7 @@ fn tree(seed: u32, height_m: f32, radius_m: f32, cards: u32, conical: bool) -> M
     mesh
 }
 
-fn scene(count: u32, cards: u32) -> (Landform, Placement, Vec<Mesh>) {
+fn scene(count: u32, cards: u32) -> (Landform, Vec<Instance>, Vec<Mesh>) {
     let height = |x: f32, z: f32| {
         let broad = fbm2(3, x / 500.0, z / 500.0, 7, 0.45, 0);
         120.0 * (1.0 - broad.abs() * 1.6) + 15.0 * broad
@@ -61,7 +61,7 @@ fn scene(count: u32, cards: u32) -> (Landform, Placement, Vec<Mesh>) {
             0.8 + 0.4 * random(3),
         )
     });
-    let placement = Placement { instances: instances.collect() };
+    let placement = instances.collect::<Vec<_>>();
     (land, placement, casters)
 }
 
@@ -168,8 +168,12 @@ fn measure_parts() {
         time("ground", &|| drop(to_samples.whole(1024, &land.field.heights_m)));
         time("sun", &|| drop(sun::on_land(&sun, &land)));
         time("sky", &|| drop(sky::on_land(&light, &land, side)));
-        time("trees", &|| drop(trees::shade(&sun, &land, &placement, &casters, &ground, 1024)));
-        time("no trees", &|| drop(trees::shade(&sun, &land, &Placement::default(), &casters, &ground, 1024)));
+        time("trees", &|| {
+            drop(trees::shade(&sun, &land, &placement, &casters.iter().collect::<Vec<_>>(), &ground, 1024))
+        });
+        time("no trees", &|| {
+            drop(trees::shade(&sun, &land, &[], &casters.iter().collect::<Vec<_>>(), &ground, 1024))
+        });
         time("all", &|| drop(light_map(&light, &land, &placement, &casters, 1024)));
     });
 }

@@ -85,8 +85,8 @@ impl Disc {
 pub(super) fn on_land(sun: &Sun, land: &Landform) -> Vec<[f32; 4]> {
     let field = &land.field;
     let side = field.side as usize;
-    let (lowest, _) = field.range_m();
-    let (_, highest) = land.apron.range_m();
+    let [lowest, _] = field.range_m();
+    let [_, highest] = land.apron.range_m();
     // Beyond this, even the highest hill stands below the sun's lower limb seen from the lowest place.
     let tan_limb = (sun.sin_elevation - sun.sin_radius).max(0.02) / sun.cos_elevation.max(1.0e-3);
     let beyond = Beyond { apron: &land.apron, reach_m: ((highest - lowest) / tan_limb).min(8000.0) };

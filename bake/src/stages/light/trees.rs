@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::caster::{Crown, Shadow};
 use super::sun::Sun;
-use crate::model::{Instance, Landform, Mesh, Placement};
+use crate::model::{Instance, Landform, Mesh};
 
 /// Directions around a template for which shadows are drawn.
 const DIRECTIONS: usize = 16;
@@ -36,16 +36,16 @@ pub(super) struct Shade {
 pub(super) fn shade(
     sun: &Sun,
     land: &Landform,
-    placement: &Placement,
-    casters: &[Mesh],
+    trees: &[Instance],
+    casters: &[&Mesh],
     ground_m: &[f32],
     side: usize,
 ) -> Shade {
     let ground = Ground { heights_m: ground_m, side, extent_m: land.field.extent_m() };
     let mut shade = Shade { sun: vec![1.0; side * side], crowns: Vec::new(), crown_side: side.div_ceil(2) };
     shade.crowns = vec![1.0; shade.crown_side * shade.crown_side];
-    let crowns: Vec<Crown> = casters.iter().map(Crown::of).collect();
-    let poses: Vec<Pose> = placement.instances.iter().filter_map(|i| Pose::of(i, sun, casters)).collect();
+    let crowns: Vec<Crown> = casters.iter().map(|caster| Crown::of(caster)).collect();
+    let poses: Vec<Pose> = trees.iter().filter_map(|i| Pose::of(i, sun, casters)).collect();
     let bowers: Vec<Bower> = poses.iter().filter_map(|pose| Bower::of(pose, &crowns)).collect();
     bands(&mut shade.crowns, shade.crown_side, |first, rows| {
         bowers.iter().for_each(|bower| bower.lay(&ground, first, rows, shade.crown_side));
@@ -73,13 +73,13 @@ fn bands(picture: &mut [f32], side: usize, work: impl Fn(usize, &mut [f32]) + Sy
 }
 
 /// The shadows that some instance needs.
-fn draw_shadows(sun: &Sun, casters: &[Mesh], poses: &[Pose], texel_m: f32) -> Vec<Option<Shadow>> {
+fn draw_shadows(sun: &Sun, casters: &[&Mesh], poses: &[Pose], texel_m: f32) -> Vec<Option<Shadow>> {
     let mut wanted = vec![false; casters.len() * DIRECTIONS];
     poses.iter().for_each(|pose| wanted[pose.template * DIRECTIONS + pose.direction] = true);
     let draw = |(index, &wanted): (usize, &bool)| {
         let angle = (index % DIRECTIONS) as f32 * (std::f32::consts::TAU / DIRECTIONS as f32);
         let front = [libm::cosf(angle), libm::sinf(angle)];
-        wanted.then(|| Shadow::draw(&casters[index / DIRECTIONS], sun, front, texel_m)).flatten()
+        wanted.then(|| Shadow::draw(casters[index / DIRECTIONS], sun, front, texel_m)).flatten()
     };
     wanted.par_iter().enumerate().map(draw).collect()
 }
@@ -127,7 +127,7 @@ struct Pose {
 }
 
 impl Pose {
-    fn of(instance: &Instance, sun: &Sun, casters: &[Mesh]) -> Option<Self> {
+    fn of(instance: &Instance, sun: &Sun, casters: &[&Mesh]) -> Option<Self> {
         let template = instance.template as usize;
         let [x, y, z] = instance.world_from_tree.map(|row| Vec3::new(row[0], row[1], row[2]));
         let world_from_tree = Mat3::from_cols(x, y, z).transpose();

@@ -12,7 +12,7 @@ use crate::seed::rng;
 
 use super::site::Site;
 use super::stand::{self, TRUNK_RESERVE_M};
-use super::{MOST_TREES, PlacementParams, START_CLEARING_M, TreeFootprint, start_point};
+use super::{MAX_TREES, PlacementParams, TreeFootprint};
 
 /// Cells a side of the map of weights.
 const MAP_SIDE: u32 = 128;
@@ -52,7 +52,6 @@ pub(super) fn scatter(params: &PlacementParams, site: &Site, trees: &[TreeFootpr
     let even_m = 0.5 * EVENNESS * SATURATED * (map.area_m2 / wanted as f32).sqrt();
     let largest = trees.iter().map(|tree| claim_m(tree, stand::LARGEST)).fold(even_m, f32::max);
     let mut taken = Taken::new(site.half_m(), 2.0 * largest);
-    let [start_x, _, start_z] = start_point(&site.land.field);
     let mut dice = Dice(rng(u64::from(params.tree_seed), "placement", 0));
     let mut instances = Vec::with_capacity(wanted as usize);
     let mut misses = 0;
@@ -65,9 +64,7 @@ pub(super) fn scatter(params: &PlacementParams, site: &Site, trees: &[TreeFootpr
         let tree = &trees[template];
         let scale = stand::scale(params.height_variation, spot.vigour, &mut dice);
         let claim = claim_m(tree, scale).max(even_m);
-        let from_start = (x - start_x) * (x - start_x) + (z - start_z) * (z - start_z);
-        let clearing = START_CLEARING_M + stand::trunk_reach_m(tree, scale);
-        if from_start < clearing * clearing || !taken.is_free(x, z, claim) {
+        if !taken.is_free(x, z, claim) {
             continue;
         }
         let Some(instance) = stand::stand(site.land, tree, template as u32, [x, z], scale, &mut dice) else {
@@ -84,7 +81,7 @@ pub(super) fn scatter(params: &PlacementParams, site: &Site, trees: &[TreeFootpr
 fn wanted(density_per_ha: f32, hectares: f32) -> u32 {
     let few = FEWEST_TREES.min(CROWDED_PER_HA * hectares);
     let n = (density_per_ha * hectares).max(few);
-    let most = MOST_TREES as f32;
+    let most = MAX_TREES as f32;
     (n * most / (n + most)) as u32
 }
 

@@ -47,7 +47,7 @@ pub(super) struct Site<'a> {
 
 impl<'a> Site<'a> {
     pub fn new(params: &PlacementParams, land: &'a Landform) -> Self {
-        let (low, high) = land.field.range_m();
+        let [low, high] = land.field.range_m();
         let shore_m = land.water_level_m.map_or(f32::NEG_INFINITY, |level| level + WATER_MARGIN_M);
         // Of the relief above water: under a deep lake, a low tree line would leave no land at all.
         let base = low.max(shore_m).min(high);

@@ -16,6 +16,7 @@ mod paint;
 #[cfg(test)]
 mod pictures;
 mod sheets;
+mod stage;
 #[cfg(test)]
 mod tests;
 
@@ -27,6 +28,7 @@ use clear::{ClearSky, SunDisc};
 use clouds::Clouds;
 use dome::{Dome, Layers};
 use paint::Painter;
+pub use stage::{SkyImagesStage, SkyLightStage};
 
 /// Pixels a side of the cloudless cube faces.
 const CLEAR_FACE_PX: usize = 128;

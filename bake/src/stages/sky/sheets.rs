@@ -14,7 +14,7 @@ const SIDE: usize = 512;
 const RAYS: usize = 160;
 
 /// Sheets of the layers that there are, lowest first.
-pub fn layers(clouds: Option<Clouds>, cirrus: Option<&Cirrus>) -> Vec<CloudLayer> {
+pub fn layers(clouds: Option<Clouds>, cirrus: Option<&Cirrus>) -> Vec<CloudLayer<Image8>> {
     let cumulus = clouds.map(|clouds| cumulus_sheet(&clouds.into_tiling()));
     let high = cirrus.map(cirrus_sheet);
     cumulus.into_iter().chain(high).collect()
@@ -45,7 +45,7 @@ impl Tone {
     }
 }
 
-fn cumulus_sheet(clouds: &Clouds) -> CloudLayer {
+fn cumulus_sheet(clouds: &Clouds) -> CloudLayer<Image8> {
     let extent_m = clouds.field.tile_m;
     let tone = Tone::new();
     let mut rays = vec![[0u8; 4]; RAYS * RAYS];
@@ -59,12 +59,7 @@ fn cumulus_sheet(clouds: &Clouds) -> CloudLayer {
             *ray = tone.rgba(light, alpha);
         }
     });
-    CloudLayer {
-        name: "cumulus".into(),
-        altitude_m: clouds.field.base_m,
-        extent_m,
-        image_srgb: enlarged(&rays),
-    }
+    CloudLayer { name: "cumulus".into(), altitude_m: clouds.field.base_m, extent_m, image: enlarged(&rays) }
 }
 
 /// The sheet at full size, interpolated with wrapping.
@@ -91,7 +86,7 @@ fn neighbours(pixel: usize) -> (usize, usize, f32) {
     (whole % RAYS, (whole + 1) % RAYS, at - whole as f32)
 }
 
-fn cirrus_sheet(sheet: &Cirrus) -> CloudLayer {
+fn cirrus_sheet(sheet: &Cirrus) -> CloudLayer<Image8> {
     const { assert!(cirrus::SIDE == SIDE) };
     let color = Tone::new().rgba(sheet.source(0.4), 0.0);
     let mut image = Image8::new(SIDE as u32, SIDE as u32, 4);
@@ -103,6 +98,6 @@ fn cirrus_sheet(sheet: &Cirrus) -> CloudLayer {
         name: "cirrus".into(),
         altitude_m: cirrus::ALTITUDE_M,
         extent_m: cirrus::TILE_M,
-        image_srgb: image,
+        image: image,
     }
 }

@@ -263,7 +263,7 @@ fn cloud_sheets_tile() {
         ["cumulus", "cirrus"]
     );
     for layer in &pictures.layers {
-        let image = &layer.image_srgb;
+        let image = &layer.image;
         let alpha = |x: u32, y: u32| i64::from(image.pixel(x, y)[3]);
         let last = image.width - 1;
         let seam: i64 = (0..=last)

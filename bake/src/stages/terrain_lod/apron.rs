@@ -2,7 +2,8 @@
 
 use glam::Vec3;
 
-use super::bintree::Sample;
+use genescape_schema::scene::bintree::Sample;
+
 use super::near::vertex;
 use crate::model::{Heightfield, Landform, Material, Mesh, Part, PartKind};
 

@@ -1,40 +1,40 @@
-//! Heightfield → wedgies, displacements, level numbers and block height ranges (thesis 3.2.1 and 3.2.2), in metres.
+//! Heightfield → wedgies and block height ranges (thesis 3.2.1 and 3.2.2), in metres.
 //!
 //! Wedgies after Duchaineau et al., "ROAMing terrain" (1997), equation 1; displacements after Vlietinck,
 //! "Trilinear displacement mapping of a flat surface with a v1.1 vertex shader" (2003).
 
+use std::sync::Arc;
+
+use genescape_schema::scene::bintree::parents;
 use rayon::prelude::*;
 
-use super::bintree::{Sample, hypotenuse, step};
 use crate::model::{Heightfield, TerrainLod};
 
-/// What the run-time levels of detail of a heightfield of (2^k+1)² samples, k ≥ 1, need. See [`TerrainLod`].
+/// What the run-time levels of detail of a heightfield of (2^k+1)² samples, k ≥ 1, need.
 pub fn lod(field: &Heightfield) -> TerrainLod {
-    let side = field.side as usize;
-    let mut displacements_m = vec![0.0; side * side];
-    let mut levels = vec![0; side * side];
-    displacements_m.par_chunks_mut(side).zip(levels.par_chunks_mut(side)).enumerate().for_each(
-        |(j, (displacements, levels))| {
-            for (i, (displacement, level)) in displacements.iter_mut().zip(levels).enumerate() {
-                (*displacement, *level) = morph(field, [i as u32, j as u32]);
-            }
-        },
-    );
-    let wedgies_m = wedgies(field.side, &displacements_m);
-    let block_ranges_m = block_ranges(field, &displacements_m);
-    TerrainLod { wedgies_m, displacements_m, levels, block_ranges_m }
+    let displacements_m = displacements_m(field);
+    TerrainLod {
+        wedgies_m: wedgies(field.side, &displacements_m),
+        block_ranges_m: block_ranges(field, &displacements_m),
+        field: Arc::new(field.clone()),
+    }
 }
 
-/// Way to the middle of the hypotenuse that the sample splits, and the last level that uses it.
-fn morph(field: &Heightfield, sample: Sample) -> (f32, u8) {
-    let last = field.side - 1;
-    let [i, j] = sample;
-    if i % last == 0 && j % last == 0 {
-        return (0.0, last.trailing_zeros() as u8);
-    }
-    let [a, b] = hypotenuse(sample);
-    let middle = 0.5 * (field.at(a[0], a[1]) + field.at(b[0], b[1]));
-    (middle - field.at(i, j), step(sample).trailing_zeros() as u8)
+/// ½(h(a) + h(b)) − h in metres for each sample with parents a and b: from the sample to its place in the uniform
+/// triangulation of the next level, diagonals alternating as in the bintree. 0 for the four corners.
+pub(super) fn displacements_m(field: &Heightfield) -> Vec<f32> {
+    let side = field.side as usize;
+    let mut displacements = vec![0.0; side * side];
+    displacements.par_chunks_mut(side).enumerate().for_each(|(j, row)| {
+        for (i, displacement) in row.iter_mut().enumerate() {
+            if i % (side - 1) != 0 || j % (side - 1) != 0 {
+                let [a, b] = parents([i as u32, j as u32]);
+                let middle = 0.5 * (field.at(a[0], a[1]) + field.at(b[0], b[1]));
+                *displacement = middle - field.at(i as u32, j as u32);
+            }
+        }
+    });
+    displacements
 }
 
 /// Half thicknesses, finest first: a triangle's is its own deviation and the greatest among its children's.

@@ -5,11 +5,12 @@
 //! T-junction arises. The error is the greatest vertical distance over all samples that the triangle covers, not
 //! the deviation of its middle alone (which Martini takes, and so delivers twice the error it claims) nor the
 //! wedgie (a sum that overstates it). As the mesh's edges run along those of the uniform triangulation of all
-//! samples (see [`super::bintree`]), that distance bounds the one between the two surfaces everywhere.
+//! samples (see [`genescape_schema::scene::bintree`]), that distance bounds the one between the two surfaces everywhere.
+
+use genescape_schema::scene::bintree::{Sample, Triangle, requires};
 
 use super::apron;
-use super::bintree::{Sample, Triangle, parents};
-use super::data::nested;
+use super::data::{displacements_m, nested};
 use super::verify::max_error_m;
 use crate::model::{Heightfield, Landform, Material, Mesh, Part, PartKind, TerrainMesh};
 
@@ -56,8 +57,7 @@ fn block_corners(field: &Heightfield, block_m: f32) -> impl Iterator<Item = Samp
 /// An error bound in metres that suits the land: 0.15 m, or on rough land more, namely the least that keeps the
 /// mesh at roughly 200·(side−1) triangles (100,000 at 513²).
 pub fn default_error_m(field: &Heightfield) -> f32 {
-    let displacements_m = super::lod(field).displacements_m;
-    let mut errors = nested(field.side, &displacements_m, f32::max);
+    let mut errors = nested(field.side, &displacements_m(field), f32::max);
     let vertices = TRIANGLES_PER_CELL_OF_A_SIDE * (field.side as usize - 1) / 2;
     if vertices >= errors.len() {
         return FINEST_DEFAULT_M;
@@ -82,7 +82,7 @@ impl<'a> Refiner<'a> {
             marks[corner] = USED;
         }
         // Room for the rounding of f32 in `exceeds`, so that the promise holds exactly.
-        let (lowest, highest) = field.range_m();
+        let [lowest, highest] = field.range_m();
         let bound_m = max_error_m.max(0.0) - 5.0e-7 * lowest.abs().max(highest.abs());
         Self { field, bound_m, marks, changed: false }
     }
@@ -99,8 +99,8 @@ impl<'a> Refiner<'a> {
         }
         self.marks[index] |= USED;
         self.changed = true;
-        for parent in parents(sample, self.field.side).into_iter().flatten() {
-            self.use_sample(parent);
+        for required in requires(sample, self.field.side - 1).into_iter().flatten() {
+            self.use_sample(required);
         }
     }
 

@@ -22,7 +22,7 @@ fn write_png(path: PathBuf, image: &Image8) {
     writer.write_image_data(&image.data).expect("the pixels can be written");
 }
 
-fn write(name: &str, tree: &TreeTemplate, textures: &TreeTextures) {
+fn write(name: &str, tree: &TreeTemplate, textures: &TreeTextures<crate::model::Image8>) {
     let folder = folder();
     let mesh = &tree.mesh;
     let raw =
@@ -36,10 +36,10 @@ fn write(name: &str, tree: &TreeTemplate, textures: &TreeTextures) {
         let triangles = part.map_or(&[][..], |part| &part.triangles);
         raw(&format!("{material:?}").to_lowercase(), bytemuck::cast_slice(triangles));
     }
-    write_png(folder.join(format!("{name}-bark.png")), &textures.bark_color_srgb);
+    write_png(folder.join(format!("{name}-bark.png")), &textures.bark_color);
     write_png(folder.join(format!("{name}-normal.png")), &textures.bark_normal);
-    write_png(folder.join(format!("{name}-leaf.png")), &textures.leaf_srgb[0]);
-    write_png(folder.join(format!("{name}-blossom.png")), &textures.blossom_srgb[0]);
+    write_png(folder.join(format!("{name}-leaf.png")), &textures.leaf[0]);
+    write_png(folder.join(format!("{name}-blossom.png")), &textures.blossom[0]);
 }
 
 #[expect(clippy::print_stdout, reason = "a report for whoever runs this by hand")]

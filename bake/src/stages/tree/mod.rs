@@ -23,12 +23,14 @@ mod skeleton;
 mod look;
 #[cfg(test)]
 mod presets;
+mod stage;
 #[cfg(test)]
 mod tests;
 
 use rayon::join;
 
-use crate::model::{Material, Mesh, Part, PartKind, TreeTemplate, TreeTextures};
+use crate::model::{Image8, Material, Mesh, Part, PartKind, TreeTemplate, TreeTextures};
+pub use stage::{TreeFiles, TreeStage, TreeTexturesStage};
 
 pub use crease::crease_normals;
 pub use params::{TreeParams, TreeTextureParams};
@@ -69,10 +71,10 @@ pub fn template(params: &TreeParams, index: u32) -> TreeTemplate {
 
 /// Paints the textures that all templates of a species share: tiling bark with its normals, and cards of leaves
 /// and of blossom with mip chains that keep their coverage. Square; sRGB where the field's name says so.
-pub fn textures(params: &TreeTextureParams) -> TreeTextures {
-    let ((bark_color_srgb, bark_normal), (leaf_srgb, blossom_srgb)) = join(
+pub fn textures(params: &TreeTextureParams) -> TreeTextures<Image8> {
+    let ((bark_color, bark_normal), (leaf, blossom)) = join(
         || bark_texture::paint(params),
         || join(|| leaf_texture::paint_leaves(params), || leaf_texture::paint_blossom(params)),
     );
-    TreeTextures { bark_color_srgb, bark_normal, leaf_srgb, blossom_srgb, alpha_cutoff: ALPHA_CUTOFF }
+    TreeTextures { bark_color, bark_normal, leaf, blossom, alpha_cutoff: ALPHA_CUTOFF }
 }

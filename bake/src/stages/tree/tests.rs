@@ -203,7 +203,7 @@ fn coverage(image: &crate::model::Image8) -> f32 {
 fn mips_keep_their_coverage() {
     for (name, params, leaf_aspect) in all() {
         let made = textures(&texture_params(&params, leaf_aspect));
-        for chain in [&made.leaf_srgb, &made.blossom_srgb] {
+        for chain in [&made.leaf, &made.blossom] {
             let whole = coverage(&chain[0]);
             assert_eq!(chain.last().map(|image| image.width), Some(1));
             for level in chain.iter().filter(|level| level.width >= 16) {
@@ -221,9 +221,9 @@ fn leaf_cards_are_well_filled_and_bleed_colour() {
         for leaf_shape in [0, 3, 4, 5, 6, 7].into_iter().skip(seed as usize % 2).step_by(2) {
             let params = TreeParams { leaf_shape, ..params.clone() };
             let made = textures(&texture_params(&params, leaf_aspect));
-            let whole = coverage(&made.leaf_srgb[0]);
+            let whole = coverage(&made.leaf[0]);
             assert!((0.05..0.9).contains(&whole), "{whole}: shape {leaf_shape}, aspect {leaf_aspect}");
-            let clear = made.leaf_srgb[0].data.chunks_exact(4).filter(|p| p[3] == 0);
+            let clear = made.leaf[0].data.chunks_exact(4).filter(|p| p[3] == 0);
             assert!(clear.into_iter().all(|p| p[0] > 20 || p[1] > 20), "dark under transparent texels");
         }
     }
@@ -233,7 +233,7 @@ fn leaf_cards_are_well_filled_and_bleed_colour() {
 fn bark_tiles() {
     for bark_tone in [0.0, 0.27, 0.5, 0.8, 1.0] {
         let params = TreeParams { bark_tone, ..oak() };
-        let image = textures(&texture_params(&params, 0.8)).bark_color_srgb;
+        let image = textures(&texture_params(&params, 0.8)).bark_color;
         let size = image.width;
         let step = |a: u32, b: u32, along: bool| -> u32 {
             (0..size)

@@ -13,8 +13,9 @@ use egui_wgpu::{RendererOptions, ScreenDescriptor};
 use super::*;
 use crate::event::Ballot;
 use crate::gpu::Gpu;
-use crate::picture_file::{self, Pixels};
+use crate::picture_file;
 use genescape_schema::Category;
+use image::RgbaImage;
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
@@ -29,7 +30,7 @@ impl TestRenderer for Deltas {
 }
 
 /// The harness's last frame.
-fn paint(gpu: &Gpu, harness: &Harness<'_, Bench>, deltas: &Deltas) -> Pixels {
+fn paint(gpu: &Gpu, harness: &Harness<'_, Bench>, deltas: &Deltas) -> RgbaImage {
     let scale = harness.ctx.pixels_per_point();
     let size = harness.ctx.content_rect().size() * scale;
     let screen = ScreenDescriptor {
@@ -219,7 +220,7 @@ const SCENES: [Scene; 14] = [
 ];
 
 /// One of [`SCENES`], with landscapes of that size in its views.
-fn draw(gpu: &Gpu, (_, size, scale, theme, prepare, act): Scene, picture_size: [usize; 2]) -> Pixels {
+fn draw(gpu: &Gpu, (_, size, scale, theme, prepare, act): Scene, picture_size: [usize; 2]) -> RgbaImage {
     let mut model = model();
     prepare(&mut model);
     let deltas = Deltas::default();
@@ -260,26 +261,21 @@ fn the_interface_looks_as_it_did() {
         if std::env::var_os("GENESCAPE_BLESS").is_some() {
             picture_file::write_png(&golden, &drawn).expect("written");
         }
-        let off = difference(&read_png(&golden), &drawn);
+        let off = difference(
+            &image::open(&golden).expect("a picture; GENESCAPE_BLESS=1 writes it").into_rgba8(),
+            &drawn,
+        );
         // An accent a shade redder is 0.004.
         assert!(off < 2e-4, "{name}: FLIP {off}");
     }
 }
 
-fn read_png(path: &Path) -> Pixels {
-    let file = std::fs::File::open(path).expect("a picture; GENESCAPE_BLESS=1 writes it");
-    let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().expect("a PNG file");
-    let mut rgba = vec![0; reader.output_buffer_size().expect("of some size")];
-    let info = reader.next_frame(&mut rgba).expect("a picture");
-    Pixels { width_px: info.width, height_px: info.height, rgba }
-}
-
 /// The mean of FLIP (Andersson et al. 2020).
-fn difference(a: &Pixels, b: &Pixels) -> f32 {
-    assert_eq!((a.width_px, a.height_px), (b.width_px, b.height_px));
-    let image = |pixels: &Pixels| {
-        let rgb: Vec<u8> = pixels.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
-        nv_flip::FlipImageRgb8::with_data(pixels.width_px, pixels.height_px, &rgb)
+fn difference(a: &RgbaImage, b: &RgbaImage) -> f32 {
+    assert_eq!(a.dimensions(), b.dimensions());
+    let image = |pixels: &RgbaImage| {
+        let rgb: Vec<u8> = pixels.pixels().flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+        nv_flip::FlipImageRgb8::with_data(pixels.width(), pixels.height(), &rgb)
     };
     let map = nv_flip::flip(image(a), image(b), nv_flip::DEFAULT_PIXELS_PER_DEGREE);
     nv_flip::FlipPool::from_image(&map).mean()
