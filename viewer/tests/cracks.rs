@@ -4,8 +4,8 @@
 mod made_up;
 
 use genescape_viewer::camera::Camera;
-use genescape_viewer::frame::FrameInput;
 use genescape_viewer::lod_mode::TerrainLodMode;
+use genescape_viewer::options::FrameInput;
 use genescape_viewer::scene::Trees;
 use glam::Vec3;
 use image::RgbaImage;

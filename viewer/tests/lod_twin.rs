@@ -4,11 +4,11 @@
 mod made_up;
 
 use genescape_viewer::camera::{Camera, Frustum};
-use genescape_viewer::frame::Options;
 use genescape_viewer::gpu::Gpu;
 use genescape_viewer::headless::Headless;
 use genescape_viewer::lod::tree::{MAX_LEVELS, MIN_DISTANCE_M, simple_error_m};
 use genescape_viewer::lod_mode::TreeLodMode;
+use genescape_viewer::options::Options;
 use genescape_viewer::passes::{BoundTrees, CullUniform};
 use genescape_viewer::picture_file;
 use genescape_viewer::scene::Trees;

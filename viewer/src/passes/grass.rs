@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 
 use super::{BoundScene, Compiler, DrawPass, PipelineDesc, Shader, buffer_layout};
 use crate::camera::Frustum;
-use crate::frame::Options;
+use crate::options::Options;
 use crate::scene::{Ground, Picture};
 use crate::shaders::ShaderError;
 

@@ -10,8 +10,8 @@ use super::model::Model;
 use super::theme::{self, Palette};
 use super::widgets::{Asks, close_button, icon_button, scrolled, section, segmented, switch};
 use crate::event::{Event, Panel};
-use crate::frame::{LOD_SWITCHES, Options, PICTURE_SWITCHES, Switch};
 use crate::lod_mode::LodMode;
+use crate::options::{LOD_SWITCHES, Options, PICTURE_SWITCHES, Switch};
 use crate::settings::{Comfort, Theme};
 
 /// Width of the card, in points.

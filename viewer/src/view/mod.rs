@@ -9,8 +9,8 @@ pub use targets::Targets;
 use terrain::TerrainChoice;
 
 use crate::camera::Camera;
-use crate::frame::{FrameInput, Options};
 use crate::gpu::Gpu;
+use crate::options::{FrameInput, Options};
 use crate::passes::grass::{self, Clump};
 use crate::passes::{BoundScene, Cull, CullUniform, Passes, Tone, ViewUniform};
 use crate::upload::{SceneBuffers, TreeSet};

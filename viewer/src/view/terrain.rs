@@ -1,11 +1,11 @@
 //! Camera and LOD mode → the blocks or triangles of the terrain that one picture draws.
 
 use crate::camera::Camera;
-use crate::frame::Options;
 use crate::gpu::Gpu;
 use crate::lod::morph::Detail;
 use crate::lod::{quadtree, roam};
 use crate::lod_mode::TerrainLodMode;
+use crate::options::Options;
 use crate::passes::BoundScene;
 
 /// No block of the terrain is wider, so that what is not seen can be left out.
