@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use genescape_schema::{Category, INDIVIDUALS, Votes};
 use serde::{Deserialize, Serialize};
 
-use crate::frame::Options;
 use crate::input::Command;
+use crate::options::Options;
 use crate::settings::Comfort;
 
 #[derive(Clone, Debug, PartialEq)]

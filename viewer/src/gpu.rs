@@ -54,7 +54,7 @@ impl Gpu {
             ..Default::default()
         };
         let adapter = pollster::block_on(instance.request_adapter(&options))?;
-        let info = adapter.get_info();
+        let (info, limits) = (adapter.get_info(), adapter.limits());
         let missing = REQUIRED - adapter.features();
         if !missing.is_empty() {
             return Err(GpuError::Lacking { name: info.name, missing: missing.to_string() });
@@ -63,7 +63,13 @@ impl Gpu {
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("genescape"),
             required_features: features,
-            required_limits: limits(&adapter.limits()),
+            // The defaults, with room for great forests where the adapter has it.
+            required_limits: wgpu::Limits {
+                max_buffer_size: limits.max_buffer_size,
+                max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
+                max_texture_dimension_2d: limits.max_texture_dimension_2d,
+                ..Default::default()
+            },
             ..Default::default()
         };
         let opened = pollster::block_on(adapter.request_device(&descriptor));
@@ -116,14 +122,4 @@ pub fn instance() -> wgpu::Instance {
     // nested groups are kept. WGPU_DISCARD_HAL_LABELS=0 brings them back.
     descriptor.flags = (descriptor.flags | wgpu::InstanceFlags::DISCARD_HAL_LABELS).with_env();
     wgpu::Instance::new(descriptor)
-}
-
-/// The defaults, with room for great forests where the adapter has it.
-fn limits(adapter: &wgpu::Limits) -> wgpu::Limits {
-    wgpu::Limits {
-        max_buffer_size: adapter.max_buffer_size,
-        max_storage_buffer_binding_size: adapter.max_storage_buffer_binding_size,
-        max_texture_dimension_2d: adapter.max_texture_dimension_2d,
-        ..Default::default()
-    }
 }

@@ -8,8 +8,8 @@ use genescape_world::{Source, World};
 use image::RgbaImage;
 
 use crate::camera::Camera;
-use crate::frame::FrameInput;
 use crate::gpu::Gpu;
+use crate::options::FrameInput;
 use crate::passes::Passes;
 use crate::picture_file;
 use crate::scene::Scene;

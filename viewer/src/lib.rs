@@ -10,7 +10,6 @@ pub mod camera;
 pub mod cli;
 pub mod edit_history;
 pub mod event;
-pub mod frame;
 #[cfg(feature = "gamepad")]
 pub mod gamepad;
 pub mod gpu;
@@ -19,6 +18,8 @@ pub mod input;
 pub mod load;
 pub mod lod;
 pub mod lod_mode;
+
+pub mod options;
 pub mod passes;
 pub mod picture_file;
 pub mod scene;

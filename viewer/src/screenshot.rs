@@ -8,8 +8,8 @@ use glam::{Vec2, Vec3};
 
 use crate::camera::Camera;
 use crate::cli::Cli;
-use crate::frame::FrameInput;
 use crate::headless::{Headless, scene_files};
+use crate::options::FrameInput;
 use crate::picture_file;
 use crate::say;
 use crate::shaders::Shaders;

@@ -13,8 +13,8 @@ use ron::value::RawValue;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::frame;
 use crate::input::Bindings;
+use crate::options;
 
 /// The file's first line.
 const TITLE: &str =

@@ -7,9 +7,9 @@ use winit::window::Fullscreen;
 
 use super::{App, lands};
 use crate::event::{Arrangement, Ballot, Event, Panel};
-use crate::frame::Options;
 use crate::input::{Best, Command};
 use crate::lod_mode::LodMode;
+use crate::options::Options;
 use crate::picture_file;
 use crate::ui::Tone;
 

@@ -24,8 +24,8 @@ use serde_json::json;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 
 use crate::baker::{Baker, BakerOptions};
-use crate::frame::FrameInput;
 use crate::gpu::Gpu;
+use crate::options::FrameInput;
 use crate::ui::model::Model;
 use crate::ui::{self, Tone};
 use crate::walk::Land;

@@ -11,8 +11,8 @@ use wgpu_profiler::{GpuProfiler, GpuProfilerSettings, GpuTimerQueryResult};
 
 use super::camera_control::CameraControl;
 use super::lod_readback::LodReadback;
-use crate::frame::FrameInput;
 use crate::gpu::Gpu;
+use crate::options::FrameInput;
 use crate::passes::Passes;
 use crate::picture_file;
 use crate::scene_loader::Loaded;

@@ -5,7 +5,7 @@ use anyhow::Result;
 use super::Bench;
 use super::forest::{camera_path, forest};
 use super::report::{Aim, median, quantile};
-use crate::frame::FrameInput;
+use crate::options::FrameInput;
 
 /// Trees of each landscape.
 const TREES: usize = 10_000;

@@ -5,8 +5,8 @@ use std::time::Instant;
 use cpu_time::{ProcessTime, ThreadTime};
 
 use crate::camera::Camera;
-use crate::frame::FrameInput;
 use crate::headless::Headless;
+use crate::options::FrameInput;
 use crate::view::View;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

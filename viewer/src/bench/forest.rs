@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use crate::camera::Camera;
-use crate::frame::Options;
+use crate::options::Options;
 use crate::scene::{Instance, Scene};
 use crate::walk::{EYE_HEIGHT_M, Land, nearest_free};
 

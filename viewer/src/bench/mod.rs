@@ -24,9 +24,9 @@ use clap::{Args, ValueEnum};
 use genescape_world::Source;
 
 use crate::camera::Camera;
-use crate::frame::{FrameInput, Options};
 use crate::headless::{Headless, scene_files};
 use crate::lod_mode::{TerrainLodMode, TreeLodMode};
+use crate::options::{FrameInput, Options};
 use crate::picture_file::parse_size;
 use crate::scene::Scene;
 use crate::shaders::Shaders;

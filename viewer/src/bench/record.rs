@@ -7,7 +7,7 @@ use super::Bench;
 use super::cost::Cost;
 use super::forest::{camera_path, forest};
 use super::report::{Aim, median};
-use crate::frame::FrameInput;
+use crate::options::FrameInput;
 
 /// Trees of the two forests.
 const TREES: [usize; 2] = [100, 100_000];

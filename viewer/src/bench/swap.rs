@@ -9,8 +9,8 @@ use super::cost::Cost;
 use super::forest::camera_path;
 use super::report::{Aim, median, quantile};
 use crate::app::loader::{Loader, Request};
-use crate::frame::FrameInput;
 use crate::load;
+use crate::options::FrameInput;
 use crate::upload::Uploader;
 
 /// Frames before a landscape is asked for, and after it is shown.

@@ -6,7 +6,7 @@ use super::Bench;
 use super::cost::Cost;
 use super::forest::camera_path;
 use super::report::{Aim, median};
-use crate::frame::FrameInput;
+use crate::options::FrameInput;
 
 /// Each picture is drawn so often; the cheapest counts.
 const ROUNDS: usize = 3;

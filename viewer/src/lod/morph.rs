@@ -1,4 +1,4 @@
-//! A place → its level of detail λ; a sample → where it is drawn. Metres. The rule of Vlietinck's "Trilinear
+//! What a place's level of detail λ depends on, and with it where `terrain.wgsl` draws a sample. Metres. The rule of Vlietinck's "Trilinear
 //! displacement mapping of a flat surface with a v1.1 vertex shader" (2003; thesis 3.2), but that a vertex slides with
 //! its whole position to one parent instead of moving up or down to the middle of both.
 //!
@@ -15,7 +15,7 @@
 //!   arrived is overtaken by the edge between its parents when one of these leaves the line.)
 //! - rounding in another machine's log₂ is harmless: it cannot eat the gap.
 
-use genescape_schema::scene::bintree::{Sample, first_parent, level};
+use genescape_schema::scene::bintree::Sample;
 use glam::{Vec2, Vec3};
 
 use crate::scene::Heightfield;
@@ -40,41 +40,10 @@ pub struct Detail {
 }
 
 impl Detail {
-    /// λ at (x, z).
-    #[inline]
-    pub fn lambda(&self, at_m: Vec2) -> f32 {
-        let distance_m = self.distance_squared_m2(at_m).sqrt();
-        libm::log2f(distance_m / self.unit_m).clamp(0.0, self.top)
-    }
-
     /// D² at (x, z).
     #[inline]
     pub fn distance_squared_m2(&self, at_m: Vec2) -> f32 {
         at_m.distance_squared(self.eye_m) + self.above_m * self.above_m
-    }
-
-    /// The way a vertex has gone to its parent, 0 to 1.
-    #[inline]
-    pub fn slide(&self, field: &Heightfield, [i, j]: Sample) -> f32 {
-        let lambda = self.lambda(Vec2::new(field.place_m(i), field.place_m(j)));
-        ((lambda - level([i, j]) as f32) * (1.0 / (1.0 - GAP))).clamp(0.0, 1.0)
-    }
-
-    /// Where a vertex is drawn. Two steps suffice in a block of level i: λ ≤ i+2, and vertices have levels ≥ i.
-    pub fn place_m(&self, field: &Heightfield, sample: Sample) -> Vec3 {
-        let mut vertex = sample;
-        let mut slide = self.slide(field, vertex);
-        for _ in 0..2 {
-            if slide >= 1.0 {
-                vertex = first_parent(vertex);
-                slide = self.slide(field, vertex);
-            }
-        }
-        let from = sample_m(field, vertex);
-        if slide <= 0.0 {
-            return from;
-        }
-        from + (sample_m(field, first_parent(vertex)) - from) * slide
     }
 }
 

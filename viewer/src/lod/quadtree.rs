@@ -22,7 +22,7 @@ use crate::scene::{Heightfield, TerrainLod};
 /// log₂ of a block's cells a side.
 pub const BLOCK_BITS: u32 = 4;
 
-/// Levels that any field of at most 2^15+1 samples has.
+/// As many as a field of 2^15+1 samples a side has.
 const MAX_LEVELS: usize = 12;
 
 /// A block: an instance of the mesh of [`block_indices`]. Fit for an instance buffer (Uint32x3).
@@ -42,8 +42,8 @@ pub struct Block {
 ///
 /// Not the greatest distance: λ is blind to where the land is rough, so one sharp bank would ask for every sample up to
 /// the horizon (on 2 m lands of 60 to 300 m relief the greatest is 5 to 13 times this, d₀ for one pixel wider than the
-/// land). The mean square is what the thesis compares pictures by (7), and what moves does so without a pop. Who needs
-/// a bound everywhere takes [`super::roam`].
+/// land). The mean square is what the thesis compares pictures by (7), and what moves does so without a pop.
+/// [`super::roam`] bounds the error everywhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Errors {
     /// Of level l, in metres; entry 0 is 0. Never decreases.

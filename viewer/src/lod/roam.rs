@@ -19,62 +19,34 @@ use crate::scene::TerrainLod;
 /// All planes of a frustum still to be tested.
 const ALL_PLANES: u32 = (1 << 5) - 1;
 
-/// The flags that say which samples are in use, kept between frames.
-#[derive(Clone, Debug, Default)]
-pub struct Roam {
-    /// In use if equal to the nonce; so one increment clears all.
-    flags: Vec<u32>,
-    nonce: u32,
-}
-
-impl Roam {
-    /// Replaces `strip` by a triangle strip over the whole field: entries of its arrays, front faces counter-clockwise
-    /// from above with the first triangle as written. `aspect` is the picture's width over its height, `height_px` its
-    /// height; `error_px` is how far land and mesh may be apart in the picture: 0 uses every sample in sight that is not
-    /// on the plane around it. Tells how many triangles are not degenerate.
-    pub fn triangulate(
-        &mut self,
-        lod: &TerrainLod,
-        camera: &Camera,
-        (aspect, height_px): (f32, f32),
-        error_px: f32,
-        strip: &mut Vec<u32>,
-    ) -> u32 {
-        let field = &lod.field;
-        strip.clear();
-        if field.side < 2 {
-            return 0;
-        }
-        self.begin(field.heights_m.len());
-        let last = field.side - 1;
-        let roots = [[[last, last], [0, 0], [0, last]], [[0, 0], [last, last], [last, 0]]];
-        let mut marks = Marks { flags: &mut self.flags, nonce: self.nonce, side: field.side };
-        let metric = Metric::new(lod, camera, (aspect, height_px), error_px);
-        for root in roots {
-            refine(&metric, &mut marks, root.map(|sample| metric.corner(sample)), ALL_PLANES);
-        }
-        let mut walk = Walk { marks: &marks, strip, triangles: 0 };
-        for root in roots {
-            walk.visit(root, true);
-        }
-        walk.triangles
+/// Replaces `strip` by a triangle strip over the whole field: entries of its arrays, front faces counter-clockwise
+/// from above with the first triangle as written. `aspect` is the picture's width over its height, `height_px` its
+/// height; `error_px` is how far land and mesh may be apart in the picture: 0 uses every sample in sight that is not
+/// on the plane around it. Tells how many triangles are not degenerate.
+pub fn triangulate(
+    lod: &TerrainLod,
+    camera: &Camera,
+    (aspect, height_px): (f32, f32),
+    error_px: f32,
+    strip: &mut Vec<u32>,
+) -> u32 {
+    let field = &lod.field;
+    strip.clear();
+    if field.side < 2 {
+        return 0;
     }
-
-    /// As after 2³²−2 frames.
-    #[cfg(test)]
-    pub(super) fn wear(&mut self) {
-        self.nonce = u32::MAX - 1;
+    let last = field.side - 1;
+    let roots = [[[last, last], [0, 0], [0, last]], [[0, 0], [last, last], [last, 0]]];
+    let mut marks = Marks { used: vec![false; field.heights_m.len()], side: field.side };
+    let metric = Metric::new(lod, camera, (aspect, height_px), error_px);
+    for root in roots {
+        refine(&metric, &mut marks, root.map(|sample| metric.corner(sample)), ALL_PLANES);
     }
-
-    /// Clears all flags.
-    fn begin(&mut self, samples: usize) {
-        if self.flags.len() != samples || self.nonce == u32::MAX {
-            self.flags.clear();
-            self.flags.resize(samples, 0);
-            self.nonce = 0;
-        }
-        self.nonce += 1;
+    let mut walk = Walk { marks: &marks, strip, triangles: 0 };
+    for root in roots {
+        walk.visit(root, true);
     }
+    walk.triangles
 }
 
 /// The middle of the hypotenuse a–b; `None` for half a cell.
@@ -85,13 +57,12 @@ fn middle(a: Sample, b: Sample) -> Option<Sample> {
 }
 
 /// Which samples are in use.
-struct Marks<'a> {
-    flags: &'a mut [u32],
-    nonce: u32,
+struct Marks {
+    used: Vec<bool>,
     side: u32,
 }
 
-impl Marks<'_> {
+impl Marks {
     #[inline]
     fn entry(&self, [i, j]: Sample) -> usize {
         (j * self.side + i) as usize
@@ -99,16 +70,15 @@ impl Marks<'_> {
 
     #[inline]
     fn uses(&self, sample: Sample) -> bool {
-        self.flags[self.entry(sample)] == self.nonce
+        self.used[self.entry(sample)]
     }
 
     /// Uses a sample (no corner of the field), and first what it depends on.
     fn enable(&mut self, sample: Sample) {
         let entry = self.entry(sample);
-        if self.flags[entry] == self.nonce {
+        if std::mem::replace(&mut self.used[entry], true) {
             return;
         }
-        self.flags[entry] = self.nonce;
         let last = self.side - 1;
         for needed in requires(sample, last).into_iter().flatten() {
             // The field's corners are always in use.
@@ -206,7 +176,7 @@ impl<'a> Metric<'a> {
 }
 
 /// Splits a triangle (ends of the hypotenuse, apex) and its halves as far as the metric asks for.
-fn refine(metric: &Metric<'_>, marks: &mut Marks<'_>, corners: [Corner; 3], planes: u32) {
+fn refine(metric: &Metric<'_>, marks: &mut Marks, corners: [Corner; 3], planes: u32) {
     let [a, b, apex] = corners;
     let Some(sample) = middle(a.sample, b.sample) else { return };
     let half_m = metric.lod.wedgies_m[marks.entry(sample)];
@@ -222,7 +192,7 @@ fn refine(metric: &Metric<'_>, marks: &mut Marks<'_>, corners: [Corner; 3], plan
 
 /// Writes the strip.
 struct Walk<'a> {
-    marks: &'a Marks<'a>,
+    marks: &'a Marks,
     strip: &'a mut Vec<u32>,
     triangles: u32,
 }

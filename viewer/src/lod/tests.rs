@@ -4,13 +4,13 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use genescape_bake::stages::terrain_lod;
-use genescape_schema::scene::bintree::parents;
+use genescape_schema::scene::bintree::{Sample, first_parent, level, parents};
 use glam::{Vec2, Vec3};
 use proptest::prelude::*;
 
-use super::morph::{Detail, sample_m};
+use super::morph::{Detail, GAP, sample_m};
 use super::quadtree::{self, Block, Errors, block_cells, block_indices};
-use super::roam::Roam;
+use super::roam::triangulate;
 use crate::camera::{Camera, Frustum};
 use crate::scene::{Heightfield, TerrainLod};
 
@@ -33,6 +33,31 @@ fn hash(i: u32, j: u32, seed: u32) -> f32 {
     ((mixed ^ mixed >> 13).wrapping_mul(0x27d4_eb2f) >> 8) as f32 / (1 << 24) as f32
 }
 
+/// λ at (x, z), as the shader has it.
+fn lambda(detail: &Detail, at_m: Vec2) -> f32 {
+    let distance_m = detail.distance_squared_m2(at_m).sqrt();
+    libm::log2f(distance_m / detail.unit_m).clamp(0.0, detail.top)
+}
+
+/// The way a vertex has gone to its parent, 0 to 1, as the shader has it.
+fn slide(detail: &Detail, field: &Heightfield, sample: Sample) -> f32 {
+    let [x, z] = sample.map(|line| field.place_m(line));
+    ((lambda(detail, Vec2::new(x, z)) - level(sample) as f32) * (1.0 / (1.0 - GAP))).clamp(0.0, 1.0)
+}
+
+/// Where a vertex is drawn, as the shader has it. Two steps suffice in a block of level i: λ ≤ i+2, and vertices have
+/// levels ≥ i.
+fn drawn_m(detail: &Detail, field: &Heightfield, sample: Sample) -> Vec3 {
+    let mut vertex = sample;
+    for _ in 0..2 {
+        if slide(detail, field, vertex) >= 1.0 {
+            vertex = first_parent(vertex);
+        }
+    }
+    let (from, part) = (sample_m(field, vertex), slide(detail, field, vertex));
+    if part <= 0.0 { from } else { from + (sample_m(field, first_parent(vertex)) - from) * part }
+}
+
 type Triangle = [Vec3; 3];
 
 /// What the GPU draws of some blocks.
@@ -44,7 +69,7 @@ fn drawn(field: &Heightfield, detail: &Detail, blocks: &[Block]) -> Vec<Triangle
         let vertex = |number: u32| {
             let step = 1 << block.level;
             let (column, row) = (number % (cells + 1), number / (cells + 1));
-            detail.place_m(field, [block.i + column * step, block.j + row * step])
+            drawn_m(detail, field, [block.i + column * step, block.j + row * step])
         };
         let vertices: Vec<Vec3> = (0..(cells + 1) * (cells + 1)).map(vertex).collect();
         let corners = indices.chunks_exact(3).map(|t| [0, 1, 2].map(|c| vertices[t[c] as usize]));
@@ -129,7 +154,7 @@ proptest! {
         // The greatest λ is at a corner, for distance is convex.
         for ([x, z], block) in [[0, 0], [16, 0], [0, 16], [16, 16], [x, z]].iter().flat_map(|v| blocks.iter().map(move |b| (v, b))) {
             let place = |from: u32, by: u32| field.place_m(from + (by << block.level));
-            let lambda = detail.lambda(Vec2::new(place(block.i, *x), place(block.j, *z)));
+            let lambda = lambda(&detail, Vec2::new(place(block.i, *x), place(block.j, *z)));
             let level = block.level as f32;
             prop_assert!(lambda >= level - 1e-4 && lambda <= level + 2.0 + 1e-4, "{lambda} in {block:?}");
         }
@@ -185,7 +210,7 @@ proptest! {
             let mut blocks = Vec::new();
             quadtree::select(&lod, &detail, None, &mut blocks);
             let mesh = drawn(&field, &detail, &blocks);
-            let vertices: Vec<Vec3> = (0..65 * 65).map(|n| detail.place_m(&field, [n % 65, n / 65])).collect();
+            let vertices: Vec<Vec3> = (0..65 * 65).map(|n| drawn_m(&detail, &field, [n % 65, n / 65])).collect();
             let heights: Vec<f32> =
                 places.iter().map(|&at| height_in(&mesh, at).expect("the mesh covers the square")).collect();
             if let Some((vertices_before, heights_before)) = &before {
@@ -257,8 +282,8 @@ proptest! {
         let lod = land((1 << depth) + 1, 1.0, relief, seed);
         let field = &*lod.field;
         camera.position_m *= field.extent_m();
-        let (mut roam, mut strip) = (Roam::default(), Vec::new());
-        let triangles = roam.triangulate(&lod, &camera, PICTURE, error_px, &mut strip);
+        let mut strip = Vec::new();
+        let triangles = triangulate(&lod, &camera, PICTURE, error_px, &mut strip);
         let mesh = strip_triangles(&field, &strip);
         check_closed(&field, &mesh)?;
         prop_assert_eq!(triangles as usize, mesh.len());
@@ -281,7 +306,7 @@ proptest! {
         let field = &*lod.field;
         camera.position_m *= field.extent_m();
         let mut strip = Vec::new();
-        Roam::default().triangulate(&lod, &camera, PICTURE, 0.0, &mut strip);
+        triangulate(&lod, &camera, PICTURE, 0.0, &mut strip);
         let frustum = camera.frustum(PICTURE.0);
         for entry in 0..field.side * field.side {
             let sample = [entry % field.side, entry / field.side];
@@ -293,23 +318,6 @@ proptest! {
             prop_assert!(flat || !seen || strip.contains(&entry), "sample {entry}");
         }
     }
-
-    #[test]
-    fn flags_of_earlier_frames_do_not_show(mut camera in camera(), mut other in camera(), wrap in any::<bool>()) {
-        let lod = land(33, 1.0, 20.0, 5);
-        let field = &*lod.field;
-        camera.position_m *= field.extent_m();
-        other.position_m *= field.extent_m();
-        let (mut fresh, mut used, mut worn) = (Vec::new(), Vec::new(), Roam::default());
-        worn.triangulate(&lod, &other, PICTURE, 1.0, &mut used);
-        if wrap {
-            worn.wear();
-            worn.triangulate(&lod, &other, PICTURE, 1e9, &mut used);
-        }
-        worn.triangulate(&lod, &camera, PICTURE, 2.0, &mut used);
-        Roam::default().triangulate(&lod, &camera, PICTURE, 2.0, &mut fresh);
-        prop_assert_eq!(fresh, used);
-    }
 }
 
 #[test]
@@ -318,9 +326,9 @@ fn more_error_and_less_sight_mean_fewer_triangles() {
     let field = &*lod.field;
     let camera =
         Camera { position_m: Vec3::new(0.0, 30.0, 100.0), yaw_rad: 0.0, pitch_rad: -0.2, fov_y_rad: 1.0 };
-    let (mut roam, mut strip, mut blocks) = (Roam::default(), Vec::new(), Vec::new());
+    let (mut strip, mut blocks) = (Vec::new(), Vec::new());
     let counts: Vec<u32> = [0.0, 1.0, 4.0, 64.0, 1e9]
-        .map(|error_px| roam.triangulate(&lod, &camera, PICTURE, error_px, &mut strip))
+        .map(|error_px| triangulate(&lod, &camera, PICTURE, error_px, &mut strip))
         .to_vec();
     assert!(counts.is_sorted_by(|a, b| a > b), "{counts:?}");
     let detail = detail_at(&lod, camera.position_m, 1.0);

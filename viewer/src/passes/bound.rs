@@ -106,16 +106,12 @@ impl BoundTrees {
     pub fn new(gpu: &Gpu, layouts: &Layouts, set: &TreeSet) -> Self {
         use wgpu::BufferUsages as Usage;
         let buckets = set.template_count * set.level_count;
-        let uniform =
-            gpu.empty_buffer("culling", size_of::<CullUniform>() as u64, Usage::UNIFORM | Usage::COPY_DST);
-        let counts = gpu.empty_buffer("counts", 4 * u64::from(buckets), Usage::STORAGE | Usage::COPY_SRC);
-        let visible = gpu.empty_buffer(
-            "visible trees",
-            8 * u64::from(set.list_capacity),
-            Usage::STORAGE | Usage::VERTEX | Usage::COPY_SRC,
-        );
-        let usage = Usage::STORAGE | Usage::INDIRECT | Usage::COPY_SRC;
-        let commands = gpu.buffer("commands", &set.commands, usage);
+        let uniform = gpu.buffer("culling", &[CullUniform::default()], Usage::UNIFORM | Usage::COPY_DST);
+        let written = Usage::STORAGE | Usage::COPY_SRC;
+        let counts = gpu.empty_buffer("counts", 4 * u64::from(buckets), written);
+        let room = 8 * u64::from(set.list_capacity);
+        let visible = gpu.empty_buffer("visible trees", room, written | Usage::VERTEX);
+        let commands = gpu.buffer("commands", &set.commands, written | Usage::INDIRECT);
         let culled = [&uniform, &set.trees, &set.templates, &counts, &visible, &commands];
         let culled = (0..).zip(culled.map(Binding::Buffer));
         let material = |material: &crate::upload::TreeMaterial| {

@@ -6,9 +6,9 @@ use glam::Vec3;
 
 use super::{BoundTrees, Compiler, Shader, ViewUniform};
 use crate::camera::Frustum;
-use crate::frame::Options;
 use crate::lod::tree::MIN_DISTANCE_M;
 use crate::lod_mode::TreeLodMode;
+use crate::options::Options;
 use crate::shaders::ShaderError;
 use crate::upload::TreeSet;
 

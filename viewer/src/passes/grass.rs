@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 
 use super::{BoundScene, Compiler, DrawPass, PipelineDesc, Shader, buffer_layout};
 use crate::camera::Frustum;
-use crate::frame::Options;
+use crate::options::Options;
 use crate::scene::{Ground, Picture};
 use crate::shaders::ShaderError;
 
@@ -41,7 +41,7 @@ const AROUND_M: f32 = 1.2 * CELL_M;
 /// Bytes of rock, scree, snow and mud together beyond which no grass grows.
 const BARE: u32 = 190;
 
-/// So many blades of a cell, as the shader reads them.
+/// [`BLADES`] blades of a cell, as the shader reads them.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Clump {

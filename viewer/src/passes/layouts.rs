@@ -71,15 +71,14 @@ impl Layouts {
             material: all("material", fragment, &[UNIFORM, IMAGE, IMAGE]),
             cull: all("culling", ShaderStages::COMPUTE, &[UNIFORM, READ, READ, WRITE, WRITE, WRITE]),
             radiance: all("radiance", fragment, &[DATA]),
-            repeating: sampler(gpu, wgpu::AddressMode::Repeat, anisotropy),
-            clamped: sampler(gpu, wgpu::AddressMode::ClampToEdge, 1),
-            comparing: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-                label: Some("comparing"),
-                mag_filter: wgpu::FilterMode::Linear,
-                min_filter: wgpu::FilterMode::Linear,
-                compare: Some(wgpu::CompareFunction::LessEqual),
-                ..Default::default()
-            }),
+            repeating: sampler(gpu, wgpu::AddressMode::Repeat, anisotropy, None),
+            clamped: sampler(gpu, wgpu::AddressMode::ClampToEdge, 1, None),
+            comparing: sampler(
+                gpu,
+                wgpu::AddressMode::ClampToEdge,
+                1,
+                Some(wgpu::CompareFunction::LessEqual),
+            ),
         }
     }
 }
@@ -96,7 +95,12 @@ fn layout(
     gpu.device.create_bind_group_layout(&descriptor)
 }
 
-fn sampler(gpu: &Gpu, address: wgpu::AddressMode, anisotropy_clamp: u16) -> wgpu::Sampler {
+fn sampler(
+    gpu: &Gpu,
+    address: wgpu::AddressMode,
+    anisotropy_clamp: u16,
+    compare: Option<wgpu::CompareFunction>,
+) -> wgpu::Sampler {
     gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         address_mode_u: address,
         address_mode_v: address,
@@ -104,6 +108,7 @@ fn sampler(gpu: &Gpu, address: wgpu::AddressMode, anisotropy_clamp: u16) -> wgpu
         min_filter: wgpu::FilterMode::Linear,
         mipmap_filter: wgpu::MipmapFilterMode::Linear,
         anisotropy_clamp,
+        compare,
         ..Default::default()
     })
 }

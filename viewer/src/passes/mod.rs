@@ -27,8 +27,8 @@ pub use view_uniform::ViewUniform;
 
 use pipeline::{Compiler, FilledOrWire, PipelineDesc, Target, buffer_layout};
 
-use crate::frame::Options;
 use crate::gpu::Gpu;
+use crate::options::Options;
 use crate::shaders::{ShaderError, Shaders};
 
 /// Format of radiance.

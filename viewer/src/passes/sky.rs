@@ -1,7 +1,7 @@
 //! Draws the sky behind everything (thesis 5).
 
 use super::{BoundScene, Compiler, DrawPass, PipelineDesc, Shader};
-use crate::frame::Options;
+use crate::options::Options;
 use crate::shaders::ShaderError;
 
 pub const SHADER: Shader = Shader { name: "sky", source: include_str!("sky.wgsl"), constants: &[] };

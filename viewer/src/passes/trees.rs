@@ -1,7 +1,7 @@
 //! Draws the trees that culling left: one draw for each material.
 
 use super::{BoundScene, BoundTrees, Compiler, DrawPass, FilledOrWire, PipelineDesc, Shader, buffer_layout};
-use crate::frame::Options;
+use crate::options::Options;
 use crate::scene::TreeVertex;
 use crate::shaders::ShaderError;
 use crate::upload::{DrawCommand, TreeSet};

@@ -3,9 +3,9 @@
 use glam::{Mat4, Vec3, Vec4};
 
 use crate::camera::Camera;
-use crate::frame::FrameInput;
 use crate::lod::morph::Detail;
 use crate::lod_mode::TerrainLodMode;
+use crate::options::FrameInput;
 use crate::upload::SceneBuffers;
 
 /// `View` of `common.wgsl`, which says what each field is; a test compares the two.

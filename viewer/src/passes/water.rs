@@ -1,7 +1,7 @@
 //! Draws the lake over everything else.
 
 use super::{BoundScene, Compiler, DrawPass, PipelineDesc, Shader};
-use crate::frame::Options;
+use crate::options::Options;
 use crate::shaders::ShaderError;
 
 pub const SHADER: Shader = Shader { name: "water", source: include_str!("water.wgsl"), constants: &[] };

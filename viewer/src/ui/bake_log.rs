@@ -78,8 +78,7 @@ pub fn errors(ui: &mut Ui, errors: &[FileError], events: &mut Vec<Event>) {
 fn one(ui: &mut Ui, index: usize, error: &FileError, events: &mut Vec<Event>) {
     let palette = Palette::of(ui.visuals());
     ui.horizontal(|ui| {
-        let (rect, _) = ui.allocate_exact_size(vec2(16.0, 24.0), Sense::hover());
-        Icon::Warning.paint(ui.painter(), rect, palette.danger);
+        Icon::Warning.show(ui, 16.0, 24.0, palette.danger);
         let title = Label::new(RichText::new(&error.title).strong()).truncate();
         ends(
             ui,

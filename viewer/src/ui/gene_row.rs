@@ -10,7 +10,7 @@ use genescape_schema::Parameter;
 use super::icon::Icon;
 use super::model::Genes;
 use super::theme::Palette;
-use super::widgets::{sized_icon_button, small};
+use super::widgets::{Asks, sized_icon_button, small};
 use crate::event::Event;
 
 /// What is being dragged or typed just now; the model hears of it by events only.
@@ -105,9 +105,7 @@ impl Row<'_> {
             }
             let button = |ui: &mut Ui| sized_icon_button(ui, icon, &format!("{verb} {name}"), locked, 24.0);
             let response = ui.add_enabled_ui(!by_category, button).inner;
-            if response.clicked() {
-                events.push(Event::LockGene { name: name.clone(), locked: !locked });
-            }
+            response.asks(events, Event::LockGene { name: name.clone(), locked: !locked });
             if by_category {
                 response.on_disabled_hover_text("Locked with its whole category");
             }
@@ -121,9 +119,7 @@ impl Row<'_> {
         let Parameter { name, unit, .. } = self.parameter;
         let label = format!("Reset {name} to {} {unit}", self.parameter.text(self.bred));
         let button = |ui: &mut Ui| sized_icon_button(ui, Icon::Reset, label.trim_end(), false, 24.0);
-        if ui.add_enabled_ui(!self.locked, button).inner.clicked() {
-            events.push(self.event(self.bred));
-        }
+        ui.add_enabled_ui(!self.locked, button).inner.asks(events, self.event(self.bred));
     }
 
     /// The value as text, with its unit behind it; Enter or leaving the field takes what was typed.

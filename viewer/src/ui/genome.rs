@@ -7,7 +7,7 @@ use genescape_schema::{Category, INDIVIDUALS, Parameter};
 use super::icon::Icon;
 use super::model::{Genes, Model};
 use super::theme::{self, Palette};
-use super::widgets::{close_button, ends, painted_button, segmented, sized_icon_button};
+use super::widgets::{Asks, close_button, ends, painted_button, segmented, sized_icon_button};
 use super::{bake_log, gene_row};
 use crate::event::{Event, Panel};
 
@@ -15,27 +15,16 @@ use crate::event::{Event, Panel};
 const WIDTH: f32 = 340.0;
 
 /// What the panel remembers.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct State {
     /// What was typed into the search field.
     pub search: String,
     /// Only genes in which the four differ.
     pub only_different: bool,
-    /// Categories whose genes are listed.
-    pub unfolded: [bool; 3],
+    /// Categories whose genes are not listed.
+    pub folded: [bool; 3],
     /// What is being dragged or typed.
     pub row: gene_row::State,
-}
-
-impl Default for State {
-    fn default() -> Self {
-        Self {
-            search: String::new(),
-            only_different: false,
-            unfolded: [true; 3],
-            row: gene_row::State::default(),
-        }
-    }
 }
 
 /// Draws it at the right of `ui`.
@@ -105,7 +94,7 @@ fn body(ui: &mut Ui, genes: &Genes, individual: usize, state: &mut State, events
         }
         none = false;
         category_head(ui, genes, individual, category, state, events);
-        if state.unfolded[category as usize] || !state.search.is_empty() {
+        if !state.folded[category as usize] || !state.search.is_empty() {
             for parameter in listed {
                 gene_row::show(ui, genes, individual, parameter, &mut state.row, events);
             }
@@ -153,15 +142,13 @@ fn category_head(
     ui.add_space(10.0);
     let (_, rect) = ui.allocate_space(vec2(ui.available_width(), 30.0));
     let fold = Rect::from_min_max(rect.min, pos2(rect.right() - 62.0, rect.bottom()));
-    let unfolded = &mut state.unfolded[category as usize];
-    let (response, _) = painted_button(ui, fold, ("fold", category.name()), title, *unfolded);
-    *unfolded ^= response.clicked();
+    let folded = &mut state.folded[category as usize];
+    let (response, _) = painted_button(ui, fold, ("fold", category.name()), title, !*folded);
+    *folded ^= response.clicked();
     let fill = if response.hovered() { palette.hovered } else { color.gamma_multiply(0.16) };
     ui.painter().rect_filled(rect, CornerRadius::same(theme::RADIUS), fill);
-    let icon_rect = Rect::from_center_size(pos2(rect.left() + 18.0, rect.center().y), vec2(17.0, 17.0));
-    Icon::from(category).paint(ui.painter(), icon_rect, color);
-    let font = egui::FontId::proportional(15.0);
-    let at = pos2(rect.left() + 34.0, rect.center().y);
+    Icon::from(category).paint_at(ui.painter(), rect.left_center() + vec2(18.0, 0.0), 17.0, color);
+    let (at, font) = (rect.left_center() + vec2(34.0, 0.0), egui::FontId::proportional(15.0));
     ui.painter().text(at, egui::Align2::LEFT_CENTER, title, font, palette.text);
     let layout = Layout::right_to_left(Align::Center);
     let mut corner = ui.new_child(egui::UiBuilder::new().max_rect(rect.shrink(2.0)).layout(layout));
@@ -169,9 +156,8 @@ fn category_head(
     let locked = genes.locked_categories[category as usize];
     let (icon, verb) = if locked { (Icon::Locked, "Unlock all") } else { (Icon::Unlocked, "Lock all") };
     let label = format!("{verb}: {}", title.to_lowercase());
-    if sized_icon_button(&mut corner, icon, &label, locked, 26.0).clicked() {
-        events.push(Event::LockCategory { category, locked: !locked });
-    }
+    sized_icon_button(&mut corner, icon, &label, locked, 26.0)
+        .asks(events, Event::LockCategory { category, locked: !locked });
     reset_category(&mut corner, genes, individual, category, events);
 }
 

@@ -1,7 +1,7 @@
 //! The interface's pictograms as vectors: sharp at every scale, one weight of line, no font needed.
 
 use egui::epaint::PathShape;
-use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, lerp, pos2};
+use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Ui, lerp, pos2};
 use genescape_schema::Category;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, strum::VariantArray)]
@@ -60,6 +60,17 @@ impl Icon {
                 part => unreachable!("{part:?} is no part of a pictogram"),
             });
         }
+    }
+
+    /// The same around a point.
+    pub fn paint_at(self, painter: &Painter, center: Pos2, side: f32, color: Color32) {
+        self.paint(painter, Rect::from_center_size(center, egui::Vec2::splat(side)), color);
+    }
+
+    /// The same in the next place of a layout.
+    pub fn show(self, ui: &mut Ui, width: f32, height: f32, color: Color32) {
+        let (rect, _) = ui.allocate_exact_size(egui::vec2(width, height), egui::Sense::hover());
+        self.paint(ui.painter(), rect, color);
     }
 
     fn parts(self) -> impl Iterator<Item = (&'static str, Vec<f32>)> {

@@ -27,6 +27,7 @@ pub use views::Views;
 
 use crate::event::{Event, Panel};
 use model::Model;
+use widgets::Asks;
 
 /// What the panels remember between frames.
 pub struct State {
@@ -128,12 +129,9 @@ fn banner(ui: &mut Ui, model: &Model, area: Rect, events: &mut Vec<Event>) {
             card.show(ui, |ui| {
                 ui.set_max_width(area.width() - 60.0);
                 ui.horizontal(|ui| {
-                    let (rect, _) = ui.allocate_exact_size(egui::vec2(16.0, 24.0), egui::Sense::hover());
-                    icon::Icon::Warning.paint(ui.painter(), rect, palette.danger);
+                    icon::Icon::Warning.show(ui, 16.0, 24.0, palette.danger);
                     ui.label(format!("{} – the last good landscapes stay", error.title));
-                    if ui.button("Show").clicked() {
-                        events.push(Event::Panel { panel: Panel::Genome, open: true });
-                    }
+                    ui.button("Show").asks(events, Event::Panel { panel: Panel::Genome, open: true });
                 });
             });
         });

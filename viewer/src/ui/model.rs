@@ -8,8 +8,8 @@ use egui::TextureId;
 use genescape_schema::{Genome, INDIVIDUALS, Parameter, Space};
 
 use crate::event::{Arrangement, Ballots, Panel};
-use crate::frame::Options;
 use crate::input::KeyGroup;
+use crate::options::Options;
 use crate::settings::Comfort;
 
 /// Everything that is on the screen.

@@ -8,10 +8,10 @@ use egui::{Align2, Area, Id, Margin, Rect, RichText, Slider, Ui, vec2};
 use super::icon::Icon;
 use super::model::Model;
 use super::theme::{self, Palette};
-use super::widgets::{close_button, icon_button, scrolled, section, segmented, switch};
+use super::widgets::{Asks, close_button, icon_button, scrolled, section, segmented, switch};
 use crate::event::{Event, Panel};
-use crate::frame::{LOD_SWITCHES, Options, PICTURE_SWITCHES, Switch};
 use crate::lod_mode::LodMode;
+use crate::options::{LOD_SWITCHES, Options, PICTURE_SWITCHES, Switch};
 use crate::settings::{Comfort, Theme};
 
 /// Width of the card, in points.
@@ -43,9 +43,7 @@ fn header(ui: &mut Ui, events: &mut Vec<Event>) {
     ui.label(RichText::new("Settings").heading());
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
         close_button(ui, "Close the settings", Panel::Settings, events);
-        if icon_button(ui, Icon::Reset, "Reset all settings", false).clicked() {
-            events.push(Event::ResetSettings);
-        }
+        icon_button(ui, Icon::Reset, "Reset all settings", false).asks(events, Event::ResetSettings);
     });
 }
 
@@ -55,7 +53,7 @@ fn modes<M: LodMode>() -> Vec<(M, &'static str, &'static str)> {
 }
 
 fn switches(ui: &mut Ui, all: &[Switch], options: &mut Options) {
-    for Switch { name, help, value } in all {
+    for (name, help, value) in all {
         switch(ui, value(options), name, help);
     }
 }

@@ -7,7 +7,7 @@ use super::icon::Icon;
 use super::model::{Baking, Model};
 use super::theme::Palette;
 use super::votes;
-use super::widgets::{ICON_BUTTON, flat_button, icon_button, primary_button, progress_bar};
+use super::widgets::{Asks, ICON_BUTTON, flat_button, icon_button, primary_button, progress_bar};
 use crate::event::{Arrangement, Event, Panel};
 use crate::input::Command;
 
@@ -48,14 +48,10 @@ fn panels(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
             let center = response.rect.right_top() + vec2(-6.0, 6.0);
             ui.painter().circle_filled(center, 4.0, Palette::of(ui.visuals()).danger);
         }
-        if response.clicked() {
-            events.push(Event::Panel { panel, open: !open });
-        }
+        response.asks(events, Event::Panel { panel, open: !open });
     }
     divider(ui);
-    if icon_button(ui, Icon::Camera, "Save a screenshot", false).clicked() {
-        events.push(Command::Screenshot.into());
-    }
+    icon_button(ui, Icon::Camera, "Save a screenshot", false).asks(events, Command::Screenshot.into());
 }
 
 fn arrangements(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
@@ -107,9 +103,9 @@ fn step(ui: &mut Ui, icon: Icon, verb: &str, what: Option<&str>, command: Comman
         Some(what) => format!("{verb}: {what}"),
         None => format!("Nothing to {}", verb.to_lowercase()),
     };
-    if ui.add_enabled_ui(what.is_some(), |ui| icon_button(ui, icon, &label, false)).inner.clicked() {
-        events.push(command.into());
-    }
+    ui.add_enabled_ui(what.is_some(), |ui| icon_button(ui, icon, &label, false))
+        .inner
+        .asks(events, command.into());
 }
 
 /// The line of generations, the newest at the right; scrolls when it is longer than `room`.
@@ -165,9 +161,7 @@ fn next(ui: &mut Ui, model: &Model, words: bool, events: &mut Vec<Event>) {
             false => icon_button(ui, Icon::Next, "Next generation", true),
         })
         .inner;
-    if response.clicked() {
-        events.push(Command::NextGeneration.into());
-    }
+    response.asks(events, Command::NextGeneration.into());
     match hindrance {
         Some(text) => response.on_disabled_hover_text(text),
         None => response.on_hover_text("Breed four new landscapes from what you chose"),

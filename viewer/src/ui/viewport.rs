@@ -8,7 +8,7 @@ use genescape_schema::INDIVIDUALS;
 use super::icon::Icon;
 use super::model::{Model, ViewState};
 use super::theme;
-use super::widgets::{painted_button, progress_ring};
+use super::widgets::{Asks, painted_button, progress_ring};
 use crate::event::{Arrangement, Event};
 
 /// Side of a button on a picture, in points.
@@ -39,9 +39,7 @@ pub fn show(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool, e
         let (response, lit) = painted_button(ui, rect, (label, view), &name, false);
         ui.painter().rect_filled(rect, CornerRadius::same(13), scrim(lit));
         icon.paint(ui.painter(), rect.shrink(7.0), theme::ON_SCRIM);
-        if response.on_hover_text(label).clicked() {
-            events.push(Event::Arrange(arrangement));
-        }
+        response.on_hover_text(label).asks(events, Event::Arrange(arrangement));
         corner.x -= BUTTON + 4.0;
     }
 }
@@ -136,9 +134,7 @@ fn failed(ui: &mut Ui, view: usize, rect: Rect, what: &str, remedy: &str, events
     ui.painter().rect_filled(button, CornerRadius::same(theme::RADIUS), fill);
     let font = FontId::proportional(13.0);
     ui.painter().text(button.center(), Align2::CENTER_CENTER, "Try again", font, theme::ON_SCRIM);
-    if response.clicked() {
-        events.push(Event::Retry);
-    }
+    response.asks(events, Event::Retry);
     let full = format!("{what}\n{remedy}");
     ui.interact(card, ui.scope_id().with(("failed", view)), Sense::hover())
         .on_hover_text(&full)

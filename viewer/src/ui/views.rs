@@ -2,7 +2,7 @@
 //! its vote buttons. Says which rectangles the renderer has to fill and where the pointer is.
 
 use egui::{
-    Color32, CornerRadius, CursorIcon, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2, pos2, vec2,
+    Color32, CornerRadius, CursorIcon, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2, pos2, vec2,
 };
 
 use super::arrange::{Slot, slots};
@@ -46,13 +46,11 @@ pub fn show(ui: &mut Ui, model: &Model, state: &mut State, events: &mut Vec<Even
     ui.painter().rect_filled(area, CornerRadius::ZERO, Palette::of(ui.visuals()).ground);
     let slots = slots(area.shrink(4.0), model.arrangement, ui.pixels_per_point());
     let mut views = Views::default();
-    // Where the middle of the hub's lower edge is, and how wide the pictures are whose vote buttons are beside it.
-    let (anchor, beside) =
-        if let (Arrangement::Compare { .. }, &[left, right]) = (model.arrangement, &slots[..]) {
+    match (model.arrangement, &slots[..]) {
+        (Arrangement::Compare { .. }, &[left, right]) => {
             compare(ui, model, [left, right], state, &mut views, events);
-            // Between the vote buttons of the two halves.
-            (pos2(area.center().x, area.bottom() - 9.0), 0.5 * area.width())
-        } else {
+        }
+        _ => {
             for slot in &slots {
                 let response = picture(ui, model, slot.view, slot.rect, slot.rect, &mut views, events);
                 let lively = !model.captured && response.contains_pointer();
@@ -60,18 +58,24 @@ pub fn show(ui: &mut Ui, model: &Model, state: &mut State, events: &mut Vec<Even
                 viewport::show(ui, model, slot.view, slot.rect, lively, events);
                 vote_bar(ui, model, slot.view, slot.rect, lively, events);
             }
-            match &slots[..] {
-                // Just below the crossing, where the name of the lower right picture begins.
-                [first, .., last] => {
-                    let x = 0.5 * (first.rect.right() + last.rect.left());
-                    (pos2(x, last.rect.top() + 2.0), first.rect.width())
-                }
-                _ => (pos2(area.center().x, area.top() + 50.0), slots[0].rect.width()),
-            }
-        };
+        }
+    }
+    let (anchor, beside) = hub_place(model.arrangement, area, &slots);
     votes::hub(ui, model, anchor, beside, events);
     views.slots = slots;
     views
+}
+
+/// The middle of the hub's lower edge, and the width of the pictures whose vote buttons are beside it.
+fn hub_place(arrangement: Arrangement, area: Rect, slots: &[Slot]) -> (Pos2, f32) {
+    let (first, last) = (slots[0].rect, slots[slots.len() - 1].rect);
+    match arrangement {
+        // Just below the crossing, where the name of the lower right picture begins.
+        Arrangement::Grid => (pos2(0.5 * (first.right() + last.left()), last.top() + 2.0), first.width()),
+        // Between the vote buttons of the two halves.
+        Arrangement::Compare { .. } => (pos2(area.center().x, area.bottom() - 9.0), 0.5 * area.width()),
+        Arrangement::One(_) => (pos2(area.center().x, area.top() + 50.0), first.width()),
+    }
 }
 
 /// Paints one picture, cut to `clip`, and listens to the pointer there.

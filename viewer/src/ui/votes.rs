@@ -10,7 +10,7 @@ use genescape_schema::Category;
 use super::icon::Icon;
 use super::model::Model;
 use super::theme;
-use super::widgets::{painted_button, progress_ring};
+use super::widgets::{Asks, painted_button, progress_ring};
 use crate::event::{Ballot, Event};
 use crate::input::Command;
 
@@ -68,9 +68,8 @@ fn pill(
     let won = ballot == Ballot::For(view);
     let name = format!("{title}: best in {}", view + 1);
     let (response, lit) = painted_button(ui, rect, ("vote", view, category.name()), &name, won);
-    if response.clicked() {
-        events.push(Event::Vote { category, ballot: if won { Ballot::Open } else { Ballot::For(view) } });
-    }
+    response
+        .asks(events, Event::Vote { category, ballot: if won { Ballot::Open } else { Ballot::For(view) } });
     let (bright, none, white) = (theme::bright(category), Color32::TRANSPARENT, Color32::from_white_alpha);
     let (fill, line, picture, word) = match (ballot, lit) {
         (_, false) if won => (bright, none, theme::ON_BRIGHT, theme::ON_BRIGHT),
@@ -84,8 +83,7 @@ fn pill(
     let painter = ui.painter();
     painter.rect(rect, CornerRadius::same(14), fill, Stroke::new(1.5, line), StrokeKind::Inside);
     let icon_center = if words { rect.left_center() + vec2(18.0, 0.0) } else { rect.center() };
-    let icon_rect = Rect::from_center_size(icon_center, vec2(16.0, 16.0));
-    Icon::from(category).paint(painter, icon_rect, picture);
+    Icon::from(category).paint_at(painter, icon_center, 16.0, picture);
     if words {
         let at = rect.left_center() + vec2(32.0, 0.0);
         painter.text(at, Align2::LEFT_CENTER, title, word_font(), word);
@@ -107,46 +105,21 @@ pub fn hindrance(model: &Model) -> Option<String> {
     (!names.is_empty()).then(|| format!("Still to vote on: {}", names.join(", ")))
 }
 
-/// How the hub fits between the vote buttons of the pictures beside it.
-#[derive(Clone, Copy, PartialEq)]
-enum Form {
-    /// In a row, with words.
-    Words,
-    /// In a row.
-    Row,
-    /// In a column, where pictures are narrow.
-    Column,
-}
-
-impl Form {
-    /// The widest that leaves the vote buttons of pictures of that width free.
-    fn of(picture_width: f32) -> Self {
-        match picture_width {
-            520.0.. => Self::Words,
-            300.0.. => Self::Row,
-            _ => Self::Column,
-        }
-    }
-
-    /// Length of what leads on, after the ballots.
-    fn way_on(self, model: &Model, ready: bool) -> f32 {
-        match (self, ready, &model.baking) {
-            (Self::Words, true, _) => 164.0,
-            (_, true, _) => 38.0,
-            (_, false, Some(_)) => 34.0,
-            (_, false, None) => 0.0,
-        }
-    }
-}
-
 /// The hub between the pictures: three ballots, and the way on. `anchor` is the middle of its lower edge.
 pub fn hub(ui: &mut Ui, model: &Model, anchor: Pos2, picture_width: f32, events: &mut Vec<Event>) {
     let hindrance = hindrance(model);
-    let form = Form::of(picture_width);
-    let length = 3.0 * CHIP + 20.0 + form.way_on(model, hindrance.is_none());
-    let (size, step) = match form {
-        Form::Column => (vec2(HUB, length), vec2(0.0, CHIP + 4.0)),
-        _ => (vec2(length, HUB), vec2(CHIP + 4.0, 0.0)),
+    // Whatever leaves the vote buttons beside it free: a row with words, a row, or a column where pictures are narrow.
+    let (words, column) = (picture_width >= 520.0, picture_width < 300.0);
+    let way_on = match (&hindrance, &model.baking) {
+        (None, _) if words => 164.0,
+        (None, _) => 38.0,
+        (Some(_), Some(_)) => 34.0,
+        (Some(_), None) => 0.0,
+    };
+    let length = 3.0 * CHIP + 20.0 + way_on;
+    let (size, step) = match column {
+        true => (vec2(HUB, length), vec2(0.0, CHIP + 4.0)),
+        false => (vec2(length, HUB), vec2(CHIP + 4.0, 0.0)),
     };
     let rect = Rect::from_min_size(anchor - vec2(0.5 * size.x, size.y), size);
     // The hub takes clicks itself, so that none falls through to a picture.
@@ -162,7 +135,7 @@ pub fn hub(ui: &mut Ui, model: &Model, anchor: Pos2, picture_width: f32, events:
     let rest =
         Rect::from_min_max(first.min + 3.0 * step + step.normalized() * 2.0, rect.max - vec2(6.0, 6.0));
     match (&model.baking, hindrance) {
-        (_, None) => next_button(ui, rest, form == Form::Words, events),
+        (_, None) => next_button(ui, rest, words, events),
         (Some(baking), Some(text)) => {
             let rest_color = Color32::from_white_alpha(45);
             progress_ring(ui.painter(), rest.center(), 9.0, baking.part(), DARK_ACCENT, rest_color);
@@ -182,14 +155,12 @@ fn next_button(ui: &mut Ui, rect: Rect, words: bool, events: &mut Vec<Event>) {
     ui.painter().rect_filled(rect, CornerRadius::same(14), fill);
     let ink = theme::DARK.on_accent;
     let icon_center = if words { pos2(rect.right() - 17.0, rect.center().y) } else { rect.center() };
-    Icon::Next.paint(ui.painter(), Rect::from_center_size(icon_center, vec2(13.0, 13.0)), ink);
+    Icon::Next.paint_at(ui.painter(), icon_center, 13.0, ink);
     if words {
         let at = pos2(rect.left() + 14.0, rect.center().y);
         ui.painter().text(at, Align2::LEFT_CENTER, "Next generation", word_font(), ink);
     }
-    if response.clicked() {
-        events.push(Command::NextGeneration.into());
-    }
+    response.asks(events, Command::NextGeneration.into());
     response.on_hover_text("Breed four new landscapes from what you chose");
 }
 
@@ -199,9 +170,7 @@ fn chip(ui: &mut Ui, model: &Model, category: Category, rect: Rect, events: &mut
     let title = theme::title(category);
     let (name, none) = (format!("{title}: none of the four"), ballot == Ballot::Nobody);
     let (response, lit) = painted_button(ui, rect, ("ballot", category.name()), &name, none);
-    if response.clicked() {
-        events.push(Event::Vote { category, ballot: if none { Ballot::Open } else { Ballot::Nobody } });
-    }
+    response.asks(events, Event::Vote { category, ballot: if none { Ballot::Open } else { Ballot::Nobody } });
     let bright = theme::bright(category);
     let painter = ui.painter();
     let icon_rect = Rect::from_center_size(rect.center(), vec2(14.0, 14.0));

@@ -55,6 +55,19 @@ pub fn painted_button(
     (response, lit)
 }
 
+/// What a click asks for.
+pub trait Asks {
+    fn asks(&self, events: &mut Vec<Event>, event: Event);
+}
+
+impl Asks for Response {
+    fn asks(&self, events: &mut Vec<Event>, event: Event) {
+        if self.clicked() {
+            events.push(event);
+        }
+    }
+}
+
 /// Under the pointer, or reached by the keyboard.
 fn is_lit(response: &Response) -> bool {
     response.hovered() || response.has_focus()
@@ -68,9 +81,7 @@ fn name_button(ui: &Ui, response: &Response, label: &str, selected: bool) {
 
 /// The cross that closes a panel.
 pub fn close_button(ui: &mut Ui, label: &str, panel: Panel, events: &mut Vec<Event>) {
-    if icon_button(ui, Icon::Close, label, false).clicked() {
-        events.push(Event::Panel { panel, open: false });
-    }
+    icon_button(ui, Icon::Close, label, false).asks(events, Event::Panel { panel, open: false });
 }
 
 /// Something at the right end of a row, and something that fills the rest from the left.
@@ -108,8 +119,7 @@ pub fn primary_button(ui: &mut Ui, text: &str, icon: Icon) -> Response {
     ui.painter().rect_filled(rect, CornerRadius::same(14), fill);
     let at = Pos2::new(rect.left() + 14.0, rect.center().y - 0.5 * galley.size().y);
     ui.painter().galley_with_override_text_color(at, galley, ink);
-    let icon_rect = Rect::from_center_size(Pos2::new(rect.right() - 18.0, rect.center().y), vec2(12.0, 12.0));
-    icon.paint(ui.painter(), icon_rect, ink);
+    icon.paint_at(ui.painter(), rect.right_center() - vec2(18.0, 0.0), 12.0, ink);
     name_button(ui, &response, text, false);
     response
 }
@@ -117,12 +127,9 @@ pub fn primary_button(ui: &mut Ui, text: &str, icon: Icon) -> Response {
 /// A switch with its text on the left, over the whole width.
 pub fn switch(ui: &mut Ui, on: &mut bool, text: &str, help: &str) {
     let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
-    let (rect, mut response) = ui.allocate_exact_size(size, Sense::click());
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let palette = Palette::of(ui.visuals());
-    if response.clicked() {
-        *on = !*on;
-        response.mark_changed();
-    }
+    *on ^= response.clicked();
     let font = TextStyle::Body.resolve(ui.style());
     ui.painter().text(rect.left_center(), Align2::LEFT_CENTER, text, font, palette.text);
     let track = Rect::from_center_size(Pos2::new(rect.right() - 16.0, rect.center().y), vec2(32.0, 18.0));

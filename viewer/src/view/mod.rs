@@ -6,11 +6,11 @@ mod terrain;
 use std::sync::Arc;
 
 pub use targets::Targets;
-use terrain::TerrainLod;
+use terrain::TerrainChoice;
 
 use crate::camera::Camera;
-use crate::frame::{FrameInput, Options};
 use crate::gpu::Gpu;
+use crate::options::{FrameInput, Options};
 use crate::passes::grass::{self, Clump};
 use crate::passes::{BoundScene, Cull, CullUniform, Passes, Tone, ViewUniform};
 use crate::upload::{SceneBuffers, TreeSet};
@@ -24,7 +24,7 @@ pub struct View {
     /// The targets were made anew and no caller has been told.
     fresh: bool,
     bound: Option<BoundScene>,
-    terrain: TerrainLod,
+    terrain: TerrainChoice,
     /// Clumps of grass, kept from frame to frame.
     clumps: Vec<Clump>,
 }
@@ -49,7 +49,7 @@ impl View {
             targets: Targets::new(gpu, passes, label, size_px),
             fresh: false,
             bound: None,
-            terrain: TerrainLod::default(),
+            terrain: TerrainChoice::default(),
             clumps: Vec::new(),
         }
     }

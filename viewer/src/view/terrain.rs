@@ -1,12 +1,11 @@
 //! Camera and LOD mode → the blocks or triangles of the terrain that one picture draws.
 
 use crate::camera::Camera;
-use crate::frame::Options;
 use crate::gpu::Gpu;
 use crate::lod::morph::Detail;
-use crate::lod::quadtree;
-use crate::lod::roam::Roam;
+use crate::lod::{quadtree, roam};
 use crate::lod_mode::TerrainLodMode;
+use crate::options::Options;
 use crate::passes::BoundScene;
 
 /// No block of the terrain is wider, so that what is not seen can be left out.
@@ -14,13 +13,12 @@ const MAX_BLOCK_M: f32 = 256.0;
 
 /// Lists that are kept from frame to frame.
 #[derive(Debug, Default)]
-pub(super) struct TerrainLod {
+pub(super) struct TerrainChoice {
     blocks: Vec<quadtree::Block>,
-    roam: Roam,
     strip: Vec<u32>,
 }
 
-impl TerrainLod {
+impl TerrainChoice {
     /// Chooses for `camera` what to draw and writes it to the device. Tells how detailed the terrain is where, and how
     /// many triangles that takes.
     pub fn choose(
@@ -40,7 +38,7 @@ impl TerrainLod {
         let aspect = width / height;
         let triangles = if mode == TerrainLodMode::Roam {
             let picture = (aspect, height);
-            let triangles = self.roam.triangulate(lod, camera, picture, error_px, &mut self.strip);
+            let triangles = roam::triangulate(lod, camera, picture, error_px, &mut self.strip);
             bound.terrain.write(gpu, &self.strip);
             triangles
         } else {

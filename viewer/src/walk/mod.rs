@@ -188,11 +188,6 @@ impl Rig {
         self.pose.mode
     }
 
-    /// Speed of flying in m/s, as the wheel has set it.
-    pub fn fly_mps(&self) -> f32 {
-        self.fly_mps
-    }
-
     /// Jumps to a pose. What no camera can have (not a number, off the land, inside a trunk) becomes the nearest that
     /// it can.
     pub fn go(&mut self, pose: Pose, lands: &[&Land]) {
@@ -215,11 +210,9 @@ impl Rig {
         }
     }
 
-    /// Changes the mode where the camera is; the eyes move up or down in a moment, not at once.
-    pub fn set_mode(&mut self, mode: Mode, lands: &[&Land]) {
-        if mode == self.pose.mode {
-            return;
-        }
+    /// Changes to the next mode where the camera is; the eyes move up or down in a moment, not at once.
+    pub fn cycle_mode(&mut self, lands: &[&Land]) {
+        let mode = self.pose.mode.next();
         let heights_m: Vec<f32> = lands.iter().map(|land| self.height_m(land)).collect();
         (self.pose.mode, self.velocity_mps) = (mode, Vec3::ZERO);
         match mode {
@@ -227,18 +220,11 @@ impl Rig {
             Mode::Fly => {
                 self.pose.put(within(lands, self.pose.place_m()));
                 // From the highest of the four, so that no view dives.
-                self.pose.altitude_m = heights_m.into_iter().fold(f32::NEG_INFINITY, f32::max);
-                if !self.pose.altitude_m.is_finite() {
-                    self.pose.altitude_m = EYE_HEIGHT_M;
-                }
+                self.pose.altitude_m = heights_m.into_iter().reduce(f32::max).unwrap_or(EYE_HEIGHT_M);
                 fly::keep_above(&mut self.pose, lands);
             }
             Mode::Orbit => self.target_m = orbit::begin(&mut self.pose, lands, &heights_m),
         }
-    }
-
-    pub fn cycle_mode(&mut self, lands: &[&Land]) {
-        self.set_mode(self.pose.mode.next(), lands);
     }
 
     /// Makes a walker's place a free one, after a landscape was swapped: the nearest, or the same if there is none.
@@ -247,10 +233,7 @@ impl Rig {
         if self.pose.mode != Mode::Walk || (within(lands, place_m) == place_m && free(lands, place_m)) {
             return;
         }
-        match nearest_free(lands, place_m) {
-            Some(found_m) => self.pose.put(found_m),
-            None => self.pose.put(within(lands, place_m)),
-        }
+        self.pose.put(nearest_free(lands, place_m).unwrap_or_else(|| within(lands, place_m)));
     }
 
     /// Moves on by a frame. Frames of any length lead to the same place; see [`MAX_STEP_S`].

@@ -69,7 +69,7 @@ proptest! {
                 let place = rig.pose().place_m();
                 for land in lands {
                     // One by one, without the index.
-                    for trunk in land.trunks.iter() {
+                    for trunk in &land.trunks.trunks {
                         prop_assert!(trunk.clears(place, BODY_RADIUS_M), "{place} is inside {trunk:?}");
                     }
                     let eye = rig.camera(land, 1.0).position_m;

@@ -2,8 +2,8 @@
 //! so that all there can be is land.
 
 use genescape_viewer::camera::Camera;
-use genescape_viewer::frame::FrameInput;
 use genescape_viewer::lod_mode::TerrainLodMode;
+use genescape_viewer::options::FrameInput;
 use genescape_viewer::scene::Trees;
 use glam::Vec3;
 use image::RgbaImage;

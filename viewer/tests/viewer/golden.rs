@@ -10,9 +10,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use genescape_viewer::camera::Camera;
-use genescape_viewer::frame::{FrameInput, Options};
 use genescape_viewer::headless::Headless;
 use genescape_viewer::lod_mode::{TerrainLodMode, TreeLodMode};
+use genescape_viewer::options::{FrameInput, Options};
 use genescape_viewer::picture_file;
 use genescape_viewer::scene::{Apron, GroundDetail, Heightfield, Picture, Scene, Trees};
 use glam::Vec3;

@@ -15,8 +15,8 @@ use super::model::{Baking, FileError, Genes, Model, Panels, PassTime, Situation,
 use super::model::{ViewModel, ViewState};
 use super::{Output, State, theme};
 use crate::event::{Arrangement, Ballots, Event};
-use crate::frame::Options;
 use crate::input::KeyGroup;
+use crate::options::Options;
 use crate::settings::Comfort;
 
 /// A window's content without a window.

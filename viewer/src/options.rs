@@ -55,38 +55,26 @@ pub struct Options {
     pub fov_y_deg: f32,
 }
 
-/// A part of [`Options`] that is on or off, as the settings panel shows it.
-pub struct Switch {
-    pub name: &'static str,
-    pub help: &'static str,
-    pub value: fn(&mut Options) -> &mut bool,
-}
+/// Name, help, and the part of [`Options`] that is on or off: a line of the settings panel.
+pub type Switch = (&'static str, &'static str, fn(&mut Options) -> &mut bool);
 
 /// What makes levels of detail visible.
 pub const LOD_SWITCHES: [Switch; 3] = [
-    Switch {
-        name: "Colour by level",
-        help: "Colours say the level of detail",
-        value: |options| &mut options.tint_levels,
-    },
-    Switch { name: "Wireframe", help: "Edges of triangles only", value: |options| &mut options.wireframe },
-    Switch {
-        name: "From above",
-        help: "The land from above, with the detail chosen for your place",
-        value: |options| &mut options.overhead,
-    },
+    ("Colour by level", "Colours say the level of detail", |options| &mut options.tint_levels),
+    ("Wireframe", "Edges of triangles only", |options| &mut options.wireframe),
+    ("From above", "The land from above, with the detail chosen for your place", |options| {
+        &mut options.overhead
+    }),
 ];
+
+const GRASS_HELP: &str = "Blades around you; a tenth to a quarter of the time where the processor draws";
 
 /// What is in the picture.
 pub const PICTURE_SWITCHES: [Switch; 4] = [
-    Switch { name: "Trees", help: "", value: |options| &mut options.draw_trees },
-    Switch { name: "Terrain", help: "", value: |options| &mut options.draw_terrain },
-    Switch {
-        name: "Grass",
-        help: "Blades around you; a tenth to a quarter of the time where the processor draws",
-        value: |options| &mut options.grass,
-    },
-    Switch { name: "Clouds drift", help: "", value: |options| &mut options.drift_clouds },
+    ("Trees", "", |options| &mut options.draw_trees),
+    ("Terrain", "", |options| &mut options.draw_terrain),
+    ("Grass", GRASS_HELP, |options| &mut options.grass),
+    ("Clouds drift", "", |options| &mut options.drift_clouds),
 ];
 
 fn parse_samples(text: &str) -> Result<u32, String> {
