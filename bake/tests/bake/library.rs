@@ -5,12 +5,19 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use anyhow::Result;
-use genescape_bake::events::Silent;
+use genescape_bake::events::{Event, Listener};
 use genescape_bake::graph::{Done, Node};
 use genescape_bake::plan::{Plan, Resolution};
 use genescape_bake::run::Runner;
 use genescape_cache::{ActionKey, Cache, Digest, How};
 use genescape_schema::{Population, Space};
+
+/// Tells nothing.
+struct Silent;
+
+impl Listener for Silent {
+    fn tell(&self, _: &Event) {}
+}
 
 /// What one node of a plan gave.
 pub struct NodeOutputs {
