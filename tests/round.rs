@@ -6,15 +6,14 @@ use std::time::{Duration, Instant};
 
 use genescape_schema::{Category, Parent, Space, Votes};
 use genescape_viewer::baker::{Baker, BakerOptions, Event};
-use genescape_viewer::history::{Edit, History};
-use genescape_viewer::world_files::WorldFiles;
-use genescape_viewer::world_watch::{Change, WatchOptions, WorldWatch};
+use genescape_viewer::edit_history::{Edit, History};
+use genescape_world::{Change, Scope, Watch, World};
 
 struct Round {
     _folder: tempfile::TempDir,
-    files: WorldFiles,
+    files: World,
     baker: Baker,
-    watch: WorldWatch,
+    watch: Watch,
     history: History,
     changes: BTreeSet<Change>,
 }
@@ -22,8 +21,9 @@ struct Round {
 impl Round {
     fn new() -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder");
-        let files = WorldFiles::new(folder.path());
-        let watch = WorldWatch::start(files.root(), WatchOptions::default(), || {}).expect("watched");
+        let files = World::new(folder.path());
+        let watch =
+            Watch::start(Scope { scenes: true, ..Scope::of(files.clone()) }, false, || {}).expect("watched");
         let options = BakerOptions { side: 65, ..BakerOptions::default() };
         let baker = Baker::start(files.root(), options, || {}).expect("a thread");
         Self { _folder: folder, files, baker, watch, history: History::default(), changes: BTreeSet::new() }
@@ -79,8 +79,8 @@ fn votes_become_generations_and_old_ones_can_be_voted_on_again() {
     round.told(Change::Current);
     let space = Space::builtin();
     let genome = |round: &Round, generation: u32, individual: usize| {
-        let loaded = round.files.population(&space, generation).expect("valid");
-        loaded.population.individuals[individual].genome.clone()
+        let file = round.files.population(&space, generation).expect("valid");
+        file.population.individuals[individual].genome.clone()
     };
     let (best, child) = (genome(&round, 0, 2), genome(&round, 1, 0));
     assert_eq!(child.chromosome(Category::Tree), best.chromosome(Category::Tree));

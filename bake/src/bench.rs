@@ -1,15 +1,15 @@
-//! How long the parts of a bake take, on the machine it runs on: `bake bench`.
+//! `bake bench`: how long the parts of a bake take on this machine.
 
-use std::collections::BTreeMap;
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use anyhow::Result;
-use genescape_cache::{BlobRef, Cache, How};
+use genescape_cache::{Cache, How};
 use genescape_schema::{Category, Population, Space};
 
 use crate::events::{Event, Listener};
-use crate::gltf::{self, Picture, TreeImages};
+use crate::gltf::{self, Picture};
+use crate::model::TreeTextures;
 use crate::plan::{Plan, Resolution, TEMPLATES};
 use crate::run::Runner;
 use crate::say;
@@ -19,7 +19,7 @@ use crate::stages::{lod, tree};
 /// thesis's tables 1 and 2; then what it takes when nothing, or one category, has changed.
 pub fn bench(runs: u32, pool: &rayon::ThreadPool, resolution: Resolution) -> Result<()> {
     let space = Space::builtin();
-    let starter = Population::load(&space, "configs/starter.ron", crate::world::STARTER_RON)?.population;
+    let starter = Population::load(&space, "configs/starter.ron", genescape_world::STARTER_RON)?.population;
     say!(
         "{} cores, computing on {}; heightfield {}², {} templates a scene; {runs} runs\n",
         std::thread::available_parallelism().map_or(0, usize::from),
@@ -32,58 +32,50 @@ pub fn bench(runs: u32, pool: &rayon::ThreadPool, resolution: Resolution) -> Res
     for _ in 0..runs.max(1) {
         let folder = tempfile::tempdir()?;
         let cache = Cache::open(folder.path())?;
-        let bench = Bench { space: &space, cache: &cache, pool, resolution };
+        let bake = |population: &Population, listener: &dyn Listener| {
+            bake(&space, population, resolution, &cache, pool, listener)
+        };
         let clock = Stages::default();
-        let (ms, built) = bench.bake(&starter, &clock)?;
-        whole.add("four fresh scenes", ms, built);
-        for (stage, ms) in clock.0.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner) {
-            stages.add(&stage, ms, 1);
+        let (ms, built) = bake(&starter, &clock)?;
+        whole.add("four fresh scenes", ms, Some(built));
+        for (stage, ms) in clock.0.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            stages.add(&stage, ms, None);
         }
-        let (ms, built) = bench.bake(&starter, &Stages::default())?;
-        whole.add("unchanged", ms, built);
+        let (ms, built) = bake(&starter, &Stages::default())?;
+        whole.add("unchanged", ms, Some(built));
         for category in [Category::Tree, Category::Terrain, Category::Sky] {
             let mut changed = starter.clone();
+            let other = &Population::random(&space, u64::from(runs), 0).individuals[0];
             *changed.individuals[0].genome.chromosome_mut(category) =
-                Population::random(&space, u64::from(runs), 0).individuals[0]
-                    .genome
-                    .chromosome(category)
-                    .clone();
-            let (ms, built) = bench.bake(&changed, &Stages::default())?;
-            whole.add(&format!("one {} chromosome changed", category.name()), ms, built);
+                other.genome.chromosome(category).clone();
+            let (ms, built) = bake(&changed, &Stages::default())?;
+            whole.add(&format!("one {} chromosome changed", category.name()), ms, Some(built));
         }
     }
     whole.print("The whole", "stages built");
     stages.print("Each stage, wall-clock while others run beside it", "times");
     tree_costs(&space, &starter, runs)?;
-    if let Some(bytes) = peak_memory() {
-        say!("peak memory of this process: {:.0} MiB", bytes as f64 / f64::from(1 << 20));
+    if let Some(kib) = peak_memory_kib() {
+        say!("peak memory of this process: {:.0} MiB", kib / 1024.0);
     }
     Ok(())
 }
 
-struct Bench<'a> {
-    space: &'a Space,
-    cache: &'a Cache,
-    pool: &'a rayon::ThreadPool,
+/// Milliseconds and the number of stages that were built.
+fn bake(
+    space: &Space,
+    population: &Population,
     resolution: Resolution,
-}
-
-impl Bench<'_> {
-    /// Milliseconds and the number of stages that were built.
-    fn bake(&self, population: &Population, listener: &dyn Listener) -> Result<(f64, usize)> {
-        let start = Instant::now();
-        let plan = Plan::new(self.space, population, self.resolution)?;
-        let runner = Runner {
-            cache: self.cache,
-            pool: self.pool,
-            listener,
-            cancelled: &|| false,
-            scene_ready: &|_, _: &BlobRef| Ok(()),
-        };
-        let done = runner.run(&plan)?;
-        let built = done.iter().filter(|d| d.how == How::Built).count();
-        Ok((start.elapsed().as_secs_f64() * 1e3, built))
-    }
+    cache: &Cache,
+    pool: &rayon::ThreadPool,
+    listener: &dyn Listener,
+) -> Result<(f64, usize)> {
+    let start = Instant::now();
+    let plan = Plan::new(space, population, resolution)?;
+    let runner = Runner { cache, pool, listener, cancelled: &|| false, scene_ready: &|_, _| Ok(()) };
+    let done = runner.run(&plan)?;
+    let built = done.iter().filter(|d| d.how == How::Built).count();
+    Ok((start.elapsed().as_secs_f64() * 1e3, built))
 }
 
 /// Collects stage times; templates of trees count as one stage.
@@ -98,7 +90,7 @@ impl Listener for Stages {
             } else {
                 stage.clone()
             };
-            self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((name, *ms));
+            self.0.lock().unwrap_or_else(PoisonError::into_inner).push((name, *ms));
         }
     }
 }
@@ -111,16 +103,8 @@ fn tree_costs(space: &Space, starter: &Population, runs: u32) -> Result<()> {
     for individual in &starter.individuals {
         let params: tree::TreeParams = individual.genome.read(space)?;
         for index in (0..TEMPLATES).flat_map(|index| std::iter::repeat_n(index, runs.max(1) as usize)) {
-            one_core.install(|| -> Result<()> {
-                let template = samples.time("generating it", || tree::template(&params, index));
-                let options = lod::LodOptions::default();
-                let levels = samples
-                    .time("progressive mesh, levels, strips", || lod::levels(&template.mesh, &options));
-                samples.time("writing the file", || gltf::tree_glb("tree", &levels, &NO_PICTURES))?;
-                triangles += template.mesh.triangle_count();
-                trees += 1;
-                Ok(())
-            })?;
+            triangles += one_core.install(|| tree_cost(&params, index, &mut samples))?;
+            trees += 1;
         }
     }
     say!("templates have {} triangles on average", triangles / trees.max(1));
@@ -128,56 +112,73 @@ fn tree_costs(space: &Space, starter: &Population, runs: u32) -> Result<()> {
     Ok(())
 }
 
-/// The textures of a tree are made once a scene, and timed there.
-const NO_PICTURES: TreeImages<'_> = TreeImages {
-    bark_color: Picture::Embedded { bytes: &[], mime_type: "image/png" },
-    bark_normal: Picture::Embedded { bytes: &[], mime_type: "image/png" },
-    leaf: Some(Picture::Embedded { bytes: &[], mime_type: "image/png" }),
-    blossom: Some(Picture::Embedded { bytes: &[], mime_type: "image/png" }),
-    alpha_cutoff: 0.5,
-};
+/// Triangles of one template.
+fn tree_cost(params: &tree::TreeParams, index: u32, samples: &mut Samples) -> Result<usize> {
+    let template = samples.time("generating it", || tree::template(params, index));
+    let options = lod::LodOptions::default();
+    let levels = samples.time("progressive mesh, levels, strips", || lod::levels(&template.mesh, &options));
+    samples.time("writing the file", || gltf::tree_glb("tree", &levels, &no_pictures()))?;
+    Ok(template.mesh.triangle_count())
+}
 
-/// Figures by name, in the order of their first appearance.
+/// The textures of a tree are made once a scene, and timed there.
+fn no_pictures() -> TreeTextures<Picture<'static>> {
+    TreeTextures {
+        bark_color: NO_PICTURE,
+        bark_normal: NO_PICTURE,
+        leaf: vec![NO_PICTURE],
+        blossom: vec![NO_PICTURE],
+        alpha_cutoff: 0.5,
+    }
+}
+
+const NO_PICTURE: Picture<'_> = Picture::Embedded { bytes: &[], mime_type: "image/png" };
+
+/// Durations by name, in the order of first appearance.
 #[derive(Default)]
-struct Samples {
-    order: Vec<String>,
-    values: BTreeMap<String, (Vec<f64>, usize)>,
+struct Samples(Vec<Sample>);
+
+struct Sample {
+    name: String,
+    ms: Vec<f64>,
+    /// Stages that were built the last time.
+    built: Option<usize>,
 }
 
 impl Samples {
     fn time<T>(&mut self, name: &str, work: impl FnOnce() -> T) -> T {
         let start = Instant::now();
         let result = work();
-        self.add(name, start.elapsed().as_secs_f64() * 1e3, 1);
+        self.add(name, start.elapsed().as_secs_f64() * 1e3, None);
         result
     }
 
-    fn add(&mut self, name: &str, ms: f64, count: usize) {
-        if !self.values.contains_key(name) {
-            self.order.push(name.to_owned());
+    fn add(&mut self, name: &str, ms: f64, built: Option<usize>) {
+        match self.0.iter_mut().find(|sample| sample.name == name) {
+            Some(sample) => {
+                sample.ms.push(ms);
+                sample.built = built;
+            }
+            None => self.0.push(Sample { name: name.to_owned(), ms: vec![ms], built }),
         }
-        let entry = self.values.entry(name.to_owned()).or_default();
-        entry.0.push(ms);
-        entry.1 = if count == 1 { entry.0.len() } else { count };
     }
 
-    fn print(&self, title: &str, count: &str) {
-        say!("{title:<36} {:>9} {:>9} {:>9} {count:>13}", "min ms", "mean ms", "std dev");
-        for name in &self.order {
-            let (ms, n) = &self.values[name];
+    /// The last column holds what was built or, for a stage, how often it was timed.
+    fn print(&self, title: &str, last_column: &str) {
+        say!("{title:<36} {:>9} {:>9} {:>9} {last_column:>13}", "min ms", "mean ms", "std dev");
+        for Sample { name, ms, built } in &self.0 {
             let mean = ms.iter().sum::<f64>() / ms.len() as f64;
             let variance = ms.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / ms.len() as f64;
             let min = ms.iter().copied().fold(f64::MAX, f64::min);
-            say!("  {name:<34} {min:>9.2} {mean:>9.2} {:>9.2} {n:>13}", variance.sqrt());
+            let count = built.unwrap_or(ms.len());
+            say!("  {name:<34} {min:>9.2} {mean:>9.2} {:>9.2} {count:>13}", variance.sqrt());
         }
         say!();
     }
 }
 
-/// The most memory this process has held, in bytes, where the system tells.
-fn peak_memory() -> Option<u64> {
+/// The most memory this process has held, where the system tells.
+fn peak_memory_kib() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
-    let kib: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(kib * 1024)
+    status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?.split_whitespace().next()?.parse().ok()
 }

@@ -4,9 +4,7 @@
 //! Child 0 unites the favourites. Children 1, 2 and 3 keep the favourite trees, terrain and sky respectively and
 //! vary the other two categories, so each shows what a change does beside something known, and the cache has it.
 
-use genescape_schema::{
-    Category, Chromosome, Genome, INDIVIDUALS, Individual, Parent, Population, Space, Votes,
-};
+use genescape_schema::{Category, Chromosome, Genome, INDIVIDUALS, Individual, Parent, Population, Space};
 use rand::Rng;
 use rand_pcg::Pcg64Mcg;
 
@@ -23,22 +21,12 @@ const SWITCH: f32 = 0.3;
 
 /// Why there is no next generation.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum BreedError {
-    /// Nobody voted.
-    #[error(
-        "nobody has voted on generation {generation} yet: in its file, say which of 0 … 3 has the best of each, \
-         as votes: Some((tree: Some(0), terrain: Some(2), sky: None)), where None means none of them"
-    )]
-    NoVotes {
-        /// Which generation.
-        generation: u32,
-    },
-    /// There is no number for the next generation.
-    #[error("generation {generation} is the last that can be numbered")]
-    LastGeneration {
-        /// Which generation.
-        generation: u32,
-    },
+#[error(
+    "nobody has voted on generation {generation} yet: in its file, say which of 0 … 3 has the best of each, \
+     as votes: Some((tree: Some(0), terrain: Some(2), sky: None)), where None means none of them"
+)]
+pub struct NoVotes {
+    pub generation: u32,
 }
 
 /// Generation `next` from the votes on `parents`: the same genes for the same seed, generation, genes and votes of
@@ -46,85 +34,65 @@ pub enum BreedError {
 ///
 /// # Errors
 /// When votes are `None`.
-pub fn breed(space: &Space, parents: &Population, next: u32) -> Result<Population, BreedError> {
+pub fn breed(space: &Space, parents: &Population, next: u32) -> Result<Population, NoVotes> {
     let generation = parents.generation;
-    let votes = parents.votes.ok_or(BreedError::NoVotes { generation })?;
+    let votes = parents.votes.ok_or(NoVotes { generation })?;
     let mut rng = seed::rng(parents.seed, "breed", u64::from(generation));
-    let litters = Category::ALL.map(|category| {
-        // A vote for nobody (the loader lets none pass) counts as none.
+    let children = Category::ALL.map(|category| {
+        // A vote for an individual that is not there (the loader lets none pass) counts as none.
         let favourite = votes.get(category).filter(|&vote| vote < INDIVIDUALS);
-        let mut litter = Litter { space, category, parents, rng: &mut rng };
-        std::array::from_fn::<_, INDIVIDUALS, _>(|child| match favourite {
-            Some(favourite) => litter.descendant(favourite, child),
-            None => litter.stranger(),
+        let mut breeder = Breeder { space, category, parents, rng: &mut rng };
+        std::array::from_fn::<_, INDIVIDUALS, _>(|child| {
+            let (mut chromosome, origin) = match favourite {
+                Some(favourite) => breeder.descendant(favourite, child),
+                None => breeder.newcomer(),
+            };
+            // Locked genes are those of the favourite or, without one, of the parent in the child's place.
+            let kept = &parents.individuals[favourite.unwrap_or(child)].genome;
+            for gene in space.category(category).filter(|gene| parents.is_locked(gene)) {
+                chromosome.set_code(gene, kept.code(gene));
+            }
+            (chromosome, format!("{category} {origin}"))
         })
     });
-    let mut litters = litters;
-    keep_locked(space, parents, &votes, &mut litters);
     let individuals = std::array::from_fn(|child| {
-        let chromosomes = [0, 1, 2].map(|category| litters[category][child].0.clone());
-        let origins: Vec<String> = Category::ALL
-            .iter()
-            .zip(&litters)
-            .map(|(category, litter)| format!("{category} {}", litter[child].1))
-            .collect();
-        let name = format!("{next}.{child}: {}", origins.join(", "));
-        Individual { name, genome: Genome { chromosomes } }
+        let chromosomes = children.each_ref().map(|category| category[child].0.clone());
+        let origins = children.each_ref().map(|category| category[child].1.as_str());
+        Individual { name: format!("{next}.{child}: {}", origins.join(", ")), genome: Genome { chromosomes } }
     });
     let parent = Some(Parent { generation, votes });
     let locked = parents.locked.clone();
     Ok(Population { generation: next, seed: parents.seed, parent, individuals, votes: None, locked })
 }
 
-/// Gives every child the locked genes of the favourite or, where nobody was voted for, of the parent in its place.
-fn keep_locked(
-    space: &Space,
-    parents: &Population,
-    votes: &Votes,
-    litters: &mut [[(Chromosome, String); INDIVIDUALS]; 3],
-) {
-    for (category, litter) in Category::ALL.into_iter().zip(litters) {
-        let favourite = votes.get(category).filter(|&vote| vote < INDIVIDUALS);
-        for (place, (child, _)) in litter.iter_mut().enumerate() {
-            let kept = &parents.individuals[favourite.unwrap_or(place)].genome;
-            for gene in space.category(category).filter(|gene| parents.is_locked(gene)) {
-                child.set_code(gene, kept.code(gene));
-            }
-        }
-    }
-}
-
-/// One category's chromosomes in the making, each with a word on where it comes from.
-struct Litter<'a> {
+/// Makes one category's chromosomes, each with a word on where it comes from.
+struct Breeder<'a> {
     space: &'a Space,
     category: Category,
     parents: &'a Population,
     rng: &'a mut Pcg64Mcg,
 }
 
-impl Litter<'_> {
+impl Breeder<'_> {
     /// From the favourite: itself for child 0 and for the child that keeps this category; of the other two, the
     /// first is a variation and the second a crossover with another parent.
     fn descendant(&mut self, favourite: usize, child: usize) -> (Chromosome, String) {
         let keeper = self.category as usize + 1;
-        let best = self.parent(favourite);
+        let (best, from) = (self.parent(favourite), format!("{}.{favourite}", self.parents.generation));
         if child == 0 || child == keeper {
-            return (best, format!("of {}.{favourite}", self.parents.generation));
+            return (best, format!("of {from}"));
         }
         let first = if keeper == 1 { 2 } else { 1 };
         if child == first {
-            return (self.fresh(best, GENTLE), format!("like {}.{favourite}", self.parents.generation));
+            return (self.fresh(best, GENTLE), format!("like {from}"));
         }
         let other = (favourite + 1 + self.below(INDIVIDUALS as u32 - 1) as usize) % INDIVIDUALS;
         let crossed = self.crossed(&best, &self.parent(other));
-        (
-            self.mutated(crossed, 0.5 * GENTLE),
-            format!("of {}.{favourite} and {other}", self.parents.generation),
-        )
+        (self.mutated(crossed, 0.5 * GENTLE), format!("of {from} and {other}"))
     }
 
     /// From any two parents, much changed.
-    fn stranger(&mut self) -> (Chromosome, String) {
+    fn newcomer(&mut self) -> (Chromosome, String) {
         let mother = self.below(INDIVIDUALS as u32) as usize;
         let father = (mother + 1 + self.below(INDIVIDUALS as u32 - 1) as usize) % INDIVIDUALS;
         let crossed = self.crossed(&self.parent(mother), &self.parent(father));
@@ -179,8 +147,8 @@ impl Litter<'_> {
         if self.chance(LEAP) {
             return (code + 1 + self.below(last)) % (last + 1);
         }
-        let most = (last / 8).max(1);
-        let step = 1 + self.below(most).min(self.below(most));
+        let max = (last / 8).max(1);
+        let step = 1 + self.below(max).min(self.below(max));
         let up = self.chance(0.5) && code + step <= last || code < step;
         if up { code + step } else { code - step }
     }
@@ -197,6 +165,7 @@ impl Litter<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use genescape_schema::Votes;
     use proptest::prelude::*;
 
     fn voted(space: &Space, seed: u64, generation: u32, votes: [Option<usize>; 3]) -> Population {
@@ -209,7 +178,7 @@ mod tests {
     fn without_votes_there_is_a_helpful_error() {
         let space = Space::builtin();
         let error = breed(&space, &Population::random(&space, 1, 3), 4).expect_err("nobody voted");
-        assert_eq!(error, BreedError::NoVotes { generation: 3 });
+        assert_eq!(error, NoVotes { generation: 3 });
         assert!(error.to_string().contains("votes: Some((tree: Some(0)"));
     }
 

@@ -1,4 +1,4 @@
-//! The command line: words → one [`Command`] per thing a person can ask for.
+//! The command line: words → one [`Command`] for each thing that can be asked for.
 
 use std::path::PathBuf;
 
@@ -11,11 +11,16 @@ Examples:
   bake --watch                           bake whenever a population file is saved, breed whenever one is voted on
   bake random --seed 7                   make a population of four random genomes, and bake it
   bake next                              breed the next population from the votes, and bake it
-  bake export 2 alps.glb                 one self-contained file of scene 2, to send to somebody
-  bake lod bunny.obj bunny.glb           progressive mesh and distinguished meshes of anyone's model
+  bake export 2 alps.glb                 one self-contained file of scene 2, to send along
+  bake lod bunny.obj bunny.glb           progressive mesh and distinguished meshes of any model
   bake explain 0                         why each stage of scene 0 was or was not rebuilt
 
 Exit codes: 0 done, 1 failed, 2 wrong usage or bad input, 130 interrupted (Ctrl-C; what was finished is kept).";
+
+/// Input that the person must correct, as against a failure of the program: exit code 2.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct BadInput(pub String);
 
 /// Bakes landscapes from genomes: glTF, PNG and EXR files that open in Blender and in any glTF viewer.
 #[derive(Debug, Parser)]
@@ -127,7 +132,7 @@ pub enum Command {
         #[command(flatten)]
         world: WorldArgs,
     },
-    /// Make a progressive mesh with distinguished meshes and geomorphs of anyone's glTF or OBJ file.
+    /// Make a progressive mesh with distinguished meshes and geomorphs of any glTF or OBJ file.
     #[command(
         after_help = "Example:\n  bake lod stanford-bunny.obj bunny.glb\n\nRepairs that the input needed are said, line by line."
     )]
@@ -192,8 +197,8 @@ pub enum CacheCommand {
 
 /// "500MB", "2GiB", "1000000" → bytes.
 fn parse_size(text: &str) -> Result<u64, String> {
-    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic()).trim();
-    let unit = text[text.trim_end_matches(|c: char| c.is_ascii_alphabetic()).len()..].to_ascii_lowercase();
+    let number = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let unit = text[number.len()..].to_ascii_lowercase();
     let factor: u64 = match unit.as_str() {
         "" | "b" => 1,
         "k" | "kb" => 1_000,
@@ -204,11 +209,9 @@ fn parse_size(text: &str) -> Result<u64, String> {
         "gib" => 1 << 30,
         _ => return Err(format!("`{unit}` is no unit of size: use B, kB, MB, GB, KiB, MiB or GiB")),
     };
-    let number: f64 = digits.parse().map_err(|_| format!("`{digits}` is not a number"))?;
-    if !number.is_finite() || number < 0.0 {
-        return Err(format!("`{digits}` is not a size"));
-    }
-    Ok((number * factor as f64) as u64)
+    let size = number.trim().parse::<f64>().ok().filter(|size| size.is_finite() && *size >= 0.0);
+    let size = size.ok_or_else(|| format!("`{}` is not a size", number.trim()))?;
+    Ok((size * factor as f64) as u64)
 }
 
 #[cfg(test)]

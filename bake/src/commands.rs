@@ -1,21 +1,26 @@
 //! What each command of the command line does, and how it tells the outcome.
 
+use std::collections::BTreeSet;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result, bail};
 use genescape_cache::{Cache, GcOptions};
-use genescape_schema::{Population, Report, Space, names};
+use genescape_schema::{Current, INDIVIDUALS, Population, Space};
+use genescape_world::{World, WorldError, atomic_write, names};
+use serde_json::Value;
 
-use crate::cli::{BakeArgs, CacheCommand, Cli, Command, RunArgs, WorldArgs};
-use crate::events::{Bar, Event, JsonLines, Listener};
-use crate::follow::{self, Audience};
+use crate::breed::NoVotes;
+use crate::cli::{BadInput, BakeArgs, CacheCommand, Cli, Command, RunArgs, WorldArgs};
+use crate::events::{Event, Listener};
 use crate::plan::Resolution;
+use crate::progress::{JsonLines, ProgressBar};
 use crate::run::RunError;
 use crate::say;
-use crate::session::{Baked, Session, scope};
-use crate::world::{self, World};
-use crate::{bench, breed, lod_file};
+use crate::session::{Baked, Publish, Session};
+use crate::watch_loop::{self, Host};
+use crate::{bench, lod_command};
 
 /// Set by Ctrl-C.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
@@ -60,14 +65,9 @@ fn exit_code(error: &anyhow::Error) -> u8 {
     if matches!(error.downcast_ref(), Some(RunError::Cancelled)) {
         return INTERRUPTED_CODE;
     }
-    let bad_input = error.is::<Report>() || error.is::<breed::BreedError>() || error.is::<BadInput>();
-    if bad_input { BAD_INPUT } else { FAILED }
+    let world = matches!(error.downcast_ref(), Some(WorldError::Faulty(_) | WorldError::LastGeneration(_)));
+    if world || error.is::<NoVotes>() || error.is::<BadInput>() { BAD_INPUT } else { FAILED }
 }
-
-/// Input that is the person's to mend, not a failure of ours.
-#[derive(Debug, thiserror::Error)]
-#[error("{0}")]
-pub struct BadInput(pub String);
 
 fn dispatch(cli: Cli) -> Result<()> {
     match cli.command {
@@ -77,7 +77,7 @@ fn dispatch(cli: Cli) -> Result<()> {
         Some(Command::Params { markdown, world }) => params(&world, markdown),
         Some(Command::Explain { scene, world }) => explain(&world, scene),
         Some(Command::Export { scene, out, world }) => export(&world, &scene, &out),
-        Some(Command::Lod { input, out, crease_deg }) => lod_file::convert(&input, &out, crease_deg),
+        Some(Command::Lod { input, out, crease_deg }) => lod_command::convert(&input, &out, crease_deg),
         Some(Command::Cache { action }) => look_after_cache(&action),
         Some(Command::Bench { runs, threads, size }) => {
             bench::bench(runs, &pool(threads)?, resolution(size)?)
@@ -113,22 +113,24 @@ impl Console {
         Self { json: args.json, root: args.world.world.clone() }
     }
 
-    fn made(&self, path: &Path) {
+    /// Bakes a population file that was just made.
+    fn bake_new(&self, session: &Session, path: &Path) -> Result<()> {
         if !self.json {
             say!("made {}", path.display());
         }
+        self.bake(session, path)
     }
 
     /// Bakes one population file and tells the outcome.
     fn bake(&self, session: &Session, path: &Path) -> Result<()> {
-        self.baked(&session.bake_file(path, &*self.listener(), &|| self.stopped())?);
+        self.baked(&session.bake_file(path, Publish::AsCurrent, &*self.listener(), &|| self.stopped())?);
         Ok(())
     }
 }
 
-impl Audience for Console {
+impl Host for Console {
     fn listener(&self) -> Box<dyn Listener + '_> {
-        if self.json { Box::new(JsonLines) } else { Box::new(Bar::new()) }
+        if self.json { Box::new(JsonLines) } else { Box::new(ProgressBar::new()) }
     }
 
     fn stopped(&self) -> bool {
@@ -162,7 +164,7 @@ fn summary(baked: &Baked) {
     } else {
         say!("four landscapes in {:.2} s: {built} stages built, {reused} reused", ms / 1e3);
     }
-    let individuals = &file.loaded.population.individuals;
+    let individuals = &file.population.individuals;
     let width = individuals.iter().map(|i| i.name.chars().count()).max().unwrap_or(0);
     for (scene, (individual, path)) in individuals.iter().zip(scenes).enumerate() {
         say!("  {scene}  {:width$}  {}", individual.name, path.display());
@@ -181,8 +183,8 @@ fn bake(args: &BakeArgs) -> Result<()> {
         say!("made {} from the starter landscapes", session.world().root().display());
     }
     if args.watch {
-        let options = follow::Options { population: args.population.clone(), poll: args.poll };
-        return follow::follow(&mut session, &options, &console);
+        let options = watch_loop::Options { population: args.population.clone(), poll: args.poll };
+        return watch_loop::run(&mut session, &options, &console);
     }
     let path = args.population.clone().map_or_else(|| session.world().newest_population(), Ok)?;
     console.bake(&session, &path)
@@ -190,31 +192,29 @@ fn bake(args: &BakeArgs) -> Result<()> {
 
 fn random(seed: u64, args: &RunArgs) -> Result<()> {
     let (session, console) = (session(args)?, Console::new(args));
-    let world = session.world();
-    let path = world.save_population(&Population::random(world.space(), seed, world.next_generation()?))?;
-    console.made(&path);
-    console.bake(&session, &path)
+    let (world, space) = (session.world(), session.space());
+    let path = world.create_population(space, &Population::random(space, seed, world.next_generation()?))?;
+    console.bake_new(&session, &path)
 }
 
 fn next(from: Option<u32>, args: &RunArgs) -> Result<()> {
     let (session, console) = (session(args)?, Console::new(args));
     let world = session.world();
     let parents = match from {
-        Some(generation) => world.root().join(names::population(generation)),
+        Some(generation) => world.population_path(generation),
         None => world.newest_population()?,
     };
     let path = session.breed_file(&parents)?;
-    console.made(&path);
-    console.bake(&session, &path)
+    console.bake_new(&session, &path)
 }
 
 fn params(args: &WorldArgs, markdown: bool) -> Result<()> {
-    let space = match World::open(&args.world) {
-        Ok(world) => world.space().clone(),
+    let (space, notices) = match args.world.exists() {
+        true => World::open(&args.world)?.space()?,
         // Without a world there is still the space that one would begin with.
-        Err(_) if !args.world.exists() => Space::builtin(),
-        Err(error) => return Err(error),
+        false => (Space::builtin(), Vec::new()),
     };
+    notices.iter().for_each(|notice| eprintln!("note: {notice}"));
     say!("{}", if markdown { space.to_markdown() } else { space.to_table() }.trim_end());
     Ok(())
 }
@@ -223,39 +223,43 @@ fn export(args: &WorldArgs, scene: &str, out: &Path) -> Result<()> {
     let path = match scene.parse::<usize>() {
         Ok(index) => {
             let world = World::open(&args.world)?;
-            let current = world.current()?;
+            let current = current(&world)?;
             let file = current.scenes.get(index);
             let file = file.ok_or_else(|| BadInput(format!("scene {index}: there are scenes 0 to 3")))?;
             world.root().join(file)
         }
         Err(_) => PathBuf::from(scene),
     };
-    let json = std::fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
+    let json = fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
     let folder = path.parent().unwrap_or(Path::new("."));
-    let read = |uri: &str| std::fs::read(folder.join(uri)).map_err(|error| error.to_string());
+    let read = |uri: &str| fs::read(folder.join(uri)).map_err(|error| error.to_string());
     let glb = crate::gltf::single_glb(&json, read).with_context(|| {
         format!("{}: cannot be made one file; bake again if blobs are missing", path.display())
     })?;
-    world::write_synced(out, &glb)?;
+    atomic_write::replace(out, &glb).with_context(|| format!("cannot write {}", out.display()))?;
     say!("wrote {} ({:.1} MB)", out.display(), glb.len() as f64 / 1e6);
     Ok(())
 }
 
 fn open_cache(args: &WorldArgs) -> Result<(World, Cache)> {
     let world = World::open(&args.world)?;
-    let cache = Cache::open(world.root().join(names::BAKED))?;
+    let cache = Cache::open(world.baked())?;
     Ok((world, cache))
+}
+
+fn current(world: &World) -> Result<Current> {
+    world.current()?.with_context(|| format!("nothing has been baked in {} yet", world.root().display()))
 }
 
 fn explain(args: &WorldArgs, scene: Option<usize>) -> Result<()> {
     let (world, cache) = open_cache(args)?;
-    let current = world.current()?;
-    if scene.is_some_and(|scene| scene >= current.scenes.len()) {
+    let current = current(&world)?;
+    if scene.is_some_and(|scene| scene >= INDIVIDUALS) {
         return Err(BadInput("there are scenes 0 to 3".into()).into());
     }
-    for index in (0..current.scenes.len()).filter(|index| scene.is_none_or(|scene| scene == *index)) {
+    for index in scene.map_or(0..INDIVIDUALS, |scene| scene..scene + 1) {
         say!("{} in the last bake:", current.scenes[index]);
-        let history = cache.history(&scope(current.generation, index))?;
+        let history = cache.history(&names::scene_id(current.generation, index))?;
         for (stage, explanation) in history.last() {
             say!("  {stage:<16} {explanation}");
         }
@@ -308,10 +312,12 @@ fn verify(cache: &Cache) -> Result<()> {
 }
 
 fn gc(world: &World, cache: &Cache, max_size: u64) -> Result<()> {
-    let current = world.current().ok();
-    let mut roots = std::collections::BTreeSet::new();
-    for (scene, generation) in current.iter().flat_map(|c| (0..c.scenes.len()).map(|s| (s, c.generation))) {
-        roots.extend(cache.roots_of(&scope(generation, scene))?);
+    let current = world.current().ok().flatten();
+    let mut roots = BTreeSet::new();
+    if let Some(Current { generation, .. }) = current {
+        for scene in 0..INDIVIDUALS {
+            roots.extend(cache.roots_of(&names::scene_id(generation, scene))?);
+        }
     }
     let options = GcOptions::to(max_size);
     let grace_min = options.grace.as_secs() / 60;
@@ -329,13 +335,31 @@ fn gc(world: &World, cache: &Cache, max_size: u64) -> Result<()> {
             "more is left than asked for: what current scenes use stays, and what was used within {grace_min} min"
         );
     }
-    let kept: Vec<PathBuf> = current.iter().flat_map(|c| &c.scenes).map(|s| world.root().join(s)).collect();
-    for file in world.scene_files()?.into_iter().filter(|file| !kept.contains(file)) {
-        if !world::is_whole(&file)? {
+    let is_current = |generation| current.as_ref().is_some_and(|current| current.generation == generation);
+    for (generation, _, file) in world.scenes()? {
+        if !is_current(generation) && !is_whole(&file)? {
             // A scene with holes is worse than none; its population file makes it again.
-            std::fs::remove_file(&file).with_context(|| format!("cannot remove {}", file.display()))?;
+            fs::remove_file(&file).with_context(|| format!("cannot remove {}", file.display()))?;
             say!("removed {}: parts of it are gone; bake its population to have it again", file.display());
         }
     }
     Ok(())
+}
+
+/// Whether all files that a scene names exist.
+fn is_whole(scene: &Path) -> Result<bool> {
+    fn all_uris(json: &Value, exists: &dyn Fn(&str) -> bool) -> bool {
+        match json {
+            Value::Object(fields) => fields.iter().all(|(name, value)| match value {
+                Value::String(uri) if name == "uri" => exists(uri),
+                other => all_uris(other, exists),
+            }),
+            Value::Array(items) => items.iter().all(|item| all_uris(item, exists)),
+            _ => true,
+        }
+    }
+    let text = fs::read_to_string(scene).with_context(|| format!("cannot read {}", scene.display()))?;
+    let folder = scene.parent().unwrap_or(Path::new("."));
+    let json = serde_json::from_str(&text);
+    Ok(json.is_ok_and(|json| all_uris(&json, &|uri| folder.join(uri).is_file())))
 }

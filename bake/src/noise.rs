@@ -1,8 +1,10 @@
-//! Lattice noise: gradient noise after Perlin ("Improving noise", 2002) in two and three dimensions, fractal
-//! sums, and cellular noise after Worley (1996). Pure arithmetic, so the same on every machine.
+//! Lattice noise in two dimensions: gradient noise after Perlin ("Improving noise", 2002), fractal sums, and cellular
+//! noise after Worley (1996). Pure arithmetic, so the same on every machine.
 //!
 //! Points are in lattice units (one cell = 1); values of gradient noise lie within about [-1, 1].
 //! `period` wraps the lattice so that a texture tiles; 0 never wraps.
+
+use crate::math::{lerp, quarter_turns, split};
 
 /// A lattice hash: 32 well-mixed bits for a cell (lowbias32 by Wellons over a linear combination).
 #[inline]
@@ -24,21 +26,9 @@ pub fn hash01(seed: u32, x: i32, y: i32, z: i32) -> f32 {
     (hash(seed, x, y, z) >> 8) as f32 * (1.0 / 16_777_216.0)
 }
 
-/// The greatest integer that is not above x, without the call that `floor` is on processors before SSE 4.1.
-#[inline]
-fn floor_i32(x: f32) -> i32 {
-    let whole = x as i32;
-    whole - i32::from(x < whole as f32)
-}
-
 #[inline]
 fn fade(t: f32) -> f32 {
     t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
-}
-
-#[inline]
-fn lerp(a: f32, b: f32, t: f32) -> f32 {
-    a + (b - a) * t
 }
 
 #[inline]
@@ -49,28 +39,8 @@ fn wrap(i: i32, period: i32) -> i32 {
 
 /// Sixteen unit vectors, evenly around the circle: cos and sin of k·22.5° + 11.25°.
 const GRADIENTS_2D: [[f32; 2]; 16] = {
-    const A: f32 = 0.980_785_25;
-    const B: f32 = 0.831_469_6;
-    const C: f32 = 0.555_570_24;
-    const D: f32 = 0.195_090_32;
-    [
-        [A, D],
-        [B, C],
-        [C, B],
-        [D, A],
-        [-D, A],
-        [-C, B],
-        [-B, C],
-        [-A, D],
-        [-A, -D],
-        [-B, -C],
-        [-C, -B],
-        [-D, -A],
-        [D, -A],
-        [C, -B],
-        [B, -C],
-        [A, -D],
-    ]
+    let [a, b, c, d] = [0.980_785_25, 0.831_469_6, 0.555_570_24, 0.195_090_32];
+    quarter_turns([[a, d], [b, c], [c, b], [d, a]])
 };
 
 #[inline]
@@ -79,11 +49,10 @@ fn gradient_2d(h: u32, x: f32, y: f32) -> f32 {
     g[0] * x + g[1] * y
 }
 
-/// Gradient noise in two dimensions, in about [-1, 1].
+/// Gradient noise, in about [-1, 1].
 #[inline]
 pub fn gradient2(seed: u32, x: f32, y: f32, period: i32) -> f32 {
-    let (ix, iy) = (floor_i32(x), floor_i32(y));
-    let (dx, dy) = (x - ix as f32, y - iy as f32);
+    let ((ix, dx), (iy, dy)) = (split(x), split(y));
     let (x0, x1, y0, y1) = (wrap(ix, period), wrap(ix + 1, period), wrap(iy, period), wrap(iy + 1, period));
     let a = gradient_2d(hash(seed, x0, y0, 0), dx, dy);
     let b = gradient_2d(hash(seed, x1, y0, 0), dx - 1.0, dy);
@@ -91,44 +60,6 @@ pub fn gradient2(seed: u32, x: f32, y: f32, period: i32) -> f32 {
     let d = gradient_2d(hash(seed, x1, y1, 0), dx - 1.0, dy - 1.0);
     let (u, v) = (fade(dx), fade(dy));
     lerp(lerp(a, b, u), lerp(c, d, u), v) * std::f32::consts::SQRT_2
-}
-
-#[inline]
-fn gradient_3d(h: u32, x: f32, y: f32, z: f32) -> f32 {
-    // Perlin's twelve edge directions; the four repeats fill sixteen so that no modulo is needed.
-    let h = h >> 28;
-    let u = if h < 8 { x } else { y };
-    let v = if h < 4 {
-        y
-    } else if h == 12 || h == 14 {
-        x
-    } else {
-        z
-    };
-    (if h & 1 == 0 { u } else { -u }) + (if h & 2 == 0 { v } else { -v })
-}
-
-/// Gradient noise in three dimensions, in about [-1, 1].
-#[inline]
-pub fn gradient3(seed: u32, x: f32, y: f32, z: f32, period: i32) -> f32 {
-    let (ix, iy, iz) = (floor_i32(x), floor_i32(y), floor_i32(z));
-    let (dx, dy, dz) = (x - ix as f32, y - iy as f32, z - iz as f32);
-    let (x0, x1) = (wrap(ix, period), wrap(ix + 1, period));
-    let (y0, y1) = (wrap(iy, period), wrap(iy + 1, period));
-    let (z0, z1) = (wrap(iz, period), wrap(iz + 1, period));
-    let corner = |x, y, z, dx, dy, dz| gradient_3d(hash(seed, x, y, z), dx, dy, dz);
-    let (u, v, w) = (fade(dx), fade(dy), fade(dz));
-    let near = lerp(
-        lerp(corner(x0, y0, z0, dx, dy, dz), corner(x1, y0, z0, dx - 1.0, dy, dz), u),
-        lerp(corner(x0, y1, z0, dx, dy - 1.0, dz), corner(x1, y1, z0, dx - 1.0, dy - 1.0, dz), u),
-        v,
-    );
-    let far = lerp(
-        lerp(corner(x0, y0, z1, dx, dy, dz - 1.0), corner(x1, y0, z1, dx - 1.0, dy, dz - 1.0), u),
-        lerp(corner(x0, y1, z1, dx, dy - 1.0, dz - 1.0), corner(x1, y1, z1, dx - 1.0, dy - 1.0, dz - 1.0), u),
-        v,
-    );
-    lerp(near, far, w)
 }
 
 /// A fractal sum of `octaves` of [`gradient2`], each twice as fine and `gain` times as high as the one before,
@@ -162,15 +93,14 @@ pub fn fbm2_row(seed: u32, xs: &[f32], y: f32, octaves: u32, gain: f32, period: 
 
 /// Adds amplitude × [`gradient2`] at (x · frequency, y) to each point of a row.
 fn add_row(seed: u32, xs: &[f32], frequency: f32, y: f32, period: i32, amplitude: f32, out: &mut [f32]) {
-    let iy = floor_i32(y);
-    let dy = y - iy as f32;
+    let (iy, dy) = split(y);
     let (y0, y1, v) = (wrap(iy, period), wrap(iy + 1, period), fade(dy));
     let corner = |x: i32, y: i32| GRADIENTS_2D[(hash(seed, x, y, 0) >> 28) as usize];
     let end = xs.len().min(out.len());
     let mut start = 0;
     while start < end {
-        let ix = floor_i32(xs[start] * frequency);
-        let same = |x: &&f32| floor_i32(**x * frequency) == ix;
+        let ix = split(xs[start] * frequency).0;
+        let same = |x: &&f32| split(**x * frequency).0 == ix;
         let stop = start + 1 + xs[start + 1..end].iter().take_while(same).count();
         let (x0, x1) = (wrap(ix, period), wrap(ix + 1, period));
         let (a, b, c, d) = (corner(x0, y0), corner(x1, y0), corner(x0, y1), corner(x1, y1));
@@ -188,23 +118,10 @@ fn add_row(seed: u32, xs: &[f32], frequency: f32, y: f32, period: i32, amplitude
     }
 }
 
-/// [`fbm2`] in three dimensions.
-pub fn fbm3(seed: u32, x: f32, y: f32, z: f32, octaves: u32, gain: f32, period: i32) -> f32 {
-    let (mut sum, mut amplitude, mut total, mut frequency) = (0.0, 1.0, 0.0, 1.0);
-    for octave in 0..octaves {
-        let s = seed.wrapping_add(octave);
-        sum += amplitude * gradient3(s, x * frequency, y * frequency, z * frequency, period << octave);
-        total += amplitude;
-        amplitude *= gain;
-        frequency *= 2.0;
-    }
-    sum / total
-}
-
 /// Cellular noise: distance to the nearest and second nearest of one jittered point per cell, and the nearest
 /// cell's hash.
 pub fn cellular2(seed: u32, x: f32, y: f32, period: i32) -> (f32, f32, u32) {
-    let (ix, iy) = (floor_i32(x), floor_i32(y));
+    let (ix, iy) = (split(x).0, split(y).0);
     let (mut first, mut second, mut id) = (f32::MAX, f32::MAX, 0);
     for cy in iy - 1..=iy + 1 {
         for cx in ix - 1..=ix + 1 {

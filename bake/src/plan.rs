@@ -1,11 +1,11 @@
 //! Population → stage graph: the one place where to read which stages there are and what feeds what.
 //!
 //! ```text
-//!  terrain genes ─► landform ─┬─► terrain files (mesh, levels of detail, 16-bit heights)
+//!  terrain genes ─► landform ─┬─► terrain (mesh, levels of detail, 16-bit heights)
 //!                             ├─► ground maps          ground textures (shared by every scene)
 //!  tree genes ─┬─► tree textures ─► tree 0…4 (template, levels, progressive mesh, file)
-//!              └──────────────┬─► placement ◄── landform, trees
-//!  landform, placement, sky light ─► start ─► foreground ◄── terrain files
+//!              └──────────────┬─► placement (and the spot to start from) ◄── landform, trees
+//!  landform, placement, sky light ─► start ─► foreground ◄── terrain
 //!  sky genes ─► sky light ─┬─► sky pictures
 //!                          └─► light map ◄── landform, placement, trees
 //!                                                           all of them ─► scene
@@ -15,19 +15,23 @@
 //! scenes that share one with each other, share the work.
 
 use genescape_schema::{Genome, GenomeError, Population, Space};
-use serde::Serialize;
 
-use crate::stages::ground::GroundParams;
-use crate::stages::land::LandParams;
-use crate::stages::placement::PlacementParams;
-use crate::stages::sky::SkyParams;
-use crate::stages::tree::{TreeParams, TreeTextureParams};
+use crate::graph::{Graph, Node, NodeId};
+use crate::stages::ground::{ForegroundStage, GroundMapsStage, GroundParams, GroundTexturesStage};
+use crate::stages::land::LandStage;
+use crate::stages::light::LightMapStage;
+use crate::stages::placement::{PlacementFiles, PlacementStage};
+use crate::stages::scene::SceneStage;
+use crate::stages::sky::{SkyImagesStage, SkyLightStage, SkyParams};
+use crate::stages::start::StartStage;
+use crate::stages::terrain_lod::{TerrainFiles, TerrainStage};
+use crate::stages::tree::{TreeFiles, TreeParams, TreeStage, TreeTexturesStage};
 
 /// Tree templates in a scene.
 pub const TEMPLATES: u32 = 5;
 
 /// How finely a scene is sampled; everything follows from the side of the heightfield.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Resolution {
     /// Samples a side of the heightfield, 2^k+1.
     pub side: u32,
@@ -62,231 +66,84 @@ impl Resolution {
     }
 }
 
-/// A stage with the parameters it reads. Serialised, it is the parameter part of the action key, and field by field
-/// what `bake explain` compares.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub enum Job {
-    /// Terrain genes → [`crate::model::Landform`].
-    Landform {
-        /// Genes.
-        params: LandParams,
-        /// Samples a side.
-        side: u32,
-    },
-    /// Landform → mesh for any viewer, data for the levels of detail, 16-bit heights.
-    Terrain {
-        /// Genes of the colours of the land beyond the field.
-        params: GroundParams,
-    },
-    /// Landform, placement, sun → where a person first stands.
-    Start,
-    /// Landform, near mesh, start → the ground around the start in finer triangles.
-    Foreground {
-        /// Genes of the colours.
-        params: GroundParams,
-        /// Pixels a side of the ground map, whose look it continues.
-        map_px: u32,
-    },
-    /// Landform → albedo and blend weights.
-    GroundMaps {
-        /// Genes.
-        params: GroundParams,
-        /// Pixels a side.
-        side_px: u32,
-    },
-    /// Nothing → the tiling textures that every scene shares.
-    GroundTextures,
-    /// Tree genes → bark, leaf and blossom.
-    TreeTextures {
-        /// Genes.
-        params: TreeTextureParams,
-    },
-    /// Tree genes and textures → one template with all its levels, as a file.
-    Tree {
-        /// Genes.
-        params: TreeParams,
-        /// Which of the templates.
-        index: u32,
-    },
-    /// Sky genes → sun and ambient light.
-    SkyLight {
-        /// Genes.
-        params: SkyParams,
-    },
-    /// Sky genes and light → cube, panorama, cloud sheets.
-    SkyPictures {
-        /// Genes.
-        params: SkyParams,
-        /// Pixels a side of a face.
-        face_px: u32,
-        /// Columns of the panorama.
-        equirect_px: u32,
-    },
-    /// Placement genes, landform, trees → where trees stand.
-    Placement {
-        /// Genes.
-        params: PlacementParams,
-    },
-    /// Sun, landform, placement, trees → light on the ground.
-    LightMap {
-        /// Pixels a side.
-        side_px: u32,
-    },
-    /// Everything → `scene.gltf`.
-    Scene {
-        /// The individual's name.
-        name: String,
-        /// All genes by name with their values, for the scene's `extras`.
-        genes: Vec<(String, f32)>,
-    },
-}
-
-impl Job {
-    /// The stage's name and version. Whoever changes what a stage computes raises its version.
-    pub fn stage(&self) -> (&'static str, u32) {
-        match self {
-            Job::Landform { .. } => ("landform", 1),
-            Job::Terrain { .. } => ("terrain", 2),
-            Job::Start => ("start", 1),
-            Job::Foreground { .. } => ("foreground", 1),
-            Job::GroundMaps { .. } => ("ground maps", 1),
-            Job::GroundTextures => ("ground textures", 2),
-            Job::TreeTextures { .. } => ("tree textures", 1),
-            Job::Tree { .. } => ("tree", 1),
-            Job::SkyLight { .. } => ("sky light", 1),
-            Job::SkyPictures { .. } => ("sky pictures", 1),
-            Job::Placement { .. } => ("placement", 1),
-            Job::LightMap { .. } => ("light map", 1),
-            Job::Scene { .. } => ("scene", 2),
-        }
-    }
-}
-
-/// Index of a node in [`Plan::nodes`].
-pub type NodeId = usize;
-
-/// One job and the nodes whose outputs it reads, by the name it knows them by.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Node {
-    /// What to do.
-    pub job: Job,
-    /// What it reads: always earlier nodes.
-    pub inputs: Vec<(String, NodeId)>,
-    /// For people: "tree 3".
-    pub label: String,
-    /// The scenes that use it.
-    pub scenes: Vec<usize>,
-}
-
-/// The graph, in an order in which inputs come first.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// The stages of all landscapes of a population.
+#[derive(Default)]
 pub struct Plan {
-    /// The nodes.
+    /// In an order in which inputs come first.
     pub nodes: Vec<Node>,
     /// For each individual of the population, the node that makes its scene.
     pub scenes: Vec<NodeId>,
 }
 
 impl Plan {
-    /// The graph for all individuals of `population`. An error means that a stage reads a gene which `space` does not
-    /// declare.
+    /// The graph for all individuals of `population`.
+    ///
+    /// # Errors
+    /// A stage reads a gene that `space` does not declare.
     pub fn new(space: &Space, population: &Population, resolution: Resolution) -> Result<Self, GenomeError> {
-        let mut plan = Self::default();
-        for (scene, individual) in population.individuals.iter().enumerate() {
-            let node = plan.add_scene(space, scene, &individual.name, &individual.genome, resolution)?;
-            plan.scenes.push(node);
-        }
-        Ok(plan)
+        let mut graph = Graph::default();
+        let scenes = population.individuals.iter().enumerate().map(|(scene, individual)| {
+            add_scene(&mut graph, scene, space, &individual.name, &individual.genome, resolution)
+        });
+        let scenes = scenes.collect::<Result<_, _>>()?;
+        Ok(Self { nodes: graph.nodes, scenes })
     }
+}
 
-    fn add_scene(
-        &mut self,
-        space: &Space,
-        scene: usize,
-        name: &str,
-        genome: &Genome,
-        resolution: Resolution,
-    ) -> Result<NodeId, GenomeError> {
-        let Resolution { side, map_px, face_px, equirect_px } = resolution;
-        let ground: GroundParams = genome.read(space)?;
+fn add_scene(
+    graph: &mut Graph,
+    scene: usize,
+    space: &Space,
+    name: &str,
+    genome: &Genome,
+    resolution: Resolution,
+) -> Result<NodeId, GenomeError> {
+    let Resolution { side, map_px, face_px, equirect_px } = resolution;
+    let sky: SkyParams = genome.read(space)?;
+    let ground: GroundParams = genome.read(space)?;
+    let tree: TreeParams = genome.read(space)?;
 
-        let landform = self.add(scene, Job::Landform { params: genome.read(space)?, side }, &[]);
-        let tree_textures = self.add(scene, Job::TreeTextures { params: genome.read(space)? }, &[]);
-        let tree_params: TreeParams = genome.read(space)?;
-        let trees: Vec<NodeId> = (0..TEMPLATES)
-            .map(|index| {
-                let job = Job::Tree { params: tree_params.clone(), index };
-                self.add(scene, job, &[("textures", tree_textures)])
-            })
-            .collect();
-        let sky: SkyParams = genome.read(space)?;
-        let sky_light = self.add(scene, Job::SkyLight { params: sky.clone() }, &[]);
-        let sky_pictures = self.add(
-            scene,
-            Job::SkyPictures { params: sky, face_px, equirect_px },
-            &[("sky light", sky_light)],
-        );
-        let terrain = self.add(scene, Job::Terrain { params: ground.clone() }, &[("landform", landform)]);
-        let ground_maps = self.add(
-            scene,
-            Job::GroundMaps { params: ground.clone(), side_px: map_px },
-            &[("landform", landform)],
-        );
-        let ground_textures = self.add(scene, Job::GroundTextures, &[]);
+    let landform = graph.add(scene, LandStage { params: genome.read(space)?, side });
+    let tree_textures = graph.add(scene, TreeTexturesStage { params: genome.read(space)? });
+    let embedded = graph.part(tree_textures, TreeTexturesStage::without_mip_levels);
+    let trees = [0, 1, 2, 3, 4]
+        .map(|index| graph.add(scene, TreeStage { params: tree.clone(), index, textures: embedded }));
+    let light = graph.add(scene, SkyLightStage { params: sky.clone() });
+    let sky = graph.add(scene, SkyImagesStage { params: sky, face_px, equirect_px, light });
+    let terrain = graph.add(scene, TerrainStage { params: ground.clone(), landform });
+    let ground_maps = graph.add(scene, GroundMapsStage { params: ground.clone(), side_px: map_px, landform });
+    let ground_textures = graph.add(scene, GroundTexturesStage);
 
-        let mut inputs = vec![("landform".to_owned(), landform)];
-        inputs.extend(trees.iter().enumerate().map(|(i, &tree)| (format!("tree {i}"), tree)));
-        let placement = self.insert(scene, Job::Placement { params: genome.read(space)? }, inputs.clone());
+    let footprints = trees.map(|tree| graph.part(tree, |tree: &TreeFiles| tree.footprint)).to_vec();
+    let placed = graph.add(scene, PlacementStage { params: genome.read(space)?, landform, footprints });
+    let placement = graph.part(placed, |placed: &PlacementFiles| placed.placement.clone());
+    let start = graph.add(scene, StartStage { landform, placement, light });
+    let near = graph.part(terrain, |terrain: &TerrainFiles| terrain.near.clone());
+    let foreground = graph.add(scene, ForegroundStage { params: ground, map_px, landform, near, start });
 
-        inputs.push(("placement".to_owned(), placement));
-        inputs.push(("sky light".to_owned(), sky_light));
-        let start = self.add(
-            scene,
-            Job::Start,
-            &[("landform", landform), ("placement", placement), ("sky light", sky_light)],
-        );
-        let foreground = self.add(
-            scene,
-            Job::Foreground { params: ground, map_px },
-            &[("landform", landform), ("terrain", terrain), ("start", start)],
-        );
-        let light_map = self.insert(scene, Job::LightMap { side_px: map_px }, inputs.clone());
+    let casters = trees.map(|tree| graph.part(tree, |tree: &TreeFiles| tree.caster.clone())).to_vec();
+    let standing = graph.part(placed, |placed: &PlacementFiles| placed.placement.instances.clone());
+    let light_map =
+        graph.add(scene, LightMapStage { side_px: map_px, landform, casters, trees: standing, light });
 
-        inputs.extend(
-            [
-                ("light map", light_map),
-                ("start", start),
-                ("foreground", foreground),
-                ("terrain", terrain),
-                ("ground maps", ground_maps),
-                ("ground textures", ground_textures),
-                ("tree textures", tree_textures),
-                ("sky pictures", sky_pictures),
-            ]
-            .map(|(name, node)| (name.to_owned(), node)),
-        );
-        let genes = space.parameters().iter();
-        let genes = genes.filter_map(|p| Some((p.name.clone(), genome.value(space, &p.name)?))).collect();
-        Ok(self.insert(scene, Job::Scene { name: name.to_owned(), genes }, inputs))
-    }
-
-    fn add(&mut self, scene: usize, job: Job, inputs: &[(&str, NodeId)]) -> NodeId {
-        self.insert(scene, job, inputs.iter().map(|&(name, node)| (name.to_owned(), node)).collect())
-    }
-
-    /// The node that does `job` on `inputs`: an existing one if there is one.
-    fn insert(&mut self, scene: usize, job: Job, inputs: Vec<(String, NodeId)>) -> NodeId {
-        if let Some(found) = self.nodes.iter().position(|node| node.job == job && node.inputs == inputs) {
-            if !self.nodes[found].scenes.contains(&scene) {
-                self.nodes[found].scenes.push(scene);
-            }
-            return found;
-        }
-        let label = match &job {
-            Job::Tree { index, .. } => format!("tree {index}"),
-            other => other.stage().0.to_owned(),
-        };
-        self.nodes.push(Node { job, inputs, label, scenes: vec![scene] });
-        self.nodes.len() - 1
-    }
+    let genes = space.parameters().iter();
+    let genes = genes.filter_map(|p| Some((p.name.clone(), genome.value(space, &p.name)?))).collect();
+    let trees = trees.map(|tree| graph.part(tree, |tree: &TreeFiles| tree.glb.clone())).to_vec();
+    let stage = SceneStage {
+        name: name.to_owned(),
+        genes,
+        landform,
+        terrain,
+        foreground,
+        start,
+        ground_maps,
+        ground_textures,
+        light_map,
+        trees,
+        tree_textures,
+        placed,
+        light,
+        sky,
+    };
+    Ok(graph.add(scene, stage).node())
 }

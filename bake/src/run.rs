@@ -6,14 +6,14 @@
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-use genescape_cache::{ActionKey, ActionRecord, BlobRef, Bytes, Cache, How, Output};
+use genescape_cache::{BlobRef, Cache, How};
 
 use crate::events::{Event, Listener};
-use crate::execute::{self, StageError};
-use crate::plan::{Job, Node, NodeId, Plan};
+use crate::graph::{Context, Done, File, NodeId, StageError};
+use crate::plan::Plan;
 
 /// What a run needs besides the plan.
 pub struct Runner<'a> {
@@ -27,19 +27,6 @@ pub struct Runner<'a> {
     pub cancelled: &'a (dyn Fn() -> bool + Sync),
     /// Called once for each scene as soon as all of it is there.
     pub scene_ready: &'a (dyn Fn(usize, &BlobRef) -> anyhow::Result<()> + Sync),
-}
-
-/// What one node gave.
-#[derive(Clone, Debug)]
-pub struct Done {
-    /// Its action key.
-    pub key: ActionKey,
-    /// Its outputs.
-    pub record: ActionRecord,
-    /// Built or reused.
-    pub how: How,
-    /// The outputs' bytes while someone may still need them.
-    bytes: Option<Vec<Bytes>>,
 }
 
 /// Why a run ended early.
@@ -64,40 +51,9 @@ pub enum RunError {
     Publish(anyhow::Error),
 }
 
-/// What a stage reads: outputs of earlier nodes by the name the plan gives them.
-pub struct Inputs<'a> {
-    cache: &'a Cache,
-    nodes: Vec<(&'a str, Done)>,
-}
-
-impl Inputs<'_> {
-    /// The blob that holds an output.
-    pub fn blob(&self, input: &str, output: &str) -> Result<&BlobRef, StageError> {
-        let missing = || StageError::NoSuchInput(format!("{input}: {output}"));
-        self.done(input)?.record.output(output).ok_or_else(missing)
-    }
-
-    /// The verified bytes of an output.
-    pub fn bytes(&self, input: &str, output: &str) -> Result<Bytes, StageError> {
-        let done = self.done(input)?;
-        let blob = self.blob(input, output)?;
-        if let Some(all) = &done.bytes
-            && let Some(at) = done.record.outputs.iter().position(|(name, _)| name == output)
-        {
-            return Ok(all[at].clone());
-        }
-        self.cache.get_blob(blob)?.ok_or(StageError::InputLost)
-    }
-
-    fn done(&self, input: &str) -> Result<&Done, StageError> {
-        let found = self.nodes.iter().find(|(name, _)| *name == input);
-        found.map(|(_, done)| done).ok_or_else(|| StageError::NoSuchInput(input.to_owned()))
-    }
-}
-
 impl Runner<'_> {
     /// Runs `plan`; the results in the order of its nodes.
-    pub fn run(&self, plan: &Plan) -> Result<Vec<Done>, RunError> {
+    pub fn run(&self, plan: &Plan) -> Result<Vec<Arc<Done>>, RunError> {
         // A blob that turns out damaged when a stage reads it is gone from the cache by then: the next attempt finds
         // its action missing and builds it again. Each attempt mends one action at least, so there are no more
         // attempts to make than there are actions.
@@ -122,7 +78,7 @@ impl Runner<'_> {
         }
     }
 
-    fn attempt(&self, plan: &Plan) -> Result<Vec<Done>, RunError> {
+    fn attempt(&self, plan: &Plan) -> Result<Vec<Arc<Done>>, RunError> {
         let board = Board::new(plan);
         std::thread::scope(|scope| {
             // One more than compute: while one stores its results, the others keep the pool busy.
@@ -143,79 +99,36 @@ impl Runner<'_> {
     fn executor(&self, plan: &Plan, board: &Board) {
         while let Some((id, inputs)) = board.take(plan) {
             let _turn = Turn(board);
-            let node = &plan.nodes[id];
-            let result = if (self.cancelled)() {
-                Err(RunError::Cancelled)
-            } else {
-                let nodes = node.inputs.iter().map(|(name, _)| name.as_str()).zip(inputs).collect();
-                self.perform(plan, id, &Inputs { cache: self.cache, nodes })
-            };
+            let result =
+                if (self.cancelled)() { Err(RunError::Cancelled) } else { self.perform(plan, id, inputs) };
             board.put(plan, id, result);
         }
     }
 
-    fn perform(&self, plan: &Plan, id: NodeId, inputs: &Inputs<'_>) -> Result<Done, RunError> {
+    fn perform(
+        &self,
+        plan: &Plan,
+        id: NodeId,
+        inputs: Vec<(NodeId, Arc<Done>)>,
+    ) -> Result<Arc<Done>, RunError> {
         let node = &plan.nodes[id];
-        let key = action_key(node, inputs)?;
-        let started = Instant::now();
-        let build = || -> Result<Vec<Output>, RunError> {
-            self.listener.tell(&Event::Started { stage: node.label.clone(), scenes: node.scenes.clone() });
-            self.pool
-                .install(|| execute::execute(&node.job, inputs))
-                .map_err(|source| RunError::Stage { label: node.label.clone(), source })
-        };
-        let outcome = self.cache.get_or_build(&key, build)?;
-        let reused = outcome.how == How::Reused;
-        let ms = if reused { 0.0 } else { started.elapsed().as_secs_f64() * 1e3 };
-        let finished = Event::Finished { stage: node.label.clone(), scenes: node.scenes.clone(), reused, ms };
-        self.listener.tell(&finished);
-        let done = Done { key, record: outcome.record, how: outcome.how, bytes: outcome.bytes };
+        let start = Instant::now();
+        let (stage, scenes) = (|| node.label.clone(), || node.scenes.clone());
+        let started = || self.listener.tell(&Event::Started { stage: stage(), scenes: scenes() });
+        let context = Context::new(self.cache, &plan.nodes, inputs);
+        let done = context
+            .perform(node, self.pool, started)
+            .map_err(|source| RunError::Stage { label: stage(), source })?;
+        let reused = done.how == How::Reused;
+        let ms = if reused { 0.0 } else { start.elapsed().as_secs_f64() * 1e3 };
+        self.listener.tell(&Event::Finished { stage: stage(), scenes: scenes(), reused, ms });
         for (scene, _) in plan.scenes.iter().enumerate().filter(|&(_, &node)| node == id) {
-            let json = done.record.output(execute::SCENE).expect("the scene stage gives a scene");
-            (self.scene_ready)(scene, json).map_err(RunError::Publish)?;
+            let json: File =
+                done.reread(self.cache).map_err(|source| RunError::Stage { label: stage(), source })?;
+            (self.scene_ready)(scene, json.blob()).map_err(RunError::Publish)?;
         }
-        Ok(done)
+        Ok(Arc::new(done))
     }
-}
-
-/// The action key of a node whose inputs are known.
-fn action_key(node: &Node, inputs: &Inputs<'_>) -> Result<ActionKey, RunError> {
-    let (stage, version) = node.job.stage();
-    let mut builder = ActionKey::builder(stage, version).parameters(&node.job)?;
-    for (name, value) in named_fields(&node.job) {
-        builder = builder.named(name, value);
-    }
-    for (name, done) in &inputs.nodes {
-        for (output, blob) in &done.record.outputs {
-            if execute::reads(&node.job, name, output) {
-                builder = builder.input(format!("{name}: {output}"), blob.digest);
-            }
-        }
-    }
-    Ok(builder.build())
-}
-
-/// A job's parameters as names and values, for messages.
-fn named_fields(job: &Job) -> Vec<(String, String)> {
-    fn flatten(name: &str, value: &serde_json::Value, into: &mut Vec<(String, String)>) {
-        match value {
-            serde_json::Value::Object(fields) => fields.iter().for_each(|(n, v)| flatten(n, v, into)),
-            serde_json::Value::Array(pairs) => {
-                pairs.iter().for_each(|pair| match pair.as_array().map(Vec::as_slice) {
-                    Some([serde_json::Value::String(n), v]) => into.push((n.clone(), v.to_string())),
-                    _ => into.push((name.to_owned(), pair.to_string())),
-                })
-            }
-            other => into.push((name.to_owned(), other.to_string())),
-        }
-    }
-    let mut fields = Vec::new();
-    // A job is plain data with string keys, which JSON can always hold.
-    let value = serde_json::to_value(job).unwrap_or_default();
-    if value.is_object() {
-        flatten("", &value, &mut fields);
-    }
-    fields
 }
 
 /// Who has done what, shared by the executors.
@@ -225,7 +138,7 @@ struct Board {
 }
 
 struct State {
-    done: Vec<Option<Done>>,
+    done: Vec<Option<Arc<Done>>>,
     /// Inputs that a node still waits for.
     waiting: Vec<usize>,
     /// Nodes that have not yet read a node's outputs.
@@ -236,6 +149,14 @@ struct State {
     error: Option<RunError>,
     /// An executor panicked.
     abandoned: bool,
+}
+
+impl State {
+    fn release(&self, id: NodeId) {
+        if let Some(done) = &self.done[id] {
+            done.release();
+        }
+    }
 }
 
 /// An executor at work on a node: were it to panic, the others must not wait for it for ever.
@@ -254,7 +175,7 @@ impl Board {
     fn new(plan: &Plan) -> Self {
         let mut readers = vec![0; plan.nodes.len()];
         for (_, input) in plan.nodes.iter().flat_map(|node| &node.inputs) {
-            readers[*input] += 1;
+            readers[input.node] += 1;
         }
         let waiting: Vec<usize> = plan.nodes.iter().map(|node| node.inputs.len()).collect();
         let ready = (0..plan.nodes.len()).filter(|&id| waiting[id] == 0).map(Reverse).collect();
@@ -268,7 +189,7 @@ impl Board {
     }
 
     /// The next node to do with what its inputs gave; waits for one; `None` when there is nothing left to do.
-    fn take(&self, plan: &Plan) -> Option<(NodeId, Vec<Done>)> {
+    fn take(&self, plan: &Plan) -> Option<(NodeId, Vec<(NodeId, Arc<Done>)>)> {
         let mut state = self.lock();
         loop {
             if state.error.is_some() || state.abandoned {
@@ -276,10 +197,11 @@ impl Board {
             }
             if let Some(Reverse(id)) = state.ready.pop() {
                 state.running += 1;
-                let inputs = plan.nodes[id].inputs.iter();
-                let inputs =
-                    inputs.map(|&(_, n)| state.done[n].clone().expect("inputs come first")).collect();
-                return Some((id, inputs));
+                let mut inputs: Vec<_> = plan.nodes[id].inputs.iter().map(|(_, input)| input.node).collect();
+                inputs.sort_unstable();
+                inputs.dedup();
+                let done = |input: NodeId| state.done[input].clone().expect("inputs come first");
+                return Some((id, inputs.into_iter().map(|input| (input, done(input))).collect()));
             }
             if state.running == 0 {
                 return None;
@@ -288,26 +210,24 @@ impl Board {
         }
     }
 
-    fn put(&self, plan: &Plan, id: NodeId, result: Result<Done, RunError>) {
+    fn put(&self, plan: &Plan, id: NodeId, result: Result<Arc<Done>, RunError>) {
         let mut state = self.lock();
         state.running -= 1;
         match result {
-            Ok(mut done) => {
-                if state.readers[id] == 0 {
-                    done.bytes = None;
-                }
+            Ok(done) => {
                 state.done[id] = Some(done);
-                for &(_, input) in &plan.nodes[id].inputs {
-                    state.readers[input] -= 1;
-                    // Memory holds only what someone may still read.
-                    if state.readers[input] == 0
-                        && let Some(done) = &mut state.done[input]
-                    {
-                        done.bytes = None;
+                if state.readers[id] == 0 {
+                    state.release(id);
+                }
+                for (_, input) in &plan.nodes[id].inputs {
+                    state.readers[input.node] -= 1;
+                    // Memory holds only what some stage may still read.
+                    if state.readers[input.node] == 0 {
+                        state.release(input.node);
                     }
                 }
                 for (reader, node) in plan.nodes.iter().enumerate() {
-                    let times = node.inputs.iter().filter(|(_, input)| *input == id).count();
+                    let times = node.inputs.iter().filter(|(_, input)| input.node == id).count();
                     if times > 0 {
                         state.waiting[reader] -= times;
                         if state.waiting[reader] == 0 {
@@ -334,7 +254,6 @@ mod tests {
 
     use super::*;
     use crate::plan::Resolution;
-    use crate::world::STARTER_RON;
 
     /// Falls over the first stage that is done.
     #[derive(Default)]
@@ -353,7 +272,8 @@ mod tests {
         let cache = Cache::open(folder.path()).expect("a cache");
         let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
         let space = Space::builtin();
-        let population = Population::load(&space, "starter.ron", STARTER_RON).expect("valid").population;
+        let population =
+            Population::load(&space, "starter.ron", genescape_world::STARTER_RON).expect("valid").population;
         let side = Resolution::of_side(65).expect("a side");
         let plan = Plan::new(&space, &population, side).expect("a plan");
         let runner = Runner {

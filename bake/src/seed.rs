@@ -1,6 +1,6 @@
 //! Random numbers that depend on what they are for, never on when or on which thread they are drawn.
 
-use rand::SeedableRng;
+use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 /// A generator for one item of one stage: the same for the same (`seed`, `stage`, `item`) on every machine.
@@ -17,6 +17,30 @@ pub fn rng(seed: u64, stage: &str, item: u64) -> Pcg64Mcg {
 
 /// A 32-bit seed for lattice noise, by the same rule.
 pub fn noise_seed(seed: u64, stage: &str, item: u64) -> u32 {
-    use rand::Rng;
     rng(seed, stage, item).next_u32()
+}
+
+/// Random numbers drawn one after another in a fixed order.
+pub struct Dice(Pcg64Mcg);
+
+impl Dice {
+    /// Those of one item of one stage, see [`rng`].
+    pub fn new(seed: u32, stage: &str, item: u64) -> Self {
+        Self(rng(seed.into(), stage, item))
+    }
+
+    /// Evenly in [0, 1).
+    pub fn unit(&mut self) -> f32 {
+        (self.0.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0)
+    }
+
+    /// Evenly in [-1, 1).
+    pub fn signed(&mut self) -> f32 {
+        self.unit() * 2.0 - 1.0
+    }
+
+    /// In (-1, 1), most often near 0.
+    pub fn around_zero(&mut self) -> f32 {
+        self.unit() + self.unit() - 1.0
+    }
 }

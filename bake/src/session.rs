@@ -1,31 +1,45 @@
-//! Bakes of one world, for whoever asks: the command line, a watch, the viewer's thread. Population file → scene
-//! files in place, `current.ron`, and a note for `bake explain` of what became of each stage.
+//! Bakes of one world, for the command line, a watch, or the viewer's thread. Population file → scene files in place,
+//! `current.ron`, and a note for `bake explain` of what became of each stage.
 
+use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
-use anyhow::{Result, anyhow};
-use genescape_cache::{BlobRef, Cache, How};
-use genescape_schema::{Population, names};
+use anyhow::{Context, Result, anyhow};
+use genescape_cache::{BlobRef, Cache, Digest, How};
+use genescape_schema::{Population, Space};
+use genescape_world::{PopulationFile, World, atomic_write, names};
 
 use crate::breed;
 use crate::events::{Event, Listener};
+use crate::graph::Done;
 use crate::plan::{Plan, Resolution};
-use crate::run::{Done, RunError, Runner};
-use crate::world::{PopulationFile, World};
+use crate::run::{RunError, Runner};
 
 /// All that bakes of one world share.
 pub struct Session {
     world: World,
+    space: Space,
+    /// Genes that the world's `space.ron` lacks.
+    notices: Vec<String>,
     cache: Cache,
     pool: rayon::ThreadPool,
     resolution: Resolution,
 }
 
+/// What becomes of the scenes of a bake.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Publish {
+    /// `current.ron` says that they are the ones to look at.
+    AsCurrent,
+    /// `current.ron` stays as it is.
+    Aside,
+}
+
 /// How a bake went.
 #[derive(Debug)]
 pub struct Baked {
-    /// What was baked.
     pub file: PopulationFile,
     /// The four scene files.
     pub scenes: Vec<PathBuf>,
@@ -41,70 +55,55 @@ impl Session {
     /// Bakes `world` into its own folder. `pool` computes; the results do not depend on how many threads it has.
     ///
     /// # Errors
-    /// A folder that cannot be written to.
+    /// A wrong `space.ron`, or a folder that cannot be written to.
     pub fn new(world: World, pool: rayon::ThreadPool, resolution: Resolution) -> Result<Self> {
-        let cache = Cache::open(world.root().join(names::BAKED))?;
-        Ok(Self { world, cache, pool, resolution })
+        let (space, notices) = world.space()?;
+        let cache = Cache::open(world.baked())?;
+        Ok(Self { world, space, notices, cache, pool, resolution })
     }
 
-    /// The world.
     pub fn world(&self) -> &World {
         &self.world
     }
 
-    /// The world, for its space to be read again.
-    pub fn world_mut(&mut self) -> &mut World {
-        &mut self.world
+    pub fn space(&self) -> &Space {
+        &self.space
     }
 
-    /// Bakes one population file and says in `current.ron` that its scenes are the ones to look at. `cancelled` is
-    /// asked before each stage; what was finished by then is kept.
+    /// Reads `space.ron` again.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is wrong; the space stays as it was.
+    pub fn reload_space(&mut self) -> Result<()> {
+        (self.space, self.notices) = self.world.space()?;
+        Ok(())
+    }
+
+    /// Bakes one population file. `cancelled` is asked before each stage; what was finished by then is kept.
     ///
     /// # Errors
     /// Faults of the file; [`RunError`], with [`RunError::Cancelled`] for a bake that was told to stop.
     pub fn bake_file(
         &self,
         path: &Path,
-        listener: &dyn Listener,
-        cancelled: &(dyn Fn() -> bool + Sync),
-    ) -> Result<Baked> {
-        self.bake(path, true, listener, cancelled)
-    }
-
-    /// The same, but `current.ron` stays as it is.
-    ///
-    /// # Errors
-    /// As [`Session::bake_file`].
-    pub fn bake_aside(
-        &self,
-        path: &Path,
-        listener: &dyn Listener,
-        cancelled: &(dyn Fn() -> bool + Sync),
-    ) -> Result<Baked> {
-        self.bake(path, false, listener, cancelled)
-    }
-
-    fn bake(
-        &self,
-        path: &Path,
-        shows: bool,
+        publish: Publish,
         listener: &dyn Listener,
         cancelled: &(dyn Fn() -> bool + Sync),
     ) -> Result<Baked> {
         let start = Instant::now();
-        let file = self.world.load_population(path)?;
-        for snap in &file.loaded.snaps {
-            listener.tell(&Event::Notice { message: snap.to_string() });
+        let file = World::read_population(&self.space, path)?;
+        for message in self.notices.iter().chain(&file.notices).cloned() {
+            listener.tell(&Event::Notice { message });
         }
-        let population = &file.loaded.population;
-        let plan = Plan::new(self.world.space(), population, self.resolution)?;
+        let population = &file.population;
+        let plan = Plan::new(&self.space, population, self.resolution)?;
         let generation = population.generation;
         listener.tell(&Event::Planned { generation, stages: plan.nodes.len() });
         let result = self.run(&plan, population, listener, cancelled);
         // The bar must not stand between the person and the message.
         listener.end();
         let done = result?;
-        if shows {
+        if publish == Publish::AsCurrent {
             self.world.publish_current(&file)?;
         }
         self.remember(&plan, &done, population)?;
@@ -119,12 +118,11 @@ impl Session {
     /// Breeds from the votes in a population file, and writes the child as a new file with the next free number.
     ///
     /// # Errors
-    /// Faults of the file, [`breed::BreedError`], a file that cannot be written.
+    /// Faults of the file, [`breed::NoVotes`], a file that cannot be written.
     pub fn breed_file(&self, path: &Path) -> Result<PathBuf> {
-        let parents = self.world.load_population(path)?;
-        let next = self.world.next_generation()?;
-        let children = breed::breed(self.world.space(), &parents.loaded.population, next)?;
-        self.world.save_population(&children)
+        let parents = World::read_population(&self.space, path)?.population;
+        let children = breed::breed(&self.space, &parents, self.world.next_generation()?)?;
+        Ok(self.world.create_population(&self.space, &children)?)
     }
 
     fn run(
@@ -133,18 +131,17 @@ impl Session {
         population: &Population,
         listener: &dyn Listener,
         cancelled: &(dyn Fn() -> bool + Sync),
-    ) -> Result<Vec<Done>, RunError> {
+    ) -> Result<Vec<Arc<Done>>, RunError> {
         let scene_ready = |scene: usize, blob: &BlobRef| -> Result<()> {
-            let json = || -> Result<Vec<u8>> {
-                let bytes = self.cache.get_blob(blob)?;
-                Ok(bytes.ok_or_else(|| anyhow!("the scene vanished from the cache; bake again"))?.to_vec())
-            };
-            self.world.publish_scene(population.generation, scene, blob.digest, &json)?;
-            listener.tell(&Event::SceneReady {
-                scene,
-                name: population.individuals[scene].name.clone(),
-                path: self.world.scene_path(population.generation, scene).display().to_string(),
-            });
+            let path = self.world.scene_path(population.generation, scene);
+            if !fs::read(&path).is_ok_and(|there| Digest::of(&there) == blob.digest) {
+                let json = self.cache.get_blob(blob)?;
+                let json = json.ok_or_else(|| anyhow!("the scene vanished from the cache; bake again"))?;
+                let written = atomic_write::replace_unsynced(&path, &*json);
+                written.with_context(|| format!("cannot write {}", path.display()))?;
+            }
+            let (name, path) = (population.individuals[scene].name.clone(), path.display().to_string());
+            listener.tell(&Event::SceneReady { scene, name, path });
             Ok(())
         };
         let (cache, pool) = (&self.cache, &self.pool);
@@ -152,13 +149,13 @@ impl Session {
     }
 
     /// Notes for `explain` what became of each stage of each scene.
-    fn remember(&self, plan: &Plan, done: &[Done], population: &Population) -> Result<()> {
+    fn remember(&self, plan: &Plan, done: &[Arc<Done>], population: &Population) -> Result<()> {
         let generation = population.generation;
         let parent = population.parent.map_or(generation.checked_sub(1), |parent| Some(parent.generation));
         for scene in 0..plan.scenes.len() {
-            let mut history = self.cache.history(&scope(generation, scene))?;
+            let mut history = self.cache.history(&names::scene_id(generation, scene))?;
             if let Some(parent) = parent {
-                history.inherit(&self.cache.history(&scope(parent, scene))?);
+                history.inherit(&self.cache.history(&names::scene_id(parent, scene))?);
             }
             let nodes = || plan.nodes.iter().zip(done).filter(|(node, _)| node.scenes.contains(&scene));
             for (node, done) in nodes() {
@@ -169,9 +166,4 @@ impl Session {
         }
         Ok(())
     }
-}
-
-/// What the cache's history calls a scene.
-pub fn scope(generation: u32, scene: usize) -> String {
-    format!("g{generation:04}-scene-{scene}")
 }

@@ -1,14 +1,12 @@
 //! Bytes ↔ immutable files that are named by the digest of their bytes.
 
-use bytes::Bytes;
 use serde::{Deserialize, Serialize};
 
-use crate::{Cache, Digest, Error, Notice, Result};
+use crate::{Bytes, Cache, Digest, Error, Fault, Result};
 
 /// Where some bytes are: `blobs/ab/ab12….EXT`.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct BlobRef {
-    /// Of the bytes.
     pub digest: Digest,
     /// File extension without a dot, so that other programs know the file's kind.
     pub ext: String,
@@ -22,8 +20,7 @@ impl BlobRef {
     /// # Errors
     /// If `ext` is not one to eight lower-case letters and digits.
     pub fn of(bytes: &[u8], ext: &str) -> Result<Self> {
-        let plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit();
-        if ext.is_empty() || ext.len() > 8 || !ext.bytes().all(plain) {
+        if !is_plain(ext) {
             return Err(Error::Extension(ext.to_owned()));
         }
         Ok(Self { digest: Digest::of(bytes), ext: ext.to_owned(), len: bytes.len() as u64 })
@@ -41,25 +38,21 @@ impl BlobRef {
         "../".repeat(folders) + &self.path()
     }
 
-    /// The digest and extension that a path names, if it is a blob's path.
-    pub(crate) fn parse_path(path: &str) -> Option<(Digest, &str)> {
+    /// The blob of `len` bytes that a path names, if it is a blob's path.
+    pub(crate) fn from_path(path: &str, len: u64) -> Option<Self> {
         let (folder, file) = path.strip_prefix("blobs/")?.split_once('/')?;
         let (hex, ext) = file.split_once('.')?;
         let digest = hex.parse().ok()?;
-        (hex.starts_with(folder) && folder.len() == 2 && !ext.contains(['.', '/'])).then_some((digest, ext))
+        let named = folder.len() == 2 && hex.starts_with(folder) && is_plain(ext);
+        named.then(|| Self { digest, ext: ext.to_owned(), len })
     }
 }
 
-impl Cache {
-    /// Stores bytes under their digest. Anything that stood there is replaced: it may be damaged.
-    ///
-    /// # Errors
-    /// If the extension is not plain or the folder cannot be written to.
-    pub fn put_blob(&self, bytes: impl Into<Bytes>, ext: &str) -> Result<BlobRef> {
-        let _gc_waits = self.locks.publishing()?;
-        self.write_blob(bytes.into(), ext)
-    }
+fn is_plain(ext: &str) -> bool {
+    (1..=8).contains(&ext.len()) && ext.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit())
+}
 
+impl Cache {
     /// The bytes of a blob, verified; `None` if it is missing or damaged (then it is removed: build it again).
     ///
     /// # Errors
@@ -70,50 +63,45 @@ impl Cache {
         if Digest::of(&bytes) == blob.digest {
             return Ok(Some(bytes));
         }
-        self.discard_damaged(&path, blob.digest)?;
+        // In a folder that cannot be written to it stays, and is not served all the same.
+        if let Ok(_nobody_writes) = self.locks.removing() {
+            match self.store.get(&path)? {
+                Some((bytes, _)) if Digest::of(&bytes) != blob.digest => {
+                    let _ = self.store.remove(&path);
+                }
+                // Another process has removed or mended it.
+                _ => return Ok(None),
+            }
+        }
+        self.notices.add(self.store.path_of(&path), Fault::DamagedBlob);
         Ok(None)
     }
 
-    /// Whether a blob's file exists and has the right length. One system call; says nothing of what is in it.
-    pub fn has_blob(&self, blob: &BlobRef) -> bool {
+    /// Whether a blob's file exists and has the right length; says nothing of what is in it.
+    pub(crate) fn has_blob(&self, blob: &BlobRef) -> bool {
         self.store.metadata(&blob.path()).is_some_and(|meta| meta.is_file() && meta.len() == blob.len)
     }
 
-    /// As `put_blob`, while the caller keeps `gc` waiting.
-    pub(crate) fn write_blob(&self, bytes: Bytes, ext: &str) -> Result<BlobRef> {
-        let blob = BlobRef::of(&bytes, ext)?;
-        self.write_over(&blob.path(), |path| self.store.put(path, bytes.clone()))?;
+    /// Stores bytes under their digest, while the caller keeps `gc` waiting. What stood there is replaced: it may be
+    /// damaged.
+    pub(crate) fn put_blob(&self, bytes: &[u8], ext: &str) -> Result<BlobRef> {
+        let blob = BlobRef::of(bytes, ext)?;
+        self.publish_file(&blob.path(), bytes)?;
         Ok(blob)
     }
 
-    /// Runs `write`; if a folder stands in its way, moves that aside and runs it again.
-    pub(crate) fn write_over<T>(&self, path: &str, write: impl Fn(&str) -> Result<T>) -> Result<T> {
-        let written = write(path).or_else(|error| {
-            if !self.store.metadata(path).is_some_and(|meta| meta.is_dir()) {
+    /// Writes a file; if a folder stands in its way, moves that aside first.
+    pub(crate) fn publish_file(&self, name: &str, bytes: &[u8]) -> Result<()> {
+        self.store.put(name, bytes).or_else(|error| {
+            if !self.store.metadata(name).is_some_and(|meta| meta.is_dir()) {
                 return Err(error);
             }
-            if let Some(aside) = self.store.move_aside(path)? {
-                self.notices.add(Notice::MovedAside(aside));
+            if let Some(aside) = self.store.move_aside(name)? {
+                self.notices.add(aside, Fault::MovedAside);
             }
-            write(path)
+            self.store.put(name, bytes)
         })?;
-        self.notices.mended(&self.store.path_of(path));
-        Ok(written)
-    }
-
-    /// Removes a blob that is still damaged when nobody else writes; tells so if this call did it.
-    pub(crate) fn discard_damaged(&self, path: &str, digest: Digest) -> Result<()> {
-        let notice = Notice::DamagedBlob(self.store.path_of(path));
-        // In a folder that cannot be written to, it stays: it is not served all the same.
-        let Ok(_nobody_writes) = self.locks.removing() else {
-            self.notices.add(notice);
-            return Ok(());
-        };
-        let Some((bytes, _)) = self.store.get(path)? else { return Ok(()) };
-        if Digest::of(&bytes) != digest {
-            let _ = self.store.remove(path);
-            self.notices.add(notice);
-        }
+        self.notices.mended(&self.store.path_of(name));
         Ok(())
     }
 }

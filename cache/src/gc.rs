@@ -7,7 +7,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::{Duration, SystemTime};
 
-use crate::store::{Entry, Sealed};
+use crate::action::record_path;
+use crate::store::Entry;
 use crate::{ActionRecord, BlobRef, Cache, Digest, Result};
 
 /// What to remove.
@@ -30,11 +31,9 @@ impl GcOptions {
 /// What was removed, what is left and why.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GcReport {
-    /// Records removed.
     pub actions_removed: usize,
-    /// Blobs removed.
     pub blobs_removed: usize,
-    /// Files removed that killed writers left behind.
+    /// Files that killed writers left behind.
     pub abandoned_removed: usize,
     /// Bytes that blobs and records took before.
     pub bytes_before: u64,
@@ -52,11 +51,13 @@ impl Cache {
     /// # Errors
     /// If the folder cannot be listed or a file cannot be removed.
     pub fn gc(&self, options: GcOptions, roots: &BTreeSet<Digest>) -> Result<GcReport> {
-        let _nobody_publishes = self.locks.removing()?;
+        let _nothing_is_published = self.locks.removing()?;
         let mut sweep = Sweep::begin(self, options, roots)?;
-        sweep.unnamed_blobs()?;
+        // First those whose records are gone, or were never written because their builder was killed.
+        let blobs: Vec<String> = sweep.blobs.keys().cloned().collect();
+        blobs.iter().try_for_each(|name| sweep.remove_blob_if_free(name))?;
         sweep.oldest_actions()?;
-        sweep.abandoned_files();
+        sweep.abandoned_files()?;
         Ok(sweep.report)
     }
 
@@ -67,9 +68,7 @@ impl Cache {
     pub fn roots_of(&self, scope: &str) -> Result<BTreeSet<Digest>> {
         let mut roots = BTreeSet::new();
         for key in self.history(scope)?.keys() {
-            if let Sealed::Whole(record, _) =
-                self.store.get_sealed::<ActionRecord>(&crate::action::record_path(key))?
-            {
+            if let Some((record, _)) = self.get_sealed::<ActionRecord>(&record_path(key))? {
                 roots.extend(record.outputs.iter().map(|(_, blob)| blob.digest));
             }
         }
@@ -99,35 +98,23 @@ impl<'a> Sweep<'a> {
         let mut report = GcReport::default();
         let mut blobs = BTreeMap::new();
         for entry in cache.store.list("blobs")? {
-            let Some((digest, _)) = BlobRef::parse_path(&entry.name) else { continue };
+            let Some(BlobRef { digest, .. }) = BlobRef::from_path(&entry.name, entry.bytes) else { continue };
             report.bytes_before += entry.bytes;
             report.bytes_of_roots += if roots.contains(&digest) { entry.bytes } else { 0 };
             blobs.insert(entry.name.clone(), Blob { entry, digest, named: 0 });
         }
         let mut records = Vec::new();
         for entry in cache.store.list("actions")? {
-            match cache.store.get_sealed::<ActionRecord>(&entry.name)? {
-                Sealed::Absent => {}
-                Sealed::Broken => cache.discard_record(&entry.name),
-                Sealed::Whole(record, _) => {
-                    report.bytes_before += entry.bytes;
-                    for (_, blob) in &record.outputs {
-                        blobs.entry(blob.path()).and_modify(|blob| blob.named += 1);
-                    }
-                    records.push((entry, record));
-                }
+            let Some((record, _)) = cache.get_sealed::<ActionRecord>(&entry.name)? else { continue };
+            report.bytes_before += entry.bytes;
+            for (_, blob) in &record.outputs {
+                blobs.entry(blob.path()).and_modify(|blob| blob.named += 1);
             }
+            records.push((entry, record));
         }
         report.bytes_left = report.bytes_before;
         records.sort_by(|(a, _), (b, _)| (a.modified, &a.name).cmp(&(b.modified, &b.name)));
         Ok(Self { cache, options, roots, now: SystemTime::now(), blobs, records, report })
-    }
-
-    /// Blobs whose records are gone, or were never written because their builder was killed.
-    fn unnamed_blobs(&mut self) -> Result<()> {
-        let unnamed = self.blobs.values().filter(|blob| blob.named == 0);
-        let names: Vec<String> = unnamed.map(|blob| blob.entry.name.clone()).collect();
-        names.iter().try_for_each(|name| self.remove_blob_if_free(name))
     }
 
     fn oldest_actions(&mut self) -> Result<()> {
@@ -166,13 +153,14 @@ impl<'a> Sweep<'a> {
         Ok(())
     }
 
-    fn abandoned_files(&mut self) {
-        let Some(before) = self.now.checked_sub(self.options.grace) else { return };
+    fn abandoned_files(&mut self) -> Result<()> {
         for folder in ["blobs", "actions", "history"] {
-            for path in self.cache.store.abandoned(folder, before) {
-                self.report.abandoned_removed += usize::from(std::fs::remove_file(path).is_ok());
-            }
+            let mut abandoned = self.cache.store.staged(folder)?;
+            abandoned.retain(|entry| !self.is_young(entry));
+            abandoned.iter().try_for_each(|entry| self.cache.store.remove(&entry.name))?;
+            self.report.abandoned_removed += abandoned.len();
         }
+        Ok(())
     }
 
     /// A time in the far future (the clock was set back since) is not young, or it would be so for ever.

@@ -1,49 +1,27 @@
 //! The keys of a scope's last run, against which "what changed?" is answered.
 //!
-//! A scope is whatever the caller calls one unit of work ("g0003/scene-0"); an item is one action in it
-//! ("tree/2"). The history of a scope is one small sealed file, written once a run, and only if it changed.
+//! A scope is one unit of work of the caller ("g0003-scene-0"); an item is one action in it ("tree 2"). The history of a scope is one small sealed file, written once a run, and only if it changed.
 
 use std::collections::BTreeMap;
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::store::Sealed;
 use crate::{ActionKey, Cache, Digest, How, KeyFields, Result};
 
 /// One difference between the key of an item now and in the last run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Change {
     /// The stage's code has another version.
-    Version {
-        /// In the last run.
-        from: u32,
-        /// Now.
-        to: u32,
-    },
+    Version { from: u32, to: u32 },
     /// Another stage does this item's work.
-    Stage {
-        /// In the last run.
-        from: String,
-        /// Now.
-        to: String,
-    },
+    Stage { from: String, to: String },
     /// A named parameter; `None` where there was none of that name.
-    Parameter {
-        /// Its name.
-        name: String,
-        /// Its text in the last run.
-        from: Option<String>,
-        /// Its text now.
-        to: Option<String>,
-    },
+    Parameter { name: String, from: Option<String>, to: Option<String> },
     /// Parameters whose names were not given, or that differ by less than their text shows.
     UnnamedParameters,
     /// An input's bytes changed, or it came or went.
-    Input {
-        /// Its name.
-        name: String,
-    },
+    Input { name: String },
 }
 
 impl fmt::Display for Change {
@@ -73,38 +51,26 @@ pub struct Explanation {
 
 impl fmt::Display for Explanation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let changes = self.changes_in_words();
         match (self.how, self.first, self.changes.is_empty()) {
             (How::Reused, true, _) => f.write_str("reused: built before elsewhere"),
             (How::Reused, false, true) => f.write_str("reused"),
-            (How::Reused, false, false) => {
-                f.write_str("reused: built before elsewhere (")?;
-                self.write_changes(f)?;
-                f.write_str(")")
-            }
+            (How::Reused, false, false) => write!(f, "reused: built before elsewhere ({changes})"),
             (How::Built, true, _) => f.write_str("first build"),
             (How::Built, false, true) => f.write_str("rebuilt because the result was missing or damaged"),
-            (How::Built, false, false) => {
-                f.write_str("rebuilt because ")?;
-                self.write_changes(f)
-            }
+            (How::Built, false, false) => write!(f, "rebuilt because {changes}"),
         }
     }
 }
 
 impl Explanation {
-    fn write_changes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    fn changes_in_words(&self) -> String {
         let is_parameter = |c: &&Change| matches!(c, Change::Parameter { .. } | Change::UnnamedParameters);
-        let mut lead = "parameters changed: ";
-        for change in self.changes.iter().filter(is_parameter) {
-            write!(f, "{lead}{change}")?;
-            lead = ", ";
-        }
-        let mut lead = if lead == ", " { "; " } else { "" };
-        for change in self.changes.iter().filter(|c| !is_parameter(c)) {
-            write!(f, "{lead}{change}")?;
-            lead = "; ";
-        }
-        Ok(())
+        let (parameters, others): (Vec<&Change>, Vec<&Change>) = self.changes.iter().partition(is_parameter);
+        let words = |changes: Vec<&Change>| changes.into_iter().map(Change::to_string).collect::<Vec<_>>();
+        let parameters = words(parameters).join(", ");
+        let lead = (!parameters.is_empty()).then(|| format!("parameters changed: {parameters}"));
+        lead.into_iter().chain(words(others)).collect::<Vec<_>>().join("; ")
     }
 }
 
@@ -132,19 +98,14 @@ impl History {
         }
     }
 
-    /// Why `item`, whose key is now `key`, is `how`; nothing is noted.
-    pub fn explain(&self, item: &str, key: &ActionKey, how: How) -> Explanation {
-        let Some(last) = self.items.get(item) else {
-            return Explanation { how, first: true, changes: Vec::new() };
-        };
-        let changes =
-            if last.key == key.digest() { Vec::new() } else { differences(&last.fields, key.fields()) };
-        Explanation { how, first: false, changes }
-    }
-
-    /// Explains, and remembers the key and the explanation for the next run.
+    /// Why `item`, whose key is now `key`, is `how`; the key and the explanation are remembered for the next run.
     pub fn note(&mut self, item: &str, key: &ActionKey, how: How) -> Explanation {
-        let explanation = self.explain(item, key, how);
+        let last = self.items.get(item);
+        let changes = match last {
+            Some(last) if last.key != key.digest() => differences(&last.fields, key.fields()),
+            _ => Vec::new(),
+        };
+        let explanation = Explanation { how, first: last.is_none(), changes };
         let entry =
             Item { key: key.digest(), fields: key.fields().clone(), explanation: explanation.clone() };
         self.items.insert(item.to_owned(), entry);
@@ -157,7 +118,7 @@ impl History {
     }
 
     /// The keys of the last run: what they produced is what the scope is made of.
-    pub fn keys(&self) -> impl Iterator<Item = Digest> {
+    pub(crate) fn keys(&self) -> impl Iterator<Item = Digest> {
         self.items.values().map(|item| item.key)
     }
 
@@ -206,8 +167,13 @@ fn changed_names<T: Clone + PartialEq>(
         .collect()
 }
 
+/// A scope's file, which lies in the cache's folder whatever the scope is called.
 fn path(scope: &str) -> String {
-    format!("history/{scope}.keys")
+    let escaped = scope.bytes().map(|b| match b {
+        b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'_' => char::from(b).to_string(),
+        _ => format!("%{b:02X}"),
+    });
+    format!("history/{}.keys", escaped.collect::<String>())
 }
 
 impl Cache {
@@ -216,14 +182,8 @@ impl Cache {
     /// # Errors
     /// If the file exists and cannot be read.
     pub fn history(&self, scope: &str) -> Result<History> {
-        let items = match self.store.get_sealed::<BTreeMap<String, Item>>(&path(scope))? {
-            Sealed::Whole(items, _) => items,
-            Sealed::Absent => BTreeMap::new(),
-            Sealed::Broken => {
-                self.discard_record(&path(scope));
-                BTreeMap::new()
-            }
-        };
+        let found = self.get_sealed::<BTreeMap<String, Item>>(&path(scope))?;
+        let items = found.map_or_else(BTreeMap::new, |(items, _)| items);
         Ok(History { scope: scope.to_owned(), saved: items.clone(), items })
     }
 
@@ -232,9 +192,9 @@ impl Cache {
     /// # Errors
     /// If the folder cannot be written to.
     pub fn save_history(&self, history: &History) -> Result<()> {
-        if history.items != history.saved {
-            self.write_over(&path(&history.scope), |path| self.store.put_sealed(path, &history.items))?;
+        if history.items == history.saved {
+            return Ok(());
         }
-        Ok(())
+        self.put_sealed(&path(&history.scope), &history.items)
     }
 }

@@ -16,6 +16,8 @@
 //! baked/locks/                 empty files: who builds what, who cleans up
 //! ```
 //!
+//! All of it is one local folder. A store that machines share comes later, behind a feature, in the place of `store.rs`.
+//!
 //! What it promises:
 //!
 //! - *Nothing damaged is served.* A blob is hashed when read; records and histories carry a seal. What fails is
@@ -36,22 +38,26 @@ mod history;
 mod key;
 mod lock;
 mod notice;
+mod sealed;
 mod store;
 mod upkeep;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::sync::Arc;
 use std::time::Duration;
 
 pub use action::{ActionRecord, How, Outcome, Output};
 pub use blob::BlobRef;
-pub use bytes::Bytes;
 pub use digest::{Digest, ParseDigestError};
 pub use error::{Error, Result};
 pub use gc::{GcOptions, GcReport};
 pub use history::{Change, Explanation, History};
-pub use key::{ActionKey, KeyBuilder, KeyFields};
-pub use notice::Notice;
+pub use key::{ActionKey, KeyFields};
+pub use notice::{Fault, Notice};
 pub use upkeep::{StageStats, Stats, VerifyReport};
+
+/// A buffer that is cheap to clone and comes from a `Vec` without a copy.
+pub type Bytes = Arc<Vec<u8>>;
 
 /// A cache folder. Cheap to open; one may be shared by all threads, and any number may be open on one folder.
 #[derive(Debug)]
@@ -79,16 +85,6 @@ impl Cache {
     pub fn with_patience(mut self, patience: Duration) -> Self {
         self.locks.patience = patience;
         self
-    }
-
-    /// The folder.
-    pub fn root(&self) -> &Path {
-        self.store.root()
-    }
-
-    /// Where a blob's file is, whether it exists or not.
-    pub fn path_of_blob(&self, blob: &BlobRef) -> PathBuf {
-        self.store.path_of(&blob.path())
     }
 
     /// What was found missing or damaged since the last call: for the caller to print. Each is told once.

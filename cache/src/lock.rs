@@ -8,7 +8,7 @@ use std::cell::Cell;
 use std::fs::{File, TryLockError};
 use std::io;
 use std::marker::PhantomData;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::{Digest, Error, Result};
@@ -48,9 +48,9 @@ impl Locks {
 
     /// Waits for the turn to build `key`.
     ///
-    /// Single flight saves work; it isn't needed for correct results. So nobody waits at any price: a thread that
+    /// Single flight saves work; it isn't needed for correct results. So no thread waits at any price: one that
     /// builds already (a thread pool gave it this task while it waited for parts of the other) does not wait, since
-    /// the other builder may be waiting for it, and nobody waits longer than `patience`.
+    /// the other builder may be waiting for it, and none waits longer than `patience`.
     pub fn turn(&self, key: Digest) -> Result<Turn> {
         let [a, b, ..] = *key.as_bytes();
         let slot = u16::from_le_bytes([a, b]) % SLOTS;
@@ -64,31 +64,28 @@ impl Locks {
 
     /// Held while files are published or marked as used: keeps `gc` from removing them at that moment.
     pub fn publishing(&self) -> Result<File> {
-        let path = self.folder.join("gc");
-        let file = self.open(&path)?;
-        unless_unsupported(file.lock_shared()).map_err(|source| Error::at("lock", &path, source))?;
-        Ok(file)
+        self.lock_gc(File::lock_shared)
     }
 
-    /// Held while files are removed: nobody publishes.
+    /// Held while files are removed: nothing is published.
     pub fn removing(&self) -> Result<File> {
+        self.lock_gc(File::lock)
+    }
+
+    fn lock_gc(&self, lock: impl Fn(&File) -> io::Result<()>) -> Result<File> {
         let path = self.folder.join("gc");
         let file = self.open(&path)?;
-        unless_unsupported(file.lock()).map_err(|source| Error::at("lock", &path, source))?;
+        unless_unsupported(lock(&file)).map_err(|source| Error::at("lock", &path, source))?;
         Ok(file)
     }
 
-    fn open(&self, path: &PathBuf) -> Result<File> {
+    fn open(&self, path: &Path) -> Result<File> {
         let open = || File::options().create(true).truncate(false).write(true).open(path);
-        open()
-            .or_else(|error| {
-                if error.kind() != io::ErrorKind::NotFound {
-                    return Err(error);
-                }
-                std::fs::create_dir_all(&self.folder)?;
-                open()
-            })
-            .map_err(|source| Error::at("write", path, source))
+        let file = open().or_else(|error| match error.kind() {
+            io::ErrorKind::NotFound => std::fs::create_dir_all(&self.folder).and_then(|()| open()),
+            _ => Err(error),
+        });
+        file.map_err(|source| Error::at("write", path, source))
     }
 }
 

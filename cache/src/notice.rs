@@ -1,55 +1,57 @@
 //! What was found wrong with the cache and put right: for people to know, not for programs to act upon.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// One thing found wrong.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-#[non_exhaustive]
-pub enum Notice {
+/// One thing found wrong and put right.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Notice {
+    pub path: PathBuf,
+    pub fault: Fault,
+}
+
+/// What was wrong with a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Fault {
     /// A blob's bytes are not those that its name promises; it was removed.
-    DamagedBlob(PathBuf),
-    /// A record or history that fails its seal; it was removed.
-    DamagedRecord(PathBuf),
+    DamagedBlob,
+    /// A record or history fails its seal; it was removed.
+    DamagedRecord,
     /// A record promises a blob that is not there.
-    MissingBlob(PathBuf),
-    /// Something else stood where a file must be; it was moved, not removed.
-    MovedAside(PathBuf),
+    MissingBlob,
+    /// A stage's result is whole, but its reader cannot make sense of it; its record was removed.
+    Undecodable { stage: String },
+    /// A folder stood where a file must be; it was moved to this path, not removed.
+    MovedAside,
 }
 
 impl fmt::Display for Notice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::DamagedBlob(path) => write!(f, "{}: damaged, removed; will be rebuilt", path.display()),
-            Self::DamagedRecord(path) => write!(f, "{}: damaged record, removed", path.display()),
-            Self::MissingBlob(path) => write!(f, "{}: missing or cut short; will be rebuilt", path.display()),
-            Self::MovedAside(path) => {
-                write!(f, "{}: stood where a cached file belongs, moved aside", path.display())
+        write!(f, "{}: ", self.path.display())?;
+        match &self.fault {
+            Fault::DamagedBlob => f.write_str("damaged, removed; will be rebuilt"),
+            Fault::DamagedRecord => f.write_str("damaged record, removed"),
+            Fault::MissingBlob => f.write_str("missing or cut short; will be rebuilt"),
+            Fault::Undecodable { stage } => {
+                write!(f, "the cached result of stage {stage} cannot be decoded; it will be rebuilt")
             }
+            Fault::MovedAside => f.write_str("stood where a cached file belongs, moved aside"),
         }
     }
 }
 
-impl Notice {
-    fn path(&self) -> &PathBuf {
-        match self {
-            Self::DamagedBlob(p) | Self::DamagedRecord(p) | Self::MissingBlob(p) | Self::MovedAside(p) => p,
-        }
-    }
-}
-
-/// Notices nobody has taken yet, and the files told about that nobody has rebuilt yet.
+/// Notices by path until they are taken, and the paths of those taken until their files are rebuilt.
 #[derive(Debug, Default)]
-pub(crate) struct Notices(Mutex<(BTreeSet<Notice>, BTreeSet<PathBuf>)>);
+pub(crate) struct Notices(Mutex<(BTreeMap<PathBuf, Fault>, BTreeSet<PathBuf>)>);
 
 impl Notices {
-    /// Tells, unless that file was told about already: a damaged blob, once removed, is missing as well.
-    pub fn add(&self, notice: Notice) {
+    /// Adds a notice unless there was one of that file: a damaged blob, once removed, is missing as well.
+    pub fn add(&self, path: PathBuf, fault: Fault) {
         let (pending, told) = &mut *self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if told.insert(notice.path().clone()) {
-            pending.insert(notice);
+        if told.insert(path.clone()) {
+            pending.insert(path, fault);
         }
     }
 
@@ -60,6 +62,6 @@ impl Notices {
 
     pub fn take(&self) -> Vec<Notice> {
         let (pending, _) = &mut *self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        std::mem::take(pending).into_iter().collect()
+        std::mem::take(pending).into_iter().map(|(path, fault)| Notice { path, fault }).collect()
     }
 }

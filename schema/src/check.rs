@@ -7,7 +7,20 @@ use ron::error::SpannedError;
 use serde::de::DeserializeOwned;
 
 use crate::report::{Diagnostic, Report, place};
-use crate::ron_tree::{Field, Node, Value, parse};
+use crate::ron_tree::{Field, Node, Value, parse, prepare};
+
+/// Reads the text of a file, whose name is for messages: what `read` makes of it, or everything that is wrong.
+pub(crate) fn read<T>(
+    file: &str,
+    text: &str,
+    read: impl FnOnce(&mut Checker<'_>, &Node<'_>) -> Option<T>,
+) -> Result<T, Report> {
+    let text = prepare(text);
+    let mut checker = Checker::new(file, &text);
+    let root = checker.parse()?;
+    let result = read(&mut checker, &root);
+    checker.finish(result)
+}
 
 /// The faults found so far in one file.
 pub(crate) struct Checker<'a> {
@@ -31,13 +44,20 @@ impl<'a> Checker<'a> {
         self.faults.push((span.start, Diagnostic::at(self.file, self.text, span, message.into())));
     }
 
-    /// Line and column of a node.
-    pub fn place(&self, node: &Node<'_>) -> (usize, usize) {
-        place(self.text, node.start)
+    /// The same in place of a value.
+    pub fn refuse<T>(&mut self, span: Range<usize>, message: impl Into<String>) -> Option<T> {
+        self.error(span, message);
+        None
+    }
+
+    /// A remark on a node that is no fault: "g0000.ron:12:5: message".
+    pub fn note(&self, node: &Node<'_>, message: impl Display) -> String {
+        let (line, column) = place(self.text, node.start);
+        format!("{}:{line}:{column}: {message}", self.file)
     }
 
     /// The result if there was no fault.
-    pub fn finish<T>(mut self, result: Option<T>) -> Result<T, Report> {
+    fn finish<T>(mut self, result: Option<T>) -> Result<T, Report> {
         match result {
             Some(result) if self.faults.is_empty() => Ok(result),
             _ => {
@@ -56,8 +76,11 @@ impl<'a> Checker<'a> {
         hint: impl Fn(&str) -> Option<String>,
     ) -> Option<Vec<&'n Field<'t>>> {
         let Value::Struct(fields) = &node.value else {
-            self.wrong_kind(node, what, &format!("named values in brackets, as ({}: …)", known.first()?));
-            return None;
+            return self.wrong_kind(
+                node,
+                what,
+                &format!("named values in brackets, as ({}: …)", known.first()?),
+            );
         };
         let mut unique: Vec<&Field<'t>> = Vec::new();
         for field in fields {
@@ -66,7 +89,7 @@ impl<'a> Checker<'a> {
                 let hint = hint(field.name).unwrap_or_else(|| did_you_mean(field.name, known));
                 self.error(span, format!("{what} has no {}{hint}", field.name));
             } else if let Some(first) = unique.iter().find(|first| first.name == field.name) {
-                let (line, _) = self.place(&first.node);
+                let (line, _) = place(self.text, first.node.start);
                 self.error(span, format!("{} is given twice; first in line {line}", field.name));
             } else {
                 unique.push(field);
@@ -94,8 +117,8 @@ impl<'a> Checker<'a> {
     ) -> Option<Vec<&'n Field<'t>>> {
         let found = node.struct_name();
         if !found.is_empty() && found != name {
-            self.error(node.start..node.start + found.len(), format!("expected {name}(…), found {found}"));
-            return None;
+            let message = format!("expected {name}(…), found {found}");
+            return self.refuse(node.start..node.start + found.len(), message);
         }
         self.record(node, name, known)
     }
@@ -108,49 +131,35 @@ impl<'a> Checker<'a> {
         what: &str,
         name: &str,
     ) -> Option<&'n Node<'t>> {
-        let found = fields.iter().find(|field| field.name == name);
-        if found.is_none() {
-            self.error(node.start..node.start + 1, format!("{what} lacks {name}"));
-        }
-        found.map(|field| &field.node)
+        let found = optional(fields, name);
+        found.or_else(|| self.refuse(node.start..node.start + 1, format!("{what} lacks {name}")))
     }
 
     pub fn number(&mut self, node: &Node<'_>, what: &str) -> Option<f64> {
         match node.value {
-            Value::Number(number) => return Some(number),
+            Value::Number(number) => Some(number),
             _ => self.wrong_kind(node, what, "a number"),
         }
-        None
     }
 
     /// A whole number that fits `T`.
-    pub fn whole<T: DeserializeOwned + Display>(
-        &mut self,
-        node: &Node<'_>,
-        what: &str,
-        most: T,
-    ) -> Option<T> {
+    pub fn whole<T: DeserializeOwned + Display>(&mut self, node: &Node<'_>, what: &str, max: T) -> Option<T> {
         let whole = matches!(node.value, Value::Number(_)).then(|| ron::from_str(node.text).ok()).flatten();
-        if whole.is_none() {
-            self.wrong_kind(node, what, &format!("a whole number from 0 to {most}"));
-        }
-        whole
+        whole.or_else(|| self.wrong_kind(node, what, &format!("a whole number from 0 to {max}")))
     }
 
     pub fn text<'n>(&mut self, node: &'n Node<'_>, what: &str) -> Option<&'n str> {
         match &node.value {
-            Value::Text(text) => return Some(text),
+            Value::Text(text) => Some(text),
             _ => self.wrong_kind(node, what, "a text in quotes"),
         }
-        None
     }
 
     pub fn list<'n, 't>(&mut self, node: &'n Node<'t>, what: &str) -> Option<&'n [Node<'t>]> {
         match &node.value {
-            Value::List(items) => return Some(items),
+            Value::List(items) => Some(items),
             _ => self.wrong_kind(node, what, "a list"),
         }
-        None
     }
 
     /// A word out of a few.
@@ -161,19 +170,15 @@ impl<'a> Checker<'a> {
         known: &[&str],
         find: impl Fn(&str) -> Option<T>,
     ) -> Option<T> {
-        let found = find(node.text);
-        if found.is_none() {
+        find(node.text).or_else(|| {
             let hint = did_you_mean(node.text, known);
-            self.error(node.span(), format!("{what}: {} is none of {}{hint}", given(node), known.join(", ")));
-        }
-        found
+            self.refuse(node.span(), format!("{what}: {} is none of {}{hint}", given(node), known.join(", ")))
+        })
     }
 
-    pub fn wrong_kind(&mut self, node: &Node<'_>, what: &str, expected: &str) {
-        self.error(
-            node.span(),
-            format!("{what}: expected {expected}, found {}: {}", node.kind(), given(node)),
-        );
+    pub fn wrong_kind<T>(&mut self, node: &Node<'_>, what: &str, expected: &str) -> Option<T> {
+        let message = format!("{what}: expected {expected}, found {}: {}", node.kind(), given(node));
+        self.refuse(node.span(), message)
     }
 
     fn syntax(&self, error: SpannedError) -> Report {
@@ -189,6 +194,11 @@ impl<'a> Checker<'a> {
         }
         Report { diagnostics: vec![Diagnostic::at(self.file, self.text, at..at, message)] }
     }
+}
+
+/// One field, if it is there.
+pub(crate) fn optional<'n, 't>(fields: &[&'n Field<'t>], name: &str) -> Option<&'n Node<'t>> {
+    fields.iter().find(|field| field.name == name).map(|field| &field.node)
 }
 
 /// A value as it was written, cut short.
@@ -209,7 +219,7 @@ pub(crate) fn did_you_mean(name: &str, known: &[&str]) -> String {
         .map_or(String::new(), |(_, known)| format!("; did you mean {known}?"))
 }
 
-/// ron's messages in the words of somebody who edits a file, to stand after a colon.
+/// ron's messages in the words of a person who edits a file, to stand after a colon.
 fn syntax_message(error: &ron::Error) -> String {
     match error {
         ron::Error::Eof => "a bracket or a quotation mark is still open".into(),

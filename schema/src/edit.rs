@@ -37,13 +37,13 @@ pub enum EditError {
 /// # Errors
 /// Text that is no population.
 pub fn set_votes(file: &str, text: &str, votes: Option<Votes>) -> Result<String, EditError> {
-    let prepared = prepare(text);
-    let root = Checker::new(file, &prepared).parse()?;
-    let fields = struct_fields(&root, "Population")?;
-    match find(fields, "votes") {
-        Ok(node) => Ok(replace(text, vote_changes(node, votes))),
-        Err(_) => add_field(text, &prepared, fields, &format!("votes: {}", votes_text(votes.as_ref()))),
-    }
+    edit(file, text, |root| {
+        let fields = struct_fields(root, "Population")?;
+        match find(fields, "votes") {
+            Ok(node) => Ok(vote_changes(node, votes)),
+            Err(_) => add_field(text, fields, &format!("votes: {}", votes_text(votes.as_ref()))),
+        }
+    })
 }
 
 /// The text of a population file in which breeding leaves other genes and categories as they are.
@@ -60,30 +60,21 @@ pub fn set_locked(
     if let Some(unknown) = locked.iter().find(|name| !known(name)) {
         return Err(EditError::Missing(format!("gene {unknown}")));
     }
-    let prepared = prepare(text);
-    let root = Checker::new(file, &prepared).parse()?;
-    let fields = struct_fields(&root, "Population")?;
-    match find(fields, "locked") {
-        Ok(node) => Ok(replace(text, vec![(node.span(), locked_text(locked))])),
-        Err(_) if locked.is_empty() => Ok(text.to_owned()),
-        Err(_) => add_field(text, &prepared, fields, &format!("locked: {}", locked_text(locked))),
-    }
-}
-
-/// A field more, for an older or shorter file: before its first one, where no comma can be missing.
-fn add_field(text: &str, prepared: &str, fields: &[Field<'_>], field: &str) -> Result<String, EditError> {
-    let first = fields.first().ok_or_else(|| EditError::Missing("individuals".into()))?;
-    let line = prepared[..first.name_start].rfind('\n').map_or(0, |newline| newline + 1);
-    let indent = &prepared[line..first.name_start];
-    let gap = if indent.trim().is_empty() { format!("\n{indent}") } else { " ".into() };
-    Ok(replace(text, vec![(first.name_start..first.name_start, format!("{field},{gap}"))]))
+    edit(file, text, |root| {
+        let fields = struct_fields(root, "Population")?;
+        match find(fields, "locked") {
+            Ok(node) => Ok(vec![(node.span(), locked_text(locked))]),
+            Err(_) if locked.is_empty() => Ok(Vec::new()),
+            Err(_) => add_field(text, fields, &format!("locked: {}", locked_text(locked))),
+        }
+    })
 }
 
 /// The text of a population file with another value, in the gene's unit, for one gene of an individual 0 … 3. The
-/// value is written as its nearest code is.
+/// value is written as its nearest code is; a gene that the file lacks gets a line of its own.
 ///
 /// # Errors
-/// Text that is no population, an individual or gene that it lacks, a value out of range.
+/// Text that is no population, an individual that it lacks, an unknown gene, a value out of range.
 pub fn set_gene(
     space: &Space,
     file: &str,
@@ -96,20 +87,51 @@ pub fn set_gene(
     if !parameter.contains(value) {
         return Err(EditError::Range { name: name.into(), value, range: parameter.range_text() });
     }
-    let prepared = prepare(text);
-    let root = Checker::new(file, &prepared).parse()?;
-    let list = find(struct_fields(&root, "Population")?, "individuals")?;
-    let Value::List(individuals) = &list.value else { return Err(EditError::Missing("individuals".into())) };
-    let what = format!("individual {individual}");
-    let node = individuals.get(individual).ok_or_else(|| EditError::Missing(what.clone()))?;
-    let chromosome = find(struct_fields(node, &what)?, parameter.category.name())?;
-    let gene = find(struct_fields(chromosome, parameter.category.name())?, name)?;
-    let change = (gene.span(), parameter.text(parameter.snap(value)));
-    Ok(replace(text, vec![change]))
+    let (category, value) = (parameter.category.name(), parameter.text(parameter.snap(value)));
+    edit(file, text, |root| {
+        let list = find(struct_fields(root, "Population")?, "individuals")?;
+        let Value::List(individuals) = &list.value else {
+            return Err(EditError::Missing("individuals".into()));
+        };
+        let what = format!("individual {individual}");
+        let node = individuals.get(individual).ok_or_else(|| EditError::Missing(what.clone()))?;
+        let genes = struct_fields(find(struct_fields(node, &what)?, category)?, category)?;
+        match find(genes, name) {
+            Ok(gene) => Ok(vec![(gene.span(), value)]),
+            Err(_) => add_field(text, genes, &format!("{name}: {value}")),
+        }
+    })
 }
 
-/// What to write where. If every category has its place already, only what differs is touched.
-fn vote_changes(node: &Node<'_>, votes: Option<Votes>) -> Vec<(Range<usize>, String)> {
+/// What to write where; the places do not overlap.
+type Changes = Vec<(Range<usize>, String)>;
+
+/// Makes the changes that `changes` finds in the file's tree.
+fn edit(
+    file: &str,
+    text: &str,
+    changes: impl FnOnce(&Node<'_>) -> Result<Changes, EditError>,
+) -> Result<String, EditError> {
+    let prepared = prepare(text);
+    let mut changes = changes(&Checker::new(file, &prepared).parse()?)?;
+    changes.sort_by_key(|(span, _)| span.start);
+    let mut out = text.to_owned();
+    for (span, new) in changes.into_iter().rev() {
+        out.replace_range(span, &new);
+    }
+    Ok(out)
+}
+
+/// A field more, for an older or shorter file: before the first one, where no comma can be missing.
+fn add_field(text: &str, fields: &[Field<'_>], field: &str) -> Result<Changes, EditError> {
+    let first = fields.first().ok_or_else(|| EditError::Missing(field.to_owned()))?.name_start;
+    let indent = &text[text[..first].rfind('\n').map_or(0, |newline| newline + 1)..first];
+    let gap = if indent.trim().is_empty() { format!("\n{indent}") } else { " ".into() };
+    Ok(vec![(first..first, format!("{field},{gap}"))])
+}
+
+/// If every category has its place already, only what differs is touched.
+fn vote_changes(node: &Node<'_>, votes: Option<Votes>) -> Changes {
     let whole = vec![(node.span(), votes_text(votes.as_ref()))];
     let (Value::Some(cast), Some(votes)) = (&node.value, votes) else { return whole };
     let Value::Struct(fields) = &cast.value else { return whole };
@@ -123,16 +145,6 @@ fn vote_changes(node: &Node<'_>, votes: Option<Votes>) -> Vec<(Range<usize>, Str
         }
     }
     changes
-}
-
-/// Makes changes, which must not overlap.
-fn replace(text: &str, mut changes: Vec<(Range<usize>, String)>) -> String {
-    changes.sort_by_key(|(span, _)| span.start);
-    let mut out = text.to_owned();
-    for (span, new) in changes.into_iter().rev() {
-        out.replace_range(span, &new);
-    }
-    out
 }
 
 fn struct_fields<'n, 'a>(node: &'n Node<'a>, what: &str) -> Result<&'n [Field<'a>], EditError> {

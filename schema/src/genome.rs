@@ -19,19 +19,6 @@ impl Chromosome {
         Self { bytes: vec![0; space.bits(category).div_ceil(8) as usize] }
     }
 
-    /// The packed bits; what is left of the last byte is 0.
-    pub fn to_bits(&self) -> &[u8] {
-        &self.bytes
-    }
-
-    /// The chromosome of those bits; `None` when there are too many or too few, or bits behind the last are set.
-    pub fn from_bits(space: &Space, category: Category, bytes: &[u8]) -> Option<Self> {
-        let bits = space.bits(category);
-        let rest = bits.div_ceil(8) * 8 - bits;
-        let clean = bytes.last().is_none_or(|&last| u32::from(last) >> (8 - rest) == 0);
-        (bytes.len() == bits.div_ceil(8) as usize && clean).then(|| Self { bytes: bytes.to_vec() })
-    }
-
     /// The code of a gene, which must be of this chromosome's category and space.
     pub fn code(&self, parameter: &Parameter) -> u32 {
         (0..parameter.bits).fold(0, |code, bit| {
@@ -99,12 +86,6 @@ impl Genome {
     /// The physical value of a gene in its unit; `None` if there is none of that name.
     pub fn value(&self, space: &Space, name: &str) -> Option<f32> {
         space.find(name).map(|parameter| parameter.value(self.code(parameter)) as f32)
-    }
-
-    /// Names and physical values of one category's genes, in the order of the space.
-    pub fn values<'s>(&self, space: &'s Space, category: Category) -> Vec<(&'s str, f32)> {
-        let value = |parameter: &'s Parameter| parameter.value(self.code(parameter)) as f32;
-        space.category(category).map(|parameter| (parameter.name.as_str(), value(parameter))).collect()
     }
 
     /// Fills a struct whose fields are named as genes with their physical values: `f32`, or an integer type for genes

@@ -5,24 +5,25 @@
 //! and told as one [`Report`], each fault with line and column.
 
 mod check;
+mod current;
 pub mod edit;
 mod genome;
-pub mod gltf;
+
 mod lineage;
 mod load;
-pub mod names;
 mod parameter;
 mod population;
 mod report;
 mod ron_tree;
+pub mod scene;
 mod space;
 mod table;
 mod write;
 
+pub use current::Current;
 pub use genome::{Chromosome, Genome, GenomeError};
-pub use lineage::{Lineage, Parent, unanswered};
-pub use names::Current;
+pub use lineage::{Lineage, unanswered};
 pub use parameter::{Category, Parameter, Scale};
-pub use population::{INDIVIDUALS, Individual, Loaded, LoadedPreset, Population, Snap, TreePreset, Votes};
+pub use population::{INDIVIDUALS, Individual, Loaded, LoadedPreset, Parent, Population, TreePreset, Votes};
 pub use report::{Diagnostic, Report};
 pub use space::Space;

@@ -1,26 +1,18 @@
-//! Which generation comes from which: the record of a parent that a bred population carries, and the few fields of a
-//! population file that say who descends from whom, readable even when its genes are not.
+//! Which generation comes from which: the fields of a population file that say so, readable even when its genes are
+//! not, and the generations that votes ask for.
 
-use crate::check::{Checker, given};
-use crate::load::FIELDS;
+use crate::check::{Checker, given, optional, read};
 use crate::parameter::Category;
-use crate::population::{INDIVIDUALS, Votes};
+use crate::population::{INDIVIDUALS, Parent, Votes};
 use crate::report::Report;
-use crate::ron_tree::{Node, Value, prepare};
+use crate::ron_tree::{Field, Node, Value};
 
-/// What a population was bred from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Parent {
-    /// The parents' generation.
-    pub generation: u32,
-    /// The votes on them at that time. They may be changed later; then another child is wanted.
-    pub votes: Votes,
-}
+/// Fields that a population file may have.
+const FIELDS: [&str; 6] = ["generation", "seed", "parent", "votes", "locked", "individuals"];
 
 /// A population file without its genes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lineage {
-    /// The population's number.
     pub generation: u32,
     /// What it was bred from; `None` for one that was made otherwise.
     pub parent: Option<Parent>,
@@ -35,11 +27,7 @@ impl Lineage {
     /// # Errors
     /// What is wrong with these fields.
     pub fn read(file: &str, text: &str) -> Result<Self, Report> {
-        let text = prepare(text);
-        let mut checker = Checker::new(file, &text);
-        let root = checker.parse()?;
-        let lineage = lineage(&mut checker, &root);
-        checker.finish(lineage)
+        read(file, text, |checker, root| read_lineage(checker, root)?.1)
     }
 
     /// The record that a child bred now would carry; `None` while nobody has voted.
@@ -58,19 +46,24 @@ pub fn unanswered(lineages: &[Lineage]) -> Vec<Parent> {
     wanted
 }
 
-fn lineage(checker: &mut Checker<'_>, root: &Node<'_>) -> Option<Lineage> {
+/// The fields of a population file, and of these who descends from whom.
+pub(crate) fn read_lineage<'n, 't>(
+    checker: &mut Checker<'_>,
+    root: &'n Node<'t>,
+) -> Option<(Vec<&'n Field<'t>>, Option<Lineage>)> {
     let fields = checker.root(root, "Population", &FIELDS)?;
-    let generation = checker.need(&fields, root, "Population", "generation")?;
-    let generation = checker.whole(generation, "generation", u32::MAX)?;
-    let field = |name| fields.iter().find(|field| field.name == name).map(|field| &field.node);
-    let parent = field("parent").and_then(|node| read_parent(checker, node));
-    let votes = field("votes").and_then(|node| read_votes(checker, node));
-    Some(Lineage { generation, parent, votes })
+    let generation = checker.need(&fields, root, "Population", "generation");
+    let generation = generation.and_then(|node| checker.whole(node, "generation", u32::MAX));
+    // A file without these lines is one that was not bred, one on which nobody voted.
+    let parent = optional(&fields, "parent").and_then(|node| read_parent(checker, node));
+    let votes = optional(&fields, "votes").and_then(|node| read_votes(checker, node));
+    let lineage = generation.map(|generation| Lineage { generation, parent, votes });
+    Some((fields, lineage))
 }
 
 /// `Some((generation: 3, votes: (…)))`, with or without the `Some`, or `None`.
-pub(crate) fn read_parent(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<Parent> {
-    let node = optional(node)?;
+fn read_parent(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<Parent> {
+    let node = unwrapped(node)?;
     let fields = checker.record(node, "parent", &["generation", "votes"])?;
     let generation = checker.need(&fields, node, "parent", "generation");
     let generation = generation.and_then(|node| checker.whole(node, "parent: generation", u32::MAX));
@@ -80,10 +73,10 @@ pub(crate) fn read_parent(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<
 }
 
 /// `Some((tree: Some(0), …))`, with or without each `Some`, or `None`.
-pub(crate) fn read_votes(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<Votes> {
+fn read_votes(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<Votes> {
     let names = Category::ALL.map(Category::name);
     let mut votes = Votes::default();
-    for field in checker.record(optional(node)?, "votes", &names)? {
+    for field in checker.record(unwrapped(node)?, "votes", &names)? {
         if let Some(category) = Category::from_name(field.name) {
             votes.set(category, read_vote(checker, category, &field.node));
         }
@@ -92,24 +85,23 @@ pub(crate) fn read_votes(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<V
 }
 
 fn read_vote(checker: &mut Checker<'_>, category: Category, node: &Node<'_>) -> Option<usize> {
-    let number = optional(node)?;
+    let number = unwrapped(node)?;
     match number.value {
         Value::Number(vote) if vote.fract() == 0.0 && (0.0..INDIVIDUALS as f64).contains(&vote) => {
-            return Some(vote as usize);
+            Some(vote as usize)
         }
         Value::Number(_) => {
             let last = INDIVIDUALS - 1;
             let message =
                 format!("votes: {category}: {} is none of the individuals 0 … {last}", given(number));
-            checker.error(number.span(), message);
+            checker.refuse(number.span(), message)
         }
         _ => checker.wrong_kind(number, &format!("votes: {category}"), "None or Some(0) … Some(3)"),
     }
-    None
 }
 
 /// What is in a `Some`; a value that stands without one; nothing for `None`.
-fn optional<'n, 'a>(node: &'n Node<'a>) -> Option<&'n Node<'a>> {
+fn unwrapped<'n, 'a>(node: &'n Node<'a>) -> Option<&'n Node<'a>> {
     match &node.value {
         Value::None => None,
         Value::Some(value) => Some(value),

@@ -1,18 +1,15 @@
-//! Reads population and preset files: every fault of a file at once, every rounded value told.
+//! Reads population and preset files: every fault of a file at once, every rounded or missing value told.
 
 use std::collections::BTreeSet;
 
-use crate::check::{Checker, did_you_mean, given};
+use crate::check::{Checker, did_you_mean, given, optional, read};
 use crate::genome::{Chromosome, Genome};
-use crate::lineage::{read_parent, read_votes};
+use crate::lineage::{Lineage, read_lineage};
 use crate::parameter::{Category, Parameter};
-use crate::population::{INDIVIDUALS, Individual, Loaded, LoadedPreset, Population, Snap, TreePreset};
+use crate::population::{INDIVIDUALS, Individual, Loaded, LoadedPreset, Population, TreePreset};
 use crate::report::Report;
-use crate::ron_tree::{Node, Value, prepare};
+use crate::ron_tree::{Node, Value};
 use crate::space::Space;
-
-/// Fields that a population file may have.
-pub(crate) const FIELDS: [&str; 6] = ["generation", "seed", "parent", "votes", "locked", "individuals"];
 
 impl Population {
     /// Reads the text of a population file; `file` is its name for messages.
@@ -20,13 +17,11 @@ impl Population {
     /// # Errors
     /// Everything that is wrong with it.
     pub fn load(space: &Space, file: &str, text: &str) -> Result<Loaded, Report> {
-        let text = prepare(text);
-        let checker = Checker::new(file, &text);
-        let root = checker.parse()?;
-        let mut loader = Loader { space, file, checker, snaps: Vec::new() };
-        let population = loader.population(&root);
-        let snaps = std::mem::take(&mut loader.snaps);
-        loader.checker.finish(population.map(|population| Loaded { population, snaps }))
+        read(file, text, |checker, root| {
+            let mut loader = Loader { space, checker, notices: Vec::new() };
+            let population = loader.population(root)?;
+            Some(Loaded { population, notices: loader.notices })
+        })
     }
 }
 
@@ -36,37 +31,27 @@ impl TreePreset {
     /// # Errors
     /// Everything that is wrong with it.
     pub fn load(space: &Space, file: &str, text: &str) -> Result<LoadedPreset, Report> {
-        let text = prepare(text);
-        let checker = Checker::new(file, &text);
-        let root = checker.parse()?;
-        let mut loader = Loader { space, file, checker, snaps: Vec::new() };
-        let preset = loader.preset(&root);
-        let snaps = std::mem::take(&mut loader.snaps);
-        loader.checker.finish(preset.map(|preset| LoadedPreset { preset, snaps }))
+        read(file, text, |checker, root| {
+            let mut loader = Loader { space, checker, notices: Vec::new() };
+            let preset = loader.preset(root)?;
+            Some(LoadedPreset { preset, notices: loader.notices })
+        })
     }
 }
 
-struct Loader<'a> {
+struct Loader<'a, 't> {
     space: &'a Space,
-    file: &'a str,
-    checker: Checker<'a>,
-    snaps: Vec<Snap>,
+    checker: &'a mut Checker<'t>,
+    notices: Vec<String>,
 }
 
-impl<'a> Loader<'a> {
-    fn population(&mut self, root: &Node<'a>) -> Option<Population> {
-        const WHAT: &str = "Population";
-        let fields = self.checker.root(root, WHAT, &FIELDS)?;
-        let generation = self.checker.need(&fields, root, WHAT, "generation");
-        let generation = generation.and_then(|node| self.checker.whole(node, "generation", u32::MAX));
-        let seed = self.checker.need(&fields, root, WHAT, "seed");
+impl Loader<'_, '_> {
+    fn population(&mut self, root: &Node<'_>) -> Option<Population> {
+        let (fields, lineage) = read_lineage(self.checker, root)?;
+        let seed = self.checker.need(&fields, root, "Population", "seed");
         let seed = seed.and_then(|node| self.checker.whole(node, "seed", u64::MAX));
-        // A file without these lines is one that was not bred, one on which nobody voted.
-        let optional = |name| fields.iter().find(|field| field.name == name).map(|field| &field.node);
-        let parent = optional("parent").and_then(|node| read_parent(&mut self.checker, node));
-        let votes = optional("votes").and_then(|node| read_votes(&mut self.checker, node));
-        let locked = optional("locked").map(|node| self.locked(node)).unwrap_or_default();
-        let list = self.checker.need(&fields, root, WHAT, "individuals")?;
+        let locked = optional(&fields, "locked").map(|node| self.locked(node)).unwrap_or_default();
+        let list = self.checker.need(&fields, root, "Population", "individuals")?;
         let nodes = self.checker.list(list, "individuals")?;
         if nodes.len() != INDIVIDUALS {
             let found = match nodes.len() {
@@ -78,12 +63,19 @@ impl<'a> Loader<'a> {
         }
         let individuals: Vec<_> =
             nodes.iter().enumerate().filter_map(|(index, node)| self.individual(index, node)).collect();
-        let individuals = individuals.try_into().ok()?;
-        Some(Population { generation: generation?, seed: seed?, parent, individuals, votes, locked })
+        let Lineage { generation, parent, votes } = lineage?;
+        Some(Population {
+            generation,
+            seed: seed?,
+            parent,
+            individuals: individuals.try_into().ok()?,
+            votes,
+            locked,
+        })
     }
 
     /// `["height_m", "sky"]`: names of genes and of whole categories.
-    fn locked(&mut self, node: &Node<'a>) -> BTreeSet<String> {
+    fn locked(&mut self, node: &Node<'_>) -> BTreeSet<String> {
         let genes = self.space.parameters().iter().map(|parameter| parameter.name.as_str());
         let known: Vec<&str> = genes.chain(Category::ALL.map(Category::name)).collect();
         let mut locked = BTreeSet::new();
@@ -100,77 +92,75 @@ impl<'a> Loader<'a> {
         locked
     }
 
-    fn individual(&mut self, index: usize, node: &Node<'a>) -> Option<Individual> {
+    fn individual(&mut self, index: usize, node: &Node<'_>) -> Option<Individual> {
         let what = format!("individual {index}");
         let fields = self.checker.record(node, &what, &["name", "tree", "terrain", "sky"])?;
-        let name = fields.iter().find(|field| field.name == "name");
-        let name =
-            name.and_then(|field| self.checker.text(&field.node, "name")).unwrap_or_default().to_owned();
-        let chromosomes = Category::ALL.map(|category| {
+        let name = optional(&fields, "name").and_then(|node| self.checker.text(node, "name"));
+        let name = name.unwrap_or_default().to_owned();
+        let [tree, terrain, sky] = Category::ALL.map(|category| {
             let node = self.checker.need(&fields, node, &what, category.name())?;
-            self.chromosome(index, category, node)
+            self.chromosome(category, node)
         });
-        let [tree, terrain, sky] = chromosomes;
         Some(Individual { name, genome: Genome { chromosomes: [tree?, terrain?, sky?] } })
     }
 
-    fn preset(&mut self, root: &Node<'a>) -> Option<TreePreset> {
+    fn preset(&mut self, root: &Node<'_>) -> Option<TreePreset> {
         let fields = self.checker.root(root, "TreePreset", &["name", "tree"])?;
         let name = self.checker.need(&fields, root, "TreePreset", "name");
         let name = name.and_then(|node| self.checker.text(node, "name"));
         let tree = self.checker.need(&fields, root, "TreePreset", "tree");
-        let tree = tree.and_then(|node| self.chromosome(0, Category::Tree, node));
+        let tree = tree.and_then(|node| self.chromosome(Category::Tree, node));
         Some(TreePreset { name: name?.to_owned(), tree: tree? })
     }
 
-    fn chromosome(&mut self, individual: usize, category: Category, node: &Node<'a>) -> Option<Chromosome> {
+    fn chromosome(&mut self, category: Category, node: &Node<'_>) -> Option<Chromosome> {
         let space = self.space;
         let known: Vec<&str> = space.category(category).map(|parameter| parameter.name.as_str()).collect();
         let hint = |name: &str| unknown_gene(space, name, category, &known);
         let fields = self.checker.fields(node, category.name(), &known, hint)?;
         let mut chromosome = Chromosome::zero(space, category);
-        let mut missing = Vec::new();
+        let (mut missing, mut filled_in) = (Vec::new(), Vec::new());
         for parameter in space.category(category) {
-            match fields.iter().find(|field| field.name == parameter.name) {
-                Some(field) => {
-                    if let Some(code) = self.gene(individual, parameter, &field.node) {
-                        chromosome.set_code(parameter, code);
-                    }
+            let name = &parameter.name;
+            let code = match (optional(&fields, name), parameter.default) {
+                (Some(node), _) => self.gene(parameter, node),
+                (None, Some(code)) => {
+                    filled_in.push(format!("{name} {}", parameter.value_text(code)));
+                    Some(code)
                 }
-                None => missing.push(format!("{} ({})", parameter.name, parameter.range_text())),
-            }
+                (None, None) => {
+                    missing.push(format!("{name} ({})", parameter.range_text()));
+                    None
+                }
+            };
+            chromosome.set_code(parameter, code.unwrap_or(0));
         }
+        let told = |genes: &[String], remedy: &str| {
+            let count = if genes.len() == 1 { "1 gene is" } else { &format!("{} genes are", genes.len()) };
+            format!("{category}: {count} missing{remedy}: {}", genes.join(", "))
+        };
         if !missing.is_empty() {
-            let plural = if missing.len() == 1 { "gene is" } else { "genes are" };
-            let message = format!("{category}: {} {plural} missing: {}", missing.len(), missing.join(", "));
-            self.checker.error(node.start..node.start + 1, message);
+            self.checker.error(node.start..node.start + 1, told(&missing, ""));
+        }
+        if !filled_in.is_empty() {
+            self.notices.push(self.checker.note(node, told(&filled_in, "; defaults are used")));
         }
         Some(chromosome)
     }
 
-    fn gene(&mut self, individual: usize, parameter: &Parameter, node: &Node<'a>) -> Option<u32> {
+    fn gene(&mut self, parameter: &Parameter, node: &Node<'_>) -> Option<u32> {
         let (name, range) = (&parameter.name, parameter.range_text());
         let Value::Number(value) = node.value else {
-            self.checker.wrong_kind(node, name, &format!("a number, {range}"));
-            return None;
+            return self.checker.wrong_kind(node, name, &format!("a number, {range}"));
         };
         if !parameter.contains(value) {
-            self.checker.error(node.span(), format!("{name}: {} is outside {range}", given(node)));
-            return None;
+            return self.checker.refuse(node.span(), format!("{name}: {} is outside {range}", given(node)));
         }
         let code = parameter.snap(value);
         if !parameter.is_written_as(value, code) {
-            let (line, column) = self.checker.place(node);
-            self.snaps.push(Snap {
-                file: self.file.to_owned(),
-                line,
-                column,
-                individual,
-                parameter: name.clone(),
-                given: node.text.to_owned(),
-                used: parameter.text(code),
-                unit: parameter.unit.clone(),
-            });
+            let (given, used) = (node.text, parameter.value_text(code));
+            let message = format!("{name}: for {given} the nearest value {used} is used");
+            self.notices.push(self.checker.note(node, message));
         }
         Some(code)
     }

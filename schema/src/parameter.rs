@@ -77,6 +77,8 @@ pub struct Parameter {
     pub unit: String,
     /// One line on what it does.
     pub help: String,
+    /// The code that is used where a file lacks the gene; `None` if no file may.
+    pub default: Option<u32>,
     /// Where its bits begin in the chromosome.
     pub(crate) offset: u32,
 }
@@ -135,6 +137,11 @@ impl Parameter {
             self.is_written_as(written, code).then(|| if zero { "0".to_owned() } else { text })
         };
         (-6..=12).find_map(short).unwrap_or_else(|| value.to_string())
+    }
+
+    /// The value of a code with its unit, for people: `7.3 m`.
+    pub fn value_text(&self, code: u32) -> String {
+        format!("{} {}", self.text(code), self.unit).trim_end().to_owned()
     }
 
     /// The range with its unit, for people: `3 … 30 m`.

@@ -1,10 +1,8 @@
 //! Four landscapes, the votes cast on them, and the file types that hold genes.
 
 use std::collections::BTreeSet;
-use std::fmt;
 
 use crate::genome::{Chromosome, Genome};
-use crate::lineage::Parent;
 use crate::parameter::{Category, Parameter};
 use crate::space::Space;
 
@@ -34,21 +32,21 @@ pub struct Votes {
 impl Votes {
     /// The vote on one category.
     pub fn get(&self, category: Category) -> Option<usize> {
-        match category {
-            Category::Tree => self.tree,
-            Category::Terrain => self.terrain,
-            Category::Sky => self.sky,
-        }
+        [self.tree, self.terrain, self.sky][category as usize]
     }
 
     /// Changes the vote on one category.
     pub fn set(&mut self, category: Category, vote: Option<usize>) {
-        match category {
-            Category::Tree => self.tree = vote,
-            Category::Terrain => self.terrain = vote,
-            Category::Sky => self.sky = vote,
-        }
+        *[&mut self.tree, &mut self.terrain, &mut self.sky][category as usize] = vote;
     }
+}
+
+/// What a population was bred from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Parent {
+    pub generation: u32,
+    /// The votes on it at that time. They may be changed later; then another child is wanted.
+    pub votes: Votes,
 }
 
 /// One generation.
@@ -106,50 +104,19 @@ pub struct TreePreset {
     pub tree: Chromosome,
 }
 
-/// A written value that is not a value of its gene; the nearest one is used.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Snap {
-    /// The file's name as it was given.
-    pub file: String,
-    /// From 1.
-    pub line: usize,
-    /// From 1, in characters.
-    pub column: usize,
-    /// Which landscape, 0 … 3; 0 in a preset.
-    pub individual: usize,
-    /// Which gene.
-    pub parameter: String,
-    /// What was written.
-    pub given: String,
-    /// What is used, in the unit, as it will be written when saved.
-    pub used: String,
-    /// The gene's unit; may be empty.
-    pub unit: String,
-}
-
-impl fmt::Display for Snap {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { file, line, column, parameter, given, used, unit, .. } = self;
-        let text =
-            format!("{file}:{line}:{column}: {parameter}: for {given} the nearest value {used} {unit}");
-        write!(f, "{} is used", text.trim_end())
-    }
-}
-
-/// A population as read, and what had to be rounded.
+/// A population as read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Loaded {
-    /// The population.
     pub population: Population,
-    /// Values that are not used exactly as they were written.
-    pub snaps: Vec<Snap>,
+    /// For people, with file, line and column: values that are not used exactly as they were written, and genes that
+    /// the file lacks, with the defaults used instead.
+    pub notices: Vec<String>,
 }
 
-/// A tree preset as read, and what had to be rounded.
+/// A tree preset as read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LoadedPreset {
-    /// The preset.
     pub preset: TreePreset,
-    /// Values that are not used exactly as they were written.
-    pub snaps: Vec<Snap>,
+    /// As those of [`Loaded`].
+    pub notices: Vec<String>,
 }

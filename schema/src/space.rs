@@ -1,9 +1,9 @@
 //! The parameter space: `space.ron` read and checked. Mutation, decoding, sliders and tables derive from it.
 
-use crate::check::Checker;
+use crate::check::{Checker, optional, read};
 use crate::parameter::{Category, Parameter, Scale};
 use crate::report::Report;
-use crate::ron_tree::{Node, Value, prepare};
+use crate::ron_tree::{Node, Value};
 
 /// Every gene, in the order of the file, which is their order in a chromosome.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,11 +25,32 @@ impl Space {
     /// # Errors
     /// Everything that is wrong with it.
     pub fn parse(file: &str, text: &str) -> Result<Self, Report> {
-        let text = prepare(text);
-        let mut checker = Checker::new(file, &text);
-        let root = checker.parse()?;
-        let parameters = read_space(&mut checker, &root);
-        checker.finish(parameters.map(|parameters| Self { parameters }))
+        read(file, text, read_space)
+    }
+
+    /// Reads the `space.ron` of a world, which may have been made before some of the genes were known: those that it
+    /// lacks are declared as in the built-in space. Tells each of them.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn load(file: &str, text: &str) -> Result<(Self, Vec<String>), Report> {
+        let (mut space, mut notices) = (Self::parse(file, text)?, Vec::new());
+        for gene in Self::builtin().parameters {
+            if space.find(&gene.name).is_none() {
+                let default = gene.default.map(|code| format!(", default {}", gene.text(code)));
+                let (name, range, default) = (&gene.name, gene.range_text(), default.unwrap_or_default());
+                notices
+                    .push(format!("{file} lacks {name}; the built-in declaration is used: {range}{default}"));
+                space.add(gene);
+            }
+        }
+        Ok((space, notices))
+    }
+
+    /// Puts a gene behind the others of its category.
+    fn add(&mut self, gene: Parameter) {
+        let offset = self.bits(gene.category);
+        self.parameters.push(Parameter { offset, ..gene });
     }
 
     /// All genes.
@@ -53,7 +74,7 @@ impl Space {
     }
 }
 
-fn read_space(checker: &mut Checker<'_>, root: &Node<'_>) -> Option<Vec<Parameter>> {
+fn read_space(checker: &mut Checker<'_>, root: &Node<'_>) -> Option<Space> {
     let fields = checker.root(root, "Space", &["version", "parameters"])?;
     if let Some(node) = checker.need(&fields, root, "Space", "version")
         && let Some(version) = checker.whole(node, "version", u32::MAX)
@@ -63,33 +84,29 @@ fn read_space(checker: &mut Checker<'_>, root: &Node<'_>) -> Option<Vec<Paramete
     }
     let list = checker.need(&fields, root, "Space", "parameters")?;
     let nodes = checker.list(list, "parameters")?;
-    let mut parameters: Vec<Parameter> = Vec::new();
+    let mut space = Space { parameters: Vec::new() };
     for node in nodes {
-        let Some(mut parameter) = read_parameter(checker, node) else { continue };
-        if parameters.iter().any(|known| known.name == parameter.name) {
-            checker.error(node.span(), format!("{} is declared twice", parameter.name));
-            continue;
+        let Some(gene) = read_parameter(checker, node) else { continue };
+        match space.find(&gene.name) {
+            Some(_) => checker.error(node.span(), format!("{} is declared twice", gene.name)),
+            None => space.add(gene),
         }
-        let same = parameters.iter().filter(|known| known.category == parameter.category);
-        parameter.offset = same.map(|known| known.bits).sum();
-        parameters.push(parameter);
     }
     for category in Category::ALL {
-        if parameters.len() == nodes.len()
-            && !parameters.iter().any(|parameter| parameter.category == category)
-        {
+        if space.parameters.len() == nodes.len() && space.category(category).next().is_none() {
             checker.error(list.start..list.start + 1, format!("no parameter has category {category}"));
         }
     }
-    Some(parameters)
+    Some(space)
 }
 
-const FIELDS: [&str; 7] = ["name", "category", "bits", "range", "scale", "unit", "help"];
+const FIELDS: [&str; 8] = ["name", "category", "bits", "range", "scale", "unit", "help", "default"];
 
 fn read_parameter(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<Parameter> {
     let fields = checker.record(node, "a parameter", &FIELDS)?;
-    let nodes = FIELDS.map(|name| checker.need(&fields, node, "the parameter", name));
-    let [name, category, bits, range, scale, unit, help] = nodes;
+    let mut need = |name| checker.need(&fields, node, "the parameter", name);
+    let [name, category, bits, range] = ["name", "category", "bits", "range"].map(&mut need);
+    let [scale, unit, help] = ["scale", "unit", "help"].map(need);
     let name = name.and_then(|node| read_name(checker, node));
     let category = category.and_then(|node| {
         checker.word(node, "category", &Category::ALL.map(Category::name), Category::from_name)
@@ -101,12 +118,21 @@ fn read_parameter(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<Paramete
     let unit = unit.and_then(|node| checker.text(node, "unit"))?.to_owned();
     let help = help.and_then(|node| checker.text(node, "help"))?.to_owned();
     let (name, category, bits, scale) = (name?, category?, bits?, scale?);
-    let parameter = Parameter { name, category, bits, range: ends?, scale, unit, help, offset: 0 };
-    match range_fault(&parameter) {
-        Some(fault) => checker.error(range?.span(), format!("{}: {fault}", parameter.name)),
-        None => return Some(parameter),
+    let mut gene =
+        Parameter { name, category, bits, range: ends?, scale, unit, help, default: None, offset: 0 };
+    if let Some(fault) = range_fault(&gene) {
+        return checker.refuse(range?.span(), format!("{}: {fault}", gene.name));
     }
-    None
+    if let Some(node) = optional(&fields, "default") {
+        let default = checker.number(node, "default")?;
+        if !gene.contains(default) {
+            let range = gene.range_text();
+            let message = format!("{}: the default {default} is outside {range}", gene.name);
+            return checker.refuse(node.span(), message);
+        }
+        gene.default = Some(gene.snap(default));
+    }
+    Some(gene)
 }
 
 fn read_name(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<String> {
@@ -115,17 +141,15 @@ fn read_name(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<String> {
     if letters && name.starts_with(|c: char| c.is_ascii_lowercase()) {
         return Some(name.to_owned());
     }
-    checker.error(node.span(), format!("name: {name:?} must be lower_case letters, digits and underscores"));
-    None
+    checker.refuse(node.span(), format!("name: {name:?} must be lower_case letters, digits and underscores"))
 }
 
 fn read_bits(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<u32> {
     let bits = checker.whole(node, "bits", 16)?;
-    if (1..=16).contains(&bits) {
-        return Some(bits as u32);
+    match bits {
+        1..=16 => Some(bits),
+        _ => checker.refuse(node.span(), format!("bits: {bits} is outside 1 … 16")),
     }
-    checker.error(node.span(), format!("bits: {bits} is outside 1 … 16"));
-    None
 }
 
 fn read_range(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<(f64, f64)> {
@@ -135,8 +159,7 @@ fn read_range(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<(f64, f64)> 
         let (low, high) = (checker.number(low, "range"), checker.number(high, "range"));
         return low.zip(high);
     }
-    checker.wrong_kind(node, "range", "two numbers, as (0.0, 1.0)");
-    None
+    checker.wrong_kind(node, "range", "two numbers, as (0.0, 1.0)")
 }
 
 /// What is wrong with a range, if anything.

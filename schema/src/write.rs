@@ -1,67 +1,41 @@
-//! Writes populations and presets as RON for people: a gene a line, its range beside it, always in the same order.
+//! Writes populations as RON for people: a gene a line, its range beside it, always in the same order.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use crate::genome::Chromosome;
-use crate::lineage::Parent;
-use crate::parameter::Category;
-use crate::population::{Population, TreePreset, Votes};
+use crate::genome::Genome;
+use crate::parameter::{Category, Parameter};
+use crate::population::{Individual, Parent, Population, Votes};
 use crate::space::Space;
 
 impl Population {
     /// The file's text. Reading it gives this population again; writing that gives this text again.
     pub fn to_ron(&self, space: &Space) -> String {
-        let mut out = String::from(
+        let Self { generation, seed, .. } = self;
+        let parent = self.parent.map_or(String::new(), |Parent { generation, votes }| {
+            format!("    parent: Some((generation: {generation}, votes: {})),\n", cast_text(&votes))
+        });
+        let votes = votes_text(self.votes.as_ref());
+        let locked = match self.locked.is_empty() {
+            true => String::new(),
+            false => format!(
+                "    // Genes and whole categories (tree, terrain, sky) that breeding leaves as they are.\n    \
+                 locked: {},\n",
+                locked_text(&self.locked)
+            ),
+        };
+        let individual = |one: &Individual| {
+            let genes = Category::ALL.map(|category| genes_text(space, category, &one.genome));
+            format!("        (\n            name: {},\n{}        ),\n", quoted(&one.name), genes.concat())
+        };
+        let individuals: String = self.individuals.iter().map(individual).collect();
+        format!(
             "// Four landscapes. Edit any value within its range; the nearest value that its gene has is used.\n\
              // `bake params` says what each gene does.\n\
-             Population(\n",
-        );
-        let Self { generation, seed, .. } = self;
-        let votes = votes_text(self.votes.as_ref());
-        put(&mut out, 1, &format!("generation: {generation},"));
-        put(&mut out, 1, &format!("seed: {seed},"));
-        if let Some(Parent { generation, votes }) = &self.parent {
-            let votes = cast_text(votes);
-            put(&mut out, 1, &format!("parent: Some((generation: {generation}, votes: {votes})),"));
-        }
-        put(
-            &mut out,
-            1,
-            "// The best of each, 0 … 3, as Some((tree: Some(0), terrain: Some(2), sky: None)); None: no favourite.",
-        );
-        put(&mut out, 1, &format!("votes: {votes},"));
-        if !self.locked.is_empty() {
-            put(
-                &mut out,
-                1,
-                "// Genes and whole categories (tree, terrain, sky) that breeding leaves as they are.",
-            );
-            put(&mut out, 1, &format!("locked: {},", locked_text(&self.locked)));
-        }
-        put(&mut out, 1, "individuals: [");
-        for individual in &self.individuals {
-            put(&mut out, 2, "(");
-            put(&mut out, 3, &format!("name: {},", quoted(&individual.name)));
-            for category in Category::ALL {
-                chromosome(&mut out, 3, space, category, individual.genome.chromosome(category));
-            }
-            put(&mut out, 2, "),");
-        }
-        put(&mut out, 1, "],");
-        out.push_str(")\n");
-        out
-    }
-}
-
-impl TreePreset {
-    /// The file's text. Reading it gives this preset again.
-    pub fn to_ron(&self, space: &Space) -> String {
-        let mut out = String::from("TreePreset(\n");
-        put(&mut out, 1, &format!("name: {},", quoted(&self.name)));
-        chromosome(&mut out, 1, space, Category::Tree, &self.tree);
-        out.push_str(")\n");
-        out
+             Population(\n    generation: {generation},\n    seed: {seed},\n{parent}    \
+             // The best of each, 0 … 3, as Some((tree: Some(0), terrain: Some(2), sky: None)); None: no favourite.\n    \
+             votes: {votes},\n{locked}    individuals: [\n{individuals}    ],\n)\n"
+        )
     }
 }
 
@@ -86,23 +60,16 @@ pub(crate) fn vote_text(vote: Option<usize>) -> String {
     vote.map_or("None".into(), |vote| format!("Some({vote})"))
 }
 
-fn chromosome(out: &mut String, depth: usize, space: &Space, category: Category, genes: &Chromosome) {
-    put(out, depth, &format!("{category}: ("));
-    let lines: Vec<(String, String)> = space
-        .category(category)
-        .map(|gene| (format!("{}: {},", gene.name, gene.text(genes.code(gene))), gene.range_text()))
-        .collect();
+/// One category's genes, a line each with its range.
+fn genes_text(space: &Space, category: Category, genome: &Genome) -> String {
     // Wide enough for any value, so that a changed gene changes one line.
     let width = space.category(category).map(|gene| gene.name.len() + 9).max().unwrap_or(0);
-    for (gene, range) in lines {
-        put(out, depth + 1, &format!("{gene:width$} // {range}"));
-    }
-    put(out, depth, "),");
-}
-
-fn put(out: &mut String, depth: usize, line: &str) {
-    // Writing to a String cannot fail.
-    let _ = writeln!(out, "{:1$}{line}", "", depth * 4);
+    let line = |gene: &Parameter| {
+        let value = format!("{}: {},", gene.name, gene.text(genome.code(gene)));
+        format!("                {value:width$} // {}\n", gene.range_text())
+    };
+    let lines: String = space.category(category).map(line).collect();
+    format!("            {category}: (\n{lines}            ),\n")
 }
 
 /// A text in quotes. Line breaks and the like are escaped.

@@ -1,9 +1,9 @@
-//! Starts the bake in the background: a thread that follows the world folder as `bake --watch` does, with less right
-//! to the processor than whoever draws. The only file of the viewer that knows the bake; what comes of it is in the
-//! world's files, and what it tells on the way comes as [`Event`]s.
+//! Starts the bake in the background: a thread that watches the world folder as `bake --watch` does, at a lower priority
+//! than what draws. The only file of the viewer that knows the bake; what comes of it is in the world's files, and what
+//! it tells on the way comes as [`Event`]s.
 //!
-//! Whatever happens in here ends nothing: a mistake in a file, a full disk, even a panic is told as
-//! [`Event::Failed`], and the following begins again.
+//! Nothing that happens in here ends the viewer: a mistake in a file, a full disk, even a panic is told as
+//! [`Event::Failed`], and the watch begins again.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -16,34 +16,32 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, anyhow};
 use genescape_bake::events::Listener;
-use genescape_bake::follow::{self, Audience};
 use genescape_bake::plan::Resolution;
 use genescape_bake::session::Session;
-use genescape_bake::world::World;
+use genescape_bake::watch_loop::{self, Host};
+use genescape_world::World;
 use thread_priority::{ThreadPriority, set_current_thread_priority};
 
 pub use genescape_bake::events::Event;
-pub use genescape_bake::session::scope as history_scope;
 
 /// Priority of the bake's threads from 0 to 99: half way down. At the very bottom it would never get on where the
 /// pictures are drawn by the processor, too.
 const PRIORITY: u8 = 25;
 /// Until the first new attempt after a failure; each further pause is twice as long.
-const FIRST_PAUSE: Duration = Duration::from_millis(250);
+const MIN_PAUSE: Duration = Duration::from_millis(250);
 /// The longest of these pauses. An attempt that lasted longer was a good one.
-const LONGEST_PAUSE: Duration = Duration::from_secs(8);
-/// How long closing the window may wait for the bake: it ends after the stages that it is at. Whatever is left ends
-/// with the process, and the cache doesn't mind.
-const PATIENCE: Duration = Duration::from_millis(500);
+const MAX_PAUSE: Duration = Duration::from_secs(8);
+/// How long closing the window may wait for the bake, which ends after the stages that it is at. What is left ends with
+/// the process, and the cache doesn't mind.
+const END_TIMEOUT: Duration = Duration::from_millis(500);
 
-/// How to bake.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BakerOptions {
     /// Threads that compute; `None` leaves one core to the viewer.
     pub threads: Option<usize>,
     /// Samples a side of the heightfield: 65, 129, 257, 513, 1025 or 2049.
     pub side: u32,
-    /// Look every half second, for network folders that send no events.
+    /// Look several times a second, for network folders that send no events.
     pub poll: bool,
 }
 
@@ -62,8 +60,8 @@ pub struct Baker {
 }
 
 impl Baker {
-    /// Follows the world in `root`, which is made from the starter landscapes if there is none. `wake` is called
-    /// after each event, from any thread: somebody should look at [`Baker::events`].
+    /// Bakes the world in `root`, which is made from the starter landscapes if there is none. `wake` is called, from any
+    /// thread, when there is something new in [`Baker::events`].
     ///
     /// # Errors
     /// If the system gives no thread.
@@ -75,14 +73,16 @@ impl Baker {
         let (sender, events) = channel();
         let (alive, ended) = channel();
         let stop = Arc::new(AtomicBool::new(false));
-        let teller = Teller { sender, wake: Box::new(wake), stop: Arc::clone(&stop) };
+        let reporter = Reporter { sender, wake: Box::new(wake), stop: Arc::clone(&stop) };
         let root = root.to_owned();
         thread::Builder::new().name("baker".into()).spawn(move || {
             let _alive: Sender<()> = alive;
             // Without this right it is merely less polite.
             let _ = lower_priority();
-            let attempt = || bake(&root, &options, &teller);
-            supervise(attempt, |message| teller.tell(&Event::Failed { message }), &|| teller.stopped());
+            let attempt = || bake(&root, &options, &reporter);
+            supervise(attempt, |message| (&reporter).tell(&Event::Failed { message }), &|| {
+                reporter.stopped()
+            });
         })?;
         Ok(Self { events, stop, ended })
     }
@@ -96,18 +96,18 @@ impl Baker {
 impl Drop for Baker {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::SeqCst);
-        let _ = self.ended.recv_timeout(PATIENCE);
+        let _ = self.ended.recv_timeout(END_TIMEOUT);
     }
 }
 
-/// Follows until told to stop, or until it can't go on.
-fn bake(root: &Path, options: &BakerOptions, teller: &Teller) -> Result<()> {
+/// Watches and bakes until told to stop, or until it can't go on.
+fn bake(root: &Path, options: &BakerOptions, reporter: &Reporter) -> Result<()> {
     let resolution = Resolution::of_side(options.side).map_err(|text| anyhow!(text))?;
     let world = World::open_or_create(root)?;
     world.begin()?;
     let mut session = Session::new(world, pool(options.threads)?, resolution)?;
-    let options = follow::Options { population: None, poll: options.poll };
-    follow::follow(&mut session, &options, teller)
+    let options = watch_loop::Options { population: None, poll: options.poll };
+    watch_loop::run(&mut session, &options, reporter)
 }
 
 fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
@@ -128,14 +128,14 @@ fn lower_priority() -> Result<()> {
     set_current_thread_priority(ThreadPriority::Crossplatform(priority)).map_err(|error| anyhow!("{error:?}"))
 }
 
-/// Sends what the bake tells to whoever holds the [`Baker`].
-struct Teller {
+/// Sends what the bake tells to the owner of the [`Baker`].
+struct Reporter {
     sender: Sender<Event>,
     wake: Box<dyn Fn() + Send + Sync>,
     stop: Arc<AtomicBool>,
 }
 
-impl Listener for Teller {
+impl Listener for &Reporter {
     fn tell(&self, event: &Event) {
         // The baker is gone only when this thread is to end.
         if self.sender.send(event.clone()).is_ok() {
@@ -144,18 +144,9 @@ impl Listener for Teller {
     }
 }
 
-/// The same teller for each bake.
-struct Borrowed<'a>(&'a Teller);
-
-impl Listener for Borrowed<'_> {
-    fn tell(&self, event: &Event) {
-        self.0.tell(event);
-    }
-}
-
-impl Audience for Teller {
+impl Host for Reporter {
     fn listener(&self) -> Box<dyn Listener + '_> {
-        Box::new(Borrowed(self))
+        Box::new(self)
     }
 
     fn stopped(&self) -> bool {
@@ -170,7 +161,7 @@ impl Audience for Teller {
 /// Runs `attempt` again and again until it ends by itself or `stopped` says so, with growing pauses. The same failure
 /// is told once.
 fn supervise(mut attempt: impl FnMut() -> Result<()>, tell: impl Fn(String), stopped: &dyn Fn() -> bool) {
-    let (mut told, mut pause) = (None, FIRST_PAUSE);
+    let (mut told, mut pause) = (None, MIN_PAUSE);
     while !stopped() {
         let start = Instant::now();
         let message = match catch_unwind(AssertUnwindSafe(&mut attempt)) {
@@ -182,15 +173,15 @@ fn supervise(mut attempt: impl FnMut() -> Result<()>, tell: impl Fn(String), sto
                 panic_text(&*panic)
             ),
         };
-        if start.elapsed() > LONGEST_PAUSE {
-            (told, pause) = (None, FIRST_PAUSE);
+        if start.elapsed() > MAX_PAUSE {
+            (told, pause) = (None, MIN_PAUSE);
         }
         if told.as_ref() != Some(&message) {
             tell(message.clone());
             told = Some(message);
         }
         rest(pause, stopped);
-        pause = (2 * pause).min(LONGEST_PAUSE);
+        pause = (2 * pause).min(MAX_PAUSE);
     }
 }
 
@@ -240,7 +231,7 @@ mod tests {
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn the_bakes_threads_step_back_and_nobody_elses() {
+    fn only_the_bakes_threads_have_a_lower_priority() {
         let nice = || {
             let stat = std::fs::read_to_string("/proc/thread-self/stat").expect("Linux tells");
             let (_, fields) = stat.rsplit_once(')').expect("after the name");

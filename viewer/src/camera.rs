@@ -33,6 +33,11 @@ impl Camera {
         Vec3::new(cos_yaw, 0.0, -sin_yaw)
     }
 
+    /// Pixels that one radian covers in the middle of a picture `height_px` high.
+    pub fn focal_px(&self, height_px: f32) -> f32 {
+        0.5 * height_px / libm::tanf(0.5 * self.fov_y_rad)
+    }
+
     /// View space (looking along −z) from the world.
     pub fn view_from_world(&self) -> Mat4 {
         let (right, forward) = (self.right(), self.forward());

@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
-use clap::{Parser, Subcommand, ValueEnum};
+use clap::{Parser, Subcommand};
 
 use crate::baker::BakerOptions;
-use crate::frame::{Options, TerrainScheme, TreeScheme};
+use crate::options::Options;
+use crate::picture_file::parse_size;
 
 /// Shows four landscapes at once: walk through all of them, say which has the best trees, terrain and sky, and breed
 /// four new ones
@@ -19,7 +20,7 @@ pub struct Cli {
     #[arg(long, value_name = "DIR", default_value = "world", conflicts_with = "path")]
     pub world: PathBuf,
 
-    /// Do not bake: somebody else does, `bake --watch` for instance
+    /// Do not bake: another program does, `bake --watch` for instance
     #[arg(long)]
     pub no_bake: bool,
 
@@ -56,7 +57,7 @@ pub struct Cli {
     pub screenshot: Option<PathBuf>,
 
     /// Size of the window or the picture
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<[u32; 2]>,
 
     /// With --screenshot: which landscape, 0 to 3
@@ -76,16 +77,13 @@ pub struct Cli {
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
     pub time: f32,
 
-    /// How it is drawn.
     #[command(flatten)]
-    pub drawing: Drawing,
+    pub drawing: Options,
 
-    /// Something else than looking.
     #[command(subcommand)]
     pub command: Option<Command>,
 }
 
-/// Other things to do.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Command {
     /// Measure how long pictures take, as ratios of one run
@@ -98,100 +96,6 @@ const EXAMPLES: &str = "Examples:
   viewer world/baked/g0003                     an older generation as it was baked
   viewer --screenshot all.png --all            draw all four to a file, without a window
   viewer --screenshot a.png --scene 2 --camera 0,20,1.6,45,-5 --size 1600x900";
-
-/// How it is drawn; kept by nobody.
-#[derive(Clone, Debug, clap::Args)]
-#[command(next_help_heading = "Drawing (with --screenshot)")]
-pub struct Drawing {
-    /// Levels of detail of trees
-    #[arg(long, value_enum, default_value_t)]
-    pub tree_lod: TreeLod,
-    /// Levels of detail of the terrain
-    #[arg(long, value_enum, default_value_t)]
-    pub terrain_lod: TerrainLod,
-    /// Error that trees may have on the screen, in pixels
-    #[arg(long, value_name = "PIXELS", default_value_t = Options::default().tree_error_px)]
-    pub tree_error: f32,
-    /// Error that the terrain may have on the screen, in pixels
-    #[arg(long, value_name = "PIXELS", default_value_t = Options::default().terrain_error_px)]
-    pub terrain_error: f32,
-    /// Samples a pixel
-    #[arg(long, default_value_t = 4, value_parser = samples)]
-    pub samples: u32,
-    /// Edges of triangles only
-    #[arg(long)]
-    pub wireframe: bool,
-    /// Colours that say the level of detail
-    #[arg(long)]
-    pub tint: bool,
-    /// From above, with what was chosen for the eye
-    #[arg(long)]
-    pub overhead: bool,
-    /// No blades of grass around the eye
-    #[arg(long)]
-    pub no_grass: bool,
-    /// Factor on the landscape's own exposure
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
-    pub exposure: f32,
-    /// Vertical field of view in degrees
-    #[arg(long, value_name = "DEGREES", default_value_t = Options::default().fov_y_deg)]
-    pub fov: f32,
-}
-
-/// As [`TreeScheme`].
-#[derive(Clone, Copy, Debug, Default, ValueEnum)]
-pub enum TreeLod {
-    /// Continuous, by error
-    Quality,
-    /// Continuous, by number of vertices
-    #[default]
-    Simple,
-    /// By error, without morphing
-    Discrete,
-    /// None
-    Off,
-}
-
-/// As [`TerrainScheme`].
-#[derive(Clone, Copy, Debug, Default, ValueEnum)]
-pub enum TerrainLod {
-    /// Blocks that morph in the vertex shader
-    #[default]
-    Morph,
-    /// Triangles split by wedgies on the CPU
-    Roam,
-    /// None
-    Off,
-}
-
-impl Drawing {
-    /// As options for a frame.
-    pub fn options(&self) -> Options {
-        Options {
-            tree_scheme: match self.tree_lod {
-                TreeLod::Quality => TreeScheme::Quality,
-                TreeLod::Simple => TreeScheme::Simple,
-                TreeLod::Discrete => TreeScheme::Discrete,
-                TreeLod::Off => TreeScheme::Off,
-            },
-            terrain_scheme: match self.terrain_lod {
-                TerrainLod::Morph => TerrainScheme::Morph,
-                TerrainLod::Roam => TerrainScheme::Roam,
-                TerrainLod::Off => TerrainScheme::Off,
-            },
-            tree_error_px: self.tree_error,
-            terrain_error_px: self.terrain_error,
-            wireframe: self.wireframe,
-            tint_levels: self.tint,
-            overhead: self.overhead,
-            exposure: self.exposure,
-            grass: !self.no_grass,
-            samples: self.samples,
-            fov_y_deg: self.fov,
-            ..Options::default()
-        }
-    }
-}
 
 /// Where an eye is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -219,33 +123,16 @@ fn place(text: &str) -> Result<Place, String> {
     }
 }
 
-pub(crate) fn size(text: &str) -> Result<[u32; 2], String> {
-    let sides: Vec<u32> = text.split(['x', 'X', '×']).filter_map(|side| side.trim().parse().ok()).collect();
-    match sides[..] {
-        [width, height] if (16..=16384).contains(&width) && (16..=16384).contains(&height) => {
-            Ok([width, height])
-        }
-        _ => Err("a size is WIDTHxHEIGHT in pixels, 16 to 16384 each, as in 1280x800".to_owned()),
-    }
-}
-
 fn heightfield(text: &str) -> Result<u32, String> {
     let side = text.parse().ok();
     side.filter(|side| [65, 129, 257, 513, 1025, 2049].contains(side))
         .ok_or_else(|| "a heightfield has 65, 129, 257, 513, 1025 or 2049 samples a side".to_owned())
 }
 
-fn samples(text: &str) -> Result<u32, String> {
-    match text {
-        "1" => Ok(1),
-        "4" => Ok(4),
-        _ => Err("1 or 4 samples a pixel".to_owned()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lod_mode::{TerrainLodMode, TreeLodMode};
     use clap::CommandFactory;
 
     #[test]
@@ -254,15 +141,30 @@ mod tests {
     }
 
     #[test]
-    fn places_and_sizes_are_read_or_refused_with_an_example() {
+    fn drawing_is_by_default_as_in_the_window_but_with_smooth_edges() {
+        let options = |args: &[&str]| Cli::parse_from([&["viewer"], args].concat()).drawing;
+        assert_eq!(options(&[]), Options { samples: 4, ..Options::default() });
+        let args =
+            ["--no-grass", "--tree-lod", "off", "--terrain-lod", "roam", "--tint", "--tree-error", "3"];
+        let expected = Options {
+            grass: false,
+            tree_lod: TreeLodMode::Off,
+            terrain_lod: TerrainLodMode::Roam,
+            tint_levels: true,
+            tree_error_px: 3.0,
+            samples: 4,
+            ..Options::default()
+        };
+        assert_eq!(options(&args), expected);
+        assert!(Cli::try_parse_from(["viewer", "--samples", "2"]).is_err());
+    }
+
+    #[test]
+    fn places_are_read_or_refused_with_an_example() {
         let read = place("0,20,1.6,45,-5").expect("five numbers");
         assert_eq!(read, Place { x_m: 0.0, z_m: 20.0, height_m: 1.6, yaw_deg: 45.0, pitch_deg: -5.0 });
         for wrong in ["", "1,2,3,4", "1,2,3,4,5,6", "1,2,x,4,5", "1,2,nan,4,5", "1,2,,4,5"] {
             assert!(place(wrong).is_err_and(|text| text.contains("0,20,1.6,45,-5")), "{wrong}");
-        }
-        assert_eq!(size("640x480"), Ok([640, 480]));
-        for wrong in ["640", "0x480", "640x480x3", "x", "99999x10"] {
-            assert!(size(wrong).is_err(), "{wrong}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! A gamepad's sticks and buttons → the same [`Controls`] and [`Action`]s as keyboard and mouse give. With the cargo
+//! A gamepad's sticks and buttons → the same [`Controls`] and [`Command`]s as keyboard and mouse give. With the cargo
 //! feature `gamepad`, and never in the way: without a gamepad, or where gamepads cannot be read, all is at rest.
 //!
 //! Left stick walks, right stick looks, triggers fly up and down, pressing the left stick runs. Four things stand in a
@@ -10,7 +10,7 @@ use genescape_schema::Category;
 use gilrs::{Axis, Button, EventType, GamepadId, Gilrs};
 use glam::Vec2;
 
-use crate::input::{Action, Controls};
+use crate::input::{Best, Command, Controls};
 
 /// Deflection of a stick that counts as none: worn sticks never quite come back.
 pub const DEAD_ZONE: f32 = 0.18;
@@ -31,8 +31,8 @@ impl Gamepads {
         }
     }
 
-    /// What is held now, and what was asked for since the last call.
-    pub fn poll(&mut self) -> (Controls, Vec<Action>) {
+    /// What is held now, and the commands since the last call.
+    pub fn poll(&mut self) -> (Controls, Vec<Command>) {
         let mut asked = Vec::new();
         let Some(gilrs) = &mut self.gilrs else { return (Controls::default(), asked) };
         while let Some(event) = gilrs.next_event() {
@@ -42,7 +42,7 @@ impl Gamepads {
                     let pad = gilrs.gamepad(event.id);
                     let shoulders =
                         [Button::LeftTrigger, Button::RightTrigger].map(|held| pad.is_pressed(held));
-                    asked.extend(action(button, shoulders));
+                    asked.extend(command(button, shoulders));
                 }
                 EventType::AxisChanged(_, value, _) if value.abs() > 2.0 * DEAD_ZONE => {
                     self.last = Some(event.id)
@@ -65,22 +65,6 @@ impl Gamepads {
     }
 }
 
-/// A line of help for each part of the pad: (part, meaning).
-pub fn help() -> &'static [(&'static str, &'static str)] {
-    &[
-        ("left stick", "walk; pressed: run"),
-        ("right stick", "look; pressed: all four landscapes"),
-        ("triggers", "fly up, fly down"),
-        ("directional pad", "one landscape alone: up 1, right 2, left 3, down 4"),
-        ("left shoulder + X Y A B", "best trees: Y 1, B 2, X 3, A 4"),
-        ("right shoulder + X Y A B", "best terrain"),
-        ("both shoulders + X Y A B", "best sky"),
-        ("shoulder + directional pad down", "none of them is best"),
-        ("Y, X, B, A", "walk, fly or orbit; two side by side; undo; all four landscapes"),
-        ("start, select", "breed the next generation; help"),
-    ]
-}
-
 /// Sticks [left, right] with x to the right and y up; triggers [up, down], 0 to 1.
 fn controls(sticks: [Vec2; 2], triggers: [f32; 2], run: bool) -> Controls {
     let [walk, look] = sticks.map(live);
@@ -100,37 +84,40 @@ fn live(stick: Vec2) -> Vec2 {
 }
 
 /// What a button asks for, while the shoulders [left, right] are held or not.
-fn action(button: Button, shoulders: [bool; 2]) -> Option<Action> {
+fn command(button: Button, shoulders: [bool; 2]) -> Option<Command> {
     use Button::*;
     let category = match shoulders {
-        [true, false] => Some(Category::Tree),
-        [false, true] => Some(Category::Terrain),
-        [true, true] => Some(Category::Sky),
-        [false, false] => None,
+        [true, false] => Category::Tree,
+        [false, true] => Category::Terrain,
+        [true, true] => Category::Sky,
+        [false, false] => return command_without_shoulder(button),
     };
-    if let Some(category) = category {
-        return match button {
-            North => Some(Action::Vote(category, Some(0))),
-            East => Some(Action::Vote(category, Some(1))),
-            West => Some(Action::Vote(category, Some(2))),
-            South => Some(Action::Vote(category, Some(3))),
-            DPadDown => Some(Action::Vote(category, None)),
-            _ => None,
-        };
-    }
-    match button {
-        DPadUp => Some(Action::Maximise(0)),
-        DPadRight => Some(Action::Maximise(1)),
-        DPadLeft => Some(Action::Maximise(2)),
-        DPadDown => Some(Action::Maximise(3)),
-        South | RightThumb => Some(Action::ShowAll),
-        West => Some(Action::CompareAB),
-        North => Some(Action::ToggleWalkFlyOrbit),
-        East => Some(Action::Undo),
-        Start => Some(Action::NextGeneration),
-        Select => Some(Action::ToggleHelp),
-        _ => None,
-    }
+    let landscape = match button {
+        North => Some(1),
+        East => Some(2),
+        West => Some(3),
+        South => Some(4),
+        DPadDown => None,
+        _ => return None,
+    };
+    Some(Command::Vote(Best { category, landscape }))
+}
+
+fn command_without_shoulder(button: Button) -> Option<Command> {
+    use Button::*;
+    Some(match button {
+        DPadUp => Command::Maximise(1),
+        DPadRight => Command::Maximise(2),
+        DPadLeft => Command::Maximise(3),
+        DPadDown => Command::Maximise(4),
+        South | RightThumb => Command::ShowAll,
+        West => Command::Compare,
+        North => Command::WalkFlyOrbit,
+        East => Command::Undo,
+        Start => Command::NextGeneration,
+        Select => Command::Help,
+        _ => return None,
+    })
 }
 
 #[cfg(test)]
@@ -153,16 +140,16 @@ mod tests {
     #[test]
     fn every_vote_can_be_cast() {
         let shoulders = [[true, false], [false, true], [true, true]];
-        let cast: std::collections::BTreeSet<Action> = shoulders
+        let cast: std::collections::BTreeSet<Command> = shoulders
             .into_iter()
             .flat_map(|held| {
                 [Button::North, Button::East, Button::South, Button::West, Button::DPadDown]
                     .into_iter()
-                    .filter_map(move |button| action(button, held))
+                    .filter_map(move |button| command(button, held))
             })
             .collect();
-        let votes: std::collections::BTreeSet<Action> =
-            Action::all().filter(|action| matches!(action, Action::Vote(..))).collect();
+        let votes: std::collections::BTreeSet<Command> =
+            Command::all().filter(|command| matches!(command, Command::Vote(..))).collect();
         assert_eq!(cast, votes);
     }
 

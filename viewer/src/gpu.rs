@@ -5,59 +5,39 @@ use thiserror::Error;
 /// The device with its queue; cheap to clone.
 #[derive(Clone, Debug)]
 pub struct Gpu {
-    /// Makes resources.
     pub device: wgpu::Device,
-    /// Takes work.
     pub queue: wgpu::Queue,
     /// "llvmpipe (LLVM 15.0.6, 256 bits)".
     pub name: String,
     /// True if there is no graphics card and the processor draws.
     pub software: bool,
-    /// Optional abilities that this device has.
+    /// Optional features that this device has.
     pub features: wgpu::Features,
 }
+
+/// What to do where no device is found.
+const ADVICE: &str = "Genescape draws with Vulkan, Metal or Direct3D 12. On Linux install your card's Vulkan driver, or, \
+    to draw without a card, the package mesa-vulkan-drivers (Debian, Ubuntu, Fedora) or vulkan-swrast (Arch).";
 
 /// Why nothing can be drawn.
 #[derive(Debug, Error)]
 pub enum GpuError {
-    /// No driver answered.
-    #[error(
-        "no graphics device was found: {0}\n\
-         Genescape draws with Vulkan, Metal or Direct3D 12. On Linux install your card's Vulkan driver, or, to draw \
-         without a card, the package mesa-vulkan-drivers (Debian, Ubuntu, Fedora) or vulkan-swrast (Arch)."
-    )]
+    #[error("no graphics device was found: {0}\n{ADVICE}")]
     NoAdapter(#[from] wgpu::RequestAdapterError),
-    /// A window is there, but no driver that could draw to it.
-    #[error(
-        "no graphics device can draw to the window.\n\
-         Genescape draws with Vulkan, Metal or Direct3D 12. On Linux install your card's Vulkan driver, or, to draw \
-         without a card, the package mesa-vulkan-drivers (Debian, Ubuntu, Fedora) or vulkan-swrast (Arch)."
-    )]
+    #[error("no graphics device can draw to the window.\n{ADVICE}")]
     NoSurface(#[from] wgpu::CreateSurfaceError),
-    /// The driver is there but cannot do what is needed.
     #[error("{name} lacks {missing}, which is needed to draw; try a newer driver")]
-    Lacking {
-        /// The adapter.
-        name: String,
-        /// What it lacks.
-        missing: String,
-    },
-    /// The driver refused.
+    Lacking { name: String, missing: String },
     #[error("{name} could not be opened: {source}")]
-    NoDevice {
-        /// The adapter.
-        name: String,
-        /// Why.
-        source: wgpu::RequestDeviceError,
-    },
+    NoDevice { name: String, source: wgpu::RequestDeviceError },
 }
 
 /// What drawing cannot do without: trees are drawn by commands that a compute pass writes, each starting at an
 /// instance of its own.
-const NEEDED: wgpu::Features = wgpu::Features::INDIRECT_FIRST_INSTANCE;
+const REQUIRED: wgpu::Features = wgpu::Features::INDIRECT_FIRST_INSTANCE;
 
-/// What is used where it is there.
-const WELCOME: wgpu::Features = wgpu::Features::POLYGON_MODE_LINE
+/// What is used where the adapter has it.
+const OPTIONAL: wgpu::Features = wgpu::Features::POLYGON_MODE_LINE
     .union(wgpu::Features::TIMESTAMP_QUERY)
     .union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS)
     .union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);
@@ -74,16 +54,22 @@ impl Gpu {
             ..Default::default()
         };
         let adapter = pollster::block_on(instance.request_adapter(&options))?;
-        let info = adapter.get_info();
-        let missing = NEEDED - adapter.features();
+        let (info, limits) = (adapter.get_info(), adapter.limits());
+        let missing = REQUIRED - adapter.features();
         if !missing.is_empty() {
             return Err(GpuError::Lacking { name: info.name, missing: missing.to_string() });
         }
-        let features = NEEDED | (WELCOME & adapter.features());
+        let features = REQUIRED | (OPTIONAL & adapter.features());
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("genescape"),
             required_features: features,
-            required_limits: limits(&adapter.limits()),
+            // The defaults, with room for great forests where the adapter has it.
+            required_limits: wgpu::Limits {
+                max_buffer_size: limits.max_buffer_size,
+                max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
+                max_texture_dimension_2d: limits.max_texture_dimension_2d,
+                ..Default::default()
+            },
             ..Default::default()
         };
         let opened = pollster::block_on(adapter.request_device(&descriptor));
@@ -96,6 +82,30 @@ impl Gpu {
     /// Opens a device that draws to memory only.
     pub fn headless() -> Result<Self, GpuError> {
         Ok(Self::open(&instance(), None)?.0)
+    }
+
+    /// A buffer with these contents.
+    pub fn buffer<T: bytemuck::NoUninit>(
+        &self,
+        label: &str,
+        contents: &[T],
+        usage: wgpu::BufferUsages,
+    ) -> wgpu::Buffer {
+        use wgpu::util::DeviceExt;
+        let contents = bytemuck::cast_slice(contents);
+        let descriptor = wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage };
+        self.device.create_buffer_init(&descriptor)
+    }
+
+    /// A buffer of at least that many bytes.
+    pub fn empty_buffer(&self, label: &str, bytes: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            // Empty buffers cannot be bound.
+            size: bytes.max(16),
+            usage,
+            mapped_at_creation: false,
+        })
     }
 
     /// Waits until all that was submitted is done.
@@ -112,14 +122,4 @@ pub fn instance() -> wgpu::Instance {
     // nested groups are kept. WGPU_DISCARD_HAL_LABELS=0 brings them back.
     descriptor.flags = (descriptor.flags | wgpu::InstanceFlags::DISCARD_HAL_LABELS).with_env();
     wgpu::Instance::new(descriptor)
-}
-
-/// The defaults, with room for great forests where the adapter has it.
-fn limits(adapter: &wgpu::Limits) -> wgpu::Limits {
-    wgpu::Limits {
-        max_buffer_size: adapter.max_buffer_size,
-        max_storage_buffer_binding_size: adapter.max_storage_buffer_binding_size,
-        max_texture_dimension_2d: adapter.max_texture_dimension_2d,
-        ..Default::default()
-    }
 }

@@ -1,26 +1,29 @@
 //! Shows four baked landscapes at once, walked through together and voted on.
 //!
 //! Data goes one way: files → [`load`] → [`scene`] (plain values) → [`upload`] (buffers and textures) → [`passes`]
-//! (pictures, in a [`view`] each), with the person's wishes coming in as events.
+//! (pictures, in a [`view`] each), with events coming in from the person.
 
 pub mod app;
 pub mod baker;
 pub mod bench;
 pub mod camera;
 pub mod cli;
+pub mod edit_history;
 pub mod event;
-pub mod frame;
 #[cfg(feature = "gamepad")]
 pub mod gamepad;
 pub mod gpu;
-pub mod history;
+pub mod headless;
 pub mod input;
 pub mod load;
 pub mod lod;
+pub mod lod_mode;
+
+pub mod options;
 pub mod passes;
 pub mod picture_file;
-pub mod save;
 pub mod scene;
+pub mod scene_loader;
 pub mod screenshot;
 pub mod settings;
 pub mod shaders;
@@ -28,5 +31,12 @@ pub mod ui;
 pub mod upload;
 pub mod view;
 pub mod walk;
-pub mod world_files;
-pub mod world_watch;
+
+/// `println!` that goes on when nothing reads it any more, as in `viewer bench | head`.
+macro_rules! say {
+    ($($words:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stdout().lock(), $($words)*);
+    }};
+}
+use say;

@@ -4,11 +4,12 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use clap::Parser;
-use genescape_viewer::app::{self, Start, desk::Source};
+use genescape_viewer::app::{self, Start};
 use genescape_viewer::baker::BakerOptions;
 use genescape_viewer::cli::{Cli, Command};
 use genescape_viewer::settings::SettingsFile;
 use genescape_viewer::{bench, screenshot};
+use genescape_world::Source;
 
 fn main() -> ExitCode {
     match run(&Cli::parse()) {
@@ -25,7 +26,7 @@ fn run(cli: &Cli) -> Result<()> {
         return bench::run(args);
     }
     let path = cli.path.as_ref().unwrap_or(&cli.world);
-    let source = Source::of(path).map_err(anyhow::Error::msg)?;
+    let source = Source::of(path)?;
     if let Some(out) = &cli.screenshot {
         return screenshot::take(cli, &source, out);
     }

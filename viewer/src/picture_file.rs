@@ -1,24 +1,14 @@
-//! A finished picture on the device → a PNG file.
+//! Finished pictures on the device → images in memory → a PNG file.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
+use image::{ImageFormat, RgbaImage};
 
 use crate::gpu::Gpu;
 
-/// Pixels in memory: RGBA, 8 bits, row 0 on top.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Pixels {
-    /// Width.
-    pub width_px: u32,
-    /// Height.
-    pub height_px: u32,
-    /// 4 bytes a pixel.
-    pub rgba: Vec<u8>,
-}
-
 /// Copies a texture of 4 bytes a pixel from the device. Waits for it.
-pub fn read(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Pixels> {
+pub fn read(gpu: &Gpu, texture: &wgpu::Texture) -> Result<RgbaImage> {
     let (width, height) = (texture.width(), texture.height());
     let row = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -40,14 +30,14 @@ pub fn read(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Pixels> {
     let bytes = read_buffer(gpu, &buffer)?;
     let rows = bytes.chunks_exact(row as usize);
     let rgba = rows.flat_map(|pixels| &pixels[..width as usize * 4]).copied().collect();
-    Ok(Pixels { width_px: width, height_px: height, rgba })
+    RgbaImage::from_raw(width, height, rgba).context("the device gives too little back")
 }
 
 /// Copies a buffer that can be mapped from the device. Waits for it.
 pub fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>> {
     let (sender, receiver) = std::sync::mpsc::channel();
     buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
-        // Nobody waits any more if the receiver is gone.
+        // The receiver is gone if reading was given up.
         let _ = sender.send(result);
     });
     gpu.wait();
@@ -57,15 +47,62 @@ pub fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// Puts images of one size side by side, `columns` in a row.
+pub fn contact_sheet(images: &[RgbaImage], columns: usize) -> Option<RgbaImage> {
+    let (width, height) = images.first()?.dimensions();
+    let rows = images.len().div_ceil(columns) as u32;
+    let mut sheet = RgbaImage::new(width * columns as u32, height * rows);
+    for (index, image) in images.iter().enumerate() {
+        let (column, row) = ((index % columns) as u32, (index / columns) as u32);
+        image::imageops::replace(&mut sheet, image, (column * width).into(), (row * height).into());
+    }
+    Some(sheet)
+}
+
 /// Writes a PNG file; its folder must exist.
-pub fn write_png(path: &Path, pixels: &Pixels) -> Result<()> {
-    let told = || format!("cannot write {}", path.display());
-    let file = std::fs::File::create(path).with_context(told)?;
-    let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), pixels.width_px, pixels.height_px);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    let mut writer = encoder.write_header().with_context(told)?;
-    writer.write_image_data(&pixels.rgba).with_context(told)?;
-    writer.finish().with_context(told)
+pub fn write_png(path: &Path, image: &RgbaImage) -> Result<()> {
+    let written = image.save_with_format(path, ImageFormat::Png);
+    written.with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// Writes a picture into a folder, made if need be, under the first name that is free there: "genescape-0001.png".
+pub fn write_numbered(folder: &Path, image: &RgbaImage) -> Result<PathBuf> {
+    std::fs::create_dir_all(folder)?;
+    let mut names = (1..10_000).map(|number| folder.join(format!("genescape-{number:04}.png")));
+    let path = names.find(|path| !path.exists()).context("there are ten thousand pictures already")?;
+    write_png(&path, image)?;
+    Ok(path)
+}
+
+/// Width and height as a person writes them: "1280x800".
+pub fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let sides: Vec<u32> = text.split(['x', 'X', '×']).filter_map(|side| side.trim().parse().ok()).collect();
+    match sides[..] {
+        [width, height] if (16..=16384).contains(&width) && (16..=16384).contains(&height) => {
+            Ok([width, height])
+        }
+        _ => Err("a size is WIDTHxHEIGHT in pixels, 16 to 16384 each, as in 1280x800".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_read_or_refused() {
+        assert_eq!(parse_size("640x480"), Ok([640, 480]));
+        for wrong in ["640", "0x480", "640x480x3", "x", "99999x10"] {
+            assert!(parse_size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_contact_sheet_is_filled_row_by_row() {
+        let one = |value: u8| RgbaImage::from_pixel(2, 1, image::Rgba([value; 4]));
+        let sheet = contact_sheet(&[one(1), one(2), one(3)], 2).expect("images");
+        assert_eq!(sheet.dimensions(), (4, 2));
+        assert_eq!(sheet.into_raw(), [[1; 8], [2; 8], [3; 8], [0; 8]].concat());
+        assert_eq!(contact_sheet(&[], 2), None);
+    }
 }

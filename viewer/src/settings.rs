@@ -1,21 +1,20 @@
-//! What is kept between runs, as one RON file for people in the platform's folder for settings: options, window,
-//! bookmarks, votes that were not yet written down.
-//!
-//! What other modules keep here in types of their own (keys, comfort) passes through as [`Opaque`] text, so that a
-//! fault in one of them spoils nothing else.
+//! What is kept between runs, as one RON file for people in the platform's folder for settings: options, comfort, keys,
+//! window, bookmarks, votes that were not yet written down.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use anyhow::{Result, anyhow};
 use etcetera::{AppStrategy, AppStrategyArgs};
+use genescape_world::atomic_write;
 use ron::value::RawValue;
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::frame;
-use crate::save::save;
+use crate::input::Bindings;
+use crate::options;
 
 /// The file's first line.
 const TITLE: &str =
@@ -27,14 +26,52 @@ const TITLE: &str =
 pub struct Settings {
     /// What is drawn, and how.
     pub options: frame::Options,
-    /// How the program feels in the hand.
-    pub comfort: Opaque,
-    /// What keys, mouse and gamepad do.
-    pub bindings: Opaque,
+    pub comfort: Part<Comfort>,
+    pub bindings: Part<Bindings>,
     /// The window.
     pub window: Window,
     /// By the world folder's full path.
     pub worlds: BTreeMap<String, WorldSettings>,
+}
+
+/// How the program feels in the hand.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Comfort {
+    /// Factor on the turn per pixel of the mouse: 0.1 to 5.
+    pub mouse_sensitivity: f32,
+    /// Mouse up looks down.
+    pub invert_y: bool,
+    pub theme: Theme,
+    /// Factor on the desktop's own scale: 0.5 to 2.5.
+    pub ui_scale: f32,
+}
+
+impl Default for Comfort {
+    fn default() -> Self {
+        Self { mouse_sensitivity: 1.0, invert_y: false, theme: Theme::System, ui_scale: 1.0 }
+    }
+}
+
+/// Light or dark.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Theme {
+    /// As the desktop says.
+    #[default]
+    System,
+    Light,
+    Dark,
+}
+
+impl Settings {
+    /// What is wrong with parts of them.
+    fn faults(&self) -> Vec<String> {
+        [("comfort", &self.comfort.fault), ("bindings", &self.bindings.fault)]
+            .into_iter()
+            .filter_map(|(part, fault)| Some((part, fault.as_ref()?)))
+            .map(|(part, fault)| format!("{part} in the settings: {fault}; defaults are used"))
+            .collect()
+    }
 }
 
 /// The window as it was left.
@@ -45,7 +82,6 @@ pub struct Window {
     pub width: f32,
     /// Height of the content in logical pixels.
     pub height: f32,
-    /// It filled the screen.
     pub maximized: bool,
 }
 
@@ -92,52 +128,25 @@ pub struct RunningVotes {
     pub cast: BTreeMap<String, Option<usize>>,
 }
 
-/// RON that only its owner understands.
-#[derive(Clone, Debug, Default)]
-pub struct Opaque(Option<Box<RawValue>>);
-
-impl Opaque {
-    /// The value; `None` if there is none yet.
-    ///
-    /// # Errors
-    /// Text that is no `T`: what is wrong with it.
-    pub fn get<T: DeserializeOwned>(&self) -> Result<Option<T>, String> {
-        let Some(raw) = &self.0 else { return Ok(None) };
-        raw.into_rust().map(Some).map_err(|error| error.code.to_string())
-    }
-
-    /// Another value.
-    ///
-    /// # Errors
-    /// What RON cannot write.
-    pub fn set<T: Serialize>(&mut self, value: &T) -> Result<(), String> {
-        let text =
-            ron::ser::to_string_pretty(value, style().struct_names(false)).map_err(|e| e.to_string())?;
-        self.0 = Some(RawValue::from_boxed_ron(text.into()).map_err(|error| error.to_string())?);
-        Ok(())
-    }
+/// A part of the settings that is read by itself: a fault in it spoils nothing else.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[serde(transparent)]
+pub struct Part<T> {
+    pub value: T,
+    #[serde(skip)]
+    fault: Option<String>,
 }
 
-impl PartialEq for Opaque {
-    fn eq(&self, other: &Self) -> bool {
-        let text = |opaque: &Self| opaque.0.as_ref().map(|raw| raw.trim().get_ron().to_owned());
-        text(self) == text(other)
-    }
-}
-
-impl Serialize for Opaque {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match &self.0 {
-            Some(raw) => raw.trim().serialize(serializer),
-            None => serializer.serialize_unit(),
-        }
-    }
-}
-
-impl<'de> Deserialize<'de> for Opaque {
+impl<'de, T: DeserializeOwned + Default> Deserialize<'de> for Part<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let raw = Box::<RawValue>::deserialize(deserializer)?;
-        Ok(Self((raw.trim().get_ron() != "()").then_some(raw)))
+        if raw.trim().get_ron() == "()" {
+            return Ok(Self::default());
+        }
+        Ok(match raw.into_rust() {
+            Ok(value) => Self { value, fault: None },
+            Err(error) => Self { value: T::default(), fault: Some(error.code.to_string()) },
+        })
     }
 }
 
@@ -151,32 +160,15 @@ pub struct SettingsFile {
 /// What was found, and what the person should know about it.
 #[derive(Debug)]
 pub struct Opened {
-    /// Where they are kept.
     pub file: SettingsFile,
     /// The settings; defaults if there are none, or none that can be read.
     pub settings: Settings,
     /// What was wrong, with file and line, and what became of the file.
-    pub problem: Option<String>,
-}
-
-/// Why settings could not be saved.
-#[derive(Debug, thiserror::Error)]
-pub enum SettingsError {
-    /// The system refused.
-    #[error("cannot save the settings in {}: {source}; --settings FILE keeps them elsewhere", path.display())]
-    Write {
-        /// Which file.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
-    /// RON has no words for it: a bug.
-    #[error("the settings cannot be written as RON: {0}")]
-    Format(#[from] ron::Error),
+    pub problems: Vec<String>,
 }
 
 impl SettingsFile {
-    /// Where settings are kept unless the person says otherwise; `None` for somebody without a home.
+    /// Where settings are kept unless the person says otherwise; `None` without a home folder.
     pub fn usual_path() -> Option<PathBuf> {
         let args = AppStrategyArgs {
             top_level_domain: "org".into(),
@@ -195,27 +187,31 @@ impl SettingsFile {
             Ok(text) => match parse(&text) {
                 Ok(settings) => {
                     let file = Self { path, saved: Some(settings.clone()) };
-                    Opened { file, settings, problem: None }
+                    Opened { file, problems: settings.faults(), settings }
                 }
                 Err(fault) => {
                     let problem = format!("{}:{fault}\n{}", path.display(), set_aside(&path));
-                    Self::defaults(path, Some(problem))
+                    Self::defaults(path, vec![problem])
                 }
             },
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Self::defaults(path, None),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Self::defaults(path, Vec::new()),
             Err(error) => {
                 let told = path.display();
                 let problem = format!("cannot read the settings in {told}: {error}; defaults are used");
-                Self::defaults(path, Some(problem))
+                Self::defaults(path, vec![problem])
             }
         }
     }
 
-    fn defaults(path: PathBuf, problem: Option<String>) -> Opened {
-        Opened { file: Self { path, saved: None }, settings: Settings::default(), problem }
+    fn defaults(path: PathBuf, problems: Vec<String>) -> Opened {
+        Opened { file: Self { path, saved: None }, settings: Settings::default(), problems }
     }
 
-    /// Where they are kept.
+    /// Whether nobody has kept any settings here yet, or none that can be read.
+    pub fn is_new(&self) -> bool {
+        self.saved.is_none()
+    }
+
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -225,12 +221,16 @@ impl SettingsFile {
     ///
     /// # Errors
     /// A file that cannot be written; the old one is then untouched.
-    pub fn save(&mut self, settings: &Settings) -> Result<(), SettingsError> {
+    pub fn save(&mut self, settings: &Settings) -> Result<()> {
         if self.saved.as_ref() == Some(settings) {
             return Ok(());
         }
-        let text = format!("{TITLE}{}\n", ron::ser::to_string_pretty(settings, style().struct_names(true))?);
-        save(&self.path, &text).map_err(|source| SettingsError::Write { path: self.path.clone(), source })?;
+        let style = ron::ser::PrettyConfig::new().indentor("    ").struct_names(true);
+        let text = format!("{TITLE}{}\n", ron::ser::to_string_pretty(settings, style)?);
+        atomic_write::replace(&self.path, &text).map_err(|error| {
+            let told = self.path.display();
+            anyhow!("cannot save the settings in {told}: {error}; --settings FILE keeps them elsewhere")
+        })?;
         self.saved = Some(settings.clone());
         Ok(())
     }
@@ -259,25 +259,17 @@ fn set_aside(path: &Path) -> String {
     }
 }
 
-fn style() -> ron::ser::PrettyConfig {
-    ron::ser::PrettyConfig::new().indentor("    ")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::input::Command;
+    use crate::lod_mode::{TerrainLodMode, TreeLodMode};
     use proptest::prelude::*;
 
-    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-    enum Key {
-        KeyW,
-        Button { number: u8 },
-    }
-
-    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-    struct Bindings {
-        forward: Vec<Key>,
-        run: Option<Key>,
+    fn bindings() -> Bindings {
+        let mut bindings = Bindings::default();
+        bindings.bind("Mouse 3".parse().expect("a chord"), Command::Forward).expect("free");
+        bindings
     }
 
     prop_compose! {
@@ -298,8 +290,8 @@ mod tests {
                 world.running_votes = Some(RunningVotes { generation, cast });
                 settings.worlds.insert(name, world);
             }
-            let bindings = Bindings { forward: vec![Key::KeyW, Key::Button { number: 3 }], run: None };
-            settings.bindings.set(&bindings).expect("RON");
+            settings.comfort.value.invert_y = !maximized;
+            settings.bindings.value = bindings();
             settings
         }
     }
@@ -312,11 +304,9 @@ mod tests {
             let folder = tempfile::tempdir().expect("a temporary folder");
             let path = folder.path().join("genescape/viewer.ron");
             SettingsFile::open(&path).file.save(&settings).expect("saved");
-            let Opened { settings: found, problem, mut file } = SettingsFile::open(&path);
-            prop_assert_eq!(problem, None);
+            let Opened { settings: found, problems, mut file } = SettingsFile::open(&path);
+            prop_assert_eq!(problems, Vec::<String>::new());
             prop_assert_eq!(&found, &settings);
-            let bindings = found.bindings.get::<Bindings>().expect("RON").expect("some");
-            prop_assert_eq!(bindings.forward, [Key::KeyW, Key::Button { number: 3 }]);
             // Saved again, the text is the same, however often.
             let text = fs::read_to_string(&path).expect("there");
             file.saved = None;
@@ -329,7 +319,7 @@ mod tests {
     fn without_a_file_there_are_defaults_and_nothing_to_tell() {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let opened = SettingsFile::open(folder.path().join("none.ron"));
-        assert_eq!((opened.settings, opened.problem), (Settings::default(), None));
+        assert_eq!((opened.settings, opened.problems), (Settings::default(), Vec::new()));
         assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 0);
     }
 
@@ -339,10 +329,41 @@ mod tests {
         assert_eq!(read("()"), Settings::default());
         assert_eq!(read("(window: (width: 900))").window.width, 900.0);
         assert_eq!(read("Settings(telepathy: On(3), window: (height: 1))").window.height, 1.0);
-        assert!(
-            read("(bindings: nonsense)").bindings.get::<Bindings>().is_err(),
-            "which spoils nothing else"
-        );
+        assert_eq!(read("(comfort: (), bindings: ())"), Settings::default());
+        let partly = read("(bindings: nonsense, comfort: (invert_y: true))");
+        assert_eq!(partly.bindings.value, Bindings::default());
+        assert!(partly.comfort.value.invert_y, "a fault in one part spoils no other");
+        let [fault] = &partly.faults()[..] else { panic!("{:?}", partly.faults()) };
+        assert!(fault.contains("bindings in the settings"), "{fault}");
+    }
+
+    /// As the first version of the program wrote it.
+    #[test]
+    fn a_file_of_the_first_version_is_read() {
+        let first = r#"Settings(
+            options: Options(
+                tree_scheme: Discrete, terrain_scheme: Roam, tree_error_px: 1.5, terrain_error_px: 2.0,
+                wireframe: false, tint_levels: false, overhead: false, drift_clouds: true, draw_trees: true,
+                grass: true, draw_terrain: true, exposure: 1.0, samples: 4, fov_y_deg: 60.0,
+            ),
+            comfort: (mouse_sensitivity: 2.0, invert_y: true, theme: Dark, ui_scale: 1.0),
+            bindings: {"forward": ["W", "Numpad 8"], "screenshot": ["Print Screen"]},
+            window: Window(width: 600.0, height: 440.0, maximized: false),
+            worlds: {"world": WorldSettings(
+                place: Some(Bookmark(position_m: (1.0, 2.0, 3.0), yaw_rad: 0.5, pitch_rad: 0.0, flying: false)),
+                bookmarks: {},
+                running_votes: Some(RunningVotes(generation: 1, cast: {"sky": None, "tree": Some(0)})),
+            )},
+        )"#;
+        let settings = parse(first).expect("valid");
+        assert_eq!(settings.faults(), Vec::<String>::new());
+        assert_eq!(settings.options.tree_lod, TreeLodMode::Discrete);
+        assert_eq!(settings.options.terrain_lod, TerrainLodMode::Roam);
+        assert_eq!((settings.comfort.value.theme, settings.comfort.value.invert_y), (Theme::Dark, true));
+        let chords = |command| settings.bindings.value.chords(command).map(|chord| chord.to_string());
+        assert_eq!(chords(Command::Forward).collect::<Vec<_>>(), ["W", "Numpad 8"]);
+        assert_eq!(chords(Command::Screenshot).collect::<Vec<_>>(), ["Print Screen"]);
+        assert_eq!(settings.worlds["world"].place.map(|place| place.position_m), Some([1.0, 2.0, 3.0]));
     }
 
     #[test]
@@ -352,8 +373,8 @@ mod tests {
         for count in 1..=2 {
             let broken = format!("(\n  window: (width: wide{count}),\n)");
             fs::write(&path, &broken).expect("written");
-            let Opened { mut file, settings, problem } = SettingsFile::open(&path);
-            let problem = problem.expect("told");
+            let Opened { mut file, settings, problems } = SettingsFile::open(&path);
+            let problem = problems.first().expect("told");
             assert!(problem.contains("viewer.ron:2:") && problem.contains("rename it back"), "{problem}");
             assert_eq!(settings, Settings::default());
             file.save(&settings).expect("saved");

@@ -5,20 +5,10 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use crate::passes::SHADERS;
+
 /// What every pass's shader starts with.
 const COMMON: &str = include_str!("passes/common.wgsl");
-
-/// The sources that were built in, by name.
-const BUILTIN: &[(&str, &str)] = &[
-    ("cull", include_str!("passes/cull.wgsl")),
-    ("grass", include_str!("passes/grass.wgsl")),
-    ("shadow", include_str!("passes/shadow.wgsl")),
-    ("sky", include_str!("passes/sky.wgsl")),
-    ("terrain", include_str!("passes/terrain.wgsl")),
-    ("tone", include_str!("passes/tone.wgsl")),
-    ("trees", include_str!("passes/trees.wgsl")),
-    ("water", include_str!("passes/water.wgsl")),
-];
 
 /// Where sources come from.
 #[derive(Clone, Debug, Default)]
@@ -31,26 +21,19 @@ pub struct Shaders {
 pub enum ShaderError {
     /// naga refuses it.
     #[error("{name}.wgsl is wrong:\n{text}")]
-    Wrong {
-        /// Its name without ending.
-        name: String,
-        /// What and where.
-        text: String,
-    },
+    Wrong { name: String, text: String },
     /// A pipeline cannot be made from it.
     #[error("a shader does not fit its pipeline: {text}")]
-    Refused {
-        /// What the device says.
-        text: String,
-    },
-    /// It cannot be read.
+    Refused { text: String },
     #[error("cannot read {path}: {source}")]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
+    Unreadable { path: PathBuf, source: std::io::Error },
+}
+
+/// From a folder, if there is one; any shader that is not in it is taken from the built-in ones.
+impl From<Option<PathBuf>> for Shaders {
+    fn from(folder: Option<PathBuf>) -> Self {
+        Self { folder }
+    }
 }
 
 impl Shaders {
@@ -59,14 +42,9 @@ impl Shaders {
         Self::default()
     }
 
-    /// Those in `folder`; any that is not there is taken from the built-in ones.
-    pub fn from_folder(folder: PathBuf) -> Self {
-        Self { folder: Some(folder) }
-    }
-
-    /// Names of all shaders.
+    /// Names of all shaders, without "common".
     pub fn names() -> impl Iterator<Item = &'static str> {
-        BUILTIN.iter().map(|(name, _)| *name)
+        SHADERS.iter().map(|shader| shader.name)
     }
 
     fn source(&self, name: &str, builtin: &str) -> Result<String, ShaderError> {
@@ -80,7 +58,7 @@ impl Shaders {
 
     /// The whole text of a shader: common part, then its own.
     pub fn text(&self, name: &str) -> Result<String, ShaderError> {
-        let builtin = BUILTIN.iter().find(|(known, _)| *known == name).map_or("", |(_, text)| text);
+        let builtin = SHADERS.iter().find(|shader| shader.name == name).map_or("", |shader| shader.source);
         Ok(self.source("common", COMMON)? + &self.source(name, builtin)?)
     }
 
@@ -92,12 +70,13 @@ impl Shaders {
             name: name.to_owned(),
             text: format!("{error}(its first {common_lines} lines are those of common.wgsl)"),
         };
+        let path = format!("{name}.wgsl");
         let module = naga::front::wgsl::parse_str(&text)
-            .map_err(|error| wrong(error.emit_to_string_with_path(&text, &format!("{name}.wgsl"))))?;
+            .map_err(|error| wrong(error.emit_to_string_with_path(&text, &path)))?;
         let flags = naga::valid::ValidationFlags::all();
         let info = naga::valid::Validator::new(flags, naga::valid::Capabilities::all())
             .validate(&module)
-            .map_err(|error| wrong(error.emit_to_string_with_path(&text, &format!("{name}.wgsl"))))?;
+            .map_err(|error| wrong(error.emit_to_string_with_path(&text, &path)))?;
         Ok((module, info))
     }
 

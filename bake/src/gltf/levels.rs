@@ -1,7 +1,7 @@
 //! A levelled mesh → one self-contained .glb: scene 0 is D_0, scene 1 every distinguished mesh side by side, each
 //! D_i with a core morph target that is its geomorph to D_{i+1}, and everything in `GSC_progressive_mesh` besides.
 
-use genescape_schema::gltf::{GSC_PROGRESSIVE_MESH, ProgressiveLevel, ProgressiveMeshExtension};
+use genescape_schema::scene::{GSC_PROGRESSIVE_MESH, ProgressiveLevel, ProgressiveMeshExtension};
 use serde_json::{Value, json};
 
 use super::document::{

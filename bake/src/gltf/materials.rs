@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::ExportError;
 use super::document::{Document, push};
 use super::levels::{Surface, levelled_glb};
-use crate::model::{LevelledMesh, Material};
+use crate::model::{LevelledMesh, Material, TreeTextures};
 
 /// Trilinear filtering, repeating.
 pub const REPEATING: (u32, u32) = (9987, 10497);
@@ -161,64 +161,67 @@ fn picture_json(document: &mut Document, picture: &Picture<'_>) -> Value {
     }
 }
 
-/// The pictures on a tree.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TreeImages<'a> {
-    /// Bark, sRGB.
-    pub bark_color: Picture<'a>,
-    /// Bark normals.
-    pub bark_normal: Picture<'a>,
-    /// Leaf card, sRGB with alpha; absent on a bare tree.
-    pub leaf: Option<Picture<'a>>,
-    /// Blossom card, likewise.
-    pub blossom: Option<Picture<'a>>,
-    /// Alpha below this is cut away.
-    pub alpha_cutoff: f32,
+/// Bark, leaf and blossom as glTF materials; cards only as far as `used` says that parts have them.
+pub(super) fn tree_materials<'a>(
+    textures: &TreeTextures<Picture<'a>>,
+    used: impl Fn(Material) -> bool,
+) -> MaterialSet<'a> {
+    let mut set = MaterialSet {
+        slots: vec![Material::Bark],
+        materials: vec![json!({ "name": "bark",
+            "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 },
+                "metallicFactor": 0, "roughnessFactor": 0.9 },
+            "normalTexture": { "index": 1 } })],
+        textures: vec![
+            json!({ "name": "bark colour", "sampler": 0, "source": 0 }),
+            json!({ "name": "bark normals", "sampler": 0, "source": 1 }),
+        ],
+        samplers: vec![sampler(REPEATING)],
+        images: vec![
+            ("bark colour".into(), textures.bark_color.clone()),
+            ("bark normals".into(), textures.bark_normal.clone()),
+        ],
+    };
+    let cards = [(Material::Leaf, "leaf", &textures.leaf), (Material::Blossom, "blossom", &textures.blossom)];
+    for (slot, name, levels) in cards {
+        let Some(picture) = card(levels).filter(|_| used(slot)) else { continue };
+        if set.samplers.len() == 1 {
+            set.samplers.push(sampler(CLAMPED));
+        }
+        let image = push(&mut set.images, (name.into(), picture));
+        let texture = push(&mut set.textures, json!({ "name": name, "sampler": 1, "source": image }));
+        set.slots.push(slot);
+        set.materials.push(json!({ "name": name,
+            "pbrMetallicRoughness": { "baseColorTexture": { "index": texture },
+                "metallicFactor": 0, "roughnessFactor": 0.65 },
+            "alphaMode": "MASK", "alphaCutoff": textures.alpha_cutoff, "doubleSided": true }));
+    }
+    set
 }
 
-impl<'a> TreeImages<'a> {
-    /// Bark, leaf and blossom as glTF materials; cards only as far as `used` says that parts have them.
-    pub(super) fn materials(&self, used: impl Fn(Material) -> bool) -> MaterialSet<'a> {
-        let mut set = MaterialSet {
-            slots: vec![Material::Bark],
-            materials: vec![json!({ "name": "bark",
-                "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 },
-                    "metallicFactor": 0, "roughnessFactor": 0.9 },
-                "normalTexture": { "index": 1 } })],
-            textures: vec![
-                json!({ "name": "bark colour", "sampler": 0, "source": 0 }),
-                json!({ "name": "bark normals", "sampler": 0, "source": 1 }),
-            ],
-            samplers: vec![sampler(REPEATING)],
-            images: vec![
-                ("bark colour".into(), self.bark_color.clone()),
-                ("bark normals".into(), self.bark_normal.clone()),
-            ],
-        };
-        let cards = [(Material::Leaf, "leaf", &self.leaf), (Material::Blossom, "blossom", &self.blossom)];
-        for (slot, name, picture) in cards {
-            let Some(picture) = picture.as_ref().filter(|_| used(slot)) else { continue };
-            if set.samplers.len() == 1 {
-                set.samplers.push(sampler(CLAMPED));
-            }
-            let image = push(&mut set.images, (name.into(), picture.clone()));
-            let texture = push(&mut set.textures, json!({ "name": name, "sampler": 1, "source": image }));
-            set.slots.push(slot);
-            set.materials.push(json!({ "name": name,
-                "pbrMetallicRoughness": { "baseColorTexture": { "index": texture },
-                    "metallicFactor": 0, "roughnessFactor": 0.65 },
-                "alphaMode": "MASK", "alphaCutoff": self.alpha_cutoff, "doubleSided": true }));
-        }
-        set
-    }
+/// A card with its mip levels, if it has any.
+fn card<'a>(levels: &[Picture<'a>]) -> Option<Picture<'a>> {
+    let (first, smaller) = levels.split_first()?;
+    let uri_of = |level: &Picture<'_>| match level {
+        Picture::File { uri, .. } => Some(uri.clone()),
+        Picture::Embedded { .. } => None,
+    };
+    Some(match uri_of(first) {
+        Some(uri) => Picture::File { uri, mipmaps: smaller.iter().filter_map(uri_of).collect() },
+        None => first.clone(),
+    })
 }
 
 /// One tree as a self-contained .glb (with `Picture::File`, one that shares its pictures): see [`levelled_glb`].
 ///
 /// # Errors
 /// As [`levelled_glb`].
-pub fn tree_glb(name: &str, mesh: &LevelledMesh, images: &TreeImages<'_>) -> Result<Vec<u8>, ExportError> {
+pub fn tree_glb(
+    name: &str,
+    mesh: &LevelledMesh,
+    textures: &TreeTextures<Picture<'_>>,
+) -> Result<Vec<u8>, ExportError> {
     let parts = || mesh.levels.iter().flat_map(|level| &level.mesh.parts);
     let used = |slot| parts().any(|part| part.material == slot && !part.triangles.is_empty());
-    levelled_glb(name, mesh, &images.materials(used))
+    levelled_glb(name, mesh, &tree_materials(textures, used))
 }

@@ -14,7 +14,6 @@ mod scene;
 mod scene_import;
 mod scene_trees;
 mod single;
-mod svd;
 #[cfg(test)]
 mod synthetic;
 mod tangents;
@@ -25,14 +24,12 @@ mod tests;
 use thiserror::Error;
 
 pub use foreground::foreground_glb;
+pub(crate) use glb::split_glb;
 pub use levels::levelled_glb;
-pub use materials::{MaterialSet, Picture, TreeImages, tree_glb};
-pub use scene::{
-    Blob, CloudSheet, GlbBlob, GroundBlobs, GroundDetailBlobs, HeightfieldBlobs, SceneParts, SkyBlobs,
-    TreeTemplateBlob, instances_bin, scene_gltf,
-};
+pub use materials::{MaterialSet, Picture, tree_glb};
+pub use scene::{Blob, GlbBlob, SceneParts, scene_gltf};
 pub use single::single_glb;
-pub use terrain::{Triangles, near_mesh, terrain_glb};
+pub use terrain::terrain_glb;
 
 /// What `asset.generator` says.
 pub const GENERATOR: &str = concat!("Genescape ", env!("CARGO_PKG_VERSION"));

@@ -1,9 +1,9 @@
 //! All that a scene is made of → `scene.gltf`: small JSON whose buffers and images are blobs by relative URI, and
 //! which shows the scene in any viewer, without any extension but KHR_lights_punctual and KHR_texture_transform.
 
-use genescape_schema::gltf::{
-    GSC_HEIGHTFIELD, GSC_SKY, GroundDetail, GroundSurface, HeightfieldExtension, InstanceRecord, Resource,
-    SkyExtension, SkyLayer, write_instances,
+use genescape_schema::scene::{
+    GSC_HEIGHTFIELD, GSC_SKY, GroundSurface, HeightfieldExtension, Instance, Resource, START_NODE,
+    SkyExtension, SkyImages, SkyLight, StartView, rotation_from_z,
 };
 use glam::Vec3;
 use serde_json::{Value, json};
@@ -11,15 +11,11 @@ use serde_json::{Value, json};
 use super::ExportError;
 use super::document::{Document, Node, push};
 use super::foreground::tiled_material;
-use super::materials::{CLAMPED, REPEATING, TreeImages, sampler};
+use super::materials::{CLAMPED, Picture, REPEATING, sampler};
 use super::scene_import::GlbImport;
 use super::scene_trees::add_trees;
 use super::terrain::{TERRAIN_MESHES, apron_material, ground_material, water_material};
-use crate::model::{Instance, Landform, Placement, SkyLight, StartView, rotation_from_z};
-
-const PNG: &str = "image/png";
-const EXR: &str = "image/x-exr";
-const BYTES: &str = "application/octet-stream";
+use crate::model::{Landform, TreeTextures};
 
 /// A file that the scene names.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -39,80 +35,6 @@ pub struct GlbBlob<'a> {
     pub bytes: &'a [u8],
 }
 
-/// The heightfield as files.
-#[derive(Clone, Debug, PartialEq)]
-pub struct HeightfieldBlobs {
-    /// 16-bit grey PNG: 0 is `range_m.0`, 65535 is `range_m.1`.
-    pub heights_png: Blob,
-    /// Heights in metres of the least and the greatest value.
-    pub range_m: (f32, f32),
-    /// The payload that the page on `GSC_heightfield` specifies.
-    pub lod: Blob,
-}
-
-/// What the ground looks like, as files.
-#[derive(Clone, Debug, PartialEq)]
-pub struct GroundBlobs {
-    /// `GroundMaps::color_srgb` as PNG.
-    pub color: Blob,
-    /// `GroundMaps::weights` as PNG.
-    pub weights: Blob,
-    /// `LightMap::image` as PNG.
-    pub light: Blob,
-    /// Grass, rock, scree, snow and mud.
-    pub details: Vec<GroundDetailBlobs>,
-}
-
-/// One tiling ground texture.
-#[derive(Clone, Debug, PartialEq)]
-pub struct GroundDetailBlobs {
-    /// Its name.
-    pub name: String,
-    /// `GroundTexture::detail_srgb` as PNG.
-    pub detail: Blob,
-    /// `GroundTexture::normal` as PNG.
-    pub normal: Blob,
-    /// The detail as a base colour, see `ground::tile_srgb`, as PNG.
-    pub tile: Blob,
-    /// Metres that one tile covers.
-    pub tile_m: f32,
-}
-
-/// The sky as files.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SkyBlobs {
-    /// Equirectangular EXR.
-    pub equirect: Blob,
-    /// Six EXR faces: +X, −X, +Y, −Y, +Z, −Z.
-    pub faces: Vec<Blob>,
-    /// The same without clouds; may be empty.
-    pub clear_faces: Vec<Blob>,
-    /// Sheets of cloud, lowest first.
-    pub layers: Vec<CloudSheet>,
-}
-
-/// A sheet of cloud as a file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CloudSheet {
-    /// "cumulus" or "cirrus".
-    pub name: String,
-    /// Height above the origin.
-    pub altitude_m: f32,
-    /// Metres that the picture covers.
-    pub extent_m: f32,
-    /// RGBA PNG.
-    pub image: Blob,
-}
-
-/// A kind of tree, made by [`super::tree_glb`].
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct TreeTemplateBlob<'a> {
-    /// Its name: "tree-0".
-    pub name: String,
-    /// Its file.
-    pub glb: GlbBlob<'a>,
-}
-
 /// All that a scene is made of.
 #[derive(Clone, Debug)]
 pub struct SceneParts<'a> {
@@ -128,32 +50,24 @@ pub struct SceneParts<'a> {
     pub foreground: Option<GlbBlob<'a>>,
     /// Where a person first stands.
     pub view: StartView,
-    /// The heightfield's files.
-    pub heightfield: HeightfieldBlobs,
-    /// The ground's files.
-    pub ground: GroundBlobs,
-    /// The kinds of trees, in the order of `Instance::template`.
-    pub templates: Vec<TreeTemplateBlob<'a>>,
-    /// The pictures that all trees share, by URI.
-    pub tree_images: TreeImages<'a>,
-    /// Where the trees stand.
-    pub placement: &'a Placement,
-    /// What [`instances_bin`] made of it.
+    /// 16-bit grey PNG: 0 is the lowest sample, 65535 the highest.
+    pub heights: Resource,
+    /// `TerrainLod` as bytes.
+    pub lod: Resource,
+    /// What covers the ground.
+    pub surface: GroundSurface<Resource>,
+    /// The surface's details as base colours, see `ground::tile_srgb`.
+    pub tiles: Vec<Resource>,
+    /// The templates, made by [`super::tree_glb`], in the order of `Instance::template`.
+    pub templates: Vec<GlbBlob<'a>>,
+    /// The textures that all trees share, by URI.
+    pub tree_images: TreeTextures<Picture<'a>>,
+    pub trees: &'a [Instance],
+    /// The same as the binary data of `GSC_instances`.
     pub instances: Blob,
     /// Sun, sky and haze.
     pub light: &'a SkyLight,
-    /// The sky's files.
-    pub sky: SkyBlobs,
-}
-
-/// The payload of `GSC_instances`.
-pub fn instances_bin(placement: &Placement) -> Vec<u8> {
-    let record = |i: &Instance| InstanceRecord {
-        world_from_tree: i.world_from_tree,
-        template: i.template,
-        trunk_cylinder_m: i.trunk_cylinder_m,
-    };
-    write_instances(&placement.instances.iter().map(record).collect::<Vec<_>>())
+    pub sky: SkyImages<Resource>,
 }
 
 /// The text of `scene.gltf`: the same bytes for the same parts.
@@ -169,7 +83,7 @@ pub fn scene_gltf(parts: &SceneParts<'_>) -> Result<Vec<u8>, ExportError> {
     document.extensions_used.insert(GSC_SKY.into());
     document.scenes.push(json!({
         "name": parts.name, "nodes": roots,
-        "extensions": { GSC_SKY: sky_extension(parts) },
+        "extensions": { GSC_SKY: SkyExtension { images: parts.sky.clone(), light: parts.light.clone() } },
         "extras": { "genome": parts.genome },
     }));
     Ok(document.json())
@@ -178,11 +92,11 @@ pub fn scene_gltf(parts: &SceneParts<'_>) -> Result<Vec<u8>, ExportError> {
 fn add_camera(document: &mut Document, view: &StartView) -> usize {
     let camera = push(
         &mut document.cameras,
-        json!({ "name": "start", "type": "perspective",
+        json!({ "name": START_NODE, "type": "perspective",
             "perspective": { "aspectRatio": 1.6, "yfov": 0.87, "znear": 0.1, "zfar": 30000 } }),
     );
     document.node(Node {
-        name: "start".into(),
+        name: START_NODE.into(),
         camera: Some(camera),
         translation: Some(view.position_m.to_array()),
         rotation: Some(view.rotation().to_array()),
@@ -287,18 +201,18 @@ struct GroundMaterials {
 
 /// The ground's textures, and its materials; `occurs` lists the kinds of ground near the start.
 fn add_ground(document: &mut Document, parts: &SceneParts<'_>, occurs: &[usize]) -> GroundMaterials {
-    let ground = &parts.ground;
+    let surface = &parts.surface;
     let clamped = push(&mut document.samplers, sampler(CLAMPED));
-    let mut texture = |name: &str, blob: &Blob, sampler: usize| {
-        let image = json!({ "name": name, "uri": blob.uri, "mimeType": PNG });
+    let mut texture = |name: &str, image: &Resource, sampler: usize| {
+        let image = json!({ "name": name, "uri": image.uri, "mimeType": image.mime_type });
         let source = push(&mut document.images, image);
         push(&mut document.textures, json!({ "name": name, "sampler": sampler, "source": source }))
     };
-    let color = texture("ground colour", &ground.color, clamped);
-    let light = texture("light map", &ground.light, clamped);
+    let color = texture("ground colour", &surface.color, clamped);
+    let light = texture("light map", &surface.light, clamped);
     let repeating = clamped + 1;
     let (mut grass_normal, mut near) = (None, Vec::new());
-    for (kind, detail) in ground.details.iter().enumerate() {
+    for (kind, (detail, tile)) in surface.details.iter().zip(&parts.tiles).enumerate() {
         let here = occurs.contains(&kind);
         let normal = (kind == 0 || here)
             .then(|| texture(&format!("{} normals", detail.name), &detail.normal, repeating));
@@ -306,7 +220,7 @@ fn add_ground(document: &mut Document, parts: &SceneParts<'_>, occurs: &[usize])
             grass_normal = Some((normal, parts.land.field.extent_m() / detail.tile_m));
         }
         near.push(normal.filter(|_| here).map(|normal| {
-            let tile = texture(&detail.name, &detail.tile, repeating);
+            let tile = texture(&detail.name, tile, repeating);
             tiled_material(&detail.name, tile, normal, light)
         }));
     }
@@ -318,55 +232,16 @@ fn add_ground(document: &mut Document, parts: &SceneParts<'_>, occurs: &[usize])
 }
 
 fn heightfield_extension(parts: &SceneParts<'_>) -> HeightfieldExtension {
-    let (heightfield, ground) = (&parts.heightfield, &parts.ground);
-    let png = |blob: &Blob| Resource::file(&blob.uri, PNG);
-    let detail = |d: &GroundDetailBlobs| GroundDetail {
-        name: d.name.clone(),
-        detail: png(&d.detail),
-        normal: png(&d.normal),
-        tile_m: d.tile_m,
-    };
+    let field = &parts.land.field;
+    let [min_m, max_m] = field.range_m();
     HeightfieldExtension {
-        side: parts.land.field.side,
-        spacing_m: parts.land.field.spacing_m,
-        min_m: heightfield.range_m.0,
-        max_m: heightfield.range_m.1,
+        side: field.side,
+        spacing_m: field.spacing_m,
+        min_m,
+        max_m,
         water_level_m: parts.land.water_level_m,
-        heights: png(&heightfield.heights_png),
-        lod: Resource::file(&heightfield.lod.uri, BYTES),
-        surface: GroundSurface {
-            color: png(&ground.color),
-            weights: png(&ground.weights),
-            light: png(&ground.light),
-            details: ground.details.iter().map(detail).collect(),
-        },
-    }
-}
-
-fn sky_extension(parts: &SceneParts<'_>) -> SkyExtension {
-    let (light, sky) = (parts.light, &parts.sky);
-    let exr = |blob: &Blob| Resource::file(&blob.uri, EXR);
-    SkyExtension {
-        equirect: exr(&sky.equirect),
-        faces: sky.faces.iter().map(exr).collect(),
-        clear_faces: sky.clear_faces.iter().map(exr).collect(),
-        layers: sky
-            .layers
-            .iter()
-            .map(|layer| SkyLayer {
-                name: layer.name.clone(),
-                altitude_m: layer.altitude_m,
-                extent_m: layer.extent_m,
-                image: Resource::file(&layer.image.uri, PNG),
-            })
-            .collect(),
-        sun_direction: light.sun_direction.to_array(),
-        sun_angular_radius_rad: light.sun_angular_radius_rad,
-        sun_irradiance_linear: light.sun_irradiance_linear,
-        sky_irradiance_linear: light.sky_irradiance_linear,
-        zonal_radiance_linear: light.zonal_radiance_linear.clone(),
-        haze_linear: light.haze_linear,
-        haze_extinction_per_m: light.haze_extinction_per_m,
-        exposure: light.exposure,
+        heights: parts.heights.clone(),
+        lod: parts.lod.clone(),
+        surface: parts.surface.clone(),
     }
 }

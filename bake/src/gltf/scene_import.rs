@@ -1,17 +1,17 @@
 //! Meshes of a .glb → meshes of a scene that has the .glb for a buffer: only tables are copied, never vertices.
 
-use genescape_schema::gltf::{GSC_PROGRESSIVE_MESH, ProgressiveMeshExtension};
+use genescape_schema::scene::{GSC_PROGRESSIVE_MESH, ProgressiveMeshExtension};
 use serde_json::{Value, json};
 
 use super::ExportError;
 use super::document::{Document, push};
-use super::glb::{Glb, read_glb};
+use super::glb::{GlbDocument, read_glb};
 use super::scene::GlbBlob;
 
 /// A .glb that a scene uses.
 pub struct GlbImport {
     uri: String,
-    glb: Glb,
+    glb: GlbDocument,
     buffer: usize,
 }
 

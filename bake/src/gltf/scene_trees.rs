@@ -1,8 +1,8 @@
 //! Where trees stand → nodes that share meshes: two nodes an instance, since one may not shear.
 
-use genescape_schema::gltf::{
-    GSC_INSTANCES, GSC_PROGRESSIVE_MESH, InstancesExtension, InstancesTemplate, ProgressiveLevel,
-    ProgressiveMeshExtension,
+use genescape_schema::scene::{
+    GSC_INSTANCES, GSC_PROGRESSIVE_MESH, Instance, InstancesExtension, InstancesTemplate, ProgressiveLevel,
+    ProgressiveMeshExtension, StartView, svd,
 };
 use glam::Vec3;
 use serde::Deserialize;
@@ -10,10 +10,10 @@ use serde_json::json;
 
 use super::ExportError;
 use super::document::{Document, Node, push};
+use super::materials::tree_materials;
 use super::scene::SceneParts;
 use super::scene_import::{FileMaterial, GlbImport};
-use super::svd::{decompose, determinant};
-use crate::model::{Instance, Material, StartView};
+use crate::model::Material;
 
 /// Triangles that any viewer opens quickly.
 pub const TRIANGLE_BUDGET: usize = 3_000_000;
@@ -36,10 +36,10 @@ pub fn add_trees(
 ) -> Result<usize, ExportError> {
     let mut files = Vec::new();
     for template in &parts.templates {
-        files.push(GlbImport::open(document, &template.glb)?);
+        files.push(GlbImport::open(document, template)?);
     }
     let has = |name: &str| files.iter().any(|file| file.material_names().any(|other| other == name));
-    let set = parts.tree_images.materials(|slot| match slot {
+    let set = tree_materials(&parts.tree_images, |slot| match slot {
         Material::Leaf => has("leaf"),
         Material::Blossom => has("blossom"),
         _ => true,
@@ -50,12 +50,12 @@ pub fn add_trees(
         set.materials.iter().position(|m| m["name"] == material.name).map(|i| first_material + i)
     };
     let (mut templates, mut levels) = (Vec::new(), Vec::new());
-    for (file, template) in files.iter().zip(&parts.templates) {
+    for (index, file) in files.iter().enumerate() {
         let mesh = file.import_meshes(document, &material_of)?;
         levels.push(levels_of(document, mesh));
-        templates.push(InstancesTemplate { name: template.name.clone(), mesh });
+        templates.push(InstancesTemplate { name: format!("tree-{index}"), mesh });
     }
-    let instances = &parts.placement.instances;
+    let instances = parts.trees;
     let chosen = choose_levels(instances, &levels, view.position_m)?;
     let mut children = Vec::with_capacity(chosen.len());
     for (i, (instance, level)) in instances.iter().zip(chosen).enumerate() {
@@ -143,9 +143,9 @@ fn add_instance(
     level: Level,
 ) -> Result<usize, ExportError> {
     let a = &instance.world_from_tree;
-    let linear = [0, 1, 2].map(|c| [0, 1, 2].map(|row| f64::from(a[row][c])));
-    let Some(split) = decompose(linear) else {
-        return Err(ExportError::Transform(name, determinant(linear)));
+    let linear = instance.linear();
+    let Some(split) = svd::decompose(linear) else {
+        return Err(ExportError::Transform(name, svd::determinant(linear)));
     };
     let child = document.node(Node {
         name: format!("{name}.mesh"),

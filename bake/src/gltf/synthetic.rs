@@ -5,9 +5,15 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 use serde_json::json;
 
+use genescape_schema::scene::{GroundSurface, Resource, SkyImages, write_instances};
+
 use super::*;
-use crate::model::*;
+use crate::model::{
+    CloudLayer, GroundDetail, Heightfield, Instance, Landform, Level, LevelledMesh, Material, Mesh, Morph,
+    Part, PartKind, Placement, SkyLight, TerrainMesh, TreeTextures,
+};
 use crate::noise::{gradient2, hash01};
+use crate::stages::start::start_view;
 
 /// Files by URI, as the cache would hold them.
 #[derive(Default)]
@@ -224,7 +230,7 @@ pub fn placement(land: &Landform, count: u32) -> Placement {
             trunk_cylinder_m: [x, z, 0.3],
         });
     }
-    Placement { instances }
+    Placement { instances, start_m: [0.0; 2] }
 }
 
 fn exr(width: usize, height: usize, sun: Vec3) -> Vec<u8> {
@@ -271,11 +277,11 @@ pub fn synthetic(count: u32) -> Synthetic {
     let mut files = Files::default();
     let [bark, normal, leaf] = tree_images();
     let embedded = |bytes| Picture::Embedded { bytes, mime_type: "image/png" };
-    let images = TreeImages {
+    let images = TreeTextures {
         bark_color: embedded(&bark),
         bark_normal: embedded(&normal),
-        leaf: Some(embedded(&leaf)),
-        blossom: None,
+        leaf: vec![embedded(&leaf)],
+        blossom: Vec::new(),
         alpha_cutoff: 0.5,
     };
     let trees: Vec<_> = [false, true]
@@ -305,7 +311,7 @@ pub fn synthetic(count: u32) -> Synthetic {
         ("bark-normal.png", normal.clone()),
         ("leaf.png", leaf.clone()),
         ("leaf-1.png", leaf.clone()),
-        ("instances.bin", instances_bin(&placement)),
+        ("instances.bin", write_instances(&placement.instances)),
         ("lod.bin", vec![7; 100]),
         ("sky.exr", exr(128, 64, sun)),
         ("face.exr", exr(8, 8, sun)),
@@ -339,64 +345,52 @@ impl Synthetic {
     }
 
     pub fn parts(&self) -> SceneParts<'_> {
-        let file = |name: &str| Picture::File { uri: format!("blobs/{name}"), mipmaps: Vec::new() };
+        let uri = |name: &str| self.blob(name).uri;
+        let file = |name: &str| Picture::File { uri: uri(name), mipmaps: Vec::new() };
+        let png = |name: &str| Resource::file(uri(name), "image/png");
+        let exr = |name: &str| Resource::file(uri(name), "image/x-exr");
+        let glb = |i: usize| GlbBlob { uri: format!("blobs/tree-{i}.glb"), bytes: &self.trees[i] };
         SceneParts {
             name: "g0000 scene-0".into(),
             genome: json!({ "height_m": 7.4, "relief_m": 120.0, "levels": 3 }),
             land: &self.land,
             terrain: GlbBlob { uri: "blobs/terrain.glb".into(), bytes: &self.terrain },
             foreground: None,
-            view: crate::stages::start::start_view(
-                &self.land.field,
-                self.land.water_level_m,
-                &self.placement,
-                self.light.sun_direction,
-            ),
-            heightfield: HeightfieldBlobs {
-                heights_png: self.blob("heights.png"),
-                range_m: self.land.field.range_m(),
-                lod: self.blob("lod.bin"),
-            },
-            ground: GroundBlobs {
-                color: self.blob("color.png"),
-                weights: self.blob("weights.png"),
-                light: self.blob("light.png"),
-                details: vec![GroundDetailBlobs {
+            view: start_view(&self.land, &self.placement, self.light.sun_direction),
+            heights: png("heights.png"),
+            lod: Resource::file(uri("lod.bin"), "application/octet-stream"),
+            surface: GroundSurface {
+                color: png("color.png"),
+                weights: png("weights.png"),
+                light: png("light.png"),
+                details: vec![GroundDetail {
                     name: "grass".into(),
-                    detail: self.blob("grass.png"),
-                    normal: self.blob("grass-normal.png"),
-                    tile: self.blob("grass.png"),
+                    detail: png("grass.png"),
+                    normal: png("grass-normal.png"),
                     tile_m: 4.0,
                 }],
             },
-            templates: (0..self.trees.len())
-                .map(|i| TreeTemplateBlob {
-                    name: format!("tree-{i}"),
-                    glb: GlbBlob { uri: format!("blobs/tree-{i}.glb"), bytes: &self.trees[i] },
-                })
-                .collect(),
-            tree_images: TreeImages {
+            tiles: vec![png("grass.png")],
+            templates: (0..self.trees.len()).map(glb).collect(),
+            tree_images: TreeTextures {
                 bark_color: file("bark.png"),
                 bark_normal: file("bark-normal.png"),
-                leaf: Some(Picture::File {
-                    uri: "blobs/leaf.png".into(),
-                    mipmaps: vec!["blobs/leaf-1.png".into()],
-                }),
-                blossom: None,
+                leaf: vec![file("leaf.png"), file("leaf-1.png")],
+                blossom: Vec::new(),
                 alpha_cutoff: 0.5,
             },
-            placement: &self.placement,
+            trees: &self.placement.instances,
             instances: self.blob("instances.bin"),
             light: &self.light,
-            sky: SkyBlobs {
-                equirect: self.blob("sky.exr"),
-                faces: vec![self.blob("face.exr"); 6],
-                clear_faces: vec![self.blob("face.exr"); 6],
-                layers: vec![CloudSheet {
+            sky: SkyImages {
+                equirect: exr("sky.exr"),
+                faces: vec![exr("face.exr"); 6],
+                clear_faces: vec![exr("face.exr"); 6],
+                layers: vec![CloudLayer {
                     name: "cumulus".into(),
                     altitude_m: 1200.0,
                     extent_m: 8000.0,
-                    image: self.blob("cloud.png"),
+                    image: png("cloud.png"),
                 }],
             },
         }

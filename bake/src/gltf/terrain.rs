@@ -4,8 +4,8 @@
 use serde_json::{Value, json};
 
 use super::ExportError;
-use super::document::{Document, Node, UNSIGNED_SHORT};
-use super::glb::{read_glb, write_glb};
+use super::document::{Document, Node};
+use super::glb::write_glb;
 use super::levels::{Surface, add_vertices};
 use crate::model::{Mesh, TerrainMesh};
 
@@ -80,46 +80,4 @@ pub fn ground_material(color: usize, light: usize, normal: Option<(usize, f32)>)
             "extensions": { "KHR_texture_transform": { "scale": [repeats, repeats] } } });
     }
     material
-}
-
-/// Vertices in metres, and triangles as indices into them.
-pub type Triangles = (Vec<[f32; 3]>, Vec<[u32; 3]>);
-
-/// Positions and triangles of the near mesh in a file that [`terrain_glb`] made.
-///
-/// # Errors
-/// When it is no such file.
-pub fn near_mesh(glb: &[u8]) -> Result<Triangles, ExportError> {
-    let file = read_glb("the terrain", glb)?;
-    let bad = || ExportError::NotGltf("the terrain".into(), "it has no near mesh".into());
-    let number = |value: &Value| value.as_u64().map(|n| n as usize).ok_or_else(bad);
-    // Bytes from an accessor's first element, its stride (if it has one) and its count.
-    let bytes = |accessor: &Value| -> Result<(&[u8], Option<usize>, usize), ExportError> {
-        let accessor = &file.json["accessors"][number(accessor)?];
-        let view = &file.json["bufferViews"][number(&accessor["bufferView"])?];
-        let start = file.bin_offset + number(&view["byteOffset"])?;
-        let end = start + number(&view["byteLength"])?;
-        let start = start + number(&accessor["byteOffset"])?;
-        let stride = view["byteStride"].as_u64().map(|n| n as usize);
-        Ok((glb.get(start..end).ok_or_else(bad)?, stride, number(&accessor["count"])?))
-    };
-    let primitive = &file.json["meshes"][0]["primitives"][0];
-    let (data, stride, count) = bytes(&primitive["attributes"]["POSITION"])?;
-    let float = |b: &[u8]| f32::from_le_bytes([b[0], b[1], b[2], b[3]]);
-    let point = |v: &[u8]| [float(&v[0..4]), float(&v[4..8]), float(&v[8..12])];
-    let stride = stride.unwrap_or(12).max(12);
-    let positions: Vec<_> = data.chunks(stride).take(count).filter(|v| v.len() >= 12).map(point).collect();
-    let (data, _, count) = bytes(&primitive["indices"])?;
-    let short = file.json["accessors"][number(&primitive["indices"])?]["componentType"] == UNSIGNED_SHORT;
-    let indices: Vec<u32> = if short {
-        data.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]]).into()).take(count).collect()
-    } else {
-        data.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).take(count).collect()
-    };
-    let triangles = indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
-    if indices.iter().any(|&i| i as usize >= positions.len()) {
-        Err(bad())
-    } else {
-        Ok((positions, triangles))
-    }
 }

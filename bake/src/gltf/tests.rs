@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
+use glam::{DMat3, DQuat, Vec3};
 use serde_json::Value;
 
-use super::svd::tests::{difference, product};
 use super::synthetic::*;
 use super::*;
-use crate::model::{LevelledMesh, Material, Mesh};
-use crate::stages::start::start_view;
+use crate::model::{Landform, LevelledMesh, Material, Mesh, Placement, TreeTextures};
+use crate::stages::start::{start_spot, start_view};
 
 fn gltf_of(glb: &[u8]) -> (gltf::Document, Vec<u8>) {
     let gltf = gltf::Gltf::from_slice(glb).expect("the gltf crate reads it");
@@ -29,13 +29,13 @@ fn check_ranges(document: &gltf::Document, lengths: &[usize]) {
     }
 }
 
-fn images(pictures: &[Vec<u8>; 3]) -> TreeImages<'_> {
+fn images(pictures: &[Vec<u8>; 3]) -> TreeTextures<Picture<'_>> {
     let embedded = |bytes| Picture::Embedded { bytes, mime_type: "image/png" };
-    TreeImages {
+    TreeTextures {
         bark_color: embedded(&pictures[0]),
         bark_normal: embedded(&pictures[1]),
-        leaf: Some(embedded(&pictures[2])),
-        blossom: None,
+        leaf: vec![embedded(&pictures[2])],
+        blossom: Vec::new(),
         alpha_cutoff: 0.5,
     }
 }
@@ -182,8 +182,10 @@ fn two_nodes_give_an_instances_affine_transform() {
         let a = &instance.world_from_tree;
         assert_eq!(translation, [0, 1, 2].map(|row| a[row][3]));
         let exact = [0, 1, 2].map(|c| [0, 1, 2].map(|row| f64::from(a[row][c])));
-        let product = product(left.map(f64::from), scale.map(f64::from), right.map(f64::from));
-        assert!(difference(product, exact) < 1e-5, "{parent:?}");
+        let turn = |q: [f32; 4]| DMat3::from_quat(DQuat::from_array(q.map(f64::from)));
+        let product = turn(left) * DMat3::from_diagonal(Vec3::from(scale).as_dvec3()) * turn(right);
+        let exact = DMat3::from_cols_array_2d(&exact);
+        assert!((product - exact).to_cols_array().iter().all(|x| x.abs() < 1e-5), "{parent:?}");
         let name = child.mesh().unwrap().name().unwrap().to_owned();
         assert!(name.starts_with(&format!("tree-{}.", instance.template)));
     }
@@ -213,14 +215,15 @@ fn far_trees_are_coarser_and_the_budget_holds() {
 #[test]
 fn the_start_is_dry_and_at_eye_height() {
     let land = landform();
-    let view = start_view(&land.field, land.water_level_m, &placement(&land, 100), glam::Vec3::Y);
+    let mut placement = placement(&land, 100);
+    placement.start_m = start_spot(&land, &placement.instances);
+    let view = start_view(&land, &placement, Vec3::Y);
     let ground = land.field.height_m(view.position_m.x, view.position_m.z);
     assert!(ground > land.water_level_m.unwrap());
     assert!((view.position_m.y - ground - 1.6).abs() < 1e-4);
-    let looks = view.rotation() * glam::Vec3::NEG_Z;
-    assert!(looks.distance(view.direction) < 1e-5);
     // Land that is all under water still gives a camera above it.
-    let sunk = start_view(&land.field, Some(1000.0), &Default::default(), glam::Vec3::Y);
+    let sunk = Landform { water_level_m: Some(1000.0), ..land };
+    let sunk = start_view(&sunk, &Placement::default(), Vec3::Y);
     assert!(sunk.position_m.is_finite() && sunk.position_m.y > 1000.0);
 }
 
@@ -256,7 +259,7 @@ fn nothing_is_required_and_all_our_extensions_are_named() {
     let json: Value = serde_json::from_slice(&scene(20).1).unwrap();
     assert!(json.get("extensionsRequired").is_none());
     let used = json["extensionsUsed"].as_array().unwrap();
-    for name in genescape_schema::gltf::EXTENSIONS {
+    for name in genescape_schema::scene::EXTENSIONS {
         assert!(used.iter().any(|u| u == name), "{name} is not in extensionsUsed");
     }
     assert_eq!(json["scenes"][0]["extras"]["genome"]["height_m"], 7.4);

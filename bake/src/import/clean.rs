@@ -7,12 +7,10 @@ use glam::Vec3;
 use super::{ImportError, Imported, Primitive, Raw, Repair};
 use crate::model::{Material, Mesh, Part, PartKind};
 
-/// A part of more like pieces than this is an aggregate.
-const FEWEST_ELEMENTS: usize = 64;
-/// An element has at most so many vertices.
-const LARGEST_ELEMENT: usize = 32;
-
-const NONE: u32 = u32::MAX;
+/// A part of at least this many like pieces is an aggregate.
+const MIN_ELEMENTS: usize = 65;
+/// Vertices of one piece.
+const MAX_ELEMENT_VERTICES: usize = 32;
 
 /// What was taken out.
 #[derive(Default)]
@@ -30,42 +28,43 @@ pub fn finish(raw: Raw) -> Result<Imported, ImportError> {
     let mut counts = Counts::default();
     primitives.iter_mut().for_each(|primitive| check(primitive, &mut counts));
     primitives.retain(|primitive| !primitive.triangles.is_empty());
-    imported.repairs.extend(
-        [
-            (counts.vertices, Repair::NonFiniteVertices(counts.vertices)),
-            (counts.attributes, Repair::NonFiniteAttributes(counts.attributes)),
-            (counts.out_of_range, Repair::IndexOutOfRange(counts.out_of_range)),
-            (counts.degenerate, Repair::DegenerateTriangles(counts.degenerate)),
-            (counts.unused, Repair::UnusedVertices(counts.unused)),
-        ]
-        .into_iter()
-        .filter(|&(count, _)| count > 0)
-        .map(|(_, repair)| repair),
-    );
+    imported.note(Repair::NonFiniteVertices, counts.vertices);
+    imported.note(Repair::NonFiniteAttributes, counts.attributes);
+    imported.note(Repair::IndexOutOfRange, counts.out_of_range);
+    imported.note(Repair::DegenerateTriangles, counts.degenerate);
+    imported.note(Repair::UnusedVertices, counts.unused);
     if primitives.is_empty() {
         return Err(ImportError::Empty(imported.repairs));
     }
-    let bare = primitives.iter().filter(|primitive| primitive.normals.is_none()).count();
-    imported.repairs.extend((bare > 0).then_some(Repair::MissingNormals(bare)));
+    let bare = primitives.iter().filter(|primitive| primitive.mesh.normals.is_empty()).count();
+    imported.note(Repair::MissingNormals, bare);
+    if bare > 0 {
+        primitives.iter_mut().for_each(|primitive| primitive.mesh.normals.clear());
+    }
+    let with_uvs = primitives.iter().any(|primitive| !primitive.mesh.uvs.is_empty());
+    let with_colors = primitives.iter().any(|primitive| !primitive.mesh.colors.is_empty());
+    for Mesh { positions, uvs, colors, .. } in primitives.iter_mut().map(|primitive| &mut primitive.mesh) {
+        uvs.resize(if with_uvs { positions.len() } else { 0 }, [0.0; 2]);
+        colors.resize(if with_colors { positions.len() } else { 0 }, [255; 4]);
+    }
     primitives.sort_by_key(|primitive| primitive.material);
     for group in primitives.chunk_by(|p, q| p.material == q.material) {
-        add_part(&mut imported, group, &primitives);
+        add_part(&mut imported, group);
     }
-    let shared = crowded_edges(&imported.mesh);
-    imported.repairs.extend((shared > 0).then_some(Repair::NonManifoldEdges(shared)));
+    let crowded = crowded_edges(&imported.mesh);
+    imported.note(Repair::NonManifoldEdges, crowded);
     Ok(imported)
 }
 
 /// Takes what can't be used out of one primitive.
 fn check(primitive: &mut Primitive, counts: &mut Counts) {
-    let count = primitive.positions.len();
+    let Primitive { mesh, triangles, .. } = primitive;
+    let positions = &mesh.positions;
     let bound = 1e18;
     let sound: Vec<bool> =
-        primitive.positions.iter().map(|p| p.iter().all(|x| x.is_finite() && x.abs() < bound)).collect();
-    counts.vertices += sound.iter().filter(|&&sound| !sound).count();
-    let positions = &primitive.positions;
-    primitive.triangles.retain(|triangle| {
-        if triangle.iter().any(|&v| v as usize >= count) {
+        positions.iter().map(|p| p.iter().all(|x| x.is_finite() && x.abs() < bound)).collect();
+    triangles.retain(|triangle| {
+        if triangle.iter().any(|&v| v as usize >= sound.len()) {
             counts.out_of_range += 1;
             return false;
         }
@@ -77,103 +76,78 @@ fn check(primitive: &mut Primitive, counts: &mut Counts) {
         counts.degenerate += usize::from(flat);
         !flat
     });
-    keep_used(primitive, &sound, counts);
+    let mut used = vec![false; sound.len()];
+    triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
+    let unsound = sound.iter().filter(|&&sound| !sound).count();
+    let kept: Vec<u32> = (0..used.len() as u32).filter(|&v| used[v as usize]).collect();
+    counts.vertices += unsound;
+    counts.unused += sound.len() - unsound - kept.len();
+    select(mesh, triangles, &kept);
     let mut zero = |values: &mut [f32]| {
         for value in values.iter_mut().filter(|value| !value.is_finite()) {
             *value = 0.0;
             counts.attributes += 1;
         }
     };
-    primitive.normals.iter_mut().flatten().for_each(|normal| zero(normal));
-    primitive.uvs.iter_mut().flatten().for_each(|uv| zero(uv));
+    mesh.normals.iter_mut().for_each(|normal| zero(normal));
+    mesh.uvs.iter_mut().for_each(|uv| zero(uv));
 }
 
-fn keep_used(primitive: &mut Primitive, sound: &[bool], counts: &mut Counts) {
-    let mut used = vec![false; primitive.positions.len()];
-    primitive.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
-    let unused = used.iter().zip(sound).filter(|&(&used, &sound)| sound && !used).count();
-    counts.unused += unused;
-    if used.iter().all(|&used| used) {
-        return;
+/// Keeps the vertices of `order`, in that order, and renumbers the corners of triangles, which use no others.
+fn select(mesh: &mut Mesh, triangles: &mut [[u32; 3]], order: &[u32]) {
+    fn pick<T: Copy>(list: &mut Vec<T>, order: &[u32]) {
+        if !list.is_empty() {
+            *list = order.iter().map(|&v| list[v as usize]).collect();
+        }
     }
-    let mut next = 0;
-    let now: Vec<u32> = used
-        .iter()
-        .map(|&used| {
-            next += u32::from(used);
-            if used { next - 1 } else { NONE }
-        })
-        .collect();
-    primitive.triangles.iter_mut().flatten().for_each(|v| *v = now[*v as usize]);
-    keep(&mut primitive.positions, &used);
-    primitive.normals.iter_mut().for_each(|list| keep(list, &used));
-    primitive.uvs.iter_mut().for_each(|list| keep(list, &used));
-    primitive.colors.iter_mut().for_each(|list| keep(list, &used));
-}
-
-fn keep<T>(list: &mut Vec<T>, used: &[bool]) {
-    let mut used = used.iter();
-    list.retain(|_| used.next().copied().unwrap_or(false));
+    let mut new_index = vec![0; mesh.positions.len()];
+    order.iter().zip(0..).for_each(|(&old, new)| new_index[old as usize] = new);
+    triangles.iter_mut().flatten().for_each(|v| *v = new_index[*v as usize]);
+    pick(&mut mesh.positions, order);
+    pick(&mut mesh.normals, order);
+    pick(&mut mesh.uvs, order);
+    pick(&mut mesh.colors, order);
 }
 
 /// Adds all primitives of one material as one part.
-fn add_part(imported: &mut Imported, group: &[Primitive], all: &[Primitive]) {
-    let with_normals = all.iter().all(|primitive| primitive.normals.is_some());
-    let with_uvs = all.iter().any(|primitive| primitive.uvs.is_some());
-    let with_colors = all.iter().any(|primitive| primitive.colors.is_some());
-    let mut triangles = Vec::new();
-    let mut part = Mesh::default();
+fn add_part(imported: &mut Imported, group: &[Primitive]) {
+    let (mut part, mut triangles) = (Mesh::default(), Vec::new());
     for primitive in group {
-        let (first, count) = (part.positions.len() as u32, primitive.positions.len());
-        part.positions.extend_from_slice(&primitive.positions);
-        if let (true, Some(normals)) = (with_normals, &primitive.normals) {
-            part.normals.extend_from_slice(normals);
-        }
-        if with_uvs {
-            part.uvs.extend(primitive.uvs.clone().unwrap_or_else(|| vec![[0.0; 2]; count]));
-        }
-        if with_colors {
-            part.colors.extend(primitive.colors.clone().unwrap_or_else(|| vec![[255; 4]; count]));
-        }
-        triangles.extend(primitive.triangles.iter().map(|triangle| triangle.map(|v| v + first)));
+        append(&mut part, &primitive.mesh, &primitive.triangles, &mut triangles);
     }
+    let mut kind = PartKind::Surface;
+    if let Some(found) = aggregate(&part, &triangles) {
+        imported.note(Repair::FoundAggregate, found.elements);
+        (kind, triangles) = (found.kind, found.triangles);
+        select(&mut part, &mut triangles, &found.order);
+    }
+    let mut joined = Vec::new();
+    append(&mut imported.mesh, &part, &triangles, &mut joined);
     let material = Material::Foreign(group[0].material as u32);
-    let kind = match aggregate(&part, &triangles) {
-        Some((kind, elements, order, sorted)) => {
-            imported.repairs.push(Repair::FoundAggregate(elements));
-            part = reordered(&part, &order);
-            triangles = sorted;
-            kind
-        }
-        None => PartKind::Surface,
-    };
-    let mesh = &mut imported.mesh;
+    imported.mesh.parts.push(Part { material, kind, triangles: joined });
+}
+
+/// Adds `from`'s vertices to `mesh`, and its triangles, renumbered, to `all`.
+fn append(mesh: &mut Mesh, from: &Mesh, triangles: &[[u32; 3]], all: &mut Vec<[u32; 3]>) {
     let first = mesh.positions.len() as u32;
-    mesh.positions.append(&mut part.positions);
-    mesh.normals.append(&mut part.normals);
-    mesh.uvs.append(&mut part.uvs);
-    mesh.colors.append(&mut part.colors);
-    let triangles = triangles.into_iter().map(|triangle| triangle.map(|v| v + first)).collect();
-    mesh.parts.push(Part { material, kind, triangles });
+    mesh.positions.extend_from_slice(&from.positions);
+    mesh.normals.extend_from_slice(&from.normals);
+    mesh.uvs.extend_from_slice(&from.uvs);
+    mesh.colors.extend_from_slice(&from.colors);
+    all.extend(triangles.iter().map(|triangle| triangle.map(|v| v + first)));
 }
 
-fn reordered(mesh: &Mesh, order: &[u32]) -> Mesh {
-    fn pick<T: Copy>(list: &[T], order: &[u32]) -> Vec<T> {
-        if list.is_empty() { Vec::new() } else { order.iter().map(|&v| list[v as usize]).collect() }
-    }
-    Mesh {
-        positions: pick(&mesh.positions, order),
-        normals: pick(&mesh.normals, order),
-        uvs: pick(&mesh.uvs, order),
-        colors: pick(&mesh.colors, order),
-        parts: Vec::new(),
-    }
+/// Many small pieces of equal size, which a stage thins out as it does leaves.
+struct Aggregate {
+    kind: PartKind,
+    elements: usize,
+    /// The vertices piece by piece.
+    order: Vec<u32>,
+    /// The triangles piece by piece.
+    triangles: Vec<[u32; 3]>,
 }
 
-type Aggregate = (PartKind, usize, Vec<u32>, Vec<[u32; 3]>);
-
-/// Many small pieces of equal size: the layout as elements, or `None`. Gives the kind, the number of elements, the
-/// vertices in their new order, and the triangles with new indices.
+/// The pieces of a mesh, if it consists of many small ones of equal size.
 fn aggregate(mesh: &Mesh, triangles: &[[u32; 3]]) -> Option<Aggregate> {
     let mut union: Vec<u32> = (0..mesh.positions.len() as u32).collect();
     fn root(union: &mut [u32], mut v: u32) -> u32 {
@@ -185,9 +159,9 @@ fn aggregate(mesh: &Mesh, triangles: &[[u32; 3]]) -> Option<Aggregate> {
     }
     for &[a, b, c] in triangles {
         let [a, b, c] = [a, b, c].map(|v| root(&mut union, v));
-        let least = a.min(b).min(c);
+        let first = a.min(b).min(c);
         for v in [a, b, c] {
-            union[v as usize] = least;
+            union[v as usize] = first;
         }
     }
     // A piece's root is its first vertex, so pieces come in the order of their first vertices.
@@ -200,16 +174,16 @@ fn aggregate(mesh: &Mesh, triangles: &[[u32; 3]]) -> Option<Aggregate> {
     }
     let (vertices, faces) = pieces.values().next().map(|piece| (piece.0.len(), piece.1.len()))?;
     let alike = pieces.values().all(|piece| piece.0.len() == vertices && piece.1.len() == faces);
-    if pieces.len() <= FEWEST_ELEMENTS || vertices > LARGEST_ELEMENT || !alike || joined(mesh, &pieces) {
+    if pieces.len() < MIN_ELEMENTS || vertices > MAX_ELEMENT_VERTICES || !alike || joined(mesh, &pieces) {
         return None;
     }
-    let order: Vec<u32> = pieces.values().flat_map(|piece| piece.0.iter().copied()).collect();
-    let mut now = vec![0; order.len()];
-    order.iter().enumerate().for_each(|(new, &old)| now[old as usize] = new as u32);
-    let renamed = |triangle: &[u32; 3]| triangle.map(|v| now[v as usize]);
-    let sorted = pieces.values().flat_map(|piece| piece.1.iter().map(renamed)).collect();
-    let kind = PartKind::Aggregate { vertices: vertices as u32, triangles: faces as u32 };
-    Some((kind, pieces.len(), order, sorted))
+    let (order, triangles): (Vec<_>, Vec<_>) = pieces.values().cloned().unzip();
+    Some(Aggregate {
+        kind: PartKind::Aggregate { vertices: vertices as u32, triangles: faces as u32 },
+        elements: pieces.len(),
+        order: order.concat(),
+        triangles: triangles.concat(),
+    })
 }
 
 /// Whether the pieces are really one surface whose vertices were all given apart (flat shading): most of them then

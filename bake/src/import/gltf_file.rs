@@ -3,22 +3,22 @@
 use std::collections::BTreeSet;
 
 use glam::{Mat3, Mat4, Vec3};
+use gltf::accessor::Dimensions;
 use gltf::mesh::{Mode, Semantic};
 use serde_json::{Value, json};
 
-use super::{
-    ImportError, Imported, ImportedImage, ImportedMaterial, Primitive, Raw, Repair, Resolve, accessor,
-};
+use super::{ImportError, Imported, ImportedImage, Primitive, Raw, Repair, Resolve, accessor, color_byte};
+use crate::gltf::split_glb;
+use crate::model::Mesh;
 
 /// Extensions that may be required: they change materials, which are passed through, or how numbers are stored.
 const UNDERSTOOD: [&str; 3] = ["KHR_mesh_quantization", "KHR_texture_transform", "KHR_lights_punctual"];
 
 /// Reads either form; which one it is shows in the first bytes.
 pub fn read(bytes: &[u8], resolve: &Resolve<'_>) -> Result<Raw, ImportError> {
-    let (text, blob) = match bytes.starts_with(b"glTF") {
-        true => chunks(bytes)?,
-        false => (bytes, None),
-    };
+    let glb = bytes.starts_with(b"glTF").then(|| split_glb(bytes)).transpose();
+    let glb = glb.map_err(|error| malformed("GLB", error))?;
+    let (text, blob) = glb.as_ref().map_or((bytes, None), |glb| (&*glb.json, glb.bin.as_deref()));
     let mut root: Value = serde_json::from_slice(text).map_err(|e| malformed("glTF", e))?;
     check_required(&mut root)?;
     let skipped = drop_without_positions(&mut root)?;
@@ -26,7 +26,7 @@ pub fn read(bytes: &[u8], resolve: &Resolve<'_>) -> Result<Raw, ImportError> {
     let document = gltf::Gltf::from_slice(&plain).map_err(|e| malformed("glTF", e))?;
     let buffers = read_buffers(&document, blob, resolve)?;
     let mut raw = Raw::default();
-    raw.rest.repairs.extend((skipped > 0).then_some(Repair::SkippedPrimitives(skipped)));
+    raw.rest.note(Repair::SkippedPrimitives, skipped);
     pass_through(&root, &document, &buffers, resolve, &mut raw.rest);
     read_scene(&document, &buffers, &mut raw)?;
     Ok(raw)
@@ -34,32 +34,6 @@ pub fn read(bytes: &[u8], resolve: &Resolve<'_>) -> Result<Raw, ImportError> {
 
 fn malformed(format: &'static str, reason: impl ToString) -> ImportError {
     ImportError::Malformed { format, reason: reason.to_string() }
-}
-
-/// The JSON and the binary chunk of a .glb file.
-fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ImportError> {
-    let word = |at: usize| {
-        let chunk = bytes.get(at..).and_then(|rest| rest.first_chunk::<4>());
-        chunk.map(|word| u32::from_le_bytes(*word)).ok_or_else(|| malformed("GLB", "it ends too early"))
-    };
-    if word(4)? != 2 {
-        return Err(malformed("GLB", format!("it is of version {}, not 2", word(4)?)));
-    }
-    let body = |at: usize| {
-        let end = (word(at)? as usize).checked_add(at + 8);
-        let bytes = end.and_then(|end| bytes.get(at + 8..end));
-        bytes.ok_or_else(|| malformed("GLB", "it ends too early"))
-    };
-    if word(16)? != u32::from_le_bytes(*b"JSON") {
-        return Err(malformed("GLB", "it doesn't start with JSON"));
-    }
-    let text = body(12)?;
-    let next = 20 + text.len();
-    if next + 8 > bytes.len() {
-        return Ok((text, None));
-    }
-    let is_binary = word(next + 4)? == u32::from_le_bytes(*b"BIN\0");
-    Ok((text, if is_binary { Some(body(next)?) } else { None }))
 }
 
 /// Refuses extensions that change geometry in ways unknown; takes the list out of the way of the gltf crate, which
@@ -88,10 +62,9 @@ fn drop_without_positions(root: &mut Value) -> Result<usize, ImportError> {
         let named = primitives.iter().filter_map(|p| p.pointer("/attributes/POSITION")?.as_u64());
         positions.extend(named);
     }
-    let mut none = Vec::new();
-    let accessors = root.get_mut("accessors").and_then(Value::as_array_mut).unwrap_or(&mut none);
     for place in positions {
-        let accessor = accessors.get_mut(place as usize).and_then(Value::as_object_mut);
+        let accessor = root.get_mut("accessors").and_then(|accessors| accessors.get_mut(place as usize));
+        let accessor = accessor.and_then(Value::as_object_mut);
         let accessor = accessor.ok_or_else(|| malformed("glTF", format!("there is no accessor {place}")))?;
         // Bounds are required by the standard, often missing, and of no use here.
         for bound in ["min", "max"] {
@@ -140,20 +113,12 @@ fn fetch(uri: &str, resolve: &Resolve<'_>) -> Result<(Vec<u8>, String), ImportEr
 }
 
 fn percent_decoded(text: &str) -> Vec<u8> {
-    let bytes = text.as_bytes();
-    let (mut out, mut at) = (Vec::with_capacity(bytes.len()), 0);
-    while at < bytes.len() {
-        let code = (bytes[at] == b'%').then(|| text.get(at + 1..at + 3)).flatten();
-        match code.and_then(|hex| u8::from_str_radix(hex, 16).ok()) {
-            Some(byte) => {
-                out.push(byte);
-                at += 3;
-            }
-            None => {
-                out.push(bytes[at]);
-                at += 1;
-            }
-        }
+    let mut pieces = text.split('%');
+    let mut out = pieces.next().unwrap_or_default().as_bytes().to_vec();
+    for piece in pieces {
+        let code = piece.get(..2).and_then(|hex| u8::from_str_radix(hex, 16).ok());
+        out.push(code.unwrap_or(b'%'));
+        out.extend_from_slice(&piece.as_bytes()[if code.is_some() { 2 } else { 0 }..]);
     }
     out
 }
@@ -188,38 +153,28 @@ fn pass_through(
     into: &mut Imported,
 ) {
     let list = |key: &str| root.get(key).and_then(Value::as_array).cloned().unwrap_or_default();
-    into.materials = list("materials").into_iter().map(|json| ImportedMaterial { json }).collect();
+    into.materials = list("materials");
     into.textures = list("textures");
     into.samplers = list("samplers");
     for image in document.images() {
-        let mut found = ImportedImage {
-            name: image.name().unwrap_or_default().to_owned(),
-            mime_type: String::new(),
-            bytes: Vec::new(),
-        };
-        match image.source() {
+        let (bytes, mime_type) = match image.source() {
             gltf::image::Source::View { view, mime_type } => {
                 let range = view.offset()..view.offset().saturating_add(view.length());
                 let bytes = buffers.get(view.buffer().index()).and_then(|buffer| buffer.get(range));
-                found.bytes = bytes.unwrap_or_default().to_vec();
-                mime_type.clone_into(&mut found.mime_type);
+                (bytes.unwrap_or_default().to_vec(), mime_type.to_owned())
             }
             gltf::image::Source::Uri { uri, mime_type } => {
-                if let Ok((bytes, of_uri)) = fetch(uri, resolve) {
-                    found.bytes = bytes;
-                    found.mime_type = mime_type.map_or(of_uri, str::to_owned);
-                }
-                if found.mime_type.is_empty() {
-                    found.mime_type = mime_of(uri).to_owned();
-                }
+                let (bytes, of_data_uri) = fetch(uri, resolve).unwrap_or_default();
+                let stated = mime_type.map_or(of_data_uri, str::to_owned);
+                (bytes, if stated.is_empty() { mime_of(uri).to_owned() } else { stated })
             }
-        }
-        if found.bytes.is_empty() {
-            let name =
-                if found.name.is_empty() { format!("image {}", image.index()) } else { found.name.clone() };
+        };
+        let name = image.name().unwrap_or_default().to_owned();
+        if bytes.is_empty() {
+            let name = if name.is_empty() { format!("image {}", image.index()) } else { name.clone() };
             into.repairs.push(Repair::MissingFile(name));
         }
-        into.images.push(found);
+        into.images.push(ImportedImage { name, mime_type, bytes });
     }
 }
 
@@ -237,11 +192,8 @@ pub fn mime_of(name: &str) -> &'static str {
 fn read_scene(document: &gltf::Document, buffers: &[Vec<u8>], raw: &mut Raw) -> Result<(), ImportError> {
     let scene = document.default_scene().or_else(|| document.scenes().next());
     // A file without scenes is a library: everything in it counts.
-    let mut open: Vec<_> = match &scene {
-        Some(scene) => scene.nodes().map(|node| (node, Mat4::IDENTITY)).collect(),
-        None => roots(document).into_iter().map(|node| (node, Mat4::IDENTITY)).collect(),
-    };
-    open.reverse();
+    let nodes: Vec<_> = scene.map_or_else(|| roots(document), |scene| scene.nodes().collect());
+    let mut open: Vec<_> = nodes.into_iter().rev().map(|node| (node, Mat4::IDENTITY)).collect();
     let (mut seen, mut cyclic, mut skipped, mut converted) = (BTreeSet::new(), 0, 0, 0);
     while let Some((node, world_from_parent)) = open.pop() {
         if !seen.insert(node.index()) {
@@ -250,21 +202,22 @@ fn read_scene(document: &gltf::Document, buffers: &[Vec<u8>], raw: &mut Raw) -> 
         }
         let world_from_node = world_from_parent * Mat4::from_cols_array_2d(&node.transform().matrix());
         for primitive in node.mesh().into_iter().flat_map(|mesh| mesh.primitives()) {
-            match read_primitive(&primitive, buffers, world_from_node, raw)? {
-                Some(found) => {
+            match read_primitive(&primitive, buffers, &mut raw.rest)? {
+                Some(mut found) => {
+                    transform(&mut found, world_from_node);
                     converted += usize::from(primitive.mode() != Mode::Triangles);
                     raw.primitives.push(found);
                 }
                 None => skipped += 1,
             }
         }
-        let children: Vec<_> = node.children().map(|child| (child, world_from_node)).collect();
-        open.extend(children.into_iter().rev());
+        let first_child = open.len();
+        open.extend(node.children().map(|child| (child, world_from_node)));
+        open[first_child..].reverse();
     }
-    let repairs = &mut raw.rest.repairs;
-    repairs.extend((cyclic > 0).then_some(Repair::CyclicNodes(cyclic)));
-    repairs.extend((skipped > 0).then_some(Repair::SkippedPrimitives(skipped)));
-    repairs.extend((converted > 0).then_some(Repair::ConvertedPrimitives(converted)));
+    raw.rest.note(Repair::CyclicNodes, cyclic);
+    raw.rest.note(Repair::SkippedPrimitives, skipped);
+    raw.rest.note(Repair::ConvertedPrimitives, converted);
     Ok(())
 }
 
@@ -277,8 +230,7 @@ fn roots(document: &gltf::Document) -> Vec<gltf::Node<'_>> {
 fn read_primitive(
     primitive: &gltf::Primitive<'_>,
     buffers: &[Vec<u8>],
-    world_from_node: Mat4,
-    raw: &mut Raw,
+    rest: &mut Imported,
 ) -> Result<Option<Primitive>, ImportError> {
     let Some(positions) = primitive.get(&Semantic::Positions) else { return Ok(None) };
     if matches!(primitive.mode(), Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) {
@@ -291,47 +243,35 @@ fn read_primitive(
         None => (0..positions.len() as u32).collect(),
     };
     let count = positions.len();
-    let mut misfits = Vec::new();
-    let mut optional = |semantic: Semantic, fits: bool| {
-        if !fits {
-            misfits.push(Repair::AttributeMismatch(semantic.to_string()));
-        }
-        fits
+    let normals = attribute::<3>(primitive, Semantic::Normals, buffers, count, rest);
+    let uvs = attribute::<2>(primitive, Semantic::TexCoords(0), buffers, count, rest);
+    let with_alpha = |colors: gltf::Accessor<'_>| colors.dimensions() == Dimensions::Vec4;
+    let colors = if primitive.get(&Semantic::Colors(0)).is_some_and(with_alpha) {
+        attribute::<4>(primitive, Semantic::Colors(0), buffers, count, rest)
+    } else {
+        let plain = attribute::<3>(primitive, Semantic::Colors(0), buffers, count, rest);
+        plain.into_iter().map(|[r, g, b]| [r, g, b, 1.0]).collect()
     };
-    let mut read3 = |semantic: Semantic| {
-        let rows = accessor::rows::<3>(&primitive.get(&semantic)?, buffers).unwrap_or_default();
-        optional(semantic, rows.len() == count).then_some(rows)
-    };
-    let normals = read3(Semantic::Normals);
-    let uvs = primitive.get(&Semantic::TexCoords(0)).and_then(|uvs| {
-        let rows = accessor::rows::<2>(&uvs, buffers).unwrap_or_default();
-        optional(Semantic::TexCoords(0), rows.len() == count).then_some(rows)
-    });
-    let colors = primitive.get(&Semantic::Colors(0)).and_then(|colors| {
-        let with_alpha = accessor::rows::<4>(&colors, buffers);
-        let plain = || {
-            Some(accessor::rows::<3>(&colors, buffers)?.into_iter().map(|[r, g, b]| [r, g, b, 1.0]).collect())
-        };
-        let rows: Vec<_> = with_alpha.or_else(plain).unwrap_or_default();
-        let byte = |value: f32| (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
-        optional(Semantic::Colors(0), rows.len() == count)
-            .then(|| rows.into_iter().map(|row| row.map(byte)).collect())
-    });
-    raw.rest.repairs.append(&mut misfits);
-    let material = primitive.material().index().unwrap_or_else(|| default_material(&mut raw.rest));
+    let colors = colors.into_iter().map(|color| color.map(color_byte)).collect();
+    let material = primitive.material().index().unwrap_or_else(|| rest.default_material());
     let triangles = triangles(primitive.mode(), &indices);
-    let mut found = Primitive { material, positions, normals, uvs, colors, triangles };
-    transform(&mut found, world_from_node);
-    Ok(Some(found))
+    let mesh = Mesh { positions, normals, uvs, colors, parts: Vec::new() };
+    Ok(Some(Primitive { material, mesh, triangles }))
 }
 
-/// The material of primitives that have none: glTF's default.
-fn default_material(into: &mut Imported) -> usize {
-    let json = json!({ "name": "default" });
-    let place = into.materials.iter().position(|material| material.json == json);
-    place.unwrap_or_else(|| {
-        into.materials.push(ImportedMaterial { json });
-        into.materials.len() - 1
+/// The rows of an optional attribute; none, with a note, if they don't fit the `count` vertices.
+fn attribute<const N: usize>(
+    primitive: &gltf::Primitive<'_>,
+    semantic: Semantic,
+    buffers: &[Vec<u8>],
+    count: usize,
+    rest: &mut Imported,
+) -> Vec<[f32; N]> {
+    let Some(accessor) = primitive.get(&semantic) else { return Vec::new() };
+    let rows = accessor::rows::<N>(&accessor, buffers).filter(|rows| rows.len() == count);
+    rows.unwrap_or_else(|| {
+        rest.repairs.push(Repair::AttributeMismatch(semantic.to_string()));
+        Vec::new()
     })
 }
 
@@ -342,10 +282,10 @@ fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
                 |(n, t): (usize, &[u32])| if n % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] };
             indices.windows(3).enumerate().map(orient).collect()
         }
-        Mode::TriangleFan => indices
-            .first()
-            .map(|&hub| indices[1..].windows(2).map(|edge| [hub, edge[0], edge[1]]).collect())
-            .unwrap_or_default(),
+        Mode::TriangleFan => match indices {
+            [hub, rim @ ..] => rim.windows(2).map(|edge| [*hub, edge[0], edge[1]]).collect(),
+            [] => Vec::new(),
+        },
         _ => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
     }
 }
@@ -356,13 +296,13 @@ fn transform(primitive: &mut Primitive, world_from_node: Mat4) {
     }
     let linear = Mat3::from_mat4(world_from_node);
     let determinant = linear.determinant();
-    for position in &mut primitive.positions {
+    for position in &mut primitive.mesh.positions {
         *position = world_from_node.transform_point3(Vec3::from_array(*position)).to_array();
     }
     // The cofactors carry normals even where the matrix has no inverse.
     let (x, y, z) = (linear.x_axis, linear.y_axis, linear.z_axis);
     let cofactors = Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * determinant.signum();
-    for normal in primitive.normals.iter_mut().flatten() {
+    for normal in &mut primitive.mesh.normals {
         *normal = (cofactors * Vec3::from_array(*normal)).normalize_or_zero().to_array();
     }
     if determinant < 0.0 {

@@ -1,5 +1,5 @@
-//! Other people's meshes (.glb, .gltf, .obj; bytes) → our `Mesh`, sound enough for every stage, with materials and
-//! images passed through. Metres, y up, transforms of nodes applied. What had to be mended is listed, not hidden.
+//! Mesh files (.glb, .gltf, .obj; bytes) → a `Mesh` sound enough for every stage, with materials and images passed
+//! through. Metres, y up, transforms of nodes applied. What had to be repaired is listed, not hidden.
 
 mod accessor;
 mod clean;
@@ -12,7 +12,7 @@ mod tests;
 use std::fmt;
 use std::io;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use thiserror::Error;
 
 use crate::model::Mesh;
@@ -20,29 +20,15 @@ use crate::model::Mesh;
 /// Why a file can't be used at all.
 #[derive(Debug, Error)]
 pub enum ImportError {
-    /// Its name says nothing that we know.
     #[error("can't read .{0} files: give a .glb, .gltf or .obj file")]
     Extension(String),
-    /// It isn't what its name says.
+    /// `format` is "glTF", "GLB" or "OBJ".
     #[error("not a sound {format} file: {reason}")]
-    Malformed {
-        /// "glTF", "GLB" or "OBJ".
-        format: &'static str,
-        /// What is wrong.
-        reason: String,
-    },
-    /// It needs something that we don't have.
+    Malformed { format: &'static str, reason: String },
     #[error("the file requires the glTF extension {0}, which Genescape doesn't know; export it without")]
     RequiredExtension(String),
-    /// A file that it names can't be read.
     #[error("the file needs \"{name}\", which can't be read: {source}")]
-    Missing {
-        /// As written in the file.
-        name: String,
-        /// Why not.
-        source: io::Error,
-    },
-    /// Nothing is left to simplify.
+    Missing { name: String, source: io::Error },
     #[error("the file holds no triangle that can be used{}", listed(.0))]
     Empty(Vec<Repair>),
 }
@@ -51,7 +37,7 @@ fn listed(repairs: &[Repair]) -> String {
     repairs.iter().map(|repair| format!("; {repair}")).collect()
 }
 
-/// Something that was left out or mended.
+/// Something that was left out or repaired.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Repair {
     /// Vertices with NaN or infinite positions went, with their triangles.
@@ -104,13 +90,6 @@ impl fmt::Display for Repair {
     }
 }
 
-/// A material as glTF writes it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ImportedMaterial {
-    /// The glTF material object; its texture indices refer to `Imported::textures`.
-    pub json: Value,
-}
-
 /// An image's file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ImportedImage {
@@ -122,21 +101,36 @@ pub struct ImportedImage {
     pub bytes: Vec<u8>,
 }
 
-/// Someone's mesh, mended.
+/// A mesh fit for every stage, and what belongs to it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Imported {
     /// One part for each material used, `Material::Foreign(n)`. `normals` is empty if any part lacked them.
     pub mesh: Mesh,
-    /// `materials[n]` belongs to `Material::Foreign(n)`.
-    pub materials: Vec<ImportedMaterial>,
+    /// glTF material objects: `materials[n]` belongs to `Material::Foreign(n)`. Their texture indices refer to
+    /// `textures`.
+    pub materials: Vec<Value>,
     /// glTF texture objects; their `source` is an index into `images`, their `sampler` into `samplers`.
     pub textures: Vec<Value>,
     /// glTF sampler objects.
     pub samplers: Vec<Value>,
-    /// Images.
     pub images: Vec<ImportedImage>,
-    /// What had to be mended.
     pub repairs: Vec<Repair>,
+}
+
+impl Imported {
+    /// Lists a repair unless its count is 0.
+    fn note(&mut self, repair: fn(usize) -> Repair, count: usize) {
+        self.repairs.extend((count > 0).then(|| repair(count)));
+    }
+
+    /// The index of the material of primitives that have none: glTF's default.
+    fn default_material(&mut self) -> usize {
+        let default = json!({ "name": "default" });
+        self.materials.iter().position(|material| *material == default).unwrap_or_else(|| {
+            self.materials.push(default);
+            self.materials.len() - 1
+        })
+    }
 }
 
 /// Gives the bytes of a file that the main file names.
@@ -153,14 +147,12 @@ pub fn read_mesh(bytes: &[u8], extension: &str, resolve: &Resolve<'_>) -> Result
     clean::finish(raw)
 }
 
-/// A run of triangles as it was read, not yet checked.
+/// Triangles of one material as they were read, not yet checked. Each list of the mesh but `positions` is empty or as
+/// long as these; the mesh has no parts.
 #[derive(Debug, Default)]
 struct Primitive {
     material: usize,
-    positions: Vec<[f32; 3]>,
-    normals: Option<Vec<[f32; 3]>>,
-    uvs: Option<Vec<[f32; 2]>>,
-    colors: Option<Vec<[u8; 4]>>,
+    mesh: Mesh,
     triangles: Vec<[u32; 3]>,
 }
 
@@ -170,4 +162,9 @@ struct Raw {
     primitives: Vec<Primitive>,
     /// All but the mesh.
     rest: Imported,
+}
+
+/// A part of a colour, 0 to 1, as a byte.
+fn color_byte(value: f32) -> u8 {
+    (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
 }

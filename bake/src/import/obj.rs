@@ -7,7 +7,8 @@ use std::path::Path;
 use serde_json::json;
 
 use super::gltf_file::mime_of;
-use super::{ImportError, Imported, ImportedImage, ImportedMaterial, Primitive, Raw, Repair, Resolve};
+use super::{ImportError, Imported, ImportedImage, Primitive, Raw, Repair, Resolve, color_byte};
+use crate::model::Mesh;
 
 /// Reads the text of an .obj file.
 pub fn read(bytes: &[u8], resolve: &Resolve<'_>) -> Result<Raw, ImportError> {
@@ -30,8 +31,8 @@ pub fn read(bytes: &[u8], resolve: &Resolve<'_>) -> Result<Raw, ImportError> {
     let (models, materials) = loaded.map_err(|error| malformed(error.to_string()))?;
     let mut raw = Raw::default();
     for material in materials.unwrap_or_default() {
-        let json = material_json(&material, resolve, &mut raw.rest);
-        raw.rest.materials.push(ImportedMaterial { json });
+        let material = material_json(&material, resolve, &mut raw.rest);
+        raw.rest.materials.push(material);
     }
     raw.rest.repairs.extend(missing.into_inner());
     for model in models {
@@ -42,29 +43,22 @@ pub fn read(bytes: &[u8], resolve: &Resolve<'_>) -> Result<Raw, ImportError> {
 }
 
 fn primitive(mesh: tobj::Mesh, rest: &mut Imported) -> Primitive {
+    let known = mesh.material_id.filter(|&id| id < rest.materials.len());
+    let material = known.unwrap_or_else(|| rest.default_material());
     let positions: Vec<[f32; 3]> = mesh.positions.as_chunks().0.to_vec();
-    let count = positions.len();
-    let (normals, uvs) = (mesh.normals.as_chunks::<3>().0, mesh.texcoords.as_chunks::<2>().0);
-    let byte = |value: f32| (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
-    let colors = mesh.vertex_color.as_chunks::<3>().0;
-    let material = mesh.material_id.filter(|&id| id < rest.materials.len()).unwrap_or_else(|| {
-        let json = json!({ "name": "default" });
-        let place = rest.materials.iter().position(|material| material.json == json);
-        place.unwrap_or_else(|| {
-            rest.materials.push(ImportedMaterial { json });
-            rest.materials.len() - 1
-        })
-    });
-    Primitive {
-        material,
-        normals: (normals.len() == count && count > 0).then(|| normals.to_vec()),
+    let fits = |rows: usize| rows == positions.len();
+    let normals = Some(mesh.normals.as_chunks().0).filter(|rows| fits(rows.len()));
+    let uvs = Some(mesh.texcoords.as_chunks::<2>().0).filter(|rows| fits(rows.len()));
+    let colors = Some(mesh.vertex_color.as_chunks::<3>().0).filter(|rows| fits(rows.len()));
+    let mesh_read = Mesh {
+        normals: normals.unwrap_or_default().to_vec(),
         // OBJ counts v from below.
-        uvs: (uvs.len() == count && count > 0).then(|| uvs.iter().map(|&[u, v]| [u, 1.0 - v]).collect()),
-        colors: (colors.len() == count && count > 0)
-            .then(|| colors.iter().map(|&[r, g, b]| [byte(r), byte(g), byte(b), 255]).collect()),
-        triangles: mesh.indices.as_chunks().0.to_vec(),
+        uvs: uvs.unwrap_or_default().iter().map(|&[u, v]| [u, 1.0 - v]).collect(),
+        colors: colors.unwrap_or_default().iter().map(|&[r, g, b]| [r, g, b, 1.0].map(color_byte)).collect(),
         positions,
-    }
+        parts: Vec::new(),
+    };
+    Primitive { material, mesh: mesh_read, triangles: mesh.indices.as_chunks().0.to_vec() }
 }
 
 fn material_json(material: &tobj::Material, resolve: &Resolve<'_>, rest: &mut Imported) -> serde_json::Value {

@@ -1,4 +1,4 @@
-//! Other people's files: what must come through, what must be refused, and that nothing panics.
+//! Files of other programs: what must come through, what must be refused, and that nothing panics.
 
 use std::io;
 
@@ -6,7 +6,8 @@ use serde_json::{Value, json};
 
 use super::{ImportError, Imported, Repair, read_mesh};
 use crate::model::{Material, Mesh, PartKind};
-use crate::stages::lod::{LodOptions, levels, progressive};
+use crate::stages::lod::progressive::reader;
+use crate::stages::lod::{LodOptions, levels};
 
 fn nothing(name: &str) -> io::Result<Vec<u8>> {
     Err(io::Error::new(io::ErrorKind::NotFound, format!("no {name}")))
@@ -134,6 +135,45 @@ fn what_cannot_be_read_is_refused_in_words() {
 }
 
 #[test]
+fn a_glb_of_impossible_length_is_refused() {
+    for length in [0_u32, 11, u32::MAX] {
+        let mut bytes = glb(&SQUARE, &[0, 1, 2], |_| {});
+        bytes[8..12].copy_from_slice(&length.to_le_bytes());
+        let error = read_glb(&bytes).expect_err("refused").to_string();
+        assert!(error.contains("not a sound GLB file"), "{error}");
+    }
+}
+
+#[test]
+fn attributes_come_through_or_are_left_out_and_said() {
+    let all_from_positions = |root: &mut Value| {
+        root["meshes"][0]["primitives"][0]["attributes"] =
+            json!({ "POSITION": 0, "NORMAL": 0, "COLOR_0": 0, "TEXCOORD_0": 0 });
+    };
+    let read = read_glb(&glb(&SQUARE, &[0, 1, 2, 0, 2, 3], all_from_positions)).unwrap();
+    assert_eq!(read.mesh.normals[1], [1.0, 0.0, 0.0]);
+    assert_eq!(read.mesh.colors[2], [255, 255, 0, 255]);
+    assert_eq!(read.mesh.uvs, [[0.0; 2]; 0], "three numbers are no texture coordinates");
+    assert_eq!(read.repairs, [Repair::AttributeMismatch("TEXCOORD_0".to_owned())]);
+}
+
+#[test]
+fn parts_that_lack_attributes_get_neutral_ones() {
+    let two_primitives = |root: &mut Value| {
+        root["meshes"][0]["primitives"] = json!([
+            { "attributes": { "POSITION": 0, "NORMAL": 0, "COLOR_0": 0 }, "indices": 1 },
+            { "attributes": { "POSITION": 0 }, "indices": 1 },
+        ]);
+    };
+    let read = read_glb(&glb(&SQUARE, &[0, 1, 2], two_primitives)).unwrap();
+    assert_eq!(read.mesh.colors.len(), 6, "three vertices of each are used");
+    assert_eq!(read.mesh.colors[3..], [[255; 4]; 3]);
+    assert_eq!(read.mesh.normals, [[0.0; 3]; 0], "none, where one part lacks them");
+    assert_eq!(read.mesh.parts[0].triangles, [[0, 1, 2], [3, 4, 5]]);
+    assert!(read.repairs.contains(&Repair::MissingNormals(1)));
+}
+
+#[test]
 fn nodes_in_a_circle_end() {
     let circle = |root: &mut Value| {
         root["nodes"] = json!([{ "mesh": 0, "children": [1] }, { "children": [0] }]);
@@ -157,7 +197,7 @@ fn gltf_with_a_data_uri_and_a_material() {
     });
     let read = read_mesh(text.to_string().as_bytes(), "gltf", &nothing).unwrap();
     assert_eq!(read.mesh.positions, [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
-    assert_eq!(read.materials[0].json["pbrMetallicRoughness"]["roughnessFactor"], 0.25);
+    assert_eq!(read.materials[0]["pbrMetallicRoughness"]["roughnessFactor"], 0.25);
 }
 
 const OBJ: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 0 0 1\n\
@@ -174,7 +214,7 @@ fn obj_polygons_and_materials() {
     assert_eq!(read.mesh.normals.len(), 4);
     let corner = read.mesh.positions.iter().position(|&p| p == [0.0; 3]).unwrap();
     assert_eq!(read.mesh.uvs[corner], [0.0, 1.0]);
-    assert_eq!(read.materials[0].json["name"], "red");
+    assert_eq!(read.materials[0]["name"], "red");
     assert!(read.repairs.contains(&Repair::MissingFile("gone.png".to_owned())));
 }
 
@@ -227,7 +267,7 @@ fn real_meshes_keep_their_shape() {
     for name in ["spot.obj", "rocker-arm.obj", "stanford-bunny.obj"] {
         let mesh = data(name);
         let made = levels(&mesh, &LodOptions::default());
-        assert_eq!(progressive::decode(&made.progressive).unwrap().rebuild(usize::MAX), mesh, "{name}");
+        assert_eq!(reader::decode(&made.progressive).unwrap().rebuild(usize::MAX), mesh, "{name}");
         let bounds = mesh.bounds();
         let diagonal = (bounds.max - bounds.min).length();
         for level in &made.levels {

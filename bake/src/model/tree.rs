@@ -1,8 +1,9 @@
 //! Trees: templates, their levels of detail, and where they stand.
 
+use genescape_schema::scene::Instance;
 use serde::{Deserialize, Serialize};
 
-use super::{Bounds, Image8, Mesh};
+use super::{Bounds, Mesh};
 
 /// One tree: its foot at the origin (roots reach a little below y = 0), growing along +y.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -17,20 +18,45 @@ pub struct TreeTemplate {
     pub crown_radius_m: f32,
 }
 
-/// The textures that all templates of a scene share.
+/// The textures that all templates of a scene share, as images `P`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct TreeTextures {
+pub struct TreeTextures<P> {
     /// Tiling bark colour, sRGB, RGB. u runs around the branch, v along it.
-    pub bark_color_srgb: Image8,
+    pub bark_color: P,
     /// Tiling tangent-space bark normals, RGB.
-    pub bark_normal: Image8,
-    /// Leaf card, sRGB with alpha, RGBA; colour bled under the transparent texels. Every mip level's alpha keeps
-    /// the coverage of level 0 at the cutoff.
-    pub leaf_srgb: Vec<Image8>,
+    pub bark_normal: P,
+    /// Leaf card with its mip levels, sRGB with alpha, RGBA; colour bled under the transparent texels. Every level's
+    /// alpha keeps the coverage of level 0 at the cutoff. Empty on a bare tree.
+    pub leaf: Vec<P>,
     /// Blossom card, likewise.
-    pub blossom_srgb: Vec<Image8>,
+    pub blossom: Vec<P>,
     /// Alpha below this is cut away.
     pub alpha_cutoff: f32,
+}
+
+impl<P> TreeTextures<P> {
+    /// The same with `f` of each image.
+    pub fn map<'a, Q>(&'a self, mut f: impl FnMut(&'a P) -> Q) -> TreeTextures<Q> {
+        let mapped: Result<_, std::convert::Infallible> = self.try_map(|image| Ok(f(image)));
+        mapped.unwrap_or_else(|never| match never {})
+    }
+
+    /// The same with `f` of each image.
+    ///
+    /// # Errors
+    /// The first that `f` gives.
+    pub fn try_map<'a, Q, E>(
+        &'a self,
+        mut f: impl FnMut(&'a P) -> Result<Q, E>,
+    ) -> Result<TreeTextures<Q>, E> {
+        Ok(TreeTextures {
+            bark_color: f(&self.bark_color)?,
+            bark_normal: f(&self.bark_normal)?,
+            leaf: self.leaf.iter().map(&mut f).collect::<Result<_, _>>()?,
+            blossom: self.blossom.iter().map(&mut f).collect::<Result<_, _>>()?,
+            alpha_cutoff: self.alpha_cutoff,
+        })
+    }
 }
 
 /// What moves a vertex of one level towards the next.
@@ -67,20 +93,10 @@ pub struct LevelledMesh {
     pub progressive: Vec<u8>,
 }
 
-/// One tree that stands in the scene.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Instance {
-    /// Which template.
-    pub template: u32,
-    /// The affine transform from the template's space to the world: 3 rows of 4, row-major, metres. Determinant > 0.
-    pub world_from_tree: [[f32; 4]; 3],
-    /// The infinite vertical cylinder around the trunk for collision: x, z and radius in metres.
-    pub trunk_cylinder_m: [f32; 3],
-}
-
 /// All trees of a scene, in a fixed order.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Placement {
-    /// The instances.
     pub instances: Vec<Instance>,
+    /// Where a walk starts: x and z in metres. Trunks keep away from it.
+    pub start_m: [f32; 2],
 }

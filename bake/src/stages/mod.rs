@@ -6,6 +6,7 @@ pub mod land;
 pub mod light;
 pub mod lod;
 pub mod placement;
+pub mod scene;
 pub mod sky;
 pub mod start;
 pub mod terrain_lod;

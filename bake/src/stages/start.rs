@@ -1,45 +1,85 @@
-//! Where a person first stands, and what they look at: a dry, level, open spot not far from the middle, facing a
-//! long view over the land that has trees in it and the sun beside or behind.
+//! Where a walk starts, in metres: a dry, level, open spot not far from the middle with a long view over the land that
+//! has trees in it; and the direction of the first look, with the sun beside or behind.
+//!
+//! The spot depends on land and trees alone, so that another sky shows the same place, and [`clear_around`] keeps trunks
+//! away from it. The direction depends on the sun, too.
 
 use glam::{Vec2, Vec3};
+use serde::Serialize;
 
-use crate::model::{Heightfield, Instance, Placement, StartView};
+use crate::graph::{Context, Input, Stage, StageError};
+use crate::model::{Heightfield, Instance, Landform, Placement, SkyLight, StartView};
 
-/// Eyes above the ground, in metres.
-pub const EYE_M: f32 = 1.6;
+/// Metres around the start in which no trunk stands.
+pub const CLEARING_M: f32 = 6.0;
+
+const EYE_M: f32 = StartView::EYE_HEIGHT_M;
 const SPOTS: i32 = 9;
 const AZIMUTHS: u32 = 24;
 
-/// Chooses the best of a fixed list of spots and azimuths.
-///
-/// `water_level_m` is the lake's surface; `towards_sun` a unit vector.
-pub fn start_view(
-    land: &Heightfield,
-    water_level_m: Option<f32>,
-    placement: &Placement,
-    towards_sun: Vec3,
-) -> StartView {
-    let scene = Surroundings { land, water_m: water_level_m.unwrap_or(f32::MIN), placement };
-    let step_m = land.extent_m() * 0.055;
-    let mut best = (f32::MIN, Vec2::ZERO, 0);
+/// Landform, placement, sun → where a person first stands and what they look at.
+#[derive(Serialize)]
+pub struct StartStage {
+    pub landform: Input<Landform>,
+    pub placement: Input<Placement>,
+    pub light: Input<SkyLight>,
+}
+
+impl Stage for StartStage {
+    const NAME: &'static str = "start";
+    const VERSION: u32 = 2;
+    type Output = StartView;
+
+    fn run(&self, context: &Context<'_>) -> Result<StartView, StageError> {
+        let (landform, placement) = (context.get(&self.landform)?, context.get(&self.placement)?);
+        Ok(start_view(&landform, &placement, context.get(&self.light)?.sun_direction))
+    }
+}
+
+/// The best of a fixed list of spots, as x and z in metres, if no trunk stood around it.
+pub fn start_spot(land: &Landform, trees: &[Instance]) -> [f32; 2] {
+    let scene = Surroundings::new(land, trees);
+    let step_m = land.field.extent_m() * 0.055;
+    let mut best = (f32::MIN, Vec2::ZERO);
     for j in -SPOTS / 2..=SPOTS / 2 {
         for i in -SPOTS / 2..=SPOTS / 2 {
             let spot = Vec2::new(i as f32, j as f32) * step_m;
             let Some(standing) = scene.standing(spot) else { continue };
             let trees = scene.trees_by_azimuth(spot);
-            for azimuth in 0..AZIMUTHS {
-                let score = standing + scene.view(spot, azimuth, &trees, towards_sun);
-                if score > best.0 {
-                    best = (score, spot, azimuth);
-                }
+            let views = (0..AZIMUTHS).map(|azimuth| scene.view(spot, azimuth, &trees));
+            let score = standing + views.fold(f32::MIN, f32::max);
+            if score > best.0 {
+                best = (score, spot);
             }
         }
     }
-    let (_, spot, azimuth) = best;
-    let ground_m = land.height_m(spot.x, spot.y).max(scene.water_m);
-    let along = heading(azimuth);
-    let pitch = scene.pitch(spot, along);
-    let direction = Vec3::new(along.x, pitch, along.y).normalize();
+    best.1.to_array()
+}
+
+/// Removes the trees whose trunks reach into the clearing around a start.
+pub fn clear_around(start_m: [f32; 2], trees: &mut Vec<Instance>) {
+    trees.retain(|tree| clearance_m(Vec2::from(start_m), tree) >= CLEARING_M);
+}
+
+/// From a spot to a trunk.
+fn clearance_m(spot: Vec2, tree: &Instance) -> f32 {
+    let [x, z, radius] = tree.trunk_cylinder_m;
+    spot.distance(Vec2::new(x, z)) - radius
+}
+
+/// The best of a fixed list of looks from the start.
+///
+/// `towards_sun` is a unit vector.
+pub fn start_view(land: &Landform, placement: &Placement, towards_sun: Vec3) -> StartView {
+    let scene = Surroundings::new(land, &placement.instances);
+    let spot = Vec2::from(placement.start_m);
+    let trees = scene.trees_by_azimuth(spot);
+    let score = |azimuth| scene.view(spot, azimuth, &trees) + scene.light(spot, azimuth, towards_sun);
+    // Of equal ones the first.
+    let best = (0..AZIMUTHS).rev().max_by(|&a, &b| score(a).total_cmp(&score(b))).unwrap_or(0);
+    let ground_m = land.field.height_m(spot.x, spot.y).max(scene.water_m);
+    let along = heading(best);
+    let direction = Vec3::new(along.x, scene.pitch(spot, along), along.y).normalize();
     StartView { position_m: Vec3::new(spot.x, ground_m + EYE_M, spot.y), direction }
 }
 
@@ -52,11 +92,15 @@ fn heading(azimuth: u32) -> Vec2 {
 struct Surroundings<'a> {
     land: &'a Heightfield,
     water_m: f32,
-    placement: &'a Placement,
+    trees: &'a [Instance],
 }
 
-impl Surroundings<'_> {
-    /// How good a spot is to stand on: `None` in water, on a steep slope or in a trunk.
+impl<'a> Surroundings<'a> {
+    fn new(land: &'a Landform, trees: &'a [Instance]) -> Self {
+        Self { land: &land.field, water_m: land.water_level_m.unwrap_or(f32::MIN), trees }
+    }
+
+    /// How good a spot is to stand on: `None` in water and on a steep slope.
     fn standing(&self, spot: Vec2) -> Option<f32> {
         let at = |x, z| self.land.height_m(x, z);
         let ground = at(spot.x, spot.y);
@@ -72,17 +116,14 @@ impl Surroundings<'_> {
         let far = spot.length() / self.land.extent_m();
         // Shores are bare; the grass begins a little above.
         let bare = (1.0 - (ground - self.water_m - 0.6)).clamp(0.0, 1.0);
-        let blocked = self.placement.instances.iter().any(|tree| {
-            let [x, z, radius] = tree.trunk_cylinder_m;
-            spot.distance(Vec2::new(x, z)) < radius + 3.5
-        });
-        (!blocked).then_some(-0.7 * rise - 0.4 * far - 0.4 * bare)
+        Some(-0.7 * rise - 0.4 * far - 0.4 * bare)
     }
 
-    /// For each azimuth, how many trees stand in a cone of ±30° around it: (in the way, in view).
+    /// For each azimuth, how many trees outside the clearing stand in a cone of ±30° around it: (in the way, in view).
     fn trees_by_azimuth(&self, spot: Vec2) -> Vec<(f32, f32)> {
         let mut bins = vec![(0.0f32, 0.0f32); AZIMUTHS as usize];
-        for tree in &self.placement.instances {
+        let standing = self.trees.iter().filter(|tree| clearance_m(spot, tree) >= CLEARING_M);
+        for tree in standing {
             let offset = Vec2::new(tree.trunk_cylinder_m[0], tree.trunk_cylinder_m[1]) - spot;
             let distance = offset.length();
             if distance > 200.0 {
@@ -124,8 +165,8 @@ impl Surroundings<'_> {
         })
     }
 
-    /// How good a look is.
-    fn view(&self, spot: Vec2, azimuth: u32, trees: &[(f32, f32)], towards_sun: Vec3) -> f32 {
+    /// How good a look is, whatever the light.
+    fn view(&self, spot: Vec2, azimuth: u32, trees: &[(f32, f32)]) -> f32 {
         let along = heading(azimuth);
         let eye_m = self.land.height_m(spot.x, spot.y) + EYE_M;
         let (mut steepest, mut seen, mut steps, mut top) = (f32::MIN, 0.0, 0.0, f32::MIN);
@@ -152,6 +193,15 @@ impl Surroundings<'_> {
         // Mountains are worth looking at, but not a wall before one's face.
         let relief = top.clamp(0.0, 0.3) - 5.0 * (top - 0.4).max(0.0);
         let (in_the_way, in_view) = trees[azimuth as usize];
+        // A landscape without a tree in it says nothing about its trees, and water doubles the sky.
+        let trees = in_view / (1.5 + in_view);
+        let water = (4.0 * lake / f32::max(steps, 1.0)).min(1.0);
+        0.8 * open + 1.2 * relief + 1.8 * trees + 0.6 * water - 1.2 * in_the_way.min(2.0)
+    }
+
+    /// How good the light is in a look.
+    fn light(&self, spot: Vec2, azimuth: u32, towards_sun: Vec3) -> f32 {
+        let along = heading(azimuth);
         let sun = Vec2::new(towards_sun.x, towards_sun.z);
         let facing_sun = if sun.length() > 1e-3 { along.dot(sun.normalize()) } else { 0.0 };
         // Light from the side or from behind models the land; into a sun above the picture, all is flat.
@@ -160,11 +210,7 @@ impl Surroundings<'_> {
         } else {
             -0.5
         };
-        let light = shade - 0.7 * (facing_sun + 0.1).max(0.0) - 0.15 * (-facing_sun - 0.7).max(0.0);
-        // A landscape without a tree in it says nothing about its trees, and water doubles the sky.
-        let trees = in_view / (1.5 + in_view);
-        let water = (4.0 * lake / f32::max(steps, 1.0)).min(1.0);
-        0.8 * open + 1.2 * relief + 1.8 * trees + 0.6 * water - 1.2 * in_the_way.min(2.0) + light
+        shade - 0.7 * (facing_sun + 0.1).max(0.0) - 0.15 * (-facing_sun - 0.7).max(0.0)
     }
 
     /// Slope of the look: towards the middle of what is to be seen, within ±10°.

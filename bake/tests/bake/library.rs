@@ -1,12 +1,14 @@
 //! Bakes without the program: a plan, a runner and a cache, and what each stage gave.
 
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use anyhow::Result;
 use genescape_bake::events::Silent;
-use genescape_bake::plan::{Node, Plan, Resolution};
-use genescape_bake::run::{Done, Runner};
+use genescape_bake::graph::{Done, Node};
+use genescape_bake::plan::{Plan, Resolution};
+use genescape_bake::run::Runner;
 use genescape_cache::{ActionKey, Cache, Digest, How};
 use genescape_schema::{Population, Space};
 
@@ -39,11 +41,11 @@ pub fn run(population: &Population, baked: &Path, threads: usize) -> Result<Vec<
     };
     let done = runner.run(&plan)?;
     assert_eq!(scenes.into_inner(), population.individuals.len());
-    let outputs = |(node, done): (&Node, Done)| NodeOutputs {
+    let outputs = |(node, done): (&Node, &Arc<Done>)| NodeOutputs {
         label: node.label.clone(),
         reused: done.how == How::Reused,
         outputs: done.record.outputs.iter().map(|(_, blob)| blob.digest).collect(),
-        key: done.key,
+        key: done.key.clone(),
     };
-    Ok(plan.nodes.iter().zip(done).map(outputs).collect())
+    Ok(plan.nodes.iter().zip(&done).map(outputs).collect())
 }

@@ -9,9 +9,9 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use genescape_bake::world::STARTER_RON;
 use genescape_cache::Digest;
 use genescape_schema::{Population, Space};
+use genescape_world::STARTER_RON;
 
 use crate::library::{NodeOutputs, run};
 use crate::world::World;

@@ -193,3 +193,26 @@ fn a_seed_makes_the_same_world_on_every_machine() {
     assert_eq!(fs::read_to_string(world.population(1)).expect("a population"), text(7));
     assert_ne!(text(7), text(8));
 }
+
+#[test]
+fn a_world_of_an_early_version_bakes_and_says_what_was_filled_in() {
+    let (world, old) = (World::new(), concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/fixtures/world-0.1"));
+    fs::create_dir_all(world.file("population")).expect("a folder");
+    // As if there had not been this gene yet: in neither file a line of it.
+    for (file, sign) in [("space.ron", "\"snow_line\""), ("population/g0000.ron", " snow_line: ")] {
+        let text = fs::read_to_string(format!("{old}/{file}")).expect("in the fixture");
+        let older: Vec<&str> = text.lines().filter(|line| !line.contains(sign)).collect();
+        fs::write(world.file(file), older.join("\n")).expect("written");
+    }
+    let before = fs::read_to_string(world.file("space.ron")).expect("there");
+    let baked = world.bake(&[]).ok();
+    let notices: Vec<&str> = baked.of("notice").filter_map(|event| event["message"].as_str()).collect();
+    let of_space = "space.ron lacks snow_line; the built-in declaration is used: 0.2 … 1, default 1";
+    assert!(notices.iter().any(|notice| notice.ends_with(of_space)), "{notices:?}");
+    let of_file = |notice: &&&str| notice.contains("g0000.ron:") && notice.contains("snow_line 1");
+    assert_eq!(notices.iter().filter(of_file).count(), 4, "{notices:?}");
+    assert_eq!(baked.of("scene_ready").count(), 4);
+    assert_eq!(fs::read_to_string(world.file("space.ron")).expect("there"), before, "it is the person's");
+    let params = String::from_utf8(world.run(&["params"]).stdout).expect("text");
+    assert!(params.contains("  snow_line "), "{params}");
+}

@@ -4,10 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use genescape_cache::{BlobRef, Cache, Digest, How, Notice};
+use genescape_cache::{BlobRef, Cache, Digest, Fault, How, Notice};
 use proptest::prelude::*;
 
-use crate::{build, is_right, key};
+use crate::{build, is_right, key, put};
 
 const LEN: usize = 500;
 
@@ -109,16 +109,36 @@ fn every_flipped_byte_of_a_blob_is_a_miss() {
     let cache = Cache::open(world.path()).expect("opens");
     let bytes: Vec<u8> = (0..=255).collect();
     for at in [0, 1, 31, 127, 254, 255] {
-        let blob = cache.put_blob(bytes.clone(), "bin").expect("stored");
-        assert_eq!(cache.get_blob(&blob).expect("read").as_deref(), Some(&bytes[..]));
-        inflict(&Harm::Flip(at, 0), &cache.path_of_blob(&blob));
-        assert!(cache.has_blob(&blob), "length alone does not tell");
+        let blob = put(&cache, &bytes, "bin").expect("stored");
+        let path = world.path().join(blob.path());
+        assert_eq!(cache.get_blob(&blob).expect("read").as_deref(), Some(&bytes));
+        inflict(&Harm::Flip(at, 0), &path);
+        assert_eq!(put(&cache, &bytes, "bin").expect("reused"), blob, "length alone does not tell");
         assert_eq!(cache.get_blob(&blob).expect("read"), None);
-        assert!(!cache.has_blob(&blob), "removed");
-        assert_eq!(cache.take_notices(), [Notice::DamagedBlob(cache.path_of_blob(&blob))]);
+        assert!(!path.exists(), "removed");
+        assert_eq!(cache.take_notices(), [Notice { path, fault: Fault::DamagedBlob }]);
         assert_eq!(cache.get_blob(&blob).expect("read"), None);
         assert!(cache.take_notices().is_empty(), "told once");
     }
+}
+
+#[test]
+fn a_forgotten_action_is_built_again_and_its_stage_named() {
+    let world = tempfile::tempdir().expect("a temporary folder");
+    let (cache, builds) = (Cache::open(world.path()).expect("opens"), AtomicUsize::new(0));
+    for round in 1..=2 {
+        build(&cache, 3, LEN, &builds).expect("builds");
+        cache.forget(&key(3)).expect("forgotten");
+        let notices: Vec<String> = cache.take_notices().iter().map(Notice::to_string).collect();
+        assert!(
+            matches!(&notices[..], [text] if text.contains("stage test cannot be decoded")),
+            "{notices:?}"
+        );
+        assert_eq!(cache.lookup(&key(3)).expect("read"), None);
+        let again = build(&cache, 3, LEN, &builds).expect("rebuilds");
+        assert_eq!((again.how, builds.load(Ordering::SeqCst)), (How::Built, 1 + round), "by this call");
+    }
+    cache.forget(&key(4)).expect("what is not there needs no forgetting");
 }
 
 #[test]
@@ -140,7 +160,7 @@ fn verify_finds_all_damage_and_clears_it_away() {
     let made: Vec<_> = (0..6).map(|n| build(&cache, n, LEN, &builds).expect("builds")).collect();
     assert_eq!(cache.verify().expect("verifies").faults, []);
 
-    let mesh = |n: usize| cache.path_of_blob(&made[n].record.outputs[0].1);
+    let mesh = |n: usize| world.path().join(made[n].record.outputs[0].1.path());
     inflict(&Harm::Flip(9, 3), &mesh(0));
     inflict(&Harm::Delete, &mesh(1));
     inflict(&Harm::Flip(40, 1), &world.path().join("actions").join(key(2).digest().to_string()));
@@ -162,7 +182,7 @@ fn verify_finds_all_damage_and_clears_it_away() {
 fn a_blob_lies_where_its_uri_says() {
     let world = tempfile::tempdir().expect("a temporary folder");
     let cache = Cache::open(world.path()).expect("opens");
-    let blob = cache.put_blob(&b"bytes"[..], "png").expect("stored");
+    let blob = put(&cache, b"bytes", "png").expect("stored");
     let scene = world.path().join("g0000/scene-0");
     fs::create_dir_all(&scene).expect("made");
     assert_eq!(fs::read(scene.join(blob.uri(2))).expect("found"), b"bytes");

@@ -6,10 +6,10 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, SystemTime};
 
-use genescape_cache::{Cache, Digest, GcOptions, How};
+use genescape_cache::{BlobRef, Cache, Digest, GcOptions, How};
 use proptest::prelude::*;
 
-use crate::{build, is_right, key};
+use crate::{build, is_right, key, put};
 
 const LEN: usize = 1000;
 
@@ -23,8 +23,8 @@ fn age(path: &Path, minutes: u64) {
     File::options().append(true).open(path).expect("exists").set_modified(then).expect("set");
 }
 
-fn record(cache: &Cache, n: u32) -> std::path::PathBuf {
-    cache.root().join("actions").join(key(n).digest().to_string())
+fn record(root: &Path, n: u32) -> std::path::PathBuf {
+    root.join("actions").join(key(n).digest().to_string())
 }
 
 proptest! {
@@ -69,11 +69,11 @@ fn the_least_recently_used_goes_first() {
     let builds = AtomicUsize::new(0);
     for n in 0..4 {
         build(&cache, n, LEN, &builds).expect("builds");
-        age(&record(&cache, n), 100 - u64::from(n));
+        age(&record(world.path(), n), 100 - u64::from(n));
     }
     assert!(cache.lookup(&key(0)).expect("read").is_some(), "used again: now the youngest");
     cache.gc(at_once(2 * 2500), &BTreeSet::new()).expect("collects");
-    let left: Vec<u32> = (0..4).filter(|&n| record(&cache, n).exists()).collect();
+    let left: Vec<u32> = (0..4).filter(|&n| record(world.path(), n).exists()).collect();
     assert_eq!(left, [0, 3]);
 }
 
@@ -81,10 +81,12 @@ fn the_least_recently_used_goes_first() {
 fn a_root_whose_record_is_lost_stays() {
     let world = tempfile::tempdir().expect("a temporary folder");
     let cache = Cache::open(world.path()).expect("opens");
-    let root = cache.put_blob(&b"in use"[..], "bin").expect("stored");
-    let other = cache.put_blob(&b"not in use"[..], "bin").expect("stored");
+    let root = put(&cache, b"in use", "bin").expect("stored");
+    let other = put(&cache, b"not in use", "bin").expect("stored");
+    fs::remove_dir_all(world.path().join("actions")).expect("removed");
     cache.gc(at_once(0), &BTreeSet::from([root.digest])).expect("collects");
-    assert_eq!((cache.has_blob(&root), cache.has_blob(&other)), (true, false));
+    let exists = |blob: &BlobRef| world.path().join(blob.path()).exists();
+    assert_eq!((exists(&root), exists(&other)), (true, false));
 }
 
 #[test]
@@ -95,14 +97,18 @@ fn the_young_and_the_just_used_stay() {
     for n in 0..3 {
         let outcome = build(&cache, n, LEN, &builds).expect("builds");
         if n > 0 {
-            age(&record(&cache, n), 60);
-            outcome.record.outputs.iter().for_each(|(_, blob)| age(&cache.path_of_blob(blob), 60));
+            age(&record(world.path(), n), 60);
+            outcome.record.outputs.iter().for_each(|(_, blob)| age(&world.path().join(blob.path()), 60));
         }
     }
     cache.lookup(&key(1)).expect("read").expect("a hit");
     let report = cache.gc(GcOptions::to(0), &BTreeSet::new()).expect("collects");
     assert_eq!((report.actions_removed, report.blobs_removed), (1, 2));
-    assert!(record(&cache, 0).exists() && record(&cache, 1).exists() && !record(&cache, 2).exists());
+    assert!(
+        record(world.path(), 0).exists()
+            && record(world.path(), 1).exists()
+            && !record(world.path(), 2).exists()
+    );
     assert!(cache.lookup(&key(1)).expect("read").is_some(), "its old blobs are kept by its record");
 }
 
@@ -110,16 +116,18 @@ fn the_young_and_the_just_used_stay() {
 fn what_killed_writers_left_is_swept_when_old() {
     let world = tempfile::tempdir().expect("a temporary folder");
     let cache = Cache::open(world.path()).expect("opens");
-    let blob = cache.put_blob(&b"unnamed"[..], "bin").expect("stored");
-    let staged = cache.path_of_blob(&blob).with_extension("bin#1");
-    fs::write(&staged, "half").expect("written");
+    let blob = put(&cache, b"unnamed", "bin").expect("stored");
+    let blob = world.path().join(blob.path());
+    fs::remove_dir_all(world.path().join("actions")).expect("removed");
+    let staged = ["bin#1", "bin#Ab3xYz"].map(|extension| blob.with_extension(extension));
+    staged.iter().for_each(|path| fs::write(path, "half").expect("written"));
+    assert_eq!(cache.stats().expect("counts").blobs, 1, "what is half-written is no blob");
     assert_eq!(cache.gc(GcOptions::to(0), &BTreeSet::new()).expect("collects").abandoned_removed, 0);
-    assert!(staged.exists() && cache.has_blob(&blob), "its writer may be alive");
-    age(&staged, 60);
-    age(&cache.path_of_blob(&blob), 60);
+    assert!(staged.iter().all(|path| path.exists()) && blob.exists(), "their writer may be alive");
+    staged.iter().chain([&blob]).for_each(|path| age(path, 60));
     let report = cache.gc(GcOptions::to(u64::MAX), &BTreeSet::new()).expect("collects");
-    assert_eq!((report.abandoned_removed, report.blobs_removed), (1, 1));
-    assert!(!staged.exists() && !cache.has_blob(&blob));
+    assert_eq!((report.abandoned_removed, report.blobs_removed), (2, 1));
+    assert!(!staged.iter().any(|path| path.exists()) && !blob.exists());
 }
 
 #[test]

@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicUsize;
 
 use genescape_cache::{Cache, Error, How};
 
-use crate::{build, is_right, key, outputs};
+use crate::{build, is_right, key, outputs, put};
 
 #[test]
 fn a_folder_below_a_file_cannot_be_opened() {
@@ -65,10 +65,20 @@ fn two_outputs_of_one_name_are_refused() {
 #[test]
 fn a_full_disk_is_told_as_such() {
     let full = std::io::Error::from(ErrorKind::StorageFull);
-    let error = Error::Storage { verb: "write", path: "baked/blobs/ab".into(), source: Box::new(full) };
-    assert_eq!(error.io_kind(), Some(ErrorKind::StorageFull));
+    let error = Error::Storage { verb: "write", path: "baked/blobs/ab".into(), source: full };
     let message = error.to_string();
     assert!(message.contains("baked/blobs/ab") && message.contains("free some space"), "{message}");
+}
+
+#[cfg(unix)]
+#[test]
+fn published_files_are_as_readable_as_any() {
+    use std::os::unix::fs::PermissionsExt;
+    let world = tempfile::tempdir().expect("a temporary folder");
+    let blob = put(&Cache::open(world.path()).expect("opens"), b"bytes", "bin").expect("stored");
+    fs::write(world.path().join("plain"), "").expect("written");
+    let mode = |name: &str| fs::metadata(world.path().join(name)).expect("exists").permissions().mode();
+    assert_eq!(mode(&blob.path()), mode("plain"));
 }
 
 /// A real one: in a child, which is this test again, whose files may not grow beyond a few kilobytes.

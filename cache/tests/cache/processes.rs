@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use genescape_cache::{Cache, How};
 
-use crate::{build, is_right, key, outputs};
+use crate::{build, build_by, is_right, outputs};
 
 /// Waits until `ready`, or fails after a generous while.
 fn until(what: &str, mut ready: impl FnMut() -> bool) {
@@ -43,13 +43,12 @@ fn is_child() -> bool {
     let pause_ms = std::env::var("GENESCAPE_TEST_PAUSE_MS").expect("set with the folder");
     let pause = Duration::from_millis(pause_ms.parse().expect("a number"));
     let cache = Cache::open(folder.join("baked")).expect("opens");
-    let outcome = cache
-        .get_or_build_bytes::<genescape_cache::Error>(&key(5), || {
-            std::fs::write(folder.join(format!("started-{}", std::process::id())), "").expect("written");
-            std::thread::sleep(pause);
-            Ok(outputs(5, 3000))
-        })
-        .expect("builds");
+    let slowly = || {
+        std::fs::write(folder.join(format!("started-{}", std::process::id())), "").expect("written");
+        std::thread::sleep(pause);
+        Ok(outputs(5, 3000))
+    };
+    let outcome = build_by(&cache, 5, slowly).expect("builds");
     assert!(is_right(&outcome, 5, 3000));
     true
 }
@@ -112,12 +111,12 @@ fn of_several_threads_one_builds() {
 }
 
 #[test]
-fn nobody_waits_longer_than_their_patience() {
+fn patience_ends_a_wait() {
     if is_child() {
         return;
     }
     let world = tempfile::tempdir().expect("a temporary folder");
-    let mut sleeper = child("processes::nobody_waits_longer_than_their_patience", world.path(), 60_000);
+    let mut sleeper = child("processes::patience_ends_a_wait", world.path(), 60_000);
     until("the child builds", || started(world.path()) == 1);
     let cache =
         Cache::open(world.path().join("baked")).expect("opens").with_patience(Duration::from_millis(20));
@@ -133,12 +132,11 @@ fn a_builder_that_asks_for_its_own_key_does_not_wait_for_itself() {
     let world = tempfile::tempdir().expect("a temporary folder");
     let cache = Cache::open(world.path()).expect("opens");
     let builds = AtomicUsize::new(0);
-    let outer = cache
-        .get_or_build_bytes::<genescape_cache::Error>(&key(9), || {
-            let inner = build(&cache, 9, 64, &builds)?;
-            assert_eq!(inner.how, How::Built);
-            Ok(outputs(9, 64))
-        })
-        .expect("builds");
+    let outer = || {
+        let inner = build(&cache, 9, 64, &builds)?;
+        assert_eq!(inner.how, How::Built);
+        Ok(outputs(9, 64))
+    };
+    let outer = build_by(&cache, 9, outer).expect("builds");
     assert!(is_right(&outer, 9, 64));
 }

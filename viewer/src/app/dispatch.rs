@@ -1,177 +1,116 @@
-//! Events and actions → their owners. The one place that knows who takes what.
+//! Events → their owners. The one place that knows who takes what.
 
 use genescape_schema::Category;
+use genescape_world::Source;
 use winit::event_loop::ActiveEventLoop;
 use winit::window::Fullscreen;
 
-use super::App;
-use super::desk::Source;
-use crate::event::{Arrangement, Ballot, Event, Panel, Phase};
-use crate::frame::{Options, TerrainScheme, TreeScheme};
-use crate::input::Action;
-use crate::picture_file::{self, Pixels};
-use crate::screenshot;
+use super::{App, lands};
+use crate::event::{Arrangement, Ballot, Event, Panel};
+use crate::input::{Best, Command};
+use crate::lod_mode::LodMode;
+use crate::options::Options;
+use crate::picture_file;
 use crate::ui::Tone;
 
 impl App {
-    /// An event of the user interface.
     pub(super) fn dispatch(&mut self, event: Event, events: &ActiveEventLoop) {
-        self.log.wish(&event);
-        match event {
-            Event::Quit => events.exit(),
-            other => self.handle(other),
+        if let Event::Command(command) = event {
+            return self.command(command, events);
         }
-    }
-
-    fn handle(&mut self, event: Event) {
+        self.log.event(&event);
+        let settings = &mut self.preferences.settings;
         match event {
-            Event::Vote { category, ballot } => self.desk.vote(category, ballot),
-            Event::NextGeneration => self.desk.breed(),
-            Event::Undo => self.desk.undo(),
-            Event::Redo => self.desk.redo(),
-            Event::GoToGeneration(generation) => self.desk.visit(generation),
-            Event::Arrange(arrangement) => self.arrangement = arrangement,
-            Event::Choose(individual) => self.chosen = individual,
-            // While it moves the panel shows it; it is baked when it rests.
-            Event::Gene { phase: Phase::Dragging, .. } => {}
-            Event::Gene { individual, name, value, phase: Phase::Committed } => {
-                self.desk.set_genes(individual, vec![(name, value)]);
-            }
-            Event::Genes { individual, values } => self.desk.set_genes(individual, values),
-            Event::LockGene { name, locked } => self.desk.lock(&name, locked),
-            Event::LockCategory { category, locked } => self.desk.lock(category.name(), locked),
-            Event::Options(options) => self.settings.options = options,
-            Event::Comfort(comfort) => self.comfort = comfort,
+            Event::Command(_) => {}
+            Event::Vote { category, ballot } => self.editor.vote(category, ballot),
+            Event::GoToGeneration(generation) => self.editor.visit(generation),
+            Event::Arrange(arrangement) => self.layout.arrangement = arrangement,
+            Event::Choose(individual) => self.layout.chosen = individual,
+            Event::Genes { individual, values } => self.editor.set_genes(individual, values),
+            Event::LockGene { name, locked } => self.editor.lock(&name, locked),
+            Event::LockCategory { category, locked } => self.editor.lock(category.name(), locked),
+            Event::Options(options) => settings.options = options,
+            Event::Comfort(comfort) => settings.comfort.value = comfort,
             Event::ResetSettings => {
-                self.settings.options = Options::default();
-                self.comfort = Default::default();
+                settings.options = Options::default();
+                settings.comfort = Default::default();
             }
-            Event::Panel { panel, open } => self.panels.set(panel, open),
-            Event::Screenshot => self.screenshot_wanted = true,
-            Event::SetBookmark(number) => self.set_bookmark(number),
-            Event::GoToBookmark(number) => self.go_to_bookmark(number),
-            Event::GoToStart => {
-                let lands = self.lands();
-                self.pilot.go_to_start(&lands, None);
-            }
+            Event::Panel { panel, open } => self.layout.panels.set(panel, open),
             Event::OpenFolder(path) => match Source::of(&path) {
                 Ok(source) => self.open(source),
-                Err(error) => self.ui.notify(Tone::Error, error),
+                Err(error) => self.tell(Tone::Error, error.to_string()),
             },
-            Event::Retry => self.desk.retry(),
-            Event::DismissError(index) => self.desk.dismiss(index),
+            Event::Retry => self.editor.retry(),
+            Event::DismissError(index) => self.editor.dismiss(index),
             Event::Capture(captured) => self.capture(captured),
-            // Only the loop can end itself.
-            Event::Quit => {}
         }
     }
 
-    /// An action of a key, a button or a gamepad.
-    pub(super) fn act(&mut self, action: Action) {
-        self.log.wish(&action);
-        let options = &mut self.settings.options;
-        match action {
-            Action::Forward | Action::Back | Action::Left | Action::Right => {}
-            Action::Up | Action::Down | Action::Run => {}
-            Action::ToggleWalkFlyOrbit => {
-                let lands = self.lands();
-                self.pilot.cycle_mode(&lands);
-                let mode = format!("{:?}", self.pilot.mode());
-                self.ui.notify(Tone::Info, mode);
+    fn command(&mut self, command: Command, events: &ActiveEventLoop) {
+        self.log.event(&command);
+        let options = &mut self.preferences.settings.options;
+        match command {
+            // Held: the camera asks for them at each frame.
+            Command::Forward | Command::Back | Command::Left | Command::Right => {}
+            Command::Up | Command::Down | Command::Run => {}
+            Command::WalkFlyOrbit => {
+                let mode = self.camera.next_mode(&lands(&self.live));
+                self.tell(Tone::Info, format!("{mode:?}"));
             }
-            Action::ReleaseMouse => self.capture(false),
-            Action::GoToStart => self.handle(Event::GoToStart),
-            Action::Maximise(view) => self.maximise(usize::from(view)),
-            Action::ShowAll => self.arrangement = Arrangement::Grid,
-            Action::CompareAB => self.compare(),
-            Action::Vote(category, best) => self.vote_by_key(category, best),
-            Action::NextGeneration => self.desk.breed(),
-            Action::Undo => self.desk.undo(),
-            Action::Redo => self.desk.redo(),
-            Action::OlderGeneration => self.step_generation(-1),
-            Action::NewerGeneration => self.step_generation(1),
-            Action::SetBookmark(number) => self.set_bookmark(number),
-            Action::GoBookmark(number) => self.go_to_bookmark(number),
-            Action::ToggleHelp => self.toggle(Panel::Help),
-            Action::ToggleGenome => self.toggle(Panel::Genome),
-            Action::ToggleStats => self.toggle(Panel::Stats),
-            Action::ToggleSettings => self.toggle(Panel::Settings),
-            Action::ToggleFullscreen => self.toggle_fullscreen(),
-            Action::Screenshot => self.screenshot_wanted = true,
-            Action::Quit => self.quit_wanted = true,
-            Action::CycleTreeScheme => {
-                options.tree_scheme = match options.tree_scheme {
-                    TreeScheme::Quality => TreeScheme::Simple,
-                    TreeScheme::Simple => TreeScheme::Discrete,
-                    TreeScheme::Discrete => TreeScheme::Off,
-                    TreeScheme::Off => TreeScheme::Quality,
-                };
-                let text = format!("Trees' levels of detail: {:?}", options.tree_scheme);
-                self.ui.notify(Tone::Info, text);
+            Command::ReleaseMouse => self.capture(false),
+            Command::GoToStart => self.camera.go_to_start(&lands(&self.live)),
+            Command::Maximise(landscape) => self.layout.maximise(usize::from(landscape) - 1),
+            Command::ShowAll => self.layout.arrangement = Arrangement::Grid,
+            Command::Compare => self.layout.compare(),
+            Command::Vote(Best { category, landscape }) => self.vote_by_key(category, landscape),
+            Command::NextGeneration => self.editor.breed(),
+            Command::Undo => self.editor.undo(),
+            Command::Redo => self.editor.redo(),
+            Command::OlderGeneration => self.step_generation(-1),
+            Command::NewerGeneration => self.step_generation(1),
+            Command::SetBookmark(number) => self.set_bookmark(number),
+            Command::GoToBookmark(number) => self.go_to_bookmark(number),
+            Command::Help => self.layout.toggle(Panel::Help),
+            Command::Genome => self.layout.toggle(Panel::Genome),
+            Command::Stats => self.layout.toggle(Panel::Stats),
+            Command::Settings => self.layout.toggle(Panel::Settings),
+            Command::Fullscreen => self.toggle_fullscreen(),
+            Command::Screenshot => self.save_screenshot(),
+            Command::Quit => events.exit(),
+            Command::NextTreeLod => {
+                options.tree_lod = options.tree_lod.next();
+                let text = format!("Trees' levels of detail: {}", options.tree_lod.label());
+                self.tell(Tone::Info, text);
             }
-            Action::CycleTerrainScheme => {
-                options.terrain_scheme = match options.terrain_scheme {
-                    TerrainScheme::Morph => TerrainScheme::Roam,
-                    TerrainScheme::Roam => TerrainScheme::Off,
-                    TerrainScheme::Off => TerrainScheme::Morph,
-                };
-                let text = format!("Terrain's levels of detail: {:?}", options.terrain_scheme);
-                self.ui.notify(Tone::Info, text);
+            Command::NextTerrainLod => {
+                options.terrain_lod = options.terrain_lod.next();
+                let text = format!("Terrain's levels of detail: {}", options.terrain_lod.label());
+                self.tell(Tone::Info, text);
             }
-            Action::ToggleWireframe => options.wireframe ^= true,
-            Action::ToggleTint => options.tint_levels ^= true,
-            Action::ToggleOverhead => options.overhead ^= true,
+            Command::Wireframe => options.wireframe ^= true,
+            Command::Tint => options.tint_levels ^= true,
+            Command::Overhead => options.overhead ^= true,
         }
-    }
-
-    fn lands(&self) -> Vec<std::sync::Arc<crate::walk::Land>> {
-        self.live.as_ref().map(|live| live.show.lands()).unwrap_or_default()
     }
 
     fn capture(&mut self, captured: bool) {
         if let Some(live) = &self.live {
-            self.pilot.capture(&live.screen.window, captured);
+            self.camera.capture(&live.screen.window, captured);
         }
-    }
-
-    fn maximise(&mut self, view: usize) {
-        self.chosen = view;
-        let one = Arrangement::One(view);
-        self.arrangement = if self.arrangement == one { Arrangement::Grid } else { one };
-    }
-
-    /// The chosen landscape beside the next; again: beside the one after.
-    fn compare(&mut self) {
-        self.arrangement = match self.arrangement {
-            Arrangement::Compare { left, right } => {
-                let next = (right + 1) % genescape_schema::INDIVIDUALS;
-                if next == left { Arrangement::Grid } else { Arrangement::Compare { left, right: next } }
-            }
-            _ => {
-                let left = self.chosen;
-                Arrangement::Compare { left, right: (left + 1) % genescape_schema::INDIVIDUALS }
-            }
-        };
     }
 
     /// The same key again takes the vote back.
-    fn vote_by_key(&mut self, category: Category, best: Option<u8>) {
-        let ballot = best.map_or(Ballot::Nobody, |best| Ballot::For(usize::from(best)));
-        let known = self.desk.ballots().get(category);
-        self.desk.vote(category, if known == ballot { Ballot::Open } else { ballot });
+    fn vote_by_key(&mut self, category: Category, landscape: Option<u8>) {
+        let ballot = landscape.map_or(Ballot::Nobody, |landscape| Ballot::For(usize::from(landscape) - 1));
+        let known = self.editor.ballots().get(category);
+        self.editor.vote(category, if known == ballot { Ballot::Open } else { ballot });
     }
 
     fn step_generation(&mut self, by: isize) {
-        match self.desk.neighbour(by) {
-            Some(generation) => self.desk.visit(generation),
-            None => {
-                self.ui.notify(Tone::Info, if by < 0 { "This is the first" } else { "This is the newest" })
-            }
+        match self.editor.neighbour(by) {
+            Some(generation) => self.editor.visit(generation),
+            None => self.tell(Tone::Info, if by < 0 { "This is the first" } else { "This is the newest" }),
         }
-    }
-
-    fn toggle(&mut self, panel: Panel) {
-        self.panels.set(panel, !self.panels.is_open(panel));
     }
 
     fn toggle_fullscreen(&self) {
@@ -182,45 +121,29 @@ impl App {
     }
 
     fn set_bookmark(&mut self, number: u8) {
-        let key = super::world_key(&self.start.source);
-        let marks = &mut self.settings.worlds.entry(key).or_default().bookmarks;
-        marks.insert(number, self.pilot.bookmark());
-        self.ui.notify(Tone::Success, format!("This place is bookmark {number}"));
+        let world = self.preferences.world_mut(&self.start.source);
+        world.bookmarks.insert(number, self.camera.bookmark());
+        self.tell(Tone::Success, format!("This place is bookmark {number}"));
     }
 
     fn go_to_bookmark(&mut self, number: u8) {
-        let world = self.settings.worlds.get(&super::world_key(&self.start.source));
-        match world.and_then(|world| world.bookmarks.get(&number)).copied() {
-            Some(mark) => {
-                let lands = self.lands();
-                self.pilot.go_to(&mark, &lands);
-            }
-            None => self.ui.notify(Tone::Info, format!("Bookmark {number} is not set")),
+        match self.preferences.world(&self.start.source).bookmarks.get(&number) {
+            Some(mark) => self.camera.go_to(mark, &lands(&self.live)),
+            None => self.tell(Tone::Info, format!("Bookmark {number} is not set")),
         }
     }
 
     /// Saves the pictures that are on the screen, side by side as they are there.
-    pub(super) fn save_screenshot(&mut self) {
+    fn save_screenshot(&mut self) {
         let Some(live) = &self.live else { return };
-        let shown: Vec<usize> = match self.arrangement {
-            Arrangement::Grid => (0..genescape_schema::INDIVIDUALS).collect(),
-            Arrangement::One(view) => vec![view],
-            Arrangement::Compare { left, right } => vec![left, right],
-        };
-        let taken = live.show.pixels(&shown).and_then(|pictures: Vec<Pixels>| {
-            let sheet = screenshot::sheet(&pictures, 2.min(pictures.len().max(1)));
+        let saved = live.viewports.pixels(&self.layout.shown()).and_then(|pictures| {
+            let sheet = picture_file::contact_sheet(&pictures, 2.min(pictures.len().max(1)));
             let sheet = sheet.ok_or_else(|| anyhow::anyhow!("there is no picture yet"))?;
-            std::fs::create_dir_all(&self.start.pictures)?;
-            let free = (1..10_000)
-                .map(|number| self.start.pictures.join(format!("genescape-{number:04}.png")))
-                .find(|path| !path.exists());
-            let path = free.ok_or_else(|| anyhow::anyhow!("there are ten thousand pictures already"))?;
-            picture_file::write_png(&path, &sheet)?;
-            Ok(path)
+            picture_file::write_numbered(&self.start.pictures, &sheet)
         });
-        match taken {
-            Ok(path) => self.ui.notify(Tone::Success, format!("Saved {}", path.display())),
-            Err(error) => self.ui.notify(Tone::Error, format!("No picture was saved: {error:#}")),
+        match saved {
+            Ok(path) => self.tell(Tone::Success, format!("Saved {}", path.display())),
+            Err(error) => self.tell(Tone::Error, format!("No picture was saved: {error:#}")),
         }
     }
 }

@@ -8,19 +8,16 @@ use std::thread;
 use thread_priority::{ThreadPriority, set_current_thread_priority};
 
 use crate::gpu::Gpu;
-use crate::load::{self, Store};
 use crate::passes::Passes;
-use crate::upload::{SceneBuffers, Uploader};
-use crate::walk::Land;
+use crate::scene_loader::{Loaded, SceneLoader};
 
-/// Below whoever draws, as in [`crate::baker`].
+/// Below the thread that draws, as in [`crate::baker`].
 const PRIORITY: u8 = 25;
 
 /// A landscape to read.
 pub struct Request {
     /// Which of the four views it is for.
     pub view: usize,
-    /// Its generation.
     pub generation: u32,
     /// Its `scene.gltf`.
     pub path: PathBuf,
@@ -30,20 +27,10 @@ pub struct Request {
 
 /// A landscape that was read, or why not.
 pub struct Reply {
-    /// Which of the four views it is for.
     pub view: usize,
-    /// Its generation.
     pub generation: u32,
-    /// What was read; an error is text for people.
-    pub result: Result<Ready, String>,
-}
-
-/// All that a view needs of a landscape.
-pub struct Ready {
-    /// What is drawn.
-    pub buffers: Arc<SceneBuffers>,
-    /// What a walker meets.
-    pub land: Arc<Land>,
+    /// An error is text for people.
+    pub result: Result<Loaded, String>,
 }
 
 /// The thread; ends when dropped.
@@ -66,11 +53,10 @@ impl Loader {
                 // Without this right it is merely less polite.
                 let _ = set_current_thread_priority(ThreadPriority::Crossplatform(priority));
             }
-            let (store, uploader) = (Store::default(), Uploader::new(&gpu));
-            while let Ok(request) = asked.recv() {
-                let result = read(&gpu, &store, &uploader, &request);
-                let reply = Reply { view: request.view, generation: request.generation, result };
-                if answer.send(reply).is_err() {
+            let loader = SceneLoader::new(&gpu);
+            while let Ok(Request { view, generation, path, passes }) = asked.recv() {
+                let result = loader.load(&path, &passes).map_err(|error| error.to_string());
+                if answer.send(Reply { view, generation, result }).is_err() {
                     return;
                 }
                 wake();
@@ -89,14 +75,4 @@ impl Loader {
     pub fn replies(&self) -> TryIter<'_, Reply> {
         self.replies.try_iter()
     }
-}
-
-fn read(gpu: &Gpu, store: &Store, uploader: &Uploader, request: &Request) -> Result<Ready, String> {
-    let scene = load::load(&request.path, store).map_err(|error| error.to_string())?;
-    let buffers = uploader.upload(&scene)?;
-    let passes = &request.passes;
-    passes.shadow.bake(gpu, &passes.layouts, &passes.cull, &buffers);
-    // Shadows are done before the views see the landscape: a picture never waits for them.
-    gpu.wait();
-    Ok(Ready { buffers: Arc::new(buffers), land: Arc::new(Land::of(&scene)) })
 }

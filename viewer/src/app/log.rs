@@ -1,8 +1,10 @@
-//! The flight recorder: what happens in the window → one JSON object a line, in the order in which it happened, for
-//! bug reports and for programs that drive the viewer and have to know how it stands. Each line has `t_s` (seconds since
+//! The flight recorder: what happens in the window → one JSON object a line, in the order in which it happened. It is for
+//! bug reports, and it is the protocol by which viewer/tests/window.rs, or any program that drives the viewer, knows what
+//! the viewer did: names and units here are a format. Each line has `t_s` (seconds since
 //! the start), `frame` (frames shown) and `what`; a state is written when it changes, so the last line of each `what` says
 //! how things are. Lengths in metres, angles in radians, places in the window in physical pixels.
 
+use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::fs::File;
 use std::io::Write;
@@ -11,12 +13,12 @@ use std::sync::{Arc, Weak};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
-use egui::accesskit::{Role, TreeUpdate};
+use egui::accesskit::{Node, Role, TreeUpdate};
 use genescape_schema::{Category, INDIVIDUALS};
 use serde_json::{Value, json};
 
 use crate::event::Ballot;
-use crate::ui::model::{Model, Situation};
+use crate::ui::model::Model;
 use crate::upload::SceneBuffers;
 use crate::walk::Pose;
 
@@ -30,16 +32,10 @@ pub struct Log {
     file: Option<File>,
     born: Instant,
     frame: u64,
-    states: Vec<State>,
+    /// What was written last of each state, and when.
+    states: BTreeMap<&'static str, (Value, Instant)>,
     landscapes: [Weak<SceneBuffers>; INDIVIDUALS],
     frames: Frames,
-}
-
-/// What was written last of one kind.
-struct State {
-    what: &'static str,
-    value: Value,
-    at: Instant,
 }
 
 /// Frames since the last line about them.
@@ -60,7 +56,7 @@ pub struct Moment<'a> {
     pub pose: Pose,
     /// Width and height of the window.
     pub size_px: [u32; 2],
-    /// What can be pressed, if anybody asked egui.
+    /// What can be pressed, if egui was asked.
     pub widgets: Option<Value>,
 }
 
@@ -78,26 +74,34 @@ impl Log {
             file: path.map(create).transpose()?,
             born: now,
             frame: 0,
-            states: Vec::new(),
+            states: BTreeMap::new(),
             landscapes: Default::default(),
             frames: Frames { since: now, last: now, count: 0, worst_ms: 0.0 },
         })
     }
 
-    /// Whether anybody will read it.
     pub fn is_on(&self) -> bool {
         self.file.is_some()
     }
 
     /// Something that happens once.
-    pub fn note(&mut self, what: &'static str, value: Value) {
-        self.write(what, &value);
+    pub fn note(&mut self, what: &str, value: Value) {
+        let Some(file) = &mut self.file else { return };
+        let t_s = self.born.elapsed().as_secs_f64();
+        let mut line = json!({ "t_s": (t_s * 1e3).round() / 1e3, "frame": self.frame, "what": what });
+        if let (Some(line), Value::Object(value)) = (line.as_object_mut(), value) {
+            line.extend(value);
+        }
+        // A full disk ends the log, not the viewer. In one piece, so that a reader meets whole lines.
+        if file.write_all(format!("{line}\n").as_bytes()).is_err() {
+            self.file = None;
+        }
     }
 
-    /// A wish of the person: an event or an action.
-    pub fn wish(&mut self, wish: &impl Debug) {
+    /// What the person asks for: an event or a command.
+    pub fn event(&mut self, event: &impl Debug) {
         if self.is_on() {
-            self.write("wish", &json!({ "wish": format!("{wish:?}") }));
+            self.note("wish", json!({ "wish": format!("{event:?}") }));
         }
     }
 
@@ -113,10 +117,13 @@ impl Log {
         }
         self.state("generations", json!({ "shown": model.generation, "all": model.generations }));
         self.state("ballots", ballots(model));
-        self.state("bake", bake(model));
-        self.state("errors", errors(model));
+        self.state(
+            "bake",
+            model.baking.as_ref().map_or(json!({ "generation": null }), |baking| json!(baking)),
+        );
+        self.state("errors", json!({ "count": model.errors.len(), "errors": model.errors }));
         self.state("screen", screen(model, size_px));
-        self.seldom("pose", || place(&pose));
+        self.seldom("pose", || json!(pose));
         if let Some(widgets) = widgets {
             self.seldom("widgets", || widgets);
         }
@@ -136,9 +143,9 @@ impl Log {
         let trees = landscape.and_then(|scene| scene.trees.as_ref()).map_or(0, |trees| trees.count);
         let name = landscape.map(|scene| scene.name.clone());
         self.landscapes[view] = now;
-        self.write(
+        self.note(
             "landscape",
-            &json!({ "view": view, "generation": generation, "name": name, "trees": trees }),
+            json!({ "view": view, "generation": generation, "name": name, "trees": trees }),
         );
     }
 
@@ -153,20 +160,14 @@ impl Log {
         }
         let value = json!({ "fps": frames.count as f32 / span.as_secs_f32(), "worst_ms": frames.worst_ms });
         (frames.since, frames.count, frames.worst_ms) = (now, 0, 0.0);
-        self.write("frames", &value);
+        self.note("frames", value);
     }
 
     /// Written if it changed.
     fn state(&mut self, what: &'static str, value: Value) {
-        let known = self.states.iter().position(|state| state.what == what);
-        if known.is_some_and(|at| self.states[at].value == value) {
-            return;
-        }
-        self.write(what, &value);
-        let state = State { what, value, at: Instant::now() };
-        match known {
-            Some(at) => self.states[at] = state,
-            None => self.states.push(state),
+        if self.states.get(what).is_none_or(|(known, _)| *known != value) {
+            self.note(what, value.clone());
+            self.states.insert(what, (value, Instant::now()));
         }
     }
 
@@ -178,20 +179,7 @@ impl Log {
     }
 
     fn rested(&self, what: &str) -> bool {
-        self.states.iter().find(|state| state.what == what).is_none_or(|state| state.at.elapsed() >= PAUSE)
-    }
-
-    fn write(&mut self, what: &str, value: &Value) {
-        let Some(file) = &mut self.file else { return };
-        let t_s = self.born.elapsed().as_secs_f64();
-        let mut line = json!({ "t_s": (t_s * 1e3).round() / 1e3, "frame": self.frame, "what": what });
-        if let (Some(line), Some(value)) = (line.as_object_mut(), value.as_object()) {
-            line.extend(value.clone());
-        }
-        // A full disk ends the log, not the viewer. In one piece, so that a reader meets whole lines.
-        if file.write_all(format!("{line}\n").as_bytes()).is_err() {
-            self.file = None;
-        }
+        self.states.get(what).is_none_or(|(_, at)| at.elapsed() >= PAUSE)
     }
 }
 
@@ -207,26 +195,9 @@ fn ballots(model: &Model) -> Value {
     Value::Object(Category::ALL.map(entry).into_iter().collect())
 }
 
-fn bake(model: &Model) -> Value {
-    match &model.baking {
-        Some(bake) => json!({ "generation": bake.generation, "done": bake.done, "total": bake.total }),
-        None => json!({ "generation": null }),
-    }
-}
-
-fn errors(model: &Model) -> Value {
-    let error = |error: &crate::ui::model::FileError| json!({ "title": error.title, "report": error.report });
-    json!({ "count": model.errors.len(), "errors": model.errors.iter().map(error).collect::<Vec<_>>() })
-}
-
 fn screen(model: &Model, size_px: [u32; 2]) -> Value {
-    let situation = match &model.situation {
-        Situation::Ready => "ready",
-        Situation::Growing => "growing",
-        Situation::Stuck { .. } => "stuck",
-    };
     json!({
-        "situation": situation,
+        "situation": <&str>::from(&model.situation),
         "arrangement": format!("{:?}", model.arrangement),
         "chosen": model.chosen,
         "captured": model.captured,
@@ -236,41 +207,22 @@ fn screen(model: &Model, size_px: [u32; 2]) -> Value {
     })
 }
 
-fn place(pose: &Pose) -> Value {
-    json!({
-        "x_m": pose.x_m, "z_m": pose.z_m, "yaw_rad": pose.yaw_rad, "pitch_rad": pose.pitch_rad,
-        "altitude_m": pose.altitude_m, "mode": format!("{:?}", pose.mode),
-    })
-}
-
-/// What can be pressed or dragged, as it is told to people who do not see: its words, and its middle in pixels.
-pub fn widgets(told: &TreeUpdate, pixels_per_point: f32) -> Value {
-    let usable = |role: Role| {
-        matches!(
-            role,
-            Role::Button
-                | Role::Slider
-                | Role::SpinButton
-                | Role::CheckBox
-                | Role::RadioButton
-                | Role::TextInput
-        )
-    };
-    let mut listed: Vec<Value> = Vec::new();
-    for (_, node) in told.nodes.iter().filter(|(_, node)| usable(node.role())) {
-        let (Some(words), Some(place)) = (node.label().or_else(|| node.value()), node.bounds()) else {
-            continue;
-        };
-        let pixels = |low: f64, high: f64| (0.5 * (low + high) * f64::from(pixels_per_point)).round();
-        let size = |low: f64, high: f64| ((high - low) * f64::from(pixels_per_point)).round();
-        listed.push(json!({
+/// What can be pressed or dragged, as screen readers know it: its words, and its middle in pixels.
+pub fn widgets(update: &TreeUpdate, pixels_per_point: f32) -> Value {
+    use Role::*;
+    let usable = [Button, Slider, SpinButton, CheckBox, RadioButton, TextInput];
+    let pixels = |points: f64| (points * f64::from(pixels_per_point)).round();
+    let widget = |node: &Node| {
+        let (words, place) = (node.label().or_else(|| node.value())?, node.bounds()?);
+        Some(json!({
             "label": words,
             "role": format!("{:?}", node.role()),
-            "at_px": [pixels(place.x0, place.x1), pixels(place.y0, place.y1)],
-            "size_px": [size(place.x0, place.x1), size(place.y0, place.y1)],
-        }));
-    }
-    json!({ "widgets": listed })
+            "at_px": [pixels(0.5 * (place.x0 + place.x1)), pixels(0.5 * (place.y0 + place.y1))],
+            "size_px": [pixels(place.width()), pixels(place.height())],
+        }))
+    };
+    let nodes = update.nodes.iter().map(|(_, node)| node).filter(|node| usable.contains(&node.role()));
+    json!({ "widgets": nodes.filter_map(widget).collect::<Vec<_>>() })
 }
 
 #[cfg(test)]
@@ -291,7 +243,7 @@ mod tests {
             log.state("bake", json!({ "generation": value }));
             log.state("errors", json!({ "count": 0 }));
         }
-        log.wish(&Ballot::Nobody);
+        log.event(&Ballot::Nobody);
         let told: Vec<_> = lines(&path).iter().map(|line| line["what"].clone()).collect();
         assert_eq!(told, ["bake", "errors", "bake", "bake", "wish"]);
         assert_eq!(lines(&path)[2]["generation"], 2);
@@ -305,7 +257,7 @@ mod tests {
         let mut log = Log::create(Some(&path)).expect("a file");
         for x in 0..50 {
             log.seldom("pose", || json!({ "x_m": x }));
-            log.states[0].at -= PAUSE / 10;
+            log.states.get_mut("pose").expect("written").1 -= PAUSE / 10;
         }
         let told = lines(&path);
         assert!((5..=50 / 4).contains(&told.len()), "{} lines", told.len());

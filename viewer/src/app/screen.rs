@@ -6,10 +6,10 @@ use anyhow::{Result, anyhow};
 use winit::window::Window;
 
 use crate::gpu::{Gpu, GpuError};
+use crate::settings;
 
 /// A window with its surface and what paints the user interface.
 pub struct Screen {
-    /// The window.
     pub window: Arc<Window>,
     /// egui's side of it.
     pub ctx: egui::Context,
@@ -27,7 +27,7 @@ pub struct Screen {
 pub enum Presented {
     /// It is on the screen.
     Yes,
-    /// Nobody sees the window now.
+    /// The window cannot be seen now.
     Hidden,
 }
 
@@ -60,10 +60,19 @@ impl Screen {
         Ok((Self { window, ctx, input, painter, surface, config, gpu: gpu.clone() }, gpu))
     }
 
+    /// Keeps the window's size for the next start.
+    pub fn keep(&self, kept: &mut settings::Window) {
+        kept.maximized = self.window.is_maximized();
+        if !kept.maximized {
+            let size = self.window.inner_size().to_logical::<f32>(self.window.scale_factor());
+            (kept.width, kept.height) = (size.width, size.height);
+        }
+    }
+
     /// Follows the window's size.
     pub fn resize(&mut self, width: u32, height: u32) {
-        let most = self.gpu.device.limits().max_texture_dimension_2d;
-        (self.config.width, self.config.height) = (width.clamp(1, most), height.clamp(1, most));
+        let max = self.gpu.device.limits().max_texture_dimension_2d;
+        (self.config.width, self.config.height) = (width.clamp(1, max), height.clamp(1, max));
         self.surface.configure(&self.gpu.device, &self.config);
     }
 

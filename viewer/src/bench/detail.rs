@@ -1,67 +1,77 @@
 //! What levels of detail save, and what they cost in likeness: along the thesis's path (section 7), the same pictures
-//! by every scheme. Error: root of the mean square difference over all pixels and channels, of 8-bit values taken as
+//! in every LOD mode. Error: root of the mean square difference over all pixels and channels, of 8-bit values taken as
 //! [0, 1], from the picture without levels of detail.
 
-use std::path::PathBuf;
-
 use anyhow::Result;
+use strum::VariantArray;
 
-use super::BenchArgs;
-use super::lab::{Cost, Lab, forest, frame_with, way};
+use super::cost::Cost;
+use super::forest::{camera_path, forest};
 use super::report::{Aim, Report};
-use crate::frame::{FrameInput, TerrainScheme, TreeScheme};
+use super::{Bench, frame_with};
+use crate::camera::Camera;
+use crate::lod_mode::{LodMode, TerrainLodMode, TreeLodMode};
 use crate::picture_file;
 use crate::view::View;
 
 /// Trees of the forest.
 const TREES: usize = 1500;
 
-/// Schemes by name; the first is what the others are compared with.
-const SCHEMES: [(&str, TreeScheme, TerrainScheme); 7] = [
-    ("none at all", TreeScheme::Off, TerrainScheme::Off),
-    ("trees simple, land morphs", TreeScheme::Simple, TerrainScheme::Morph),
-    ("trees by quality, land morphs", TreeScheme::Quality, TerrainScheme::Morph),
-    ("trees discrete, land morphs", TreeScheme::Discrete, TerrainScheme::Morph),
-    ("trees none, land morphs", TreeScheme::Off, TerrainScheme::Morph),
-    ("trees simple, land by ROAM", TreeScheme::Simple, TerrainScheme::Roam),
-    ("trees simple, land none", TreeScheme::Simple, TerrainScheme::Off),
-];
-/// What the viewer does unless told otherwise.
-const BEST: usize = 1;
-const TREES_NONE: usize = 4;
-const LAND_NONE: usize = 6;
+/// LOD modes of trees and terrain that are compared.
+type Modes = (TreeLodMode, TerrainLodMode);
 
-/// A scheme under way.
+const OFF: Modes = (TreeLodMode::Off, TerrainLodMode::Off);
+
+/// First the reference, which has no levels of detail; then the defaults; then every other mode of the one with the
+/// other's default.
+fn cases() -> Vec<Modes> {
+    let (trees, terrain) = Modes::default();
+    let with_terrain = TreeLodMode::VARIANTS.iter().map(|&trees| (trees, terrain));
+    let with_trees = TerrainLodMode::VARIANTS.iter().map(|&terrain| (trees, terrain));
+    let others = with_terrain.chain(with_trees).filter(|&modes| modes != Modes::default());
+    [OFF, Modes::default()].into_iter().chain(others).collect()
+}
+
+/// A case under way.
 struct Run {
+    modes: Modes,
     view: [View; 1],
-    frame: FrameInput,
     /// For each place the cheaper of there and back.
     costs: Vec<Cost>,
     errors: Vec<f64>,
 }
 
-pub(super) fn measure(lab: &Lab, paths: &[PathBuf], args: &BenchArgs, report: &mut Report) -> Result<()> {
-    let [width, height] = args.size;
-    let mut ratios = Vec::new();
-    for path in paths {
-        let scene = forest(&lab.load(path)?, TREES);
-        report.section(format!(
-            "Levels of detail: {}, {} trees, {width} × {height}, {} places there and back",
-            scene.name,
-            scene.trees.instances.len(),
-            args.steps
-        ));
-        let uploaded = lab.upload(&scene)?;
-        let start = |(_, trees, land)| Run {
-            view: [lab.view(&uploaded, args.size)],
-            frame: frame_with(trees, land),
-            costs: Vec::new(),
-            errors: Vec::new(),
-        };
-        let mut runs = SCHEMES.map(start);
-        walk(lab, &mut runs, &way(&scene, args.steps))?;
-        ratios.push(tell(&runs, report));
+impl Run {
+    fn draw(&mut self, bench: &Bench, camera: &Camera) -> Cost {
+        bench.frame(&mut self.view, &frame_with(self.modes.0, self.modes.1), camera)
     }
+
+    fn mean_cost(&self) -> Cost {
+        let (sum, places): (Cost, _) = (self.costs.iter().copied().sum(), self.costs.len() as f64);
+        Cost { wall_ms: sum.wall_ms / places, cpu_ms: sum.cpu_ms / places }
+    }
+}
+
+pub(super) fn measure(bench: &mut Bench) -> Result<()> {
+    let [width, height] = bench.size_px;
+    let mut ratios = Vec::new();
+    for path in bench.paths.clone() {
+        let scene = forest(&bench.headless.read(&path)?, TREES);
+        let (name, trees) = (&scene.name, scene.trees.instances.len());
+        bench.report.section(format!(
+            "Levels of detail: {name}, {trees} trees, {width} × {height}, {} places there and back",
+            bench.steps
+        ));
+        let uploaded = bench.headless.upload(&scene)?;
+        let start = |modes| {
+            let view = [bench.headless.view(uploaded.clone(), bench.size_px)];
+            Run { modes, view, costs: Vec::new(), errors: Vec::new() }
+        };
+        let mut runs: Vec<Run> = cases().into_iter().map(start).collect();
+        walk(bench, &mut runs, &camera_path(&scene, bench.steps))?;
+        ratios.push(tell(&runs, &mut bench.report));
+    }
+    let report = &mut bench.report;
     report.section("Levels of detail pay, over all landscapes");
     let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
     report.aimed("none at all / best, processor time, mean", mean, "×", Aim::AtLeast(6.0));
@@ -70,17 +80,18 @@ pub(super) fn measure(lab: &Lab, paths: &[PathBuf], args: &BenchArgs, report: &m
     Ok(())
 }
 
-/// All schemes in turn at each place, there and back.
-fn walk(lab: &Lab, runs: &mut [Run], cameras: &[crate::camera::Camera]) -> Result<()> {
+/// All cases in turn at each place, there and back.
+fn walk(bench: &Bench, runs: &mut [Run], cameras: &[Camera]) -> Result<()> {
     for run in runs.iter_mut() {
         // Drivers finish pipelines at the first use.
-        lab.frame(&mut run.view, &run.frame, &cameras[0]);
+        run.draw(bench, &cameras[0]);
     }
     for camera in cameras {
         let mut reference = Vec::new();
         for run in runs.iter_mut() {
-            run.costs.push(lab.frame(&mut run.view, &run.frame, camera));
-            let picture = picture_file::read(&lab.gpu, &run.view[0].targets().display)?.rgba;
+            let cost = run.draw(bench, camera);
+            run.costs.push(cost);
+            let picture = picture_file::read(&bench.headless.gpu, &run.view[0].targets().display)?.into_raw();
             if reference.is_empty() {
                 reference = picture.clone();
             }
@@ -89,37 +100,38 @@ fn walk(lab: &Lab, runs: &mut [Run], cameras: &[crate::camera::Camera]) -> Resul
     }
     for (place, camera) in cameras.iter().enumerate().rev() {
         for run in runs.iter_mut() {
-            run.costs[place] = run.costs[place].least(lab.frame(&mut run.view, &run.frame, camera));
+            run.costs[place] = run.costs[place].least(run.draw(bench, camera));
         }
     }
     Ok(())
 }
 
-/// Tells the figures; what the best scheme saves.
+/// Reports the figures; what the default modes save.
 fn tell(runs: &[Run], report: &mut Report) -> f64 {
-    let places = runs[0].costs.len() as f64;
-    let means: Vec<Cost> = runs
-        .iter()
-        .map(|run| {
-            let sum: Cost = run.costs.iter().copied().sum();
-            Cost { wall_ms: sum.wall_ms / places, cpu_ms: sum.cpu_ms / places }
-        })
-        .collect();
-    for ((name, ..), mean) in SCHEMES.iter().zip(&means) {
-        report.figure(format!("{name}: processor"), mean.cpu_ms, "ms a frame");
-        report.figure(format!("{name}: clock"), mean.wall_ms, "ms a frame");
+    let name = |(trees, terrain): Modes| {
+        format!("trees {}, land {}", trees.label().to_lowercase(), terrain.label().to_lowercase())
+    };
+    for run in runs {
+        let (name, cost) = (name(run.modes), run.mean_cost());
+        report.figure(format!("{name}: processor"), cost.cpu_ms, "ms a frame");
+        report.figure(format!("{name}: clock"), cost.wall_ms, "ms a frame");
     }
-    for ((name, ..), run) in SCHEMES.iter().zip(runs).skip(1) {
-        let mean = run.errors.iter().sum::<f64>() / places;
+    for run in &runs[1..] {
+        let (name, errors) = (name(run.modes), &run.errors);
+        let mean = errors.iter().sum::<f64>() / errors.len() as f64;
         report.figure(format!("{name}: L2 error"), mean.sqrt(), "of 1");
-        let worst = run.errors.iter().copied().fold(0.0, f64::max);
+        let worst = errors.iter().copied().fold(0.0, f64::max);
         report.figure(format!("{name}: L2 error, worst place"), worst.sqrt(), "of 1");
     }
-    let pays = |without: usize| means[without].cpu_ms / means[BEST].cpu_ms;
-    report.figure("trees alone: none / simple, processor", pays(TREES_NONE), "×");
-    report.figure("land alone: none / morphs, processor", pays(LAND_NONE), "×");
-    report.aimed("none at all / best, processor", pays(0), "×", Aim::AtLeast(6.0));
-    pays(0)
+    let (trees, terrain) = Modes::default();
+    let cpu_ms = |modes: Modes| {
+        runs.iter().find(|run| run.modes == modes).map_or(f64::NAN, |run| run.mean_cost().cpu_ms)
+    };
+    let pays = |without: Modes| cpu_ms(without) / cpu_ms((trees, terrain));
+    report.figure("trees alone: none / default, processor", pays((TreeLodMode::Off, terrain)), "×");
+    report.figure("land alone: none / default, processor", pays((trees, TerrainLodMode::Off)), "×");
+    report.aimed("none at all / best, processor", pays(OFF), "×", Aim::AtLeast(6.0));
+    pays(OFF)
 }
 
 /// Mean square difference of colours.

@@ -8,8 +8,9 @@
 //! beside its own pictures.
 
 mod card;
+mod cost;
 mod detail;
-mod lab;
+mod forest;
 mod record;
 mod report;
 mod serve;
@@ -18,13 +19,19 @@ mod views;
 
 use std::path::PathBuf;
 
-use anyhow::{Result, anyhow, ensure};
+use anyhow::{Result, anyhow};
 use clap::{Args, ValueEnum};
+use genescape_world::Source;
 
-use crate::app::desk::Source;
-use crate::screenshot;
+use crate::camera::Camera;
+use crate::headless::{Headless, scene_files};
+use crate::lod_mode::{TerrainLodMode, TreeLodMode};
+use crate::options::{FrameInput, Options};
+use crate::picture_file::parse_size;
+use crate::scene::Scene;
 use crate::shaders::Shaders;
-use lab::Lab;
+use crate::view::View;
+use cost::Cost;
 use report::Report;
 
 /// What `viewer bench` can be asked for.
@@ -39,7 +46,7 @@ pub struct BenchArgs {
     pub scenes: Vec<PathBuf>,
 
     /// Size of a single picture; of four views, that of all together
-    #[arg(long, value_name = "WxH", default_value = "800x600", value_parser = crate::cli::size)]
+    #[arg(long, value_name = "WxH", default_value = "800x600", value_parser = parse_size)]
     pub size: [u32; 2],
 
     /// Places of the camera on its way across the land; it goes there and back
@@ -64,7 +71,6 @@ pub struct BenchArgs {
     pub serve: bool,
 }
 
-/// A measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Measure {
     /// Recording a picture of 100 and of 100,000 trees
@@ -85,32 +91,65 @@ pub enum Measure {
 /// If nothing can draw, a landscape cannot be read, or nothing is baked.
 pub fn run(args: &BenchArgs) -> Result<()> {
     let source = match args.scenes.is_empty() {
-        true => Source::of(&args.world).map_err(anyhow::Error::msg)?,
+        true => Source::of(&args.world)?,
         false => Source::Scenes(args.scenes.clone()),
     };
-    let paths = screenshot::scene_files(&source)?;
-    ensure!(!paths.is_empty(), "there is no landscape to draw");
-    let lab = Lab::open(&args.shaders.clone().map_or_else(Shaders::builtin, Shaders::from_folder))?;
+    let paths = scene_files(&source)?;
+    let first = paths.first().ok_or_else(|| anyhow!("there is no landscape to draw"))?;
+    let headless = Headless::open(&Shaders::from(args.shaders.clone()), 1)?;
     if args.serve {
-        let first = paths.first().ok_or_else(|| anyhow!("there is no landscape to draw"))?;
-        return serve::run(&lab, first, args);
+        return serve::run(&headless, first, args);
     }
-    let wanted = |measure| args.only.is_empty() || args.only.contains(&measure);
-    let mut report = Report::begin(&lab.gpu, args.json);
-    if wanted(Measure::Record) {
-        record::measure(&lab, &paths, args, &mut report)?;
+    let report = Report::begin(&headless.gpu, args.json);
+    let mut bench = Bench { headless, paths, size_px: args.size, steps: args.steps, report };
+    let measures = Measure::value_variants().iter();
+    for measure in measures.filter(|measure| args.only.is_empty() || args.only.contains(measure)) {
+        match measure {
+            Measure::Record => record::measure(&mut bench)?,
+            Measure::Detail => detail::measure(&mut bench)?,
+            Measure::Views => views::measure(&mut bench)?,
+            Measure::Swap => swap::measure(&mut bench)?,
+            Measure::Card => card::measure(&mut bench)?,
+        }
     }
-    if wanted(Measure::Detail) {
-        detail::measure(&lab, &paths, args, &mut report)?;
+    bench.report.end()
+}
+
+/// What measurements have in common.
+struct Bench {
+    headless: Headless,
+    /// Scene files; at least one.
+    paths: Vec<PathBuf>,
+    size_px: [u32; 2],
+    /// Places on the camera's path.
+    steps: u32,
+    report: Report,
+}
+
+impl Bench {
+    fn first_scene(&self) -> Result<Scene> {
+        self.headless.read(&self.paths[0])
     }
-    if wanted(Measure::Views) {
-        views::measure(&lab, &paths, args, &mut report)?;
+
+    /// A view of a landscape.
+    fn view(&self, scene: &Scene, size_px: [u32; 2]) -> Result<View> {
+        Ok(self.headless.view(self.headless.upload(scene)?, size_px))
     }
-    if wanted(Measure::Swap) {
-        swap::measure(&lab, &paths, args, &mut report)?;
+
+    /// Landscapes for four views of together `size_px`, from the first again if they are fewer.
+    fn four_views(&self, size_px: [u32; 2], of: impl Fn(Scene) -> Scene) -> Result<Vec<View>> {
+        let paths = self.paths.iter().cycle().take(4);
+        let half_px = size_px.map(|side| (side / 2).max(1));
+        paths.map(|path| self.view(&of(self.headless.read(path)?), half_px)).collect()
     }
-    if wanted(Measure::Card) {
-        card::measure(&lab, &paths, args, &mut report)?;
+
+    /// What one picture of each view takes, waited for.
+    fn frame(&self, views: &mut [View], frame: &FrameInput, camera: &Camera) -> Cost {
+        Cost::of_frame(&self.headless, views, frame, camera)
     }
-    report.end()
+}
+
+/// What a frame is drawn from with these LOD modes.
+fn frame_with(tree_lod: TreeLodMode, terrain_lod: TerrainLodMode) -> FrameInput {
+    FrameInput { options: Options { tree_lod, terrain_lod, ..Options::default() }, time_s: 0.0 }
 }

@@ -1,12 +1,12 @@
 //! Figures → text for people, or a line of JSON.
 
 use anyhow::Result;
-use genescape_bake::say;
 use serde::Serialize;
 
 use crate::gpu::Gpu;
+use crate::say;
 
-/// What a figure should be.
+/// The bound that a figure should keep.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Aim {
@@ -17,15 +17,8 @@ pub(super) enum Aim {
 impl Aim {
     fn met(self, value: f64) -> bool {
         match self {
-            Self::AtMost(most) => value <= most,
-            Self::AtLeast(least) => value >= least,
-        }
-    }
-
-    fn text(self) -> String {
-        match self {
-            Self::AtMost(most) => format!("at most {most}"),
-            Self::AtLeast(least) => format!("at least {least}"),
+            Self::AtMost(max) => value <= max,
+            Self::AtLeast(min) => value >= min,
         }
     }
 }
@@ -62,12 +55,11 @@ pub(super) struct Report {
 impl Report {
     /// Names machine and device.
     pub fn begin(gpu: &Gpu, json: bool) -> Self {
-        let cores = std::thread::available_parallelism().map_or(0, usize::from);
         let report = Self {
             device: gpu.name.clone(),
             software: gpu.software,
             system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
-            cores,
+            cores: std::thread::available_parallelism().map_or(0, usize::from),
             load_average_at_start: load_average(),
             load_average_at_end: None,
             figures: Vec::new(),
@@ -75,55 +67,49 @@ impl Report {
             json,
             measure: String::new(),
         };
-        if !json {
-            let kind = if gpu.software { "in software" } else { "a graphics card" };
-            say!(
-                "{} ({kind}), {}, {cores} cores{}",
-                gpu.name,
-                report.system,
-                busy(report.load_average_at_start)
-            );
-        }
+        let kind = if gpu.software { "in software" } else { "a graphics card" };
+        let Self { device, system, cores, .. } = &report;
+        let load = busy(report.load_average_at_start);
+        report.print(&format!("{device} ({kind}), {system}, {cores} cores{load}"));
         report
+    }
+
+    /// Text as it comes; JSON is printed at the end.
+    fn print(&self, line: &str) {
+        if !self.json {
+            say!("{line}");
+        }
     }
 
     /// The figures that follow belong to this.
     pub fn section(&mut self, title: impl Into<String>) {
         self.measure = title.into();
-        if !self.json {
-            say!("\n{}", self.measure);
-        }
+        self.print(&format!("\n{}", self.measure));
     }
 
-    /// A figure without an aim.
+    /// A figure without a bound.
     pub fn figure(&mut self, what: impl Into<String>, value: f64, unit: &'static str) {
         self.add(what.into(), value, unit, None);
     }
 
-    /// A figure that should be so.
     pub fn aimed(&mut self, what: impl Into<String>, value: f64, unit: &'static str, aim: Aim) {
         self.add(what.into(), value, unit, Some(aim));
     }
 
-    /// Something to know.
-    pub fn note(&mut self, text: impl Into<String>) {
-        let text = text.into();
-        if !self.json {
-            say!("  {text}");
-        }
-        self.notes.push(text);
+    pub fn note(&mut self, text: &str) {
+        self.print(&format!("  {text}"));
+        self.notes.push(text.to_owned());
     }
 
     fn add(&mut self, what: String, value: f64, unit: &'static str, aim: Option<Aim>) {
         let met = aim.map(|aim| aim.met(value));
-        if !self.json {
-            let verdict = match (aim, met) {
-                (Some(aim), Some(true)) => format!("   met: {}", aim.text()),
-                (Some(aim), _) => format!("   MISSED: {}", aim.text()),
-                _ => String::new(),
-            };
-            say!("  {:<58} {:>10} {unit}{verdict}", what, rounded(value));
-        }
+        let verdict = if met == Some(true) { "met" } else { "MISSED" };
+        let verdict = match aim {
+            Some(Aim::AtMost(max)) => format!("   {verdict}: at most {max}"),
+            Some(Aim::AtLeast(min)) => format!("   {verdict}: at least {min}"),
+            None => String::new(),
+        };
+        self.print(&format!("  {what:<58} {:>10} {unit}{verdict}", rounded(value)));
         self.figures.push(Figure { measure: self.measure.clone(), what, value, unit, aim, met });
     }
 
@@ -141,7 +127,7 @@ impl Report {
     }
 }
 
-/// Four significant digits, but no more than are before the point if those are more.
+/// Four significant digits, and all digits before the point.
 fn rounded(value: f64) -> String {
     let digits = [1e3, 1e2, 1e1, 1.0].iter().position(|&least| value.abs() >= least).unwrap_or(4);
     format!("{value:.digits$}")

@@ -11,34 +11,36 @@ use std::io::BufRead;
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail};
-use genescape_bake::say;
+use clap::ValueEnum;
 use serde_json::json;
 
-use super::BenchArgs;
-use super::lab::{Lab, frame_with, way};
+use super::cost::Cost;
+use super::forest::camera_path;
+use super::{BenchArgs, frame_with};
 use crate::camera::{Camera, NEAR_M};
-use crate::frame::{TerrainScheme, TreeScheme};
+use crate::headless::Headless;
 use crate::picture_file;
+use crate::say;
 use crate::view::View;
 
-pub(super) fn run(lab: &Lab, path: &Path, args: &BenchArgs) -> Result<()> {
-    let scene = lab.load(path)?;
-    let cameras = way(&scene, args.steps);
-    let uploaded = lab.upload(&scene)?;
-    let sky = &scene.sky;
+pub(super) fn run(headless: &Headless, path: &Path, args: &BenchArgs) -> Result<()> {
+    let scene = headless.read(path)?;
+    let cameras = camera_path(&scene, args.steps);
+    let uploaded = headless.upload(&scene)?;
+    let sky = &scene.sky.light;
     let told = |camera: &Camera| {
         json!({ "position_m": camera.position_m.to_array(), "yaw_rad": camera.yaw_rad,
                 "pitch_rad": camera.pitch_rad, "fov_y_rad": camera.fov_y_rad })
     };
     let hello = json!({
-        "device": lab.gpu.name, "software": lab.gpu.software, "size_px": args.size, "near_m": NEAR_M,
+        "device": headless.gpu.name, "software": headless.gpu.software, "size_px": args.size, "near_m": NEAR_M,
         "trees": scene.trees.instances.len(), "cameras": cameras.iter().map(told).collect::<Vec<_>>(),
-        "sun_direction": sky.sun_direction, "sun_irradiance_linear": sky.sun_irradiance_linear,
+        "sun_direction": sky.sun_direction.to_array(), "sun_irradiance_linear": sky.sun_irradiance_linear,
         "sky_irradiance_linear": sky.sky_irradiance_linear, "haze_linear": sky.haze_linear,
         "haze_extinction_per_m": sky.haze_extinction_per_m, "exposure": sky.exposure,
     });
     say!("{hello}");
-    // A view for each scheme: some go on from their last picture.
+    // A view for each pair of modes: some go on from their last picture.
     let mut views: BTreeMap<String, [View; 1]> = BTreeMap::new();
     for line in std::io::stdin().lock().lines() {
         let line = line.context("standard input broke")?;
@@ -48,15 +50,17 @@ pub(super) fn run(lab: &Lab, path: &Path, args: &BenchArgs) -> Result<()> {
             [verb, trees, land, place, file] => (verb, trees, land, place, Some(file)),
             _ => bail!("{line:?} is none of `frame TREES LAND PLACE`, `picture TREES LAND PLACE FILE`"),
         };
-        let frame = frame_with(tree_scheme(trees)?, terrain_scheme(land)?);
+        let frame = frame_with(mode(trees)?, mode(land)?);
         let camera = place.parse().ok().and_then(|place: usize| cameras.get(place));
         let camera = camera.ok_or_else(|| anyhow!("there is no place {place}"))?;
-        let view = views.entry(format!("{trees} {land}")).or_insert_with(|| [lab.view(&uploaded, args.size)]);
-        let cost = lab.frame(view, &frame, camera);
+        let view = views
+            .entry(format!("{trees} {land}"))
+            .or_insert_with(|| [headless.view(uploaded.clone(), args.size)]);
+        let cost = Cost::of_frame(headless, view, &frame, camera);
         match (verb, file) {
             ("frame", None) => {}
             ("picture", Some(file)) => {
-                let picture = picture_file::read(&lab.gpu, &view[0].targets().display)?;
+                let picture = picture_file::read(&headless.gpu, &view[0].targets().display)?;
                 picture_file::write_png(Path::new(file), &picture)?;
             }
             _ => bail!("{line:?} asks for nothing that is known"),
@@ -66,21 +70,7 @@ pub(super) fn run(lab: &Lab, path: &Path, args: &BenchArgs) -> Result<()> {
     Ok(())
 }
 
-fn tree_scheme(word: &str) -> Result<TreeScheme> {
-    Ok(match word {
-        "off" => TreeScheme::Off,
-        "quality" => TreeScheme::Quality,
-        "simple" => TreeScheme::Simple,
-        "discrete" => TreeScheme::Discrete,
-        _ => bail!("{word:?} is no scheme for trees"),
-    })
-}
-
-fn terrain_scheme(word: &str) -> Result<TerrainScheme> {
-    Ok(match word {
-        "off" => TerrainScheme::Off,
-        "morph" => TerrainScheme::Morph,
-        "roam" => TerrainScheme::Roam,
-        _ => bail!("{word:?} is no scheme for the land"),
-    })
+/// An LOD mode by its name on the command line.
+fn mode<M: ValueEnum>(word: &str) -> Result<M> {
+    M::from_str(word, false).map_err(|error| anyhow!("{word:?} is no LOD mode: {error}"))
 }

@@ -1,95 +1,111 @@
 //! Frames while a landscape is read and brought to the device by the window's own loader, and swapped in.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use anyhow::{Result, anyhow};
 
-use super::BenchArgs;
-use super::lab::{Cost, Lab, way};
-use super::report::{Aim, Report, median, quantile};
-use super::views::four_views;
+use super::Bench;
+use super::cost::Cost;
+use super::forest::camera_path;
+use super::report::{Aim, median, quantile};
 use crate::app::loader::{Loader, Request};
-use crate::frame::FrameInput;
 use crate::load;
+use crate::options::FrameInput;
 use crate::upload::Uploader;
 
 /// Frames before a landscape is asked for, and after it is shown.
 const AROUND: usize = 15;
 /// Frames on each side that a frame is compared with.
 const NEIGHBOURS: usize = 10;
-/// Swaps.
 const SWAPS: usize = 4;
 
-pub(super) fn measure(lab: &Lab, paths: &[PathBuf], args: &BenchArgs, report: &mut Report) -> Result<()> {
-    report.section(format!(
+/// What a frame was drawn beside.
+#[derive(Clone, Copy, PartialEq)]
+enum Beside {
+    Nothing,
+    Loading,
+    /// A landscape that it shows first.
+    Swap,
+}
+
+pub(super) fn measure(bench: &mut Bench) -> Result<()> {
+    bench.report.section(format!(
         "Swap of a landscape in one of four views: {SWAPS} swaps, milliseconds of the clock"
     ));
-    let camera = way(&lab.load(&paths[0])?, 3)[1];
-    let mut views = four_views(lab, paths, args.size)?;
-    let frame = FrameInput::default();
-    parts(lab, &paths[0], report)?;
-    let loader = Loader::start(&lab.gpu, || {})?;
-    let (mut all, mut quiet, mut loading, mut shown) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    lab.frame(&mut views, &frame, &camera);
-    for swap in 0..SWAPS {
-        for _ in 0..AROUND {
-            quiet.push(lab.frame(&mut views, &frame, &camera).wall_ms);
-            all.push(quiet[quiet.len() - 1]);
-        }
-        // Each view gets the landscape of the next, by a loader that knows nothing of it yet.
-        let path = paths[(swap + 1) % paths.len()].clone();
-        loader.ask(Request { view: swap, generation: 0, path, passes: Arc::clone(&lab.passes) });
-        loop {
-            let reply = loader.replies().next();
-            let start = std::time::Instant::now();
-            let arrived = reply.is_some();
-            if let Some(reply) = reply {
-                let ready = reply.result.map_err(|text| anyhow!(text))?;
-                views[reply.view % 4].show(&lab.passes, ready.buffers);
-            }
-            lab.frame(&mut views, &frame, &camera);
-            let ms = start.elapsed().as_secs_f64() * 1e3;
-            all.push(ms);
-            if arrived {
-                shown.push(ms);
-                break;
-            }
-            loading.push(ms);
-        }
-        for _ in 0..AROUND {
-            quiet.push(lab.frame(&mut views, &frame, &camera).wall_ms);
-            all.push(quiet[quiet.len() - 1]);
-        }
-    }
+    parts(bench)?;
+    let frames = swaps(bench)?;
+    let all: Vec<f64> = frames.iter().map(|(_, ms)| *ms).collect();
+    let times = |wanted| -> Vec<f64> {
+        frames.iter().filter(|(beside, _)| *beside == wanted).map(|(_, ms)| *ms).collect()
+    };
+    let (quiet, loading) = (times(Beside::Nothing), times(Beside::Loading));
+    let report = &mut bench.report;
     report.figure("quiet frames, median", median(&quiet), "ms");
     report.figure("quiet frames, worst against those around", worst(&quiet), "×");
     report.figure(format!("{} frames while one is loaded, median", loading.len()), median(&loading), "ms");
     report.figure("frames while one is loaded, worst", quantile(&loading, 1.0), "ms");
-    report.figure("frame that shows it first, worst", quantile(&shown, 1.0), "ms");
+    report.figure("frame that shows it first, worst", quantile(&times(Beside::Swap), 1.0), "ms");
     report.aimed("worst frame against those around", worst(&all), "×", Aim::AtMost(1.5));
     Ok(())
 }
 
+/// All frames in their order, with their milliseconds.
+fn swaps(bench: &Bench) -> Result<Vec<(Beside, f64)>> {
+    let camera = camera_path(&bench.first_scene()?, 3)[1];
+    let mut views = bench.four_views(bench.size_px, |scene| scene)?;
+    let frame = FrameInput::default();
+    let (loader, passes) = (Loader::start(&bench.headless.gpu, || {})?, &bench.headless.passes);
+    let mut frames = Vec::new();
+    bench.frame(&mut views, &frame, &camera);
+    for swap in 0..SWAPS {
+        for _ in 0..AROUND {
+            frames.push((Beside::Nothing, bench.frame(&mut views, &frame, &camera).wall_ms));
+        }
+        // Each view gets the landscape of the next, by a loader that knows nothing of it yet.
+        let path = bench.paths[(swap + 1) % bench.paths.len()].clone();
+        loader.ask(Request { view: swap, generation: 0, path, passes: Arc::clone(passes) });
+        let mut beside = Beside::Loading;
+        while beside == Beside::Loading {
+            let reply = loader.replies().next();
+            let (cost, shown) = Cost::of(|| -> Result<()> {
+                if let Some(reply) = reply {
+                    let loaded = reply.result.map_err(|text| anyhow!(text))?;
+                    views[reply.view % 4].show(passes, loaded.buffers);
+                    beside = Beside::Swap;
+                }
+                bench.frame(&mut views, &frame, &camera);
+                Ok(())
+            });
+            shown?;
+            frames.push((beside, cost.wall_ms));
+        }
+        for _ in 0..AROUND {
+            frames.push((Beside::Nothing, bench.frame(&mut views, &frame, &camera).wall_ms));
+        }
+    }
+    Ok(frames)
+}
+
 /// What the loader does for a landscape of which nothing is known yet, piece by piece. The device does one thing after
 /// the other: a frame waits for what of this was submitted before it.
-fn parts(lab: &Lab, path: &std::path::Path, report: &mut Report) -> Result<()> {
-    let (reading, scene) = Cost::of(|| load::load(path, &load::Store::default()));
+fn parts(bench: &mut Bench) -> Result<()> {
+    let (gpu, passes) = (&bench.headless.gpu, &bench.headless.passes);
+    let (reading, scene) = Cost::of(|| load::load(&bench.paths[0], &load::Store::default()));
     let scene = scene?;
-    let (bringing, uploaded) = Cost::of(|| {
-        let uploaded = Uploader::new(&lab.gpu).upload(&scene);
-        lab.gpu.queue.submit([]);
-        lab.gpu.wait();
-        uploaded
+    let (uploading, buffers) = Cost::of(|| {
+        let buffers = Uploader::new(gpu).upload(&scene);
+        gpu.queue.submit([]);
+        gpu.wait();
+        buffers
     });
-    let uploaded = uploaded.map_err(|text| anyhow!(text))?;
+    let buffers = buffers.map_err(|text| anyhow!(text))?;
     let (shading, ()) = Cost::of(|| {
-        lab.passes.shadow.bake(&lab.gpu, &lab.passes.layouts, &lab.passes.cull, &uploaded);
-        lab.gpu.wait();
+        passes.shadow.bake(gpu, &passes.layouts, &passes.cull, &buffers);
+        gpu.wait();
     });
-    report.figure("alone: reading a landscape", reading.wall_ms, "ms");
-    report.figure("alone: bringing it to the device", bringing.wall_ms, "ms");
-    report.figure("alone: drawing its shadows", shading.wall_ms, "ms");
+    bench.report.figure("alone: reading a landscape", reading.wall_ms, "ms");
+    bench.report.figure("alone: bringing it to the device", uploading.wall_ms, "ms");
+    bench.report.figure("alone: drawing its shadows", shading.wall_ms, "ms");
     Ok(())
 }
 

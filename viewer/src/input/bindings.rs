@@ -1,292 +1,183 @@
 //! Which key means what: the defaults, a person's changes from a settings file, and the help that lists them.
 //!
-//! In a file, bindings are a map from an action's name to its chords: `{"forward": ["W", "Up"], "undo": ["Ctrl+Z"]}`.
-//! What is not named keeps its default. A key that the file gives to one action is taken from the action that has it by
-//! default; a key that the file gives to two is an error that names both. All errors are told at once.
+//! In a file, bindings are a map from a command's name to its chords: `{"forward": ["W", "Up"], "undo": ["Ctrl+Z"]}`.
+//! What is not named keeps its default. A key that the file gives to one command is taken from the command that has it
+//! by default; a key that the file gives to two is an error that names both. All errors are told at once.
 
 use std::collections::BTreeMap;
 
-use genescape_schema::Category;
 use serde::{Deserialize, Serialize};
-use winit::keyboard::KeyCode;
+use winit::event::MouseButton;
 
-use super::action::{Action, BOOKMARKS, Group, VIEWS};
 use super::chord::{Chord, Input, Modifiers};
+use super::command::Command;
 
-/// For each chord the one action that it means; an action may have several chords, or none.
+/// For each chord the one command that it means; a command may have several chords, or none.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "BTreeMap<String, Vec<String>>", into = "BTreeMap<String, Vec<String>>")]
 pub struct Bindings {
-    /// In the order in which the help lists an action's keys.
-    pairs: Vec<(Chord, Action)>,
+    /// Sorted by command, a command's first chord first.
+    pairs: Vec<(Chord, Command)>,
 }
 
-/// One chord that would mean two things.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{chord} is given to both {first} and {second}; give one of them another key")]
-pub struct Conflict {
-    /// The chord.
-    pub chord: Chord,
-    /// What it means already.
-    pub first: Action,
-    /// What it was to mean as well.
-    pub second: Action,
-}
-
-/// What is wrong with bindings from a file, one line each.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}", .0.join("\n"))]
-pub struct BindingsError(pub Vec<String>);
-
-/// One line of the help.
+/// Lines of the help that belong together.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct HelpLine {
-    /// Its part of the help.
-    pub group: Group,
-    /// "W or Up"; "no key" if it has none.
-    pub keys: String,
-    /// What they do.
-    pub meaning: String,
+pub struct KeyGroup {
+    /// "Move".
+    pub title: String,
+    /// Keys ("W or Up"; "no key" if there is none) and what they do ("walk forward").
+    pub keys: Vec<(String, String)>,
 }
 
 impl Default for Bindings {
     fn default() -> Self {
-        Self { pairs: defaults() }
+        let mut bindings = Self { pairs: Vec::new() };
+        bindings.insert(defaults());
+        bindings
     }
 }
 
 impl Bindings {
     /// What a chord means.
     ///
-    /// Held actions listen to their key whatever is held with it, or a runner's Shift would stop the walk. Other actions
+    /// Held commands listen to their key whatever is held with it, or a runner's Shift would stop the walk. Other commands
     /// want their chord exactly; except that Shift may be held where the chord with Shift means nothing else.
-    pub fn action(&self, chord: Chord) -> Option<Action> {
+    pub fn command(&self, chord: Chord) -> Option<Command> {
         let exact =
-            |chord: Chord| self.pairs.iter().find(|(known, _)| *known == chord).map(|(_, action)| *action);
+            |chord: Chord| self.pairs.iter().find(|(known, _)| *known == chord).map(|(_, command)| *command);
         let unshifted = Chord { with: Modifiers { shift: false, ..chord.with }, ..chord };
-        let alone = chord.with(Modifiers::NONE);
-        exact(chord).or_else(|| exact(unshifted)).or_else(|| exact(alone).filter(|action| action.is_held()))
+        let alone = Chord::alone(chord.input);
+        exact(chord).or_else(|| exact(unshifted)).or_else(|| exact(alone).filter(|command| command.is_held()))
     }
 
-    /// The chords of an action, the first one first.
-    pub fn chords(&self, action: Action) -> impl Iterator<Item = Chord> {
-        self.pairs.iter().filter(move |(_, known)| *known == action).map(|(chord, _)| *chord)
+    /// The chords of a command, the first one first.
+    pub fn chords(&self, command: Command) -> impl Iterator<Item = Chord> {
+        self.pairs.iter().filter(move |(_, known)| *known == command).map(|(chord, _)| *chord)
     }
 
-    /// Adds a chord to an action's; fails if it means something else, or if it cannot mean this.
-    pub fn bind(&mut self, chord: Chord, action: Action) -> Result<(), BindingsError> {
-        if let Some(problem) = unsuitable(chord, action) {
-            return Err(BindingsError(vec![problem]));
-        }
+    /// Adds a chord to a command's.
+    ///
+    /// # Errors
+    /// If it means something else already, or cannot mean this.
+    pub fn bind(&mut self, chord: Chord, command: Command) -> Result<(), String> {
+        check(chord, command)?;
         match self.pairs.iter().find(|(known, _)| *known == chord) {
-            Some((_, first)) if *first == action => Ok(()),
+            Some((_, first)) if *first == command => {}
             Some((_, first)) => {
-                Err(BindingsError(vec![Conflict { chord, first: *first, second: action }.to_string()]))
+                return Err(format!(
+                    "{chord} is given to both {first} and {command}; give one of them another key"
+                ));
             }
-            None => {
-                self.pairs.push((chord, action));
-                Ok(())
+            None => self.insert([(chord, command)]),
+        }
+        Ok(())
+    }
+
+    fn insert(&mut self, pairs: impl IntoIterator<Item = (Chord, Command)>) {
+        self.pairs.extend(pairs);
+        // Stable, so a command's first key stays first.
+        self.pairs.sort_by_key(|(_, command)| *command);
+    }
+
+    /// Every command with its keys, group by group. Commands that differ by a number stand on one line.
+    pub fn help(&self) -> Vec<KeyGroup> {
+        let mut groups: Vec<KeyGroup> = Vec::new();
+        let commands: Vec<Command> = Command::all().collect();
+        for series in commands.chunk_by(|one, other| one.help() == other.help()) {
+            if let Some(title) =
+                series[0].group().filter(|title| groups.last().is_none_or(|g| g.title != *title))
+            {
+                groups.push(KeyGroup { title: title.to_owned(), keys: Vec::new() });
+            }
+            if let Some(group) = groups.last_mut() {
+                group.keys.push((self.keys(series), series[0].help()));
             }
         }
+        groups
     }
 
-    /// Takes all chords from an action.
-    pub fn unbind(&mut self, action: Action) {
-        self.pairs.retain(|(_, known)| *known != action);
-    }
-
-    /// All chords that mean two things; none can, however the bindings were made, but a test had better ask.
-    pub fn conflicts(&self) -> Vec<Conflict> {
-        let mut found = Vec::new();
-        for (place, &(chord, first)) in self.pairs.iter().enumerate() {
-            for &(other, second) in &self.pairs[place + 1..] {
-                if other == chord && second != first {
-                    found.push(Conflict { chord, first, second });
-                }
-            }
+    /// "W or Up" for one command; for several the first key of each: "U I O P", "Ctrl+1 … Ctrl+9".
+    fn keys(&self, series: &[Command]) -> String {
+        if let [command] = series {
+            let names: Vec<String> = self.chords(*command).map(|chord| chord.to_string()).collect();
+            return if names.is_empty() { "no key".into() } else { names.join(" or ") };
         }
-        found
-    }
-
-    /// Every action with its keys, group by group. Actions that differ by a number stand on one line.
-    pub fn help(&self) -> Vec<HelpLine> {
-        let mut lines: Vec<HelpLine> = Vec::new();
-        for action in Action::all() {
-            match action {
-                Action::Maximise(0) => {
-                    lines.push(self.series(action, (0..VIEWS).map(Action::Maximise), "one landscape alone"))
-                }
-                Action::Vote(category, Some(0)) => {
-                    let all = (0..VIEWS).map(|individual| Action::Vote(category, Some(individual)));
-                    lines.push(self.series(action, all, &format!("best {category}: landscape 1 to {VIEWS}")));
-                }
-                Action::SetBookmark(1) => {
-                    let all = (1..=BOOKMARKS).map(Action::SetBookmark);
-                    lines.push(self.series(action, all, "keep this view as a bookmark"));
-                }
-                Action::GoBookmark(1) => {
-                    let all = (1..=BOOKMARKS).map(Action::GoBookmark);
-                    lines.push(self.series(action, all, "go to a bookmark"));
-                }
-                Action::Maximise(_)
-                | Action::Vote(_, Some(_))
-                | Action::SetBookmark(_)
-                | Action::GoBookmark(_) => {}
-                single => lines.push(HelpLine {
-                    group: single.group(),
-                    keys: self.keys(single),
-                    meaning: single.meaning(),
-                }),
-            }
+        let first =
+            |command: &Command| self.chords(*command).next().map_or("–".into(), |chord| chord.to_string());
+        match series {
+            [from, .., to] if series.len() > 4 => format!("{} … {}", first(from), first(to)),
+            _ => series.iter().map(first).collect::<Vec<_>>().join(" "),
         }
-        lines
-    }
-
-    /// "W or Up".
-    fn keys(&self, action: Action) -> String {
-        let names: Vec<String> = self.chords(action).map(|chord| chord.to_string()).collect();
-        if names.is_empty() { "no key".into() } else { names.join(" or ") }
-    }
-
-    /// A line for actions that differ by a number: "U I O P", "Ctrl+1 … Ctrl+9".
-    fn series(&self, first: Action, all: impl Iterator<Item = Action>, meaning: &str) -> HelpLine {
-        let names: Vec<String> = all
-            .map(|action| self.chords(action).next().map_or("–".into(), |chord| chord.to_string()))
-            .collect();
-        let keys = match (names.len(), names.first(), names.last()) {
-            (5.., Some(from), Some(to)) => format!("{from} … {to}"),
-            _ => names.join(" "),
-        };
-        HelpLine { group: first.group(), keys, meaning: meaning.into() }
     }
 }
 
 impl From<Bindings> for BTreeMap<String, Vec<String>> {
     fn from(bindings: Bindings) -> Self {
-        let written = |action: Action| bindings.chords(action).map(|chord| chord.to_string()).collect();
-        Action::all().map(|action| (action.to_string(), written(action))).collect()
+        let written = |command: Command| bindings.chords(command).map(|chord| chord.to_string()).collect();
+        Command::all().map(|command| (command.to_string(), written(command))).collect()
     }
 }
 
 impl TryFrom<BTreeMap<String, Vec<String>>> for Bindings {
-    type Error = BindingsError;
+    type Error = String;
 
-    fn try_from(file: BTreeMap<String, Vec<String>>) -> Result<Self, BindingsError> {
+    fn try_from(file: BTreeMap<String, Vec<String>>) -> Result<Self, String> {
         let mut problems = Vec::new();
         let mut named = Vec::new();
         let mut bindings = Self { pairs: Vec::new() };
         for (name, chords) in &file {
-            let action: Action = match name.parse() {
-                Ok(action) => action,
+            let command: Command = match name.parse() {
+                Ok(command) => command,
                 Err(problem) => {
                     problems.push(problem);
                     continue;
                 }
             };
-            named.push(action);
+            named.push(command);
             for text in chords {
-                match text.parse::<Chord>() {
-                    Ok(chord) => {
-                        problems.extend(bindings.bind(chord, action).err().into_iter().flat_map(|e| e.0))
-                    }
-                    Err(problem) => problems.push(format!("{name}: {problem}")),
-                }
+                let bound = match text.parse() {
+                    Ok(chord) => bindings.bind(chord, command),
+                    Err(problem) => Err(format!("{name}: {problem}")),
+                };
+                problems.extend(bound.err());
             }
         }
         if !problems.is_empty() {
-            return Err(BindingsError(problems));
+            return Err(problems.join("\n"));
         }
         let taken: Vec<Chord> = bindings.pairs.iter().map(|(chord, _)| *chord).collect();
-        let kept = |(chord, action): &(Chord, Action)| !named.contains(action) && !taken.contains(chord);
-        bindings.pairs.extend(defaults().into_iter().filter(kept));
-        // The order of the help, whatever the order of the file; stable, so an action's first key stays first.
-        bindings.pairs.sort_by_key(|(_, action)| *action);
+        let kept = |(chord, command): &(Chord, Command)| !named.contains(command) && !taken.contains(chord);
+        bindings.insert(defaults().filter(kept));
         Ok(bindings)
     }
 }
 
-/// Why a chord cannot mean an action.
-fn unsuitable(chord: Chord, action: Action) -> Option<String> {
-    if action.is_held() && chord.with != Modifiers::NONE {
-        return Some(format!(
-            "{action}: {chord}: what is held down must be one key, without Ctrl, Alt or Shift"
+/// Whether a chord can mean a command; the error says why not.
+fn check(chord: Chord, command: Command) -> Result<(), String> {
+    if command.is_held() && chord.with != Modifiers::NONE {
+        return Err(format!(
+            "{command}: {chord}: what is held down must be one key, without Ctrl, Alt or Shift"
         ));
     }
-    let steers = matches!(chord.input, Input::Mouse(winit::event::MouseButton::Left));
-    steers.then(|| {
-        format!("{action}: the left mouse button works panels and takes hold of the view; use another")
-    })
+    if chord.input == Input::Mouse(MouseButton::Left) {
+        return Err(format!(
+            "{command}: the left mouse button works panels and takes hold of the view; use another"
+        ));
+    }
+    Ok(())
 }
 
-/// Votes lie as they are seen, a row of four keys for each category with "none" at its end; so do none of the keys under
-/// the left hand, which walks.
-fn defaults() -> Vec<(Chord, Action)> {
-    use Action::*;
-    use KeyCode as K;
-    let mut pairs: Vec<(Chord, Action)> = [
-        (K::KeyW, Forward),
-        (K::ArrowUp, Forward),
-        (K::KeyS, Back),
-        (K::ArrowDown, Back),
-        (K::KeyA, Left),
-        (K::ArrowLeft, Left),
-        (K::KeyD, Right),
-        (K::ArrowRight, Right),
-        (K::Space, Up),
-        (K::KeyC, Down),
-        (K::ShiftLeft, Run),
-        (K::ShiftRight, Run),
-        (K::KeyF, ToggleWalkFlyOrbit),
-        (K::Escape, ReleaseMouse),
-        (K::Home, GoToStart),
-        (K::Digit0, ShowAll),
-        (K::Backspace, ShowAll),
-        (K::Tab, CompareAB),
-        (K::KeyN, NextGeneration),
-        (K::PageUp, OlderGeneration),
-        (K::PageDown, NewerGeneration),
-        (K::F1, ToggleHelp),
-        (K::KeyG, ToggleGenome),
-        (K::F2, ToggleSettings),
-        (K::F3, ToggleStats),
-        (K::F11, ToggleFullscreen),
-        (K::F12, Screenshot),
-        (K::F5, CycleTreeScheme),
-        (K::F6, CycleTerrainScheme),
-        (K::F7, ToggleWireframe),
-        (K::F8, ToggleTint),
-        (K::F9, ToggleOverhead),
-    ]
-    .map(|(code, action)| (Chord::key(code), action))
-    .into();
-    pairs.push((Chord::key(K::KeyZ).with(Modifiers::CTRL), Undo));
-    pairs.push((Chord::key(K::KeyY).with(Modifiers::CTRL), Redo));
-    pairs.push((Chord::key(K::KeyQ).with(Modifiers::CTRL), Quit));
-    let rows = [
-        (Category::Tree, [K::KeyU, K::KeyI, K::KeyO, K::KeyP, K::BracketLeft]),
-        (Category::Terrain, [K::KeyJ, K::KeyK, K::KeyL, K::Semicolon, K::Quote]),
-        (Category::Sky, [K::KeyM, K::Comma, K::Period, K::Slash, K::Backslash]),
-    ];
-    for (category, keys) in rows {
-        let choices = (0..VIEWS).map(Some).chain([None]);
-        pairs.extend(
-            keys.into_iter().zip(choices).map(|(code, best)| (Chord::key(code), Vote(category, best))),
-        );
-    }
-    let digits =
-        [K::Digit1, K::Digit2, K::Digit3, K::Digit4, K::Digit5, K::Digit6, K::Digit7, K::Digit8, K::Digit9];
-    pairs.extend(digits.into_iter().zip(0..VIEWS).map(|(code, view)| (Chord::key(code), Maximise(view))));
-    for (code, number) in digits.into_iter().zip(1..=BOOKMARKS) {
-        pairs.push((Chord::key(code).with(Modifiers::CTRL), SetBookmark(number)));
-        pairs.push((Chord::key(code).with(Modifiers::ALT), GoBookmark(number)));
-    }
-    pairs.sort_by_key(|(_, action)| *action);
-    pairs
+fn defaults() -> impl Iterator<Item = (Chord, Command)> {
+    Command::all().flat_map(|command| {
+        let keys = command.default_keys();
+        // A test sees to it that all of them are chords.
+        let chords: Vec<Chord> = keys.split(" or ").filter_map(|key| key.parse().ok()).collect();
+        chords.into_iter().map(move |chord| (chord, command))
+    })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::chord::inputs;
     use super::*;
     use proptest::prelude::*;
 
@@ -294,16 +185,58 @@ mod tests {
         ron::from_str(text).map_err(|error| error.to_string())
     }
 
+    fn each_chord_once(bindings: &Bindings) -> bool {
+        let chords: std::collections::BTreeSet<Chord> =
+            bindings.pairs.iter().map(|(chord, _)| *chord).collect();
+        chords.len() == bindings.pairs.len()
+    }
+
+    fn alone(name: &str) -> Chord {
+        Chord::alone(name.parse().expect("a key"))
+    }
+
+    /// As the first version of the program wrote them.
+    const FIRST_DEFAULTS: &str = r#"{
+        "back": ["S", "Down"], "compare": ["Tab"], "down": ["C"], "forward": ["W", "Up"], "fullscreen": ["F11"],
+        "genome": ["G"], "go_bookmark_1": ["Alt+1"], "go_bookmark_2": ["Alt+2"], "go_bookmark_3": ["Alt+3"],
+        "go_bookmark_4": ["Alt+4"], "go_bookmark_5": ["Alt+5"], "go_bookmark_6": ["Alt+6"],
+        "go_bookmark_7": ["Alt+7"], "go_bookmark_8": ["Alt+8"], "go_bookmark_9": ["Alt+9"], "help": ["F1"],
+        "left": ["A", "Left"], "maximise_1": ["1"], "maximise_2": ["2"], "maximise_3": ["3"], "maximise_4": ["4"],
+        "newer_generation": ["Page Down"], "next_generation": ["N"], "older_generation": ["Page Up"],
+        "overhead": ["F9"], "quit": ["Ctrl+Q"], "redo": ["Ctrl+Y"], "release_mouse": ["Escape"],
+        "right": ["D", "Right"], "run": ["Left Shift", "Right Shift"], "screenshot": ["F12"],
+        "set_bookmark_1": ["Ctrl+1"], "set_bookmark_2": ["Ctrl+2"], "set_bookmark_3": ["Ctrl+3"],
+        "set_bookmark_4": ["Ctrl+4"], "set_bookmark_5": ["Ctrl+5"], "set_bookmark_6": ["Ctrl+6"],
+        "set_bookmark_7": ["Ctrl+7"], "set_bookmark_8": ["Ctrl+8"], "set_bookmark_9": ["Ctrl+9"],
+        "settings": ["F2"], "show_all": ["0", "Backspace"], "start": ["Home"], "stats": ["F3"],
+        "terrain_scheme": ["F6"], "tint": ["F8"], "tree_scheme": ["F5"], "undo": ["Ctrl+Z"], "up": ["Space"],
+        "vote_sky_1": ["M"], "vote_sky_2": [","], "vote_sky_3": ["."], "vote_sky_4": ["/"], "vote_sky_none": ["\\"],
+        "vote_terrain_1": ["J"], "vote_terrain_2": ["K"], "vote_terrain_3": ["L"], "vote_terrain_4": [";"],
+        "vote_terrain_none": ["'"], "vote_tree_1": ["U"], "vote_tree_2": ["I"], "vote_tree_3": ["O"],
+        "vote_tree_4": ["P"], "vote_tree_none": ["["], "walk_fly_orbit": ["F"], "wireframe": ["F7"],
+    }"#;
+
     #[test]
-    fn the_defaults_leave_no_action_without_a_key_and_no_key_with_two() {
+    fn the_first_versions_settings_are_read_and_are_still_the_defaults() {
+        let bindings = read(FIRST_DEFAULTS).expect("valid");
+        assert_eq!(bindings, Bindings::default());
+        type File = BTreeMap<String, Vec<String>>;
+        let file: File = ron::from_str(FIRST_DEFAULTS).expect("valid");
+        assert_eq!(File::from(bindings), file, "they are written as they were read");
+    }
+
+    #[test]
+    fn the_defaults_leave_no_command_without_a_key_and_no_key_with_two() {
         let bindings = Bindings::default();
-        assert_eq!(bindings.conflicts(), []);
-        for action in Action::all() {
-            let chord = bindings.chords(action).next().unwrap_or_else(|| panic!("{action} has no key"));
-            assert_eq!(bindings.action(chord), Some(action));
+        assert!(each_chord_once(&bindings));
+        for command in Command::all() {
+            let keys = bindings.chords(command).map(|chord| chord.to_string()).collect::<Vec<_>>();
+            assert_eq!(keys.join(" or "), command.default_keys(), "{command}");
+            let chord = bindings.chords(command).next().unwrap_or_else(|| panic!("{command} has no key"));
+            assert_eq!(bindings.command(chord), Some(command));
         }
-        for (chord, action) in &bindings.pairs {
-            assert_eq!(unsuitable(*chord, *action), None);
+        for (chord, command) in &bindings.pairs {
+            assert_eq!(check(*chord, *command), Ok(()));
         }
     }
 
@@ -313,23 +246,23 @@ mod tests {
         fn what_is_written_is_read_again(
             changes in prop::collection::vec((0usize..500, 0usize..500, 0u8..8, any::<bool>()), 0..40)
         ) {
-            let (actions, inputs) = (Action::all().collect::<Vec<_>>(), inputs().collect::<Vec<_>>());
+            let (commands, inputs) = (Command::all().collect::<Vec<_>>(), Input::all().collect::<Vec<_>>());
             let mut bindings = Bindings::default();
-            for (action, input, bits, unbind) in changes {
-                let action = actions[action % actions.len()];
+            for (command, input, bits, unbind) in changes {
+                let command = commands[command % commands.len()];
                 let with = Modifiers { ctrl: bits & 1 > 0, alt: bits & 2 > 0, shift: bits & 4 > 0 };
                 if unbind {
-                    bindings.unbind(action);
+                    bindings.pairs.retain(|(_, known)| *known != command);
                 }
                 // Refused where it is taken: fine.
-                let _ = bindings.bind(Chord { input: inputs[input % inputs.len()], with }, action);
+                let _ = bindings.bind(Chord { input: inputs[input % inputs.len()], with }, command);
             }
-            prop_assert_eq!(bindings.conflicts(), vec![]);
+            prop_assert!(each_chord_once(&bindings));
             let text = ron::ser::to_string_pretty(&bindings, ron::ser::PrettyConfig::default()).expect("plain data");
             let again = read(&text).expect("as written");
-            for &action in &actions {
-                let chords = |bindings: &Bindings| bindings.chords(action).collect::<Vec<_>>();
-                prop_assert_eq!(chords(&again), chords(&bindings), "{}", action);
+            for &command in &commands {
+                let chords = |bindings: &Bindings| bindings.chords(command).collect::<Vec<_>>();
+                prop_assert_eq!(chords(&again), chords(&bindings), "{}", command);
             }
         }
     }
@@ -337,17 +270,17 @@ mod tests {
     #[test]
     fn a_file_changes_only_what_it_names() {
         let bindings = read(r#"{"forward": ["E"], "undo": []}"#).expect("sound");
-        let chords = |action| bindings.chords(action).map(|chord| chord.to_string()).collect::<Vec<_>>();
-        assert_eq!(chords(Action::Forward), ["E"]);
-        assert!(chords(Action::Undo).is_empty());
-        assert_eq!(chords(Action::Back), ["S", "Down"]);
+        let chords = |command| bindings.chords(command).map(|chord| chord.to_string()).collect::<Vec<_>>();
+        assert_eq!(chords(Command::Forward), ["E"]);
+        assert!(chords(Command::Undo).is_empty());
+        assert_eq!(chords(Command::Back), ["S", "Down"]);
     }
 
     #[test]
     fn a_key_that_the_file_takes_leaves_its_default() {
         let bindings = read(r#"{"screenshot": ["W"]}"#).expect("sound");
-        assert_eq!(bindings.action(Chord::key(KeyCode::KeyW)), Some(Action::Screenshot));
-        assert_eq!(bindings.keys(Action::Forward), "Up");
+        assert_eq!(bindings.command(alone("W")), Some(Command::Screenshot));
+        assert_eq!(bindings.keys(&[Command::Forward]), "Up");
     }
 
     #[test]
@@ -372,23 +305,25 @@ mod tests {
     fn a_runner_can_press_keys_and_ctrl_does_not_stop_a_walk() {
         let bindings = Bindings::default();
         let with = |shift, ctrl| Modifiers { shift, ctrl, alt: false };
-        let meaning = |code, with| bindings.action(Chord::key(code).with(with));
-        assert_eq!(meaning(KeyCode::KeyW, with(true, false)), Some(Action::Forward));
-        assert_eq!(meaning(KeyCode::KeyW, with(false, true)), Some(Action::Forward));
-        assert_eq!(meaning(KeyCode::Digit2, with(true, false)), Some(Action::Maximise(1)));
-        assert_eq!(meaning(KeyCode::Digit2, with(false, true)), Some(Action::SetBookmark(2)));
-        assert_eq!(meaning(KeyCode::KeyN, with(false, true)), None, "Ctrl+N is not N");
+        let meaning = |key, with| bindings.command(Chord { with, ..alone(key) });
+        assert_eq!(meaning("W", with(true, false)), Some(Command::Forward));
+        assert_eq!(meaning("W", with(false, true)), Some(Command::Forward));
+        assert_eq!(meaning("2", with(true, false)), Some(Command::Maximise(2)));
+        assert_eq!(meaning("2", with(false, true)), Some(Command::SetBookmark(2)));
+        assert_eq!(meaning("N", with(false, true)), None, "Ctrl+N is not N");
     }
 
     #[test]
     fn the_help_has_every_key() {
         let help = Bindings::default().help();
-        let line =
-            |meaning: &str| help.iter().find(|line| line.meaning == meaning).map(|line| line.keys.as_str());
-        assert_eq!(line("walk forward"), Some("W or Up"));
-        assert_eq!(line("best tree: landscape 1 to 4"), Some("U I O P"));
-        assert_eq!(line("best sky: none of them"), Some("\\"));
-        assert_eq!(line("go to a bookmark"), Some("Alt+1 … Alt+9"));
-        assert!(help.is_sorted_by_key(|line| line.group));
+        let titles: Vec<&str> = help.iter().map(|group| group.title.as_str()).collect();
+        assert_eq!(titles, ["Move", "Look", "Choose", "Bookmarks", "Window", "Laboratory"]);
+        let lines: Vec<&(String, String)> = help.iter().flat_map(|group| &group.keys).collect();
+        let keys = |meaning: &str| lines.iter().find(|line| line.1 == meaning).map(|line| line.0.as_str());
+        assert_eq!(keys("walk forward"), Some("W or Up"));
+        assert_eq!(keys("best tree: landscape 1 to 4"), Some("U I O P"));
+        assert_eq!(keys("best sky: none of them"), Some("\\"));
+        assert_eq!(keys("go to a bookmark"), Some("Alt+1 … Alt+9"));
+        assert_eq!(lines.len(), 38);
     }
 }

@@ -1,22 +1,24 @@
 //! Keys and buttons and their names, as people read and write them: "W", "Ctrl+Z", "Mouse Middle", "Numpad 4".
 //!
 //! Keys are meant by place, not by letter, so that W A S D lie under the same fingers on every keyboard; names are those
-//! of a US keyboard. Names do not come from winit's own list, whose "KeyW" and "BracketLeft" nobody would guess.
+//! of a US keyboard.
 
 use std::fmt;
 use std::str::FromStr;
 
+use egui::Key;
 use winit::event::MouseButton;
 use winit::keyboard::KeyCode;
 
-use super::action::nearest;
+use super::command::nearest;
 
 /// A key of the keyboard or a button of the mouse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Input {
     /// A key, by place.
-    Key(KeyCode),
-    /// A button.
+    Key(Key),
+    /// A key of the number pad, by its index in [`NUMPAD`]: egui takes these for the keys with the same sign.
+    Numpad(usize),
     Mouse(MouseButton),
 }
 
@@ -32,44 +34,93 @@ pub struct Chord {
 /// Keys that change what others mean; left and right are one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Modifiers {
-    /// Control.
     pub ctrl: bool,
-    /// Alt, Option.
     pub alt: bool,
-    /// Shift.
     pub shift: bool,
 }
 
 impl Modifiers {
-    /// None held.
     pub const NONE: Self = Self { ctrl: false, alt: false, shift: false };
-    /// Control alone.
-    pub const CTRL: Self = Self { ctrl: true, ..Self::NONE };
-    /// Alt alone.
-    pub const ALT: Self = Self { alt: true, ..Self::NONE };
+}
+
+/// Keys of the number pad: winit's names, less "Numpad".
+const NUMPAD_CODES: [&str; 16] = [
+    "0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "Add", "Subtract", "Multiply", "Divide", "Decimal",
+    "Enter",
+];
+/// Keys of the number pad: our names, less "Numpad ".
+const NUMPAD: [&str; 16] =
+    ["0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "Plus", "Minus", "Times", "Divide", "Point", "Enter"];
+
+/// Buttons of the mouse that have a name.
+const BUTTONS: [MouseButton; 5] = {
+    use MouseButton::*;
+    [Left, Right, Middle, Back, Forward]
+};
+
+impl Input {
+    /// Every key and button that has a name.
+    pub fn all() -> impl Iterator<Item = Self> {
+        use Key::*;
+        // These signs have no key of their own on a US keyboard.
+        let absent = [Colon, Plus, Pipe, Questionmark, Exclamationmark, OpenCurlyBracket, CloseCurlyBracket];
+        let keys = Key::ALL.iter().filter(move |key| !absent.contains(key)).map(|key| Self::Key(*key));
+        let buttons = BUTTONS.map(Self::Mouse);
+        keys.chain((0..NUMPAD.len()).map(Self::Numpad)).chain(buttons)
+    }
+
+    /// The key of that code; `None` if it has no name. Both winit and egui know keys by the names of the W3C's "UI Events".
+    pub fn from_code(code: KeyCode) -> Option<Self> {
+        let name = format!("{code:?}");
+        match name.strip_prefix("Numpad") {
+            Some(name) => NUMPAD_CODES.iter().position(|known| *known == name).map(Self::Numpad),
+            None => Key::from_name(&name).map(Self::Key),
+        }
+    }
 }
 
 impl Chord {
-    /// A key alone.
-    pub const fn key(code: KeyCode) -> Self {
-        Self { input: Input::Key(code), with: Modifiers::NONE }
-    }
-
-    /// The same with other keys held.
-    pub const fn with(self, with: Modifiers) -> Self {
-        Self { with, ..self }
+    /// A key or button alone.
+    pub const fn alone(input: Input) -> Self {
+        Self { input, with: Modifiers::NONE }
     }
 }
 
 impl fmt::Display for Input {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Key(key) => f.write_str(&key_name(*key)),
+            Self::Numpad(index) => write!(f, "Numpad {}", NUMPAD[*index]),
             Self::Mouse(MouseButton::Other(number)) => write!(f, "Mouse {number}"),
-            known => {
-                f.write_str(NAMES.iter().find(|(_, input)| input == known).map_or("?", |(name, _)| name))
-            }
+            Self::Mouse(button) => write!(f, "Mouse {button:?}"),
         }
     }
+}
+
+/// What is printed on a key, or its name in words.
+fn key_name(key: Key) -> String {
+    let fixed = match key {
+        Key::Minus => "-",
+        Key::Quote => "'",
+        Key::IntlBackslash => "<",
+        Key::ShiftLeft => "Left Shift",
+        Key::ShiftRight => "Right Shift",
+        Key::ControlLeft => "Left Ctrl",
+        Key::ControlRight => "Right Ctrl",
+        Key::AltLeft => "Left Alt",
+        Key::AltRight => "Right Alt",
+        // One sign where there is one that is on the keyboard, too.
+        _ if key.symbol_or_name().is_ascii() => key.symbol_or_name(),
+        _ => key.name(),
+    };
+    let mut words = String::new();
+    for letter in fixed.chars() {
+        if letter.is_uppercase() && words.ends_with(char::is_lowercase) {
+            words.push(' ');
+        }
+        words.push(letter);
+    }
+    words
 }
 
 impl fmt::Display for Chord {
@@ -89,13 +140,14 @@ impl FromStr for Input {
     fn from_str(name: &str) -> Result<Self, String> {
         let plain = |name: &str| name.replace([' ', '_'], "").to_lowercase();
         let wanted = plain(name);
-        if let Some((_, input)) = NAMES.iter().find(|(known, _)| plain(known) == wanted) {
-            return Ok(*input);
+        if let Some(input) = Self::all().find(|known| plain(&known.to_string()) == wanted) {
+            return Ok(input);
         }
         if let Some(number) = wanted.strip_prefix("mouse").and_then(|number| number.parse().ok()) {
             return Ok(Self::Mouse(MouseButton::Other(number)));
         }
-        let hint = match nearest(name, NAMES.iter().map(|(known, _)| known.to_string())) {
+        let names: Vec<String> = Self::all().map(|known| known.to_string()).collect();
+        let hint = match nearest(name, &names) {
             Some(near) => format!("did you mean {near}?"),
             None => "keys are written as on a US keyboard: W, 1, [, F5, Space, Left, Numpad 4, Mouse Middle"
                 .into(),
@@ -128,68 +180,13 @@ impl FromStr for Chord {
     }
 }
 
-const fn key(name: &'static str, code: KeyCode) -> (&'static str, Input) {
-    (name, Input::Key(code))
-}
-
-const fn mouse(name: &'static str, button: MouseButton) -> (&'static str, Input) {
-    (name, Input::Mouse(button))
-}
-
-/// Every key and button that can be bound.
-#[rustfmt::skip]
-static NAMES: &[(&str, Input)] = &[
-    key("A", KeyCode::KeyA), key("B", KeyCode::KeyB), key("C", KeyCode::KeyC), key("D", KeyCode::KeyD),
-    key("E", KeyCode::KeyE), key("F", KeyCode::KeyF), key("G", KeyCode::KeyG), key("H", KeyCode::KeyH),
-    key("I", KeyCode::KeyI), key("J", KeyCode::KeyJ), key("K", KeyCode::KeyK), key("L", KeyCode::KeyL),
-    key("M", KeyCode::KeyM), key("N", KeyCode::KeyN), key("O", KeyCode::KeyO), key("P", KeyCode::KeyP),
-    key("Q", KeyCode::KeyQ), key("R", KeyCode::KeyR), key("S", KeyCode::KeyS), key("T", KeyCode::KeyT),
-    key("U", KeyCode::KeyU), key("V", KeyCode::KeyV), key("W", KeyCode::KeyW), key("X", KeyCode::KeyX),
-    key("Y", KeyCode::KeyY), key("Z", KeyCode::KeyZ),
-    key("0", KeyCode::Digit0), key("1", KeyCode::Digit1), key("2", KeyCode::Digit2), key("3", KeyCode::Digit3),
-    key("4", KeyCode::Digit4), key("5", KeyCode::Digit5), key("6", KeyCode::Digit6), key("7", KeyCode::Digit7),
-    key("8", KeyCode::Digit8), key("9", KeyCode::Digit9),
-    key("F1", KeyCode::F1), key("F2", KeyCode::F2), key("F3", KeyCode::F3), key("F4", KeyCode::F4),
-    key("F5", KeyCode::F5), key("F6", KeyCode::F6), key("F7", KeyCode::F7), key("F8", KeyCode::F8),
-    key("F9", KeyCode::F9), key("F10", KeyCode::F10), key("F11", KeyCode::F11), key("F12", KeyCode::F12),
-    key("`", KeyCode::Backquote), key("-", KeyCode::Minus), key("=", KeyCode::Equal),
-    key("[", KeyCode::BracketLeft), key("]", KeyCode::BracketRight), key("\\", KeyCode::Backslash),
-    key(";", KeyCode::Semicolon), key("'", KeyCode::Quote), key(",", KeyCode::Comma), key(".", KeyCode::Period),
-    key("/", KeyCode::Slash), key("<", KeyCode::IntlBackslash),
-    key("Up", KeyCode::ArrowUp), key("Down", KeyCode::ArrowDown),
-    key("Left", KeyCode::ArrowLeft), key("Right", KeyCode::ArrowRight),
-    key("Space", KeyCode::Space), key("Enter", KeyCode::Enter), key("Tab", KeyCode::Tab),
-    key("Escape", KeyCode::Escape), key("Backspace", KeyCode::Backspace), key("Delete", KeyCode::Delete),
-    key("Insert", KeyCode::Insert), key("Home", KeyCode::Home), key("End", KeyCode::End),
-    key("Page Up", KeyCode::PageUp), key("Page Down", KeyCode::PageDown), key("Pause", KeyCode::Pause),
-    key("Print Screen", KeyCode::PrintScreen), key("Caps Lock", KeyCode::CapsLock), key("Menu", KeyCode::ContextMenu),
-    key("Left Shift", KeyCode::ShiftLeft), key("Right Shift", KeyCode::ShiftRight),
-    key("Left Ctrl", KeyCode::ControlLeft), key("Right Ctrl", KeyCode::ControlRight),
-    key("Left Alt", KeyCode::AltLeft), key("Right Alt", KeyCode::AltRight),
-    key("Numpad 0", KeyCode::Numpad0), key("Numpad 1", KeyCode::Numpad1), key("Numpad 2", KeyCode::Numpad2),
-    key("Numpad 3", KeyCode::Numpad3), key("Numpad 4", KeyCode::Numpad4), key("Numpad 5", KeyCode::Numpad5),
-    key("Numpad 6", KeyCode::Numpad6), key("Numpad 7", KeyCode::Numpad7), key("Numpad 8", KeyCode::Numpad8),
-    key("Numpad 9", KeyCode::Numpad9), key("Numpad Plus", KeyCode::NumpadAdd),
-    key("Numpad Minus", KeyCode::NumpadSubtract), key("Numpad Times", KeyCode::NumpadMultiply),
-    key("Numpad Divide", KeyCode::NumpadDivide), key("Numpad Point", KeyCode::NumpadDecimal),
-    key("Numpad Enter", KeyCode::NumpadEnter),
-    mouse("Mouse Left", MouseButton::Left), mouse("Mouse Right", MouseButton::Right),
-    mouse("Mouse Middle", MouseButton::Middle), mouse("Mouse Back", MouseButton::Back),
-    mouse("Mouse Forward", MouseButton::Forward),
-];
-
-/// Every key and button that has a name.
-pub fn inputs() -> impl Iterator<Item = Input> {
-    NAMES.iter().map(|(_, input)| *input)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn every_chord_is_read_as_it_is_written() {
-        for input in inputs().chain([Input::Mouse(MouseButton::Other(8))]) {
+        for input in Input::all().chain([Input::Mouse(MouseButton::Other(8))]) {
             for bits in 0..8 {
                 let with = Modifiers { ctrl: bits & 1 > 0, alt: bits & 2 > 0, shift: bits & 4 > 0 };
                 let chord = Chord { input, with };
@@ -200,11 +197,77 @@ mod tests {
 
     #[test]
     fn people_write_keys_in_more_than_one_way() {
-        let undo = Chord::key(KeyCode::KeyZ).with(Modifiers::CTRL);
+        let undo = Chord { input: Input::Key(Key::Z), with: Modifiers { ctrl: true, ..Modifiers::NONE } };
         for text in ["Ctrl+Z", "ctrl + z", "Control+Z", " CTRL+z "] {
             assert_eq!(text.parse(), Ok(undo), "{text}");
         }
-        assert_eq!("pageup".parse(), Ok(Chord::key(KeyCode::PageUp)));
+        assert_eq!("pageup".parse(), Ok(Chord::alone(Input::Key(Key::PageUp))));
+    }
+
+    /// The names that settings files have had since the first version.
+    #[test]
+    fn names_in_settings_files_stay_and_each_is_a_key_that_can_be_pressed() {
+        use KeyCode as K;
+        let named = [
+            ("A", K::KeyA),
+            ("Z", K::KeyZ),
+            ("0", K::Digit0),
+            ("9", K::Digit9),
+            ("F1", K::F1),
+            ("F12", K::F12),
+            ("`", K::Backquote),
+            ("-", K::Minus),
+            ("=", K::Equal),
+            ("[", K::BracketLeft),
+            ("]", K::BracketRight),
+            ("\\", K::Backslash),
+            (";", K::Semicolon),
+            ("'", K::Quote),
+            (",", K::Comma),
+            (".", K::Period),
+            ("/", K::Slash),
+            ("<", K::IntlBackslash),
+            ("Up", K::ArrowUp),
+            ("Down", K::ArrowDown),
+            ("Left", K::ArrowLeft),
+            ("Right", K::ArrowRight),
+            ("Space", K::Space),
+            ("Enter", K::Enter),
+            ("Tab", K::Tab),
+            ("Escape", K::Escape),
+            ("Backspace", K::Backspace),
+            ("Delete", K::Delete),
+            ("Insert", K::Insert),
+            ("Home", K::Home),
+            ("End", K::End),
+            ("Page Up", K::PageUp),
+            ("Page Down", K::PageDown),
+            ("Pause", K::Pause),
+            ("Print Screen", K::PrintScreen),
+            ("Caps Lock", K::CapsLock),
+            ("Menu", K::ContextMenu),
+            ("Left Shift", K::ShiftLeft),
+            ("Right Shift", K::ShiftRight),
+            ("Left Ctrl", K::ControlLeft),
+            ("Right Ctrl", K::ControlRight),
+            ("Left Alt", K::AltLeft),
+            ("Right Alt", K::AltRight),
+            ("Numpad 0", K::Numpad0),
+            ("Numpad 9", K::Numpad9),
+            ("Numpad Plus", K::NumpadAdd),
+            ("Numpad Minus", K::NumpadSubtract),
+            ("Numpad Times", K::NumpadMultiply),
+            ("Numpad Divide", K::NumpadDivide),
+            ("Numpad Point", K::NumpadDecimal),
+            ("Numpad Enter", K::NumpadEnter),
+        ];
+        for (name, code) in named {
+            let input = Input::from_code(code).unwrap_or_else(|| panic!("{code:?} has no name"));
+            assert_eq!(name.parse(), Ok(input), "{name}");
+            assert_eq!(input.to_string(), name);
+        }
+        let names: std::collections::BTreeSet<String> = Input::all().map(|input| input.to_string()).collect();
+        assert_eq!(names.len(), Input::all().count(), "two keys have one name");
     }
 
     #[test]

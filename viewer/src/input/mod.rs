@@ -1,19 +1,19 @@
-//! Keys, mouse and gamepad → what the person wishes: [`Controls`] that last as long as a key is held, and [`Action`]s
-//! that happen once. Which key means what is a table that the person may change ([`Bindings`]).
+//! Keys, mouse and gamepad → [`Controls`] that last as long as a key is held, and [`Command`]s that happen once. Which
+//! key means what is a table that the person may change ([`Bindings`]).
 
-mod action;
 mod bindings;
 mod chord;
+mod command;
 mod held;
 
-pub use action::{Action, BOOKMARKS, Group, VIEWS};
-pub use bindings::{Bindings, BindingsError, Conflict, HelpLine};
-pub use chord::{Chord, Input, Modifiers, inputs};
+pub use bindings::{Bindings, KeyGroup};
+pub use chord::{Chord, Input, Modifiers};
+pub use command::{Best, Command};
 pub use held::Held;
 
 use glam::Vec2;
 
-/// What lasts: one frame's wishes. All of it at rest by default.
+/// How the camera is steered during one frame; at rest by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Controls {
     /// −1 (back) to 1.
@@ -33,7 +33,7 @@ pub struct Controls {
 }
 
 impl Controls {
-    /// The wishes of two hands at once, keyboard and gamepad. What exceeds full deflection is cut.
+    /// Both at once, keyboard and gamepad. What exceeds full deflection is cut.
     pub fn and(self, other: Self) -> Self {
         let axis = |one: f32, other: f32| (one + other).clamp(-1.0, 1.0);
         Self {

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use genescape_schema::gltf::Resource;
+use genescape_schema::scene::Resource;
 use serde::de::DeserializeOwned;
 
 use super::{LoadError, Store};

@@ -2,59 +2,28 @@
 
 use std::sync::Arc;
 
-use genescape_schema::gltf::{HeightfieldError, HeightfieldExtension, read_heightfield};
+use genescape_schema::scene::{GSC_HEIGHTFIELD, HeightfieldExtension, TerrainLod};
 
 use super::document::Document;
 use super::{LoadError, pictures};
-use crate::scene::{Apron, Detail, Ground, Heightfield, Surface};
+use crate::scene::{Apron, Ground};
 
 pub(super) fn read(document: &Document) -> Result<Ground, LoadError> {
-    let has = |node: &gltf::Node<'_>| node.extension_value("GSC_heightfield").is_some();
-    let node = document.gltf.nodes().find(has).ok_or_else(|| document.wrong("it has no GSC_heightfield"))?;
-    let extension: HeightfieldExtension =
-        document.extension(node.extension_value("GSC_heightfield"), "GSC_heightfield")?;
+    let object = document.gltf.nodes().find_map(|node| node.extension_value(GSC_HEIGHTFIELD).cloned());
+    let extension: HeightfieldExtension = document.extension(object.as_ref(), GSC_HEIGHTFIELD)?;
     let name = document.name_of(&extension.lod);
-    let field = document.store.get(&name, || {
+    let lod = document.store.get(&name, || {
         let bytes = document.bytes(&extension.lod)?;
-        heightfield(&bytes).map_err(|what| document.wrong(format!("its heightfield {name} is wrong: {what}")))
+        TerrainLod::from_bytes(&bytes)
+            .map_err(|what| document.wrong(format!("its heightfield {name} is wrong: {what}")))
     })?;
     Ok(Ground {
         name,
-        field,
+        field: lod.field.clone(),
+        lod,
         water_level_m: extension.water_level_m,
-        surface: surface(document, &extension)?,
+        surface: extension.surface.try_map(|image| pictures::png(document, image))?,
         apron: Arc::new(apron(document)?),
-    })
-}
-
-fn heightfield(bytes: &[u8]) -> Result<Heightfield, HeightfieldError> {
-    let data = read_heightfield(bytes)?;
-    Ok(Heightfield {
-        side: data.side,
-        spacing_m: data.spacing_m,
-        heights_m: data.heights_m.into_owned(),
-        wedgies_m: data.wedgies_m.into_owned(),
-        displacements_m: data.displacements_m.into_owned(),
-        levels: data.levels.into_owned(),
-        block_ranges_m: data.block_ranges_m.into_owned(),
-    })
-}
-
-fn surface(document: &Document, extension: &HeightfieldExtension) -> Result<Surface, LoadError> {
-    let surface = &extension.surface;
-    let detail = |detail: &genescape_schema::gltf::GroundDetail| -> Result<Detail, LoadError> {
-        Ok(Detail {
-            name: detail.name.clone(),
-            detail: pictures::png(document, &detail.detail)?,
-            normal: pictures::png(document, &detail.normal)?,
-            tile_m: detail.tile_m,
-        })
-    };
-    Ok(Surface {
-        color: pictures::png(document, &surface.color)?,
-        weights: pictures::png(document, &surface.weights)?,
-        light: pictures::png(document, &surface.light)?,
-        details: surface.details.iter().map(detail).collect::<Result<_, _>>()?,
     })
 }
 

@@ -9,12 +9,13 @@ mod trees;
 
 use std::path::{Path, PathBuf};
 
-use genescape_schema::gltf::{Resource, SkyExtension};
+use genescape_schema::scene::{GSC_SKY, START_NODE, SkyExtension, StartView};
+use glam::Vec3;
 use thiserror::Error;
 
 pub use store::Store;
 
-use crate::scene::{CloudLayer, HdrPicture, Scene, Sky};
+use crate::scene::{Ground, Scene, Sky};
 use document::Document;
 
 /// Why a landscape cannot be shown.
@@ -65,50 +66,29 @@ pub fn load(path: &Path, store: &Store) -> Result<Scene, LoadError> {
     let ground = ground::read(&document)?;
     let trees = trees::read(&document)?;
     let name = scene.name().unwrap_or("a landscape").to_owned();
-    Ok(Scene { name, genome: genome(&document), ground, trees, sky: sky(&document)? })
+    Ok(Scene { name, start: start(&document, &ground), ground, trees, sky: sky(&document)? })
 }
 
-/// The genome's values from the scene's extras; none if the file does not tell them.
-fn genome(document: &Document) -> Vec<(String, f64)> {
-    #[derive(serde::Deserialize)]
-    struct Extras {
-        genome: serde_json::Map<String, serde_json::Value>,
+/// The camera of the bake; without one, the middle of the land, looking north.
+fn start(document: &Document, ground: &Ground) -> StartView {
+    if let Some(node) = document.node(START_NODE) {
+        let (translation, rotation, _) = node.transform().decomposed();
+        return StartView::of_camera(translation, rotation);
     }
-    let extras = document.scene().ok().and_then(|scene| scene.extras().as_ref());
-    let parsed = extras.and_then(|raw| serde_json::from_str::<Extras>(raw.get()).ok());
-    let fields = parsed.map(|extras| extras.genome).unwrap_or_default();
-    fields.into_iter().filter_map(|(gene, value)| Some((gene, value.as_f64()?))).collect()
+    let position_m = Vec3::Y * (ground.field.height_m(0.0, 0.0) + StartView::EYE_HEIGHT_M);
+    StartView { position_m, direction: Vec3::NEG_Z }
 }
 
 fn sky(document: &Document) -> Result<Sky, LoadError> {
     let scene = document.scene()?;
-    let extension: SkyExtension = document.extension(scene.extension_value("GSC_sky"), "GSC_sky")?;
-    let six = |resources: &[Resource]| -> Result<[HdrPicture; 6], LoadError> {
-        let faces =
-            resources.iter().map(|face| pictures::exr(document, face)).collect::<Result<Vec<_>, _>>()?;
-        faces.try_into().map_err(|_| document.wrong("GSC_sky has not six faces"))
-    };
-    let faces = six(&extension.faces)?;
-    let clear_faces =
-        if extension.clear_faces.is_empty() { faces.clone() } else { six(&extension.clear_faces)? };
-    let layer = |layer: &genescape_schema::gltf::SkyLayer| -> Result<CloudLayer, LoadError> {
-        Ok(CloudLayer {
-            name: layer.name.clone(),
-            altitude_m: layer.altitude_m,
-            extent_m: layer.extent_m,
-            image: pictures::png(document, &layer.image)?,
-        })
-    };
-    Ok(Sky {
-        faces,
-        clear_faces,
-        layers: extension.layers.iter().map(layer).collect::<Result<_, _>>()?,
-        sun_direction: extension.sun_direction,
-        sun_angular_radius_rad: extension.sun_angular_radius_rad,
-        sun_irradiance_linear: extension.sun_irradiance_linear,
-        sky_irradiance_linear: extension.sky_irradiance_linear,
-        haze_linear: extension.haze_linear,
-        haze_extinction_per_m: extension.haze_extinction_per_m,
-        exposure: extension.exposure,
-    })
+    let SkyExtension { images, light } = document.extension(scene.extension_value(GSC_SKY), GSC_SKY)?;
+    let mut images =
+        images.try_map(|face| pictures::exr(document, face), |layer| pictures::png(document, layer))?;
+    if images.clear_faces.is_empty() {
+        images.clear_faces = images.faces.clone();
+    }
+    if images.faces.len() != 6 || images.clear_faces.len() != 6 {
+        return Err(document.wrong("GSC_sky has not six faces"));
+    }
+    Ok(Sky { images, light })
 }

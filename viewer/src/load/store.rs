@@ -7,14 +7,15 @@ use std::sync::{Arc, Mutex, Weak};
 use genescape_cache::Digest;
 
 use super::LoadError;
-use crate::scene::{Heightfield, Template};
+use crate::scene::{HdrPicture, Picture, Template, TerrainLod};
 
 /// Read results by name. Nothing in it is kept alive by it.
 #[derive(Debug, Default)]
 pub struct Store {
     bytes: Shelf<[u8]>,
-    pictures: Shelf<Vec<Arc<[u8]>>>,
-    fields: Shelf<Heightfield>,
+    pictures: Shelf<Picture>,
+    hdr_pictures: Shelf<HdrPicture>,
+    fields: Shelf<TerrainLod>,
     templates: Shelf<Template>,
     reads: Mutex<Vec<String>>,
 }
@@ -37,7 +38,7 @@ pub(super) trait Kept: Send + Sync + 'static {
     fn shelf(store: &Store) -> &Shelf<Self>;
 }
 
-impl Kept for Heightfield {
+impl Kept for TerrainLod {
     fn shelf(store: &Store) -> &Shelf<Self> {
         &store.fields
     }
@@ -49,9 +50,15 @@ impl Kept for Template {
     }
 }
 
-impl Kept for Vec<Arc<[u8]>> {
+impl Kept for Picture {
     fn shelf(store: &Store) -> &Shelf<Self> {
         &store.pictures
+    }
+}
+
+impl Kept for HdrPicture {
+    fn shelf(store: &Store) -> &Shelf<Self> {
+        &store.hdr_pictures
     }
 }
 

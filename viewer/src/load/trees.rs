@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use genescape_schema::gltf::{InstancesExtension, ProgressiveMeshExtension, Resource, read_instances};
+use genescape_schema::scene::{InstancesExtension, ProgressiveMeshExtension, Resource, read_instances};
 use glam::Vec3;
 use gltf::Semantic;
 
 use super::document::Document;
 use super::{LoadError, pictures};
-use crate::scene::{Instance, Level, Material, Range, Template, TreeVertex, Trees};
+use crate::scene::{Level, Material, Range, Template, TreeVertex, Trees};
 
 /// The trees; none if the scene has none.
 pub(super) fn read(document: &Document) -> Result<Trees, LoadError> {
@@ -16,24 +16,16 @@ pub(super) fn read(document: &Document) -> Result<Trees, LoadError> {
     let Some(node) = document.gltf.nodes().find(has) else { return Ok(Trees::default()) };
     let extension: InstancesExtension =
         document.extension(node.extension_value("GSC_instances"), "GSC_instances")?;
-    let records = read_instances(&document.view(extension.buffer_view)?)
+    let instances = read_instances(&document.view(extension.buffer_view)?)
         .map_err(|error| document.wrong(format!("its GSC_instances is wrong: {error}")))?;
     let templates = extension
         .templates
         .iter()
         .map(|entry| template(document, &entry.name, entry.mesh))
         .collect::<Result<Vec<_>, _>>()?;
-    let instance = |record: genescape_schema::gltf::InstanceRecord| {
-        let known = (record.template as usize) < templates.len();
-        known
-            .then_some(Instance {
-                world_from_tree: record.world_from_tree,
-                template: record.template,
-                trunk_cylinder_m: record.trunk_cylinder_m,
-            })
-            .ok_or_else(|| document.wrong(format!("a tree is of unknown kind {}", record.template)))
-    };
-    let instances = records.into_iter().map(instance).collect::<Result<Vec<_>, _>>()?;
+    if let Some(tree) = instances.iter().find(|tree| tree.template as usize >= templates.len()) {
+        return Err(document.wrong(format!("a tree is of unknown template {}", tree.template)));
+    }
     Ok(Trees { templates, instances: instances.into() })
 }
 

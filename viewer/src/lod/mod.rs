@@ -1,12 +1,10 @@
 //! Levels of detail as plain arithmetic, without a GPU: which blocks, triangles and trees a frame needs.
 //!
-//! - [`bintree`]: the hierarchy of right triangles over the samples of a heightfield;
-//! - [`morph`]: a vertex's level of detail λ and where it slides; `terrain.wgsl` says the same;
+//! - [`morph`]: what a vertex's level of detail λ depends on, and why sliding by it leaves no crack;
 //! - [`quadtree`]: blocks of one instanced draw (thesis 3.2, the vertex-program algorithm; Vlietinck 2003);
 //! - [`roam`]: one generalised triangle strip (thesis 3.2; Duchaineau et al. 1997, Lindstrom et al. 1996);
-//! - [`tree`]: the LOD number of a tree (thesis 4.3.2 and 4.3.3); the culling shader says the same.
+//! - [`tree`]: what the LOD number of a tree is chosen by (thesis 4.3.2 and 4.3.3).
 
-pub mod bintree;
 pub mod morph;
 pub mod quadtree;
 pub mod roam;

@@ -1,4 +1,4 @@
-//! A place → its level of detail λ; a sample → where it is drawn. Metres. The rule of Vlietinck's "Trilinear
+//! What a place's level of detail λ depends on, and with it where `terrain.wgsl` draws a sample. Metres. The rule of Vlietinck's "Trilinear
 //! displacement mapping of a flat surface with a v1.1 vertex shader" (2003; thesis 3.2), but that a vertex slides with
 //! its whole position to one parent instead of moving up or down to the middle of both.
 //!
@@ -15,20 +15,19 @@
 //!   arrived is overtaken by the edge between its parents when one of these leaves the line.)
 //! - rounding in another machine's log₂ is harmless: it cannot eat the gap.
 
+use genescape_schema::scene::bintree::Sample;
 use glam::{Vec2, Vec3};
 
-use super::bintree::{Sample, level, slides_to};
 use crate::scene::Heightfield;
 
 /// Part of each level's band of λ in which its vertices have arrived and the next level's still stand.
 pub const GAP: f32 = 0.25;
 
 /// The least d₀ in cells: 16√2. Makes λ span at most [i, i+2] in a block of level i, see [`super::quadtree`].
-pub const LEAST_UNIT_CELLS: f32 = 16.0 * std::f32::consts::SQRT_2;
+pub const MIN_UNIT_CELLS: f32 = 16.0 * std::f32::consts::SQRT_2;
 
-/// λ as a function of the place, for one frame of one view. Fit for a uniform buffer.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+/// λ as a function of the place, for one frame of one view.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detail {
     /// Where the eye is: x and z in metres.
     pub eye_m: Vec2,
@@ -38,46 +37,13 @@ pub struct Detail {
     pub unit_m: f32,
     /// The greatest λ, a whole number.
     pub top: f32,
-    /// Unused.
-    pub padding: [f32; 3],
 }
 
 impl Detail {
-    /// λ at (x, z).
-    #[inline]
-    pub fn lambda(&self, at_m: Vec2) -> f32 {
-        let distance_m = self.distance_squared_m2(at_m).sqrt();
-        libm::log2f(distance_m / self.unit_m).clamp(0.0, self.top)
-    }
-
     /// D² at (x, z).
     #[inline]
     pub fn distance_squared_m2(&self, at_m: Vec2) -> f32 {
         at_m.distance_squared(self.eye_m) + self.above_m * self.above_m
-    }
-
-    /// The way a vertex has gone to its parent, 0 to 1.
-    #[inline]
-    pub fn slide(&self, field: &Heightfield, [i, j]: Sample) -> f32 {
-        let lambda = self.lambda(Vec2::new(field.place_m(i), field.place_m(j)));
-        ((lambda - level([i, j]) as f32) * (1.0 / (1.0 - GAP))).clamp(0.0, 1.0)
-    }
-
-    /// Where a vertex is drawn. Two steps suffice in a block of level i: λ ≤ i+2, and vertices have levels ≥ i.
-    pub fn place_m(&self, field: &Heightfield, sample: Sample) -> Vec3 {
-        let mut vertex = sample;
-        let mut slide = self.slide(field, vertex);
-        for _ in 0..2 {
-            if slide >= 1.0 {
-                vertex = slides_to(vertex);
-                slide = self.slide(field, vertex);
-            }
-        }
-        let from = sample_m(field, vertex);
-        if slide <= 0.0 {
-            return from;
-        }
-        from + (sample_m(field, slides_to(vertex)) - from) * slide
     }
 }
 

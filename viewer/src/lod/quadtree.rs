@@ -12,17 +12,17 @@
 //!   their parents, which lie on the edge as well, and both blocks draw the same points.
 //! - *No pop.* A block is split when somewhere λ < i; then the new vertices, of level i−1, still sit on their parents.
 
+use genescape_schema::scene::bintree::parents;
 use glam::{Vec2, Vec3};
 
-use super::bintree::parents;
-use super::morph::{Detail, LEAST_UNIT_CELLS};
+use super::morph::{Detail, MIN_UNIT_CELLS};
 use crate::camera::Frustum;
-use crate::scene::Heightfield;
+use crate::scene::{Heightfield, TerrainLod};
 
 /// log₂ of a block's cells a side.
 pub const BLOCK_BITS: u32 = 4;
 
-/// Levels that any field of at most 2^15+1 samples has.
+/// As many as a field of 2^15+1 samples a side has.
 const MAX_LEVELS: usize = 12;
 
 /// A block: an instance of the mesh of [`block_indices`]. Fit for an instance buffer (Uint32x3).
@@ -37,24 +37,13 @@ pub struct Block {
     pub level: u32,
 }
 
-/// What a selection amounts to.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Stats {
-    /// Blocks drawn.
-    pub blocks: u32,
-    /// Triangles in them, those that have vanished included.
-    pub triangles: u32,
-    /// Blocks of any size that were found out of sight.
-    pub culled: u32,
-}
-
 /// How far the uniform triangulations of a field are from it: the root of the mean square over all samples of their
 /// vertical distance. To be computed once a field.
 ///
 /// Not the greatest distance: λ is blind to where the land is rough, so one sharp bank would ask for every sample up to
 /// the horizon (on 2 m lands of 60 to 300 m relief the greatest is 5 to 13 times this, d₀ for one pixel wider than the
-/// land). The mean square is what the thesis compares pictures by (7), and what moves does so without a pop. Who needs
-/// a bound everywhere takes [`super::roam`].
+/// land). The mean square is what the thesis compares pictures by (7), and what moves does so without a pop.
+/// [`super::roam`] bounds the error everywhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Errors {
     /// Of level l, in metres; entry 0 is 0. Never decreases.
@@ -97,13 +86,14 @@ pub fn block_cells(field: &Heightfield) -> u32 {
 /// `error_px`: what may be seen of the simplification, 0 for every sample; `max_block_m`: no block is wider, so that
 /// enough can be culled.
 pub fn detail(
-    field: &Heightfield,
+    lod: &TerrainLod,
     errors: &Errors,
     eye_m: Vec3,
     focal_px: f32,
     error_px: f32,
     max_block_m: f32,
 ) -> Detail {
+    let field = &lod.field;
     let width_m = block_cells(field) as f32 * field.spacing_m;
     let fits = |level: &u32| width_m * (1u32 << level) as f32 <= max_block_m;
     let exact = error_px.is_nan() || error_px <= 0.0;
@@ -111,26 +101,21 @@ pub fn detail(
     let unit_m = if exact { 0.0 } else { errors.unit_m(focal_px, error_px) };
     Detail {
         eye_m: Vec2::new(eye_m.x, eye_m.z),
-        above_m: (eye_m.y - field.range_m()[1]).max(0.0),
-        unit_m: unit_m.clamp(LEAST_UNIT_CELLS * field.spacing_m, f32::MAX),
+        above_m: (eye_m.y - lod.range_m()[1]).max(0.0),
+        unit_m: unit_m.clamp(MIN_UNIT_CELLS * field.spacing_m, f32::MAX),
         top: top as f32,
-        padding: [0.0; 3],
     }
 }
 
 /// Replaces `blocks` by those to draw, those that `frustum` doesn't see left out; none is hidden by a later one.
-pub fn select(
-    field: &Heightfield,
-    detail: &Detail,
-    frustum: Option<&Frustum>,
-    blocks: &mut Vec<Block>,
-) -> Stats {
+pub fn select(lod: &TerrainLod, detail: &Detail, frustum: Option<&Frustum>, blocks: &mut Vec<Block>) {
     blocks.clear();
-    let mut selection = Selection { field, detail, frustum, blocks, culled: 0 };
-    selection.visit(Block { i: 0, j: 0, level: top_level(field) });
-    let culled = selection.culled;
-    let (count, cells) = (blocks.len() as u32, block_cells(field));
-    Stats { blocks: count, triangles: count * 2 * cells * cells, culled }
+    Selection { lod, detail, frustum, blocks }.visit(Block { i: 0, j: 0, level: top_level(&lod.field) });
+}
+
+/// Triangles in blocks, those that have vanished included.
+pub fn triangles(field: &Heightfield, blocks: &[Block]) -> u32 {
+    blocks.len() as u32 * 2 * block_cells(field).pow(2)
 }
 
 /// Triangles of a block of `cells` × `cells` cells, counter-clockwise from above: vertex row·(cells+1) + column, with
@@ -153,19 +138,17 @@ pub fn block_indices(cells: u32) -> Vec<u16> {
 }
 
 struct Selection<'a> {
-    field: &'a Heightfield,
+    lod: &'a TerrainLod,
     detail: &'a Detail,
     frustum: Option<&'a Frustum>,
     blocks: &'a mut Vec<Block>,
-    culled: u32,
 }
 
 impl Selection<'_> {
     fn visit(&mut self, block: Block) {
-        let size = block_cells(self.field) << block.level;
+        let size = block_cells(&self.lod.field) << block.level;
         let (low_m, high_m) = self.bounds_m(block, size);
         if self.frustum.is_some_and(|frustum| !frustum.sees_box(low_m, high_m)) {
-            self.culled += 1;
             return;
         }
         if block.level == 0 || self.is_far_enough(block.level, low_m, high_m) {
@@ -191,17 +174,19 @@ impl Selection<'_> {
 
     /// The box of what may be drawn of a block of `size` cells.
     fn bounds_m(&self, block: Block, size: u32) -> (Vec3, Vec3) {
-        let field = self.field;
+        let field = &self.lod.field;
         let across = (field.side - 1) / size;
         let before = (across as usize * across as usize - 1) / 3;
         let number = before + (block.j / size * across + block.i / size) as usize;
-        let [lowest_m, highest_m] = field.block_ranges_m.get(number).copied().unwrap_or(field.range_m());
+        let [lowest_m, highest_m] =
+            self.lod.block_ranges_m.get(number).copied().unwrap_or(self.lod.range_m());
         let corner = |i, height_m, j| Vec3::new(field.place_m(i), height_m, field.place_m(j));
         (corner(block.i, lowest_m, block.j), corner(block.i + size, highest_m, block.j + size))
     }
 }
 
-/// The root mean square of the distances between the land and its uniform triangulation of a level. `drawn_m`: room to work in.
+/// The root mean square of the distances between the land and its uniform triangulation of a level. `drawn_m`:
+/// room to work in.
 fn uniform_error_m(field: &Heightfield, level: u32, drawn_m: &mut Vec<f32>) -> f32 {
     drawn_m.clear();
     drawn_m.extend_from_slice(&field.heights_m);

@@ -9,83 +9,44 @@
 //! across an edge of the one before: one strip (Lindstrom et al., "Real-time, continuous level of detail rendering of
 //! height fields", 1996), where a corner is turned by repeating a vertex.
 
+use genescape_schema::scene::bintree::{Sample, requires};
 use glam::Vec3;
 
-use super::bintree::{Sample, needs};
 use super::morph::sample_m;
 use crate::camera::{Camera, Frustum};
-use crate::scene::Heightfield;
+use crate::scene::TerrainLod;
 
 /// All planes of a frustum still to be tested.
 const ALL_PLANES: u32 = (1 << 5) - 1;
 
-/// The flags that say which samples are in use, kept between frames.
-#[derive(Clone, Debug, Default)]
-pub struct Roam {
-    /// In use if equal to the nonce; so one increment clears all.
-    flags: Vec<u32>,
-    nonce: u32,
-}
-
-/// What a triangulation amounts to.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Stats {
-    /// Triangles that are not degenerate.
-    pub triangles: u32,
-    /// Numbers in the strip.
-    pub strip: u32,
-    /// Samples in use, the corners not counted.
-    pub splits: u32,
-}
-
-impl Roam {
-    /// Replaces `strip` by a triangle strip over the whole field: entries of its arrays, front faces counter-clockwise
-    /// from above with the first triangle as written. `aspect` is the picture's width over its height, `height_px` its
-    /// height; `error_px` is how far land and mesh may be apart in the picture: 0 uses every sample in sight that is not
-    /// on the plane around it.
-    pub fn triangulate(
-        &mut self,
-        field: &Heightfield,
-        camera: &Camera,
-        (aspect, height_px): (f32, f32),
-        error_px: f32,
-        strip: &mut Vec<u32>,
-    ) -> Stats {
-        strip.clear();
-        if field.side < 2 {
-            return Stats::default();
-        }
-        self.begin(field.heights_m.len());
-        let last = field.side - 1;
-        let roots = [[[last, last], [0, 0], [0, last]], [[0, 0], [last, last], [last, 0]]];
-        let mut marks = Marks { flags: &mut self.flags, nonce: self.nonce, side: field.side, splits: 0 };
-        let metric = Metric::new(field, camera, (aspect, height_px), error_px);
-        for root in roots {
-            refine(&metric, &mut marks, root.map(|sample| metric.corner(sample)), ALL_PLANES);
-        }
-        let mut walk = Walk { marks: &marks, strip, triangles: 0 };
-        for root in roots {
-            walk.visit(root, true);
-        }
-        let triangles = walk.triangles;
-        Stats { triangles, strip: strip.len() as u32, splits: marks.splits }
+/// Replaces `strip` by a triangle strip over the whole field: entries of its arrays, front faces counter-clockwise
+/// from above with the first triangle as written. `aspect` is the picture's width over its height, `height_px` its
+/// height; `error_px` is how far land and mesh may be apart in the picture: 0 uses every sample in sight that is not
+/// on the plane around it. Tells how many triangles are not degenerate.
+pub fn triangulate(
+    lod: &TerrainLod,
+    camera: &Camera,
+    (aspect, height_px): (f32, f32),
+    error_px: f32,
+    strip: &mut Vec<u32>,
+) -> u32 {
+    let field = &lod.field;
+    strip.clear();
+    if field.side < 2 {
+        return 0;
     }
-
-    /// As after 2³²−2 frames.
-    #[cfg(test)]
-    pub(super) fn wear(&mut self) {
-        self.nonce = u32::MAX - 1;
+    let last = field.side - 1;
+    let roots = [[[last, last], [0, 0], [0, last]], [[0, 0], [last, last], [last, 0]]];
+    let mut marks = Marks { used: vec![false; field.heights_m.len()], side: field.side };
+    let metric = Metric::new(lod, camera, (aspect, height_px), error_px);
+    for root in roots {
+        refine(&metric, &mut marks, root.map(|sample| metric.corner(sample)), ALL_PLANES);
     }
-
-    /// Clears all flags.
-    fn begin(&mut self, samples: usize) {
-        if self.flags.len() != samples || self.nonce == u32::MAX {
-            self.flags.clear();
-            self.flags.resize(samples, 0);
-            self.nonce = 0;
-        }
-        self.nonce += 1;
+    let mut walk = Walk { marks: &marks, strip, triangles: 0 };
+    for root in roots {
+        walk.visit(root, true);
     }
+    walk.triangles
 }
 
 /// The middle of the hypotenuse a–b; `None` for half a cell.
@@ -96,14 +57,12 @@ fn middle(a: Sample, b: Sample) -> Option<Sample> {
 }
 
 /// Which samples are in use.
-struct Marks<'a> {
-    flags: &'a mut [u32],
-    nonce: u32,
+struct Marks {
+    used: Vec<bool>,
     side: u32,
-    splits: u32,
 }
 
-impl Marks<'_> {
+impl Marks {
     #[inline]
     fn entry(&self, [i, j]: Sample) -> usize {
         (j * self.side + i) as usize
@@ -111,19 +70,17 @@ impl Marks<'_> {
 
     #[inline]
     fn uses(&self, sample: Sample) -> bool {
-        self.flags[self.entry(sample)] == self.nonce
+        self.used[self.entry(sample)]
     }
 
     /// Uses a sample (no corner of the field), and first what it depends on.
     fn enable(&mut self, sample: Sample) {
         let entry = self.entry(sample);
-        if self.flags[entry] == self.nonce {
+        if std::mem::replace(&mut self.used[entry], true) {
             return;
         }
-        self.flags[entry] = self.nonce;
-        self.splits += 1;
         let last = self.side - 1;
-        for needed in needs(sample, last).into_iter().flatten() {
+        for needed in requires(sample, last).into_iter().flatten() {
             // The field's corners are always in use.
             if !(needed[0] % last == 0 && needed[1] % last == 0) {
                 self.enable(needed);
@@ -143,7 +100,7 @@ struct Corner {
 
 /// The bound on the screen, ready for tests without roots or divisions.
 struct Metric<'a> {
-    field: &'a Heightfield,
+    lod: &'a TerrainLod,
     frustum: Frustum,
     position_m: Vec3,
     /// Rows: right, up, ahead.
@@ -155,13 +112,12 @@ struct Metric<'a> {
 }
 
 impl<'a> Metric<'a> {
-    fn new(field: &'a Heightfield, camera: &Camera, (aspect, height_px): (f32, f32), error_px: f32) -> Self {
+    fn new(lod: &'a TerrainLod, camera: &Camera, (aspect, height_px): (f32, f32), error_px: f32) -> Self {
         let (right, ahead) = (camera.right(), camera.forward());
         let axes = [right, right.cross(ahead), ahead];
-        let focal_px = 0.5 * height_px / libm::tanf(0.5 * camera.fov_y_rad);
-        let half = 0.5 * error_px.max(0.0) / focal_px;
+        let half = 0.5 * error_px.max(0.0) / camera.focal_px(height_px);
         Self {
-            field,
+            lod,
             frustum: camera.frustum(aspect),
             position_m: camera.position_m,
             axes,
@@ -171,7 +127,7 @@ impl<'a> Metric<'a> {
     }
 
     fn corner(&self, sample: Sample) -> Corner {
-        let world_m = sample_m(self.field, sample);
+        let world_m = sample_m(&self.lod.field, sample);
         let from_eye_m = world_m - self.position_m;
         Corner { sample, world_m, eye_m: Vec3::from_array(self.axes.map(|axis| axis.dot(from_eye_m))) }
     }
@@ -220,10 +176,10 @@ impl<'a> Metric<'a> {
 }
 
 /// Splits a triangle (ends of the hypotenuse, apex) and its halves as far as the metric asks for.
-fn refine(metric: &Metric<'_>, marks: &mut Marks<'_>, corners: [Corner; 3], planes: u32) {
+fn refine(metric: &Metric<'_>, marks: &mut Marks, corners: [Corner; 3], planes: u32) {
     let [a, b, apex] = corners;
     let Some(sample) = middle(a.sample, b.sample) else { return };
-    let half_m = metric.field.wedgies_m[marks.entry(sample)];
+    let half_m = metric.lod.wedgies_m[marks.entry(sample)];
     let Some(planes) = metric.cutting(&corners, half_m, planes) else { return };
     if !metric.exceeds(&corners, half_m) {
         return;
@@ -236,7 +192,7 @@ fn refine(metric: &Metric<'_>, marks: &mut Marks<'_>, corners: [Corner; 3], plan
 
 /// Writes the strip.
 struct Walk<'a> {
-    marks: &'a Marks<'a>,
+    marks: &'a Marks,
     strip: &'a mut Vec<u32>,
     triangles: u32,
 }

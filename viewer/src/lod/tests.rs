@@ -1,20 +1,21 @@
 //! The meshes that both algorithms draw, taken apart: closed, unfolded, near the land, and calm.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
-use genescape_bake::model::TerrainLod;
 use genescape_bake::stages::terrain_lod;
+use genescape_schema::scene::bintree::{Sample, first_parent, level, parents};
 use glam::{Vec2, Vec3};
 use proptest::prelude::*;
 
-use super::morph::{Detail, sample_m};
+use super::morph::{Detail, GAP, sample_m};
 use super::quadtree::{self, Block, Errors, block_cells, block_indices};
-use super::roam::Roam;
-use crate::camera::Camera;
-use crate::scene::Heightfield;
+use super::roam::triangulate;
+use crate::camera::{Camera, Frustum};
+use crate::scene::{Heightfield, TerrainLod};
 
 /// Rough land of a given side: waves and noise from a seed, `relief_m` high.
-fn land(side: u32, spacing_m: f32, relief_m: f32, seed: u32) -> Heightfield {
+fn land(side: u32, spacing_m: f32, relief_m: f32, seed: u32) -> TerrainLod {
     let height = |i: u32, j: u32| {
         let (x, z, turn) = (i as f32 / side as f32, j as f32 / side as f32, seed as f32);
         let waves =
@@ -22,10 +23,7 @@ fn land(side: u32, spacing_m: f32, relief_m: f32, seed: u32) -> Heightfield {
         relief_m * (0.5 * waves + 0.05 * hash(i, j, seed))
     };
     let heights_m = (0..side * side).map(|n| height(n % side, n / side)).collect();
-    let field = genescape_bake::model::Heightfield { side, spacing_m, heights_m };
-    let TerrainLod { wedgies_m, displacements_m, levels, block_ranges_m } = terrain_lod::lod(&field);
-    let heights_m = field.heights_m;
-    Heightfield { side, spacing_m, heights_m, wedgies_m, displacements_m, levels, block_ranges_m }
+    terrain_lod::lod(&Heightfield { side, spacing_m, heights_m })
 }
 
 /// In [0, 1), of two coordinates and a seed.
@@ -33,6 +31,31 @@ fn hash(i: u32, j: u32, seed: u32) -> f32 {
     let mixed = i.wrapping_mul(0x9e37_79b9) ^ j.wrapping_mul(0x85eb_ca6b) ^ seed.wrapping_mul(0x27d4_eb2f);
     let mixed = (mixed ^ mixed >> 15).wrapping_mul(0xc2b2_ae35);
     ((mixed ^ mixed >> 13).wrapping_mul(0x27d4_eb2f) >> 8) as f32 / (1 << 24) as f32
+}
+
+/// λ at (x, z), as the shader has it.
+fn lambda(detail: &Detail, at_m: Vec2) -> f32 {
+    let distance_m = detail.distance_squared_m2(at_m).sqrt();
+    libm::log2f(distance_m / detail.unit_m).clamp(0.0, detail.top)
+}
+
+/// The way a vertex has gone to its parent, 0 to 1, as the shader has it.
+fn slide(detail: &Detail, field: &Heightfield, sample: Sample) -> f32 {
+    let [x, z] = sample.map(|line| field.place_m(line));
+    ((lambda(detail, Vec2::new(x, z)) - level(sample) as f32) * (1.0 / (1.0 - GAP))).clamp(0.0, 1.0)
+}
+
+/// Where a vertex is drawn, as the shader has it. Two steps suffice in a block of level i: λ ≤ i+2, and vertices have
+/// levels ≥ i.
+fn drawn_m(detail: &Detail, field: &Heightfield, sample: Sample) -> Vec3 {
+    let mut vertex = sample;
+    for _ in 0..2 {
+        if slide(detail, field, vertex) >= 1.0 {
+            vertex = first_parent(vertex);
+        }
+    }
+    let (from, part) = (sample_m(field, vertex), slide(detail, field, vertex));
+    if part <= 0.0 { from } else { from + (sample_m(field, first_parent(vertex)) - from) * part }
 }
 
 type Triangle = [Vec3; 3];
@@ -46,7 +69,7 @@ fn drawn(field: &Heightfield, detail: &Detail, blocks: &[Block]) -> Vec<Triangle
         let vertex = |number: u32| {
             let step = 1 << block.level;
             let (column, row) = (number % (cells + 1), number / (cells + 1));
-            detail.place_m(field, [block.i + column * step, block.j + row * step])
+            drawn_m(detail, field, [block.i + column * step, block.j + row * step])
         };
         let vertices: Vec<Vec3> = (0..(cells + 1) * (cells + 1)).map(vertex).collect();
         let corners = indices.chunks_exact(3).map(|t| [0, 1, 2].map(|c| vertices[t[c] as usize]));
@@ -91,8 +114,8 @@ fn check_closed(field: &Heightfield, triangles: &[Triangle]) -> Result<(), TestC
 }
 
 /// λ with the least d₀ that is allowed, times `unit`.
-fn detail_at(field: &Heightfield, eye_m: Vec3, unit: f32) -> Detail {
-    let mut detail = quadtree::detail(field, &Errors::default(), eye_m, 500.0, 1.0, f32::MAX);
+fn detail_at(lod: &TerrainLod, eye_m: Vec3, unit: f32) -> Detail {
+    let mut detail = quadtree::detail(lod, &Errors::default(), eye_m, 500.0, 1.0, f32::MAX);
     detail.unit_m *= unit;
     detail
 }
@@ -111,36 +134,39 @@ proptest! {
     fn morphed_blocks_close_without_folds(
         depth in 2u32..9, eye in eye(), unit in 1f32..1.5, relief in 0f32..30., seed in 0u32..99
     ) {
-        let field = land((1 << depth) + 1, 0.5, relief, seed);
-        let detail = detail_at(&field, eye * field.extent_m(), unit);
+        let lod = land((1 << depth) + 1, 0.5, relief, seed);
+        let field = &*lod.field;
+        let detail = detail_at(&lod, eye * field.extent_m(), unit);
         let mut blocks = Vec::new();
-        quadtree::select(&field, &detail, None, &mut blocks);
+        quadtree::select(&lod, &detail, None, &mut blocks);
         check_closed(&field, &drawn(&field, &detail, &blocks))?;
     }
 
     #[test]
     fn level_of_detail_spans_two_levels_in_a_block(eye in eye(), unit in 1f32..3., x in 0u32..=16, z in 0u32..=16) {
-        let field = Heightfield { side: 1025, spacing_m: 1.0, ..Heightfield::default() };
-        let detail = detail_at(&field, eye * field.extent_m(), unit);
+        let field = Arc::new(Heightfield { side: 1025, spacing_m: 1.0, ..Heightfield::default() });
+        let lod = TerrainLod { field: field.clone(), ..TerrainLod::default() };
+        let detail = detail_at(&lod, eye * field.extent_m(), unit);
         let mut blocks = Vec::new();
-        quadtree::select(&field, &detail, None, &mut blocks);
+        quadtree::select(&lod, &detail, None, &mut blocks);
         let cells: u64 = blocks.iter().map(|block| (16u64 << block.level) * (16u64 << block.level)).sum();
         prop_assert_eq!(cells, 1024 * 1024);
         // The greatest λ is at a corner, for distance is convex.
         for ([x, z], block) in [[0, 0], [16, 0], [0, 16], [16, 16], [x, z]].iter().flat_map(|v| blocks.iter().map(move |b| (v, b))) {
             let place = |from: u32, by: u32| field.place_m(from + (by << block.level));
-            let lambda = detail.lambda(Vec2::new(place(block.i, *x), place(block.j, *z)));
+            let lambda = lambda(&detail, Vec2::new(place(block.i, *x), place(block.j, *z)));
             let level = block.level as f32;
             prop_assert!(lambda >= level - 1e-4 && lambda <= level + 2.0 + 1e-4, "{lambda} in {block:?}");
         }
     }
 
     #[test]
-    fn whoever_looks_along_the_land_meets_blocks_in_their_order(eye in eye(), yaw in -4f32..4.) {
-        let field = Heightfield { side: 1025, spacing_m: 1.0, ..Heightfield::default() };
-        let detail = detail_at(&field, eye * field.extent_m(), 1.0);
+    fn a_look_along_the_land_meets_blocks_in_their_order(eye in eye(), yaw in -4f32..4.) {
+        let field = Arc::new(Heightfield { side: 1025, spacing_m: 1.0, ..Heightfield::default() });
+        let lod = TerrainLod { field: field.clone(), ..TerrainLod::default() };
+        let detail = detail_at(&lod, eye * field.extent_m(), 1.0);
         let mut blocks = Vec::new();
-        quadtree::select(&field, &detail, None, &mut blocks);
+        quadtree::select(&lod, &detail, None, &mut blocks);
         let holds = |block: &Block, place_m: Vec2| {
             let side = 16u32 << block.level;
             let [low, high] = [0, side].map(|by| Vec2::new(field.place_m(block.i + by), field.place_m(block.j + by)));
@@ -169,7 +195,8 @@ proptest! {
     /// Over the walk vertices arrive and blocks change their levels; a pop would be as high as a displacement, metres here.
     #[test]
     fn land_moves_little_when_the_eye_does(eye in eye(), seed in 0u32..99) {
-        let field = land(65, 1.0, 30.0, seed);
+        let lod = land(65, 1.0, 30.0, seed);
+        let field = &*lod.field;
         let steps = (0..64u32).flat_map(|j| (0..64).map(move |i| [i, j]));
         let steepest = steps.fold(0f32, |most, [i, j]| {
             let here = field.at(i, j);
@@ -179,11 +206,11 @@ proptest! {
         let places: Vec<Vec2> = (0..20).map(|n| Vec2::new((n * 7 % 20) as f32, n as f32) * 3.1 - 30.0).collect();
         let mut before: Option<(Vec<Vec3>, Vec<f32>)> = None;
         for step in 0..12 {
-            let detail = detail_at(&field, start + Vec3::new(0.6, 0.0, 0.8) * (step_m * step as f32), 1.0);
+            let detail = detail_at(&lod, start + Vec3::new(0.6, 0.0, 0.8) * (step_m * step as f32), 1.0);
             let mut blocks = Vec::new();
-            quadtree::select(&field, &detail, None, &mut blocks);
+            quadtree::select(&lod, &detail, None, &mut blocks);
             let mesh = drawn(&field, &detail, &blocks);
-            let vertices: Vec<Vec3> = (0..65 * 65).map(|n| detail.place_m(&field, [n % 65, n / 65])).collect();
+            let vertices: Vec<Vec3> = (0..65 * 65).map(|n| drawn_m(&detail, &field, [n % 65, n / 65])).collect();
             let heights: Vec<f32> =
                 places.iter().map(|&at| height_in(&mesh, at).expect("the mesh covers the square")).collect();
             if let Some((vertices_before, heights_before)) = &before {
@@ -202,11 +229,12 @@ proptest! {
     fn blocks_look_on_average_as_near_to_the_land_as_asked(
         eye in eye(), relief in 1f32..20., error_px in 0.5f32..8., seed in 0u32..99
     ) {
-        let field = land(129, 1.0, relief, seed);
+        let lod = land(129, 1.0, relief, seed);
+        let field = &*lod.field;
         let eye_m = eye * field.extent_m();
-        let detail = quadtree::detail(&field, &Errors::of(&field), eye_m, 300.0, error_px, f32::MAX);
+        let detail = quadtree::detail(&lod, &Errors::of(&field), eye_m, 300.0, error_px, f32::MAX);
         let mut blocks = Vec::new();
-        quadtree::select(&field, &detail, None, &mut blocks);
+        quadtree::select(&lod, &detail, None, &mut blocks);
         let mesh = drawn(&field, &detail, &blocks);
         let squares_px2 = (0..400u32).map(|n| {
             let land_m = sample_m(&field, [n * 37 % 129, n * 53 % 128]);
@@ -251,14 +279,14 @@ proptest! {
     fn strip_is_a_closed_mesh_near_the_land(
         depth in 1u32..7, mut camera in camera(), relief in 0f32..20., error_px in 0.3f32..20., seed in 0u32..99
     ) {
-        let field = land((1 << depth) + 1, 1.0, relief, seed);
+        let lod = land((1 << depth) + 1, 1.0, relief, seed);
+        let field = &*lod.field;
         camera.position_m *= field.extent_m();
-        let (mut roam, mut strip) = (Roam::default(), Vec::new());
-        let stats = roam.triangulate(&field, &camera, PICTURE, error_px, &mut strip);
+        let mut strip = Vec::new();
+        let triangles = triangulate(&lod, &camera, PICTURE, error_px, &mut strip);
         let mesh = strip_triangles(&field, &strip);
         check_closed(&field, &mesh)?;
-        prop_assert_eq!(stats.triangles as usize, mesh.len());
-        prop_assert_eq!(stats.strip as usize, strip.len());
+        prop_assert_eq!(triangles as usize, mesh.len());
 
         let frustum = camera.frustum(PICTURE.0);
         for entry in 0..field.side * field.side {
@@ -274,78 +302,43 @@ proptest! {
 
     #[test]
     fn without_an_allowed_error_all_that_is_seen_is_drawn(mut camera in camera(), seed in 0u32..99) {
-        let field = land(33, 1.0, 20.0, seed);
+        let lod = land(33, 1.0, 20.0, seed);
+        let field = &*lod.field;
         camera.position_m *= field.extent_m();
         let mut strip = Vec::new();
-        Roam::default().triangulate(&field, &camera, PICTURE, 0.0, &mut strip);
+        triangulate(&lod, &camera, PICTURE, 0.0, &mut strip);
         let frustum = camera.frustum(PICTURE.0);
         for entry in 0..field.side * field.side {
-            let flat = field.displacements_m[entry as usize] == 0.0;
-            let seen = frustum.sees_sphere(sample_m(&field, [entry % field.side, entry / field.side]), 0.0);
+            let sample = [entry % field.side, entry / field.side];
+            let corner = sample.map(|line| line % (field.side - 1)) == [0, 0];
+            let height_m = |[i, j]: [u32; 2]| field.at(i, j);
+            let middle_m = || parents(sample).map(height_m).iter().sum::<f32>() / 2.0;
+            let flat = corner || middle_m() == height_m(sample);
+            let seen = frustum.sees_sphere(sample_m(&field, sample), 0.0);
             prop_assert!(flat || !seen || strip.contains(&entry), "sample {entry}");
         }
-    }
-
-    #[test]
-    fn flags_of_earlier_frames_do_not_show(mut camera in camera(), mut other in camera(), wrap in any::<bool>()) {
-        let field = land(33, 1.0, 20.0, 5);
-        camera.position_m *= field.extent_m();
-        other.position_m *= field.extent_m();
-        let (mut fresh, mut used, mut worn) = (Vec::new(), Vec::new(), Roam::default());
-        worn.triangulate(&field, &other, PICTURE, 1.0, &mut used);
-        if wrap {
-            worn.wear();
-            worn.triangulate(&field, &other, PICTURE, 1e9, &mut used);
-        }
-        worn.triangulate(&field, &camera, PICTURE, 2.0, &mut used);
-        Roam::default().triangulate(&field, &camera, PICTURE, 2.0, &mut fresh);
-        prop_assert_eq!(fresh, used);
     }
 }
 
 #[test]
 fn more_error_and_less_sight_mean_fewer_triangles() {
-    let field = land(129, 2.0, 40.0, 3);
+    let lod = land(129, 2.0, 40.0, 3);
+    let field = &*lod.field;
     let camera =
         Camera { position_m: Vec3::new(0.0, 30.0, 100.0), yaw_rad: 0.0, pitch_rad: -0.2, fov_y_rad: 1.0 };
-    let (mut roam, mut strip, mut blocks) = (Roam::default(), Vec::new(), Vec::new());
+    let (mut strip, mut blocks) = (Vec::new(), Vec::new());
     let counts: Vec<u32> = [0.0, 1.0, 4.0, 64.0, 1e9]
-        .map(|error_px| roam.triangulate(&field, &camera, PICTURE, error_px, &mut strip).triangles)
+        .map(|error_px| triangulate(&lod, &camera, PICTURE, error_px, &mut strip))
         .to_vec();
     assert!(counts.is_sorted_by(|a, b| a > b), "{counts:?}");
-    let detail = detail_at(&field, camera.position_m, 1.0);
-    let all = quadtree::select(&field, &detail, None, &mut blocks);
-    let seen = quadtree::select(&field, &detail, Some(&camera.frustum(1.5)), &mut blocks);
-    assert!(seen.blocks < all.blocks && seen.blocks > 0 && seen.culled > 0, "{seen:?} of {all:?}");
-    let exact = quadtree::detail(&field, &Errors::of(&field), camera.position_m, 500.0, 0.0, f32::MAX);
-    assert_eq!(quadtree::select(&field, &exact, None, &mut blocks).triangles, 128 * 128 * 2);
-}
-
-/// Times: `cargo test -p genescape-viewer --lib lod::tests::speed -- --ignored --nocapture`.
-#[test]
-#[ignore = "prints times"]
-fn speed() {
-    let field = land(513, 2.0, 60.0, 7);
-    let errors = Errors::of(&field);
-    let (mut roam, mut strip, mut blocks) = (Roam::default(), Vec::new(), Vec::new());
-    let time = |name: &str, run: &mut dyn FnMut() -> String| {
-        let said = run();
-        let start = std::time::Instant::now();
-        (0..20).for_each(|_| drop(run()));
-        genescape_bake::say!("{name}: {:.0} us, {said}", start.elapsed().as_secs_f64() * 1e6 / 20.0);
+    let detail = detail_at(&lod, camera.position_m, 1.0);
+    let mut count = |frustum: Option<&Frustum>| {
+        quadtree::select(&lod, &detail, frustum, &mut blocks);
+        blocks.len()
     };
-    for yaw_rad in [0.0, 2.0] {
-        let eye_m = Vec3::new(50.0, field.height_m(50.0, 90.0) + 1.6, 90.0);
-        let camera = Camera { position_m: eye_m, yaw_rad, pitch_rad: 0.0, fov_y_rad: 1.0 };
-        let frustum = camera.frustum(16.0 / 9.0);
-        let detail = quadtree::detail(&field, &errors, eye_m, 494.0, 1.0, 256.0);
-        time("blocks", &mut || {
-            let stats = quadtree::select(&field, &detail, Some(&frustum), &mut blocks);
-            format!("{stats:?}, d0 {} m", detail.unit_m)
-        });
-        time("roam", &mut || {
-            format!("{:?}", roam.triangulate(&field, &camera, (16.0 / 9.0, 540.0), 1.0, &mut strip))
-        });
-    }
-    time("errors", &mut || format!("{:?}", Errors::of(&field)));
+    let (all, seen) = (count(None), count(Some(&camera.frustum(1.5))));
+    assert!(seen < all && seen > 0, "{seen} of {all}");
+    let exact = quadtree::detail(&lod, &Errors::of(&field), camera.position_m, 500.0, 0.0, f32::MAX);
+    quadtree::select(&lod, &exact, None, &mut blocks);
+    assert_eq!(quadtree::triangles(&field, &blocks), 128 * 128 * 2);
 }

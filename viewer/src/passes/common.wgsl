@@ -1,4 +1,4 @@
-// What all passes share: the view, the light, the air. Right-handed, y up, metres; reversed depth.
+// What all passes share: the view, the light, aerial perspective. Right-handed, y up, metres; reversed depth.
 
 struct View {
     clip_from_world: mat4x4f,
@@ -17,36 +17,36 @@ struct View {
     haze: vec3f,
     // Surface of the lake; far below everything if there is none.
     water_level: f32,
-    viewport_px: vec2f,
     // Pixels that one radian covers in the middle of the picture.
     focal_px: f32,
-    flags: u32,
-    // Altitude and extent in metres of the cumulus sheet, then of the cirrus sheet; extent 0 if there is none.
+    // 1 if it is so: colours say the level of detail, clouds drift, the terrain morphs.
+    tint_levels: u32,
+    drift_clouds: u32,
+    morph_terrain: u32,
+    // Altitude and extent in metres of the cumulus layer, then of the cirrus layer; extent 0 if there is none.
     clouds: vec4f,
     // The eye for which levels of detail are chosen: that of the walker, also when one looks on from above.
     lod_eye: vec3f,
-    unused: f32,
+    // Distance at which level 0 of the terrain ends.
+    lod_unit: f32,
     // Samples a side, metres between them, half the extent in metres, height of the highest land.
     field: vec4f,
-    // Level of detail of the terrain: distance at which level 0 ends, greatest level, height of the eye above the
-    // highest land, unused.
-    terrain_lod: vec4f,
     // Tile sizes in metres of the first four tiling textures of the ground, and of the fifth.
     tiles: vec4f,
-    last_tile: vec4f,
+    last_tile: f32,
+    // The terrain's greatest level, and how far the eye is above the highest land.
+    lod_top: f32,
+    lod_above: f32,
+    unused: f32,
 }
-
-const FLAG_TINT: u32 = 1u;
-const FLAG_DRIFT: u32 = 2u;
-const FLAG_MORPH: u32 = 4u;
 
 @group(0) @binding(0) var<uniform> view: View;
 @group(0) @binding(1) var repeating: sampler;
 @group(0) @binding(2) var clamped: sampler;
 @group(0) @binding(3) var sky_cube: texture_cube<f32>;
 @group(0) @binding(4) var clear_cube: texture_cube<f32>;
-@group(0) @binding(5) var cumulus_sheet: texture_2d<f32>;
-@group(0) @binding(6) var cirrus_sheet: texture_2d<f32>;
+@group(0) @binding(5) var cumulus_layer: texture_2d<f32>;
+@group(0) @binding(6) var cirrus_layer: texture_2d<f32>;
 @group(0) @binding(7) var shadow_map: texture_depth_2d;
 @group(0) @binding(8) var comparing: sampler_comparison;
 @group(0) @binding(9) var heights: texture_2d<f32>;
@@ -79,8 +79,8 @@ fn from_template(rows: array<vec4f, 3>, point: vec3f) -> vec3f {
 
 const PI: f32 = 3.14159265;
 
-// Light that reaches the eye from `distance` metres: some of it is replaced by the air's own.
-fn through_air(radiance: vec3f, distance: f32) -> vec3f {
+// Aerial perspective: of the light that comes from `distance` metres away some is replaced by the haze's own.
+fn aerial_perspective(radiance: vec3f, distance: f32) -> vec3f {
     return mix(view.haze, radiance, exp(-distance * view.haze_extinction));
 }
 
@@ -135,8 +135,8 @@ fn level_tint(level: f32) -> vec3f {
     return 0.55 + 0.45 * cos(vec3f(phase, phase + 2.1, phase + 4.2));
 }
 
-// How far clouds have drifted, in metres, at two moments of a cycle half a cycle apart, and the share of the first: each
-// is faded in and out while it is far from where the clouds were painted, so that they drift for ever.
+// How far clouds have drifted, in metres, at two moments half a cycle apart, and the share of the first: each is faded in
+// and out while it is far from where the clouds were painted, so that they drift for ever.
 struct Drift {
     first: vec2f,
     second: vec2f,
@@ -147,7 +147,7 @@ const WIND_M_PER_S: vec2f = vec2f(9.0, 4.0);
 const CYCLE_S: f32 = 200.0;
 
 fn drift() -> Drift {
-    if ((view.flags & FLAG_DRIFT) == 0u) {
+    if (view.drift_clouds == 0u) {
         return Drift(vec2f(0.0), vec2f(0.0), 1.0);
     }
     let first = fract(view.time_s / CYCLE_S + 0.5) - 0.5;
@@ -186,7 +186,7 @@ fn sky_radiance(direction: vec3f) -> vec3f {
     return max(radiance, vec3f(0.0));
 }
 
-fn sheet_alpha(image: texture_2d<f32>, direction: vec3f, altitude: f32, extent: f32, moved: vec2f) -> f32 {
+fn layer_alpha(image: texture_2d<f32>, direction: vec3f, altitude: f32, extent: f32, moved: vec2f) -> f32 {
     if (extent <= 0.0) {
         return 0.0;
     }
@@ -197,7 +197,7 @@ fn sheet_alpha(image: texture_2d<f32>, direction: vec3f, altitude: f32, extent: 
 // Share of the sun's disc that clouds let through.
 fn sun_clearness() -> f32 {
     let moved = drift().first;
-    let low = sheet_alpha(cumulus_sheet, view.sun_direction, view.clouds.x, view.clouds.y, moved);
-    let high = sheet_alpha(cirrus_sheet, view.sun_direction, view.clouds.z, view.clouds.w, moved);
+    let low = layer_alpha(cumulus_layer, view.sun_direction, view.clouds.x, view.clouds.y, moved);
+    let high = layer_alpha(cirrus_layer, view.sun_direction, view.clouds.z, view.clouds.w, moved);
     return (1.0 - low) * (1.0 - 0.7 * high);
 }

@@ -1,23 +1,30 @@
-// Which trees are seen, and at which level of detail (thesis 4.3.2, 4.3.3): instances → for each kind and level a list of
-// instances with how far they have morphed, and the commands that draw them.
+// Culling and levels of detail (thesis 4.3.2, 4.3.3): instances → for each template and level a list of the instances that
+// are seen, with how far they have morphed, and the commands that draw them.
 
-const MAX_LEVELS: u32 = 12u;
-const LEAST_DISTANCE_M: f32 = 0.01;
+// Threads of a workgroup, and the most workgroups along one axis.
+override GROUP: u32;
+override MAX_GROUPS: u32;
+// What is nearer is drawn as from this far.
+override MIN_DISTANCE_M: f32;
+// LOD modes that differ from control by quality.
+override SIMPLE: u32;
+override DISCRETE: u32;
+override OFF: u32;
 
 struct Cull {
     // Unit normals and distances of the planes that bound the view; a point p is inside if n·p + d ≥ 0.
     planes: array<vec4f, 5>,
     eye: vec3f,
-    // World size in metres that may be wrong, for each metre of distance.
+    // Error in metres that is allowed for each metre of distance.
     error_per_m: f32,
     // Where the trees that are looked at end; they begin at `first`.
     instances: u32,
-    // Kinds of tree, levels (the most of any kind), materials.
+    // Templates, levels (the most of any template), materials.
     templates: u32,
     levels: u32,
     materials: u32,
-    // 0 quality, 1 simple, 2 discrete, 3 none, 4 the level whose error is at most `fixed_error_m`.
-    scheme: u32,
+    lod_mode: u32,
+    // Error in metres that is allowed at any distance.
     fixed_error_m: f32,
     // 0 draws all of them, wherever they stand.
     planes_used: u32,
@@ -27,12 +34,13 @@ struct Cull {
 struct Template {
     center: vec3f,
     radius: f32,
-    errors: array<f32, MAX_LEVELS>,
+    // Of each level in metres; as many as `MAX_LEVELS` in Rust.
+    errors: array<f32, 12>,
     levels: u32,
     // Where its first list starts, and how long each of its lists may get.
     first: u32,
     capacity: u32,
-    // Error that the simple scheme gives its finest mesh.
+    // Error that the simple mode gives its finest mesh.
     simple_error: f32,
 }
 
@@ -57,61 +65,58 @@ struct Command {
 @group(1) @binding(5) var<storage, read_write> commands: array<Command>;
 
 // λ of a tree whose nearest part is `distance` away. The Rust twin is `lod::tree::lod_number`, and a test compares them.
-fn lod_number(kind: u32, scale: f32, distance: f32) -> f32 {
-    let last = f32(templates[kind].levels - 1u);
-    if (cull.scheme == 3u) {
+fn lod_number(template_index: u32, scale: f32, distance: f32) -> f32 {
+    let last = f32(templates[template_index].levels - 1u);
+    if (cull.lod_mode == OFF) {
         return 0.0;
     }
-    var allowed = cull.error_per_m * distance / scale;
-    if (cull.scheme == 4u) {
-        allowed = cull.fixed_error_m / scale;
-    }
-    if (cull.scheme == 1u) {
-        let simple = templates[kind].simple_error;
+    let allowed = (cull.error_per_m * distance + cull.fixed_error_m) / scale;
+    if (cull.lod_mode == SIMPLE) {
+        let simple = templates[template_index].simple_error;
         if (!(allowed > simple)) {
             return 0.0;
         }
         return min(2.0 * log2(allowed / simple), last);
     }
-    if (!(allowed > templates[kind].errors[0])) {
+    if (!(allowed > templates[template_index].errors[0])) {
         return 0.0;
     }
     var lambda = last;
-    for (var i = 0u; i + 1u < templates[kind].levels; i++) {
-        let low = templates[kind].errors[i];
-        let high = templates[kind].errors[i + 1u];
+    for (var i = 0u; i + 1u < templates[template_index].levels; i++) {
+        let low = templates[template_index].errors[i];
+        let high = templates[template_index].errors[i + 1u];
         if (allowed < high) {
             lambda = f32(i) + log2(allowed / low) / log2(high / low);
             break;
         }
     }
-    if (cull.scheme == 2u || cull.scheme == 4u) {
+    if (cull.lod_mode == DISCRETE) {
         return floor(lambda);
     }
     return lambda;
 }
 
-fn bucket(kind: u32, level: u32) -> u32 {
-    return level * cull.templates + kind;
+fn bucket(template_index: u32, level: u32) -> u32 {
+    return level * cull.templates + template_index;
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(GROUP)
 fn clear(@builtin(global_invocation_id) id: vec3u) {
     if (id.x < cull.templates * cull.levels) {
         atomicStore(&counts[id.x], 0u);
     }
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(GROUP)
 fn choose(@builtin(global_invocation_id) id: vec3u) {
-    let index = cull.first + id.x + id.y * 65535u * 64u;
+    let index = cull.first + id.x + id.y * MAX_GROUPS * GROUP;
     if (index >= cull.instances) {
         return;
     }
-    let kind = trees[index].template_index;
-    let center = from_template(trees[index].rows, templates[kind].center);
+    let template_index = trees[index].template_index;
+    let center = from_template(trees[index].rows, templates[template_index].center);
     let scale = trees[index].scale;
-    let radius = templates[kind].radius * scale;
+    let radius = templates[template_index].radius * scale;
     if (cull.planes_used != 0u) {
         for (var plane = 0u; plane < 5u; plane++) {
             if (dot(cull.planes[plane], vec4f(center, 1.0)) < -radius) {
@@ -119,15 +124,15 @@ fn choose(@builtin(global_invocation_id) id: vec3u) {
             }
         }
     }
-    let distance = max(length(center - cull.eye) - radius, LEAST_DISTANCE_M);
-    let lambda = lod_number(kind, scale, distance);
+    let distance = max(length(center - cull.eye) - radius, MIN_DISTANCE_M);
+    let lambda = lod_number(template_index, scale, distance);
     let level = u32(lambda);
-    let slot = atomicAdd(&counts[bucket(kind, level)], 1u);
-    let list = templates[kind].first + level * templates[kind].capacity;
+    let slot = atomicAdd(&counts[bucket(template_index, level)], 1u);
+    let list = templates[template_index].first + level * templates[template_index].capacity;
     visible[list + slot] = Visible(index, lambda);
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(GROUP)
 fn write_commands(@builtin(global_invocation_id) id: vec3u) {
     let buckets = cull.templates * cull.levels;
     if (id.x < buckets * cull.materials) {

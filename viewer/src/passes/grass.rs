@@ -4,32 +4,44 @@
 
 use glam::{Vec2, Vec3};
 
-use super::{Layouts, Shape, pipeline};
+use super::{BoundScene, Compiler, DrawPass, PipelineDesc, Shader, buffer_layout};
 use crate::camera::Frustum;
-use crate::gpu::Gpu;
+use crate::options::Options;
 use crate::scene::{Ground, Picture};
-use crate::shaders::{ShaderError, Shaders};
+use crate::shaders::ShaderError;
 
-/// Metres a side of a cell; this and the next four are those of `grass.wgsl`, and a test compares them.
-pub const CELL_M: f32 = 1.0;
-/// Blades of a clump.
-pub const BLADES: u32 = 16;
+pub const SHADER: Shader = Shader {
+    name: "grass",
+    source: include_str!("grass.wgsl"),
+    constants: &[
+        ("CELL_M", CELL_M as f64),
+        ("CLUMPS", CLUMPS as f64),
+        ("BLADES", BLADES as f64),
+        ("BLADE_VERTICES", BLADE_VERTICES as f64),
+        ("DENSE_M", DENSE_M as f64),
+        ("REACH_M", REACH_M as f64),
+    ],
+};
+
+/// Metres a side of a cell.
+const CELL_M: f32 = 1.0;
 /// Clumps of a cell near the eye.
-pub const CLUMPS: u32 = 18;
-/// Up to this distance in metres all of them stand.
-pub const DENSE_M: f32 = 3.0;
-/// Beyond this distance in metres there are none.
-pub const REACH_M: f32 = 30.0;
-
+const CLUMPS: u32 = 18;
+/// Blades of a clump.
+const BLADES: u16 = 16;
 /// Vertices of a blade, and its triangles: two for the stalk, one for the tip.
 const BLADE_VERTICES: u16 = 5;
 const BLADE_TRIANGLES: [u16; 9] = [0, 1, 2, 2, 1, 3, 2, 3, 4];
+/// Up to this distance in metres all clumps stand.
+const DENSE_M: f32 = 3.0;
+/// Beyond this distance in metres there are none.
+const REACH_M: f32 = 30.0;
 /// Metres from a cell's middle to the farthest of its blades: half a diagonal on steep land, and a blade.
 const AROUND_M: f32 = 1.2 * CELL_M;
 /// Bytes of rock, scree, snow and mud together beyond which no grass grows.
 const BARE: u32 = 190;
 
-/// So many blades of a cell, as the shader reads them.
+/// [`BLADES`] blades of a cell, as the shader reads them.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Clump {
@@ -42,55 +54,39 @@ pub struct Clump {
 /// Attributes of [`Clump`].
 pub const CLUMP: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Sint32x2, 1 => Uint32];
 
-/// The pipeline.
 #[derive(Debug)]
 pub struct Grass {
     pipeline: wgpu::RenderPipeline,
     indices: wgpu::Buffer,
-    index_count: u32,
 }
 
 impl Grass {
-    /// Compiles it.
-    pub fn new(gpu: &Gpu, layouts: &Layouts, shaders: &Shaders, samples: u32) -> Result<Self, ShaderError> {
-        use wgpu::util::DeviceExt;
-        let buffer = wgpu::VertexBufferLayout {
-            array_stride: size_of::<Clump>() as u64,
-            step_mode: wgpu::VertexStepMode::Instance,
-            attributes: &CLUMP,
-        };
-        let module = shaders.module(&gpu.device, "grass")?;
-        let groups = [Some(&layouts.view), Some(&layouts.ground)];
-        let buffers = [Some(buffer)];
-        let shape = Shape { buffers: &buffers, ..Shape::new("grass", &module, &groups, samples) };
-        let blades = 0..BLADES as u16;
+    pub(super) fn new(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
+        let module = compiler.module(&SHADER)?;
+        let groups = [&compiler.layouts.view, &compiler.layouts.ground];
+        let buffers = [buffer_layout::<Clump>(wgpu::VertexStepMode::Instance, &CLUMP)];
+        let desc = PipelineDesc { buffers: &buffers, ..PipelineDesc::new(&module, &groups) };
         let indices: Vec<u16> =
-            blades.flat_map(|blade| BLADE_TRIANGLES.map(|v| blade * BLADE_VERTICES + v)).collect();
-        let buffer = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("blades"),
-            contents: bytemuck::cast_slice(&indices),
-            usage: wgpu::BufferUsages::INDEX,
-        });
+            (0..BLADES).flat_map(|blade| BLADE_TRIANGLES.map(|v| blade * BLADE_VERTICES + v)).collect();
         Ok(Self {
-            pipeline: pipeline(&gpu.device, &shape),
-            indices: buffer,
-            index_count: indices.len() as u32,
+            pipeline: compiler.pipeline(&desc),
+            indices: compiler.gpu.buffer("blades", &indices, wgpu::BufferUsages::INDEX),
         })
     }
+}
 
-    /// One draw of so many [`Clump`]s from a buffer. Group 0 is set; `ground` is group 1 of the land.
-    pub fn draw(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        ground: &wgpu::BindGroup,
-        clumps: &wgpu::Buffer,
-        count: u32,
-    ) {
+impl DrawPass for Grass {
+    fn is_needed(&self, bound: &BoundScene, options: &Options) -> bool {
+        options.draw_terrain && bound.clumps.count > 0
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, bound: &BoundScene, _: &Options) -> u32 {
         pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(1, ground, &[]);
-        pass.set_vertex_buffer(0, clumps.slice(..));
+        pass.set_bind_group(1, &bound.ground_group, &[]);
+        pass.set_vertex_buffer(0, bound.clumps.buffer.slice(..));
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint16);
-        pass.draw_indexed(0..self.index_count, 0, 0..count);
+        pass.draw_indexed(0..u32::from(BLADES) * BLADE_TRIANGLES.len() as u32, 0, 0..bound.clumps.count);
+        1
     }
 }
 
@@ -153,7 +149,7 @@ fn is_bare(weights: &Picture, middle_m: Vec2, half_m: f32) -> bool {
 mod tests {
     use super::*;
     use crate::camera::Camera;
-    use crate::scene::{Apron, Heightfield, Surface};
+    use crate::scene::{Apron, GroundSurface, Heightfield};
     use glam::Vec3Swizzles;
     use proptest::prelude::*;
     use std::sync::Arc;
@@ -172,8 +168,9 @@ mod tests {
         Ground {
             name: String::new(),
             field: Arc::new(field),
+            lod: Arc::default(),
             water_level_m: Some(8.0),
-            surface: Surface { color, weights: pixels(255), light, details: Vec::new() },
+            surface: GroundSurface { color, weights: pixels(255), light, details: Vec::new() },
             apron: Arc::new(Apron::default()),
         }
     }

@@ -1,14 +1,16 @@
 // Blades of grass around the eye: a clump's number → blades of three triangles, rooted on the land as it is drawn, in the
 // ground's colour and light. All of it happens for vertices: a pixel is given its colour, nothing more.
 
-// These four are those of grass.rs; a test compares them.
-const CELL_M: f32 = 1.0;
-const BLADES: u32 = 16u;
-const DENSE_M: f32 = 3.0;
-const REACH_M: f32 = 30.0;
-// Blades of one tuft, and clumps that a cell has at most.
+// Metres a side of a cell, clumps that it has at most, blades of a clump, vertices of a blade.
+override CELL_M: f32;
+override CLUMPS: u32;
+override BLADES: u32;
+override BLADE_VERTICES: u32;
+// Distances in metres up to which all of them stand, and beyond which there are none.
+override DENSE_M: f32;
+override REACH_M: f32;
+// Blades of one tuft.
 const TUFT: u32 = 8u;
-const CLUMPS: u32 = 18u;
 
 @group(1) @binding(0) var ground_color: texture_2d<f32>;
 @group(1) @binding(1) var ground_weights: texture_2d<f32>;
@@ -96,7 +98,7 @@ const NOWHERE = Out(vec4f(0.0, 0.0, -1.0, 1.0), vec3f(0.0));
 
 @vertex
 fn vertex(clump: Clump, @builtin(vertex_index) index: u32) -> Out {
-    let blade = clump.number * BLADES + index / 5u;
+    let blade = clump.number * BLADES + index / BLADE_VERTICES;
     let cell = bitcast<vec2u>(clump.cell);
     let tuft_dice = unit(pcg3d(vec3u(cell, blade / TUFT)));
     let seed = pcg3d(vec3u(cell, blade + 8191u));
@@ -126,9 +128,9 @@ fn vertex(clump: Clump, @builtin(vertex_index) index: u32) -> Out {
     let taller = select(1.0, 1.7, tuft_dice.z > 0.93);
     let height = (0.05 + 0.15 * growth) * (0.55 + 0.8 * more.x) * taller * present;
     // 0 at the root, 1 at the tip; two vertices, two vertices, one.
-    let corner = index % 5u;
+    let corner = index % BLADE_VERTICES;
     let up = f32(corner / 2u) * 0.5;
-    let side = select(f32(corner & 1u) * 2.0 - 1.0, 0.0, corner == 4u);
+    let side = select(f32(corner & 1u) * 2.0 - 1.0, 0.0, corner == BLADE_VERTICES - 1u);
 
     let to_eye = normalize(view.eye - vec3f(root.x, ground_m, root.y));
     let facing = normalize(vec2f(to_eye.z, -to_eye.x) + 1.3 * (dice.z - 0.5) * to_eye.xz + vec2f(1e-4));
@@ -160,7 +162,7 @@ fn vertex(clump: Clump, @builtin(vertex_index) index: u32) -> Out {
     let against = max(dot(-to_eye, view.sun_direction), 0.0);
     let glow = against * against * against * 0.9 * up * (1.0 - far);
     radiance += albedo * vec3f(0.9, 1.0, 0.35) / PI * view.sun_irradiance * light.b * glow;
-    return Out(view.clip_from_world * vec4f(world, 1.0), through_air(radiance, away));
+    return Out(view.clip_from_world * vec4f(world, 1.0), aerial_perspective(radiance, away));
 }
 
 @fragment

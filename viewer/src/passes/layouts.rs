@@ -1,14 +1,15 @@
 //! What the bind groups of all passes look like, and the samplers they share.
 
 use crate::gpu::Gpu;
-use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, Device, ShaderStages, TextureViewDimension};
+use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, ShaderStages, TextureViewDimension};
+use wgpu::{BufferBindingType, SamplerBindingType, TextureSampleType};
 
 /// Bind group layouts by what they hold; each pass names the groups it needs.
 #[derive(Debug)]
 pub struct Layouts {
-    /// Group 0 of every picture: view, light, air. See `common.wgsl`.
+    /// Group 0 of every picture: view, light, aerial perspective. See `common.wgsl`.
     pub view: BindGroupLayout,
-    /// Group 0 of the shadow pass, which cannot read what it writes.
+    /// Group 0 of the shadow pass, which cannot read what it writes: a part of `view`.
     pub sun_view: BindGroupLayout,
     /// Group 1 of the terrain and of grass: what covers the land.
     pub ground: BindGroupLayout,
@@ -16,9 +17,9 @@ pub struct Layouts {
     pub trees: BindGroupLayout,
     /// Group 2 of trees: a material.
     pub material: BindGroupLayout,
-    /// Group 1 of the choice of trees.
+    /// Group 1 of culling.
     pub cull: BindGroupLayout,
-    /// Group 1 of tones: radiance.
+    /// Group 1 of tone mapping: radiance.
     pub radiance: BindGroupLayout,
     /// Repeats, with mip levels.
     pub repeating: wgpu::Sampler,
@@ -28,136 +29,126 @@ pub struct Layouts {
     pub comparing: wgpu::Sampler,
 }
 
-const BOTH: ShaderStages = ShaderStages::VERTEX_FRAGMENT;
+/// The bindings of `common.wgsl` that the shadow pass reads.
+pub(super) const SUN_VIEW: [u32; 3] = [0, 2, 9];
 
-fn uniform() -> BindingType {
-    BindingType::Buffer {
-        ty: wgpu::BufferBindingType::Uniform,
-        has_dynamic_offset: false,
-        min_binding_size: None,
-    }
-}
+const UNIFORM: BindingType = buffer(BufferBindingType::Uniform);
+const READ: BindingType = buffer(BufferBindingType::Storage { read_only: true });
+const WRITE: BindingType = buffer(BufferBindingType::Storage { read_only: false });
+const FILTERING: BindingType = BindingType::Sampler(SamplerBindingType::Filtering);
+const COMPARISON: BindingType = BindingType::Sampler(SamplerBindingType::Comparison);
+const FILTERED: TextureSampleType = TextureSampleType::Float { filterable: true };
+const IMAGE: BindingType = texture(FILTERED, TextureViewDimension::D2);
+const LAYERS: BindingType = texture(FILTERED, TextureViewDimension::D2Array);
+const CUBE: BindingType = texture(FILTERED, TextureViewDimension::Cube);
+const DATA: BindingType = texture(TextureSampleType::Float { filterable: false }, TextureViewDimension::D2);
+const DEPTH_MAP: BindingType = texture(TextureSampleType::Depth, TextureViewDimension::D2);
 
-fn storage(read_only: bool) -> BindingType {
-    let ty = wgpu::BufferBindingType::Storage { read_only };
+const fn buffer(ty: BufferBindingType) -> BindingType {
     BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None }
 }
 
-fn texture(view_dimension: TextureViewDimension) -> BindingType {
-    let sample_type = wgpu::TextureSampleType::Float { filterable: true };
+const fn texture(sample_type: TextureSampleType, view_dimension: TextureViewDimension) -> BindingType {
     BindingType::Texture { sample_type, view_dimension, multisampled: false }
 }
 
-fn of_type(sample_type: wgpu::TextureSampleType) -> BindingType {
-    BindingType::Texture { sample_type, view_dimension: TextureViewDimension::D2, multisampled: false }
-}
-
-fn layout(
-    device: &Device,
-    label: &str,
-    visibility: ShaderStages,
-    bindings: &[(u32, BindingType)],
-) -> BindGroupLayout {
-    let entries: Vec<BindGroupLayoutEntry> = bindings
-        .iter()
-        .map(|&(binding, ty)| BindGroupLayoutEntry { binding, visibility, ty, count: None })
-        .collect();
-    device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
-}
-
 impl Layouts {
-    /// Makes them.
     pub fn new(gpu: &Gpu) -> Self {
-        let device = &gpu.device;
         // Ground is seen at low angles. Mesa's software driver takes fifteen times as long for a picture with it.
         let anisotropy = if gpu.software { 1 } else { 8 };
-        use TextureViewDimension::{Cube, D2, D2Array};
-        let filtering = BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-        let comparison = BindingType::Sampler(wgpu::SamplerBindingType::Comparison);
-        let unfilterable = of_type(wgpu::TextureSampleType::Float { filterable: false });
-        let view = [
-            (0, uniform()),
-            (1, filtering),
-            (2, filtering),
-            (3, texture(Cube)),
-            (4, texture(Cube)),
-            (5, texture(D2)),
-            (6, texture(D2)),
-            (7, of_type(wgpu::TextureSampleType::Depth)),
-            (8, comparison),
-            (9, unfilterable),
-            (10, texture(D2)),
-        ];
-        let compute: Vec<(u32, BindingType)> = vec![
-            (0, uniform()),
-            (1, storage(true)),
-            (2, storage(true)),
-            (3, storage(false)),
-            (4, storage(false)),
-            (5, storage(false)),
-        ];
-        let ground = [(0, texture(D2)), (1, texture(D2)), (2, texture(D2Array)), (3, texture(D2Array))];
-        let fragment = ShaderStages::FRAGMENT;
+        let all = |label: &str, visibility: ShaderStages, types: &[BindingType]| {
+            layout(gpu, label, visibility, (0..).zip(types.iter().copied()))
+        };
+        let (both, fragment) = (ShaderStages::VERTEX_FRAGMENT, ShaderStages::FRAGMENT);
+        let view =
+            [UNIFORM, FILTERING, FILTERING, CUBE, CUBE, IMAGE, IMAGE, DEPTH_MAP, COMPARISON, DATA, IMAGE];
+        let sun_view = SUN_VIEW.map(|binding| (binding, view[binding as usize]));
         Self {
-            view: layout(device, "view", BOTH, &view),
-            sun_view: layout(
-                device,
-                "view of the sun",
-                BOTH,
-                &[(0, uniform()), (2, filtering), (9, unfilterable)],
+            view: all("view", both, &view),
+            sun_view: layout(gpu, "view of the sun", both, sun_view),
+            ground: all("ground", both, &[IMAGE, IMAGE, LAYERS, LAYERS]),
+            trees: all("trees", ShaderStages::VERTEX, &[READ]),
+            material: all("material", fragment, &[UNIFORM, IMAGE, IMAGE]),
+            cull: all("culling", ShaderStages::COMPUTE, &[UNIFORM, READ, READ, WRITE, WRITE, WRITE]),
+            radiance: all("radiance", fragment, &[DATA]),
+            repeating: sampler(gpu, wgpu::AddressMode::Repeat, anisotropy, None),
+            clamped: sampler(gpu, wgpu::AddressMode::ClampToEdge, 1, None),
+            comparing: sampler(
+                gpu,
+                wgpu::AddressMode::ClampToEdge,
+                1,
+                Some(wgpu::CompareFunction::LessEqual),
             ),
-            ground: layout(device, "ground", BOTH, &ground),
-            trees: layout(device, "trees", ShaderStages::VERTEX, &[(0, storage(true))]),
-            material: layout(
-                device,
-                "material",
-                fragment,
-                &[(0, uniform()), (1, texture(D2)), (2, texture(D2))],
-            ),
-            cull: layout(device, "choice of trees", ShaderStages::COMPUTE, &compute),
-            radiance: layout(device, "radiance", fragment, &[(0, unfilterable)]),
-            repeating: sampler(device, wgpu::AddressMode::Repeat, anisotropy),
-            clamped: sampler(device, wgpu::AddressMode::ClampToEdge, 1),
-            comparing: device.create_sampler(&wgpu::SamplerDescriptor {
-                label: Some("comparing"),
-                mag_filter: wgpu::FilterMode::Linear,
-                min_filter: wgpu::FilterMode::Linear,
-                compare: Some(wgpu::CompareFunction::LessEqual),
-                ..Default::default()
-            }),
         }
     }
 }
 
-fn sampler(device: &Device, address: wgpu::AddressMode, anisotropy_clamp: u16) -> wgpu::Sampler {
-    device.create_sampler(&wgpu::SamplerDescriptor {
-        label: None,
+fn layout(
+    gpu: &Gpu,
+    label: &str,
+    visibility: ShaderStages,
+    bindings: impl IntoIterator<Item = (u32, BindingType)>,
+) -> BindGroupLayout {
+    let entry = |(binding, ty)| BindGroupLayoutEntry { binding, visibility, ty, count: None };
+    let entries: Vec<BindGroupLayoutEntry> = bindings.into_iter().map(entry).collect();
+    let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries };
+    gpu.device.create_bind_group_layout(&descriptor)
+}
+
+fn sampler(
+    gpu: &Gpu,
+    address: wgpu::AddressMode,
+    anisotropy_clamp: u16,
+    compare: Option<wgpu::CompareFunction>,
+) -> wgpu::Sampler {
+    gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         address_mode_u: address,
         address_mode_v: address,
         mag_filter: wgpu::FilterMode::Linear,
         min_filter: wgpu::FilterMode::Linear,
         mipmap_filter: wgpu::MipmapFilterMode::Linear,
         anisotropy_clamp,
+        compare,
         ..Default::default()
     })
 }
 
-/// A view of a whole texture.
-pub fn texture_view(texture: &wgpu::Texture, dimension: wgpu::TextureViewDimension) -> wgpu::TextureView {
-    texture.create_view(&wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() })
+/// What is bound to one binding of a group.
+pub enum Binding<'a> {
+    Buffer(&'a wgpu::Buffer),
+    Sampler(&'a wgpu::Sampler),
+    View(wgpu::TextureView),
+}
+
+impl Binding<'_> {
+    /// All of a texture: an image, or several layers.
+    pub fn texture(texture: &wgpu::Texture) -> Self {
+        Self::View(texture.create_view(&Default::default()))
+    }
+
+    /// Six layers as the faces of a cube.
+    pub fn cube(texture: &wgpu::Texture) -> Self {
+        let dimension = Some(TextureViewDimension::Cube);
+        Self::View(texture.create_view(&wgpu::TextureViewDescriptor { dimension, ..Default::default() }))
+    }
 }
 
 /// A bind group of that layout.
-pub fn bind(
-    device: &Device,
+pub fn bind<'a>(
+    gpu: &Gpu,
     label: &str,
-    layout: &wgpu::BindGroupLayout,
-    bound: &[(u32, wgpu::BindingResource<'_>)],
+    layout: &BindGroupLayout,
+    bindings: impl IntoIterator<Item = (u32, Binding<'a>)>,
 ) -> wgpu::BindGroup {
-    let entries: Vec<wgpu::BindGroupEntry<'_>> = bound
+    let bindings: Vec<_> = bindings.into_iter().collect();
+    let resource = |bound| match bound {
+        &Binding::Buffer(buffer) => buffer.as_entire_binding(),
+        &Binding::Sampler(sampler) => wgpu::BindingResource::Sampler(sampler),
+        Binding::View(view) => wgpu::BindingResource::TextureView(view),
+    };
+    let entries: Vec<_> = bindings
         .iter()
-        .map(|(binding, resource)| wgpu::BindGroupEntry { binding: *binding, resource: resource.clone() })
+        .map(|(binding, bound)| wgpu::BindGroupEntry { binding: *binding, resource: resource(bound) })
         .collect();
-    device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }

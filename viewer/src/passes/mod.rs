@@ -1,11 +1,14 @@
 //! The passes: each an immutable set of pipelines that records its part of a picture, with its WGSL beside it.
 //!
-//! Order of a picture: choice of trees, then in one render pass trees, grass, land, sky and water, then tones. Shadows are drawn
-//! once for each landscape, before its first picture.
+//! Order of a picture: culling, then in one render pass what [`Passes::picture`] lists, then tone mapping. Shadows are
+//! drawn once for each landscape, before its first picture. A new pass is a file here with its WGSL, a line in
+//! [`SHADERS`], and a line in [`Passes::picture`].
 
+mod bound;
 mod cull;
 pub mod grass;
 mod layouts;
+mod pipeline;
 mod shadow;
 mod sky;
 pub mod terrain;
@@ -14,18 +17,18 @@ pub mod trees;
 mod view_uniform;
 mod water;
 
-pub use cull::{Cull, CullUniform, TreeLists};
-pub use grass::Grass;
-pub use layouts::{Layouts, bind, texture_view};
+pub use bound::{BoundScene, BoundTrees};
+pub use cull::{Cull, CullUniform};
+pub use layouts::{Binding, Layouts, bind};
+pub use pipeline::Shader;
 pub use shadow::Shadow;
-pub use sky::Sky;
-pub use terrain::{Land, Terrain};
 pub use tone::Tone;
-pub use trees::{TreeGroups, Trees};
-pub use view_uniform::{ViewUniform, focal_px, shadow_from_world};
-pub use water::Water;
+pub use view_uniform::ViewUniform;
+
+use pipeline::{Compiler, FilledOrWire, PipelineDesc, Target, buffer_layout};
 
 use crate::gpu::Gpu;
+use crate::options::Options;
 use crate::shaders::{ShaderError, Shaders};
 
 /// Format of radiance.
@@ -37,26 +40,37 @@ pub const DISPLAY: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// Format of shadow maps.
 pub const SHADOW: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
 
+/// The shaders of all passes.
+pub static SHADERS: [&Shader; 8] = [
+    &cull::SHADER,
+    &trees::SHADER,
+    &grass::SHADER,
+    &terrain::SHADER,
+    &sky::SHADER,
+    &water::SHADER,
+    &tone::SHADER,
+    &shadow::SHADER,
+];
+
+/// A pass that draws a part of the picture.
+pub trait DrawPass: std::fmt::Debug + Send + Sync {
+    /// Whether there is anything to draw.
+    fn is_needed(&self, _scene: &BoundScene, _options: &Options) -> bool {
+        true
+    }
+
+    /// Records its draws and tells how many they are. Group 0 is set.
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, scene: &BoundScene, options: &Options) -> u32;
+}
+
 /// All passes.
 #[derive(Debug)]
 pub struct Passes {
-    /// What their bind groups look like.
     pub layouts: Layouts,
-    /// Trees seen from the sun.
     pub shadow: Shadow,
-    /// Choice of trees and levels.
     pub cull: Cull,
-    /// Trees.
-    pub trees: Trees,
-    /// The land.
-    pub terrain: Terrain,
-    /// Grass.
-    pub grass: Grass,
-    /// The sky.
-    pub sky: Sky,
-    /// The lake.
-    pub water: Water,
-    /// Tones.
+    /// By name, in the order in which they draw.
+    pub picture: [(&'static str, Box<dyn DrawPass>); 5],
     pub tone: Tone,
     /// Samples a pixel that they draw.
     pub samples: u32,
@@ -65,107 +79,22 @@ pub struct Passes {
 impl Passes {
     /// Compiles everything. `samples` is 1 or 4.
     pub fn new(gpu: &Gpu, shaders: &Shaders, samples: u32) -> Result<Self, ShaderError> {
-        let device = &gpu.device;
         let layouts = Layouts::new(gpu);
+        let compiler = Compiler { gpu, layouts: &layouts, shaders, samples };
         Ok(Self {
-            shadow: Shadow::new(device, &layouts, shaders)?,
-            cull: Cull::new(device, &layouts, shaders)?,
-            trees: Trees::new(gpu, &layouts, shaders, samples)?,
-            terrain: Terrain::new(gpu, &layouts, shaders, samples)?,
-            grass: Grass::new(gpu, &layouts, shaders, samples)?,
-            sky: Sky::new(device, &layouts, shaders, samples)?,
-            water: Water::new(device, &layouts, shaders, samples)?,
-            tone: Tone::new(device, &layouts, shaders)?,
+            shadow: Shadow::new(&compiler)?,
+            cull: Cull::new(&compiler)?,
+            picture: [
+                (trees::SHADER.name, Box::new(trees::Trees::new(&compiler)?)),
+                // Before the terrain: what it hides needs no light.
+                (grass::SHADER.name, Box::new(grass::Grass::new(&compiler)?)),
+                (terrain::SHADER.name, Box::new(terrain::Terrain::new(&compiler)?)),
+                (sky::SHADER.name, Box::new(sky::Sky::new(&compiler)?)),
+                (water::SHADER.name, Box::new(water::Water::new(&compiler)?)),
+            ],
+            tone: Tone::new(&compiler)?,
             layouts,
             samples,
         })
     }
-}
-
-/// What a pipeline of the main picture differs in.
-struct Shape<'a> {
-    label: &'a str,
-    module: &'a wgpu::ShaderModule,
-    vertex: &'a str,
-    fragment: &'a str,
-    buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
-    groups: &'a [Option<&'a wgpu::BindGroupLayout>],
-    topology: wgpu::PrimitiveTopology,
-    cull: Option<wgpu::Face>,
-    blend: Option<wgpu::BlendState>,
-    depth_write: bool,
-    wireframe: bool,
-    samples: u32,
-}
-
-impl<'a> Shape<'a> {
-    /// Filled triangles with two sides that hide what is behind, from the entry points "vertex" and "fragment": what
-    /// most passes draw.
-    fn new(
-        label: &'a str,
-        module: &'a wgpu::ShaderModule,
-        groups: &'a [Option<&'a wgpu::BindGroupLayout>],
-        samples: u32,
-    ) -> Self {
-        Self {
-            label,
-            module,
-            vertex: "vertex",
-            fragment: "fragment",
-            buffers: &[],
-            groups,
-            topology: wgpu::PrimitiveTopology::TriangleList,
-            cull: None,
-            blend: None,
-            depth_write: true,
-            wireframe: false,
-            samples,
-        }
-    }
-}
-
-/// A pipeline that draws into radiance with reversed depth.
-fn pipeline(device: &wgpu::Device, shape: &Shape<'_>) -> wgpu::RenderPipeline {
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(shape.label),
-        bind_group_layouts: shape.groups,
-        immediate_size: 0,
-    });
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(shape.label),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: shape.module,
-            entry_point: Some(shape.vertex),
-            compilation_options: Default::default(),
-            buffers: shape.buffers,
-        },
-        primitive: wgpu::PrimitiveState {
-            topology: shape.topology,
-            strip_index_format: shape.topology.is_strip().then_some(wgpu::IndexFormat::Uint32),
-            cull_mode: shape.cull,
-            polygon_mode: if shape.wireframe { wgpu::PolygonMode::Line } else { wgpu::PolygonMode::Fill },
-            ..Default::default()
-        },
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: DEPTH,
-            depth_write_enabled: Some(shape.depth_write),
-            depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
-            stencil: Default::default(),
-            bias: Default::default(),
-        }),
-        multisample: wgpu::MultisampleState { count: shape.samples, ..Default::default() },
-        fragment: Some(wgpu::FragmentState {
-            module: shape.module,
-            entry_point: Some(shape.fragment),
-            compilation_options: Default::default(),
-            targets: &[Some(wgpu::ColorTargetState {
-                format: RADIANCE,
-                blend: shape.blend,
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
 }

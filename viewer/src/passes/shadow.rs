@@ -1,71 +1,50 @@
 //! Draws what the sun sees of a landscape, once.
 
-use super::cull::{Cull, CullUniform, TreeLists};
-use super::trees::{TreeGroups, buffers, draw_chosen};
-use super::view_uniform::{ViewUniform, shadow_from_world};
-use super::{Layouts, SHADOW, bind, texture_view};
+use super::bind;
+use super::layouts::SUN_VIEW;
+use super::trees::{TreePipelines, buffers};
+use super::view_uniform::shadow_from_world;
+use super::{
+    Binding, BoundTrees, Compiler, Cull, CullUniform, Layouts, PipelineDesc, Shader, Target, ViewUniform,
+};
 use crate::gpu::Gpu;
-use crate::shaders::{ShaderError, Shaders};
+use crate::shaders::ShaderError;
 use crate::upload::SceneBuffers;
 
-/// The pipelines.
-#[derive(Debug)]
-pub struct Shadow {
-    /// As [`draw_chosen`] wants them.
-    trees: [wgpu::RenderPipeline; 2],
-    land: wgpu::RenderPipeline,
-}
+pub const SHADER: Shader = Shader {
+    name: "shadow",
+    source: include_str!("shadow.wgsl"),
+    constants: &[("LAND_STEP", LAND_STEP as f64)],
+};
 
-/// The land is drawn as a grid of every so many samples; as in `shadow.wgsl`.
+/// The land is drawn as a grid of every so many samples.
 const LAND_STEP: u32 = 4;
-
 /// Trees that are drawn in one go: in software, a fifth of what four pictures take.
 const TREES_A_PIECE: u32 = 256;
 
+#[derive(Debug)]
+pub struct Shadow {
+    trees: TreePipelines,
+    land: wgpu::RenderPipeline,
+}
+
 impl Shadow {
-    /// Compiles them.
-    pub fn new(device: &wgpu::Device, layouts: &Layouts, shaders: &Shaders) -> Result<Self, ShaderError> {
-        let module = shaders.module(device, "shadow")?;
-        let tree_buffers = buffers();
-        let build = |vertex: &str, fragment: Option<&str>, cull: Option<wgpu::Face>, of_trees: bool| {
-            let groups = [Some(&layouts.sun_view), Some(&layouts.trees), Some(&layouts.material)];
-            let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: Some("shadow"),
-                bind_group_layouts: if of_trees { &groups } else { &groups[..1] },
-                immediate_size: 0,
-            });
-            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some("shadow"),
-                layout: Some(&layout),
-                vertex: wgpu::VertexState {
-                    module: &module,
-                    entry_point: Some(vertex),
-                    compilation_options: Default::default(),
-                    buffers: if of_trees { &tree_buffers } else { &[] },
-                },
-                primitive: wgpu::PrimitiveState { cull_mode: cull, ..Default::default() },
-                depth_stencil: Some(wgpu::DepthStencilState {
-                    format: SHADOW,
-                    depth_write_enabled: Some(true),
-                    depth_compare: Some(wgpu::CompareFunction::Less),
-                    stencil: Default::default(),
-                    bias: Default::default(),
-                }),
-                multisample: Default::default(),
-                fragment: fragment.map(|entry| wgpu::FragmentState {
-                    module: &module,
-                    entry_point: Some(entry),
-                    compilation_options: Default::default(),
-                    targets: &[],
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
+    pub(super) fn new(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
+        let (shader, layouts) = (compiler.module(&SHADER)?, compiler.layouts);
+        let (buffers, groups) = (buffers(), [&layouts.sun_view, &layouts.trees, &layouts.material]);
+        let usual = || PipelineDesc { target: Target::Shadow, ..PipelineDesc::new(&shader, &groups) };
+        let trees = |fragment: Option<&str>, cull: Option<wgpu::Face>| {
+            compiler.pipeline(&PipelineDesc { vertex: "tree", fragment, buffers: &buffers, cull, ..usual() })
         };
-        // The sides of a trunk that face away bound its shadow (second-depth shadow mapping).
-        let bark = build("tree", None, Some(wgpu::Face::Front), true);
-        let leaf = build("tree", Some("leaf"), None, true);
-        Ok(Self { trees: [bark, leaf], land: build("land", None, None, false) })
+        let land = PipelineDesc { vertex: "land", fragment: None, groups: &groups[..1], ..usual() };
+        Ok(Self {
+            trees: TreePipelines {
+                // The sides of a trunk that face away bound its shadow (second-depth shadow mapping).
+                opaque: trees(None, Some(wgpu::Face::Front)),
+                masked: trees(Some("leaf"), None),
+            },
+            land: compiler.pipeline(&land),
+        })
     }
 
     /// Draws a landscape's shadow map; may run on any thread. `cull` chooses trees: of each the level whose error is
@@ -73,48 +52,38 @@ impl Shadow {
     /// does one thing after the other, and drawn in one go a forest keeps pictures waiting, in software for a quarter of a
     /// second.
     pub fn bake(&self, gpu: &Gpu, layouts: &Layouts, cull: &Cull, scene: &SceneBuffers) {
-        use wgpu::util::DeviceExt;
-        let sun = ViewUniform::for_sun(scene);
-        let uniform = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("sun"),
-            contents: bytemuck::bytes_of(&sun),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
-        let heights = texture_view(&scene.land.heights, wgpu::TextureViewDimension::D2);
+        let usage = wgpu::BufferUsages::UNIFORM;
+        let uniform = gpu.buffer("sun", &[ViewUniform::for_sun(scene)], usage);
         let bound = [
-            (0, uniform.as_entire_binding()),
-            (2, wgpu::BindingResource::Sampler(&layouts.clamped)),
-            (9, wgpu::BindingResource::TextureView(&heights)),
+            Binding::Buffer(&uniform),
+            Binding::Sampler(&layouts.clamped),
+            Binding::texture(&scene.land.heights),
         ];
-        let view = bind(&gpu.device, "view of the sun", &layouts.sun_view, &bound);
-        let map = texture_view(&scene.shadow_map, wgpu::TextureViewDimension::D2);
+        let view = bind(gpu, "view of the sun", &layouts.sun_view, SUN_VIEW.into_iter().zip(bound));
+        let map = scene.shadow_map.create_view(&Default::default());
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         {
             let mut pass = begin(&mut encoder, &map, wgpu::LoadOp::Clear(1.0));
             pass.set_bind_group(0, &view, &[]);
-            self.draw_land(&mut pass, scene);
+            pass.set_pipeline(&self.land);
+            let cells = (scene.ground.field.side - 1) / LAND_STEP;
+            pass.draw(0..cells * cells * 6, 0..1);
         }
         finish(gpu, encoder);
         let Some(set) = &scene.trees else { return };
-        let (groups, lists) = (TreeGroups::new(gpu, layouts, set), TreeLists::new(gpu, layouts, set));
+        let trees = BoundTrees::new(gpu, layouts, set);
         for first in (0..set.count).step_by(TREES_A_PIECE as usize) {
             let piece = first..first.saturating_add(TREES_A_PIECE);
-            lists.set(&gpu.queue, &CullUniform::for_shadow(set, 0.5 * texel_m(scene), piece));
+            trees.set(&gpu.queue, &CullUniform::for_shadow(set, 0.5 * texel_m(scene), piece));
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            cull.dispatch(&mut encoder.begin_compute_pass(&Default::default()), &lists);
+            cull.dispatch(&mut encoder.begin_compute_pass(&Default::default()), &trees);
             {
                 let mut pass = begin(&mut encoder, &map, wgpu::LoadOp::Load);
                 pass.set_bind_group(0, &view, &[]);
-                draw_chosen(&mut pass, set, &groups, &lists, &self.trees);
+                self.trees.draw(&mut pass, set, &trees);
             }
             finish(gpu, encoder);
         }
-    }
-
-    fn draw_land(&self, pass: &mut wgpu::RenderPass<'_>, scene: &SceneBuffers) {
-        pass.set_pipeline(&self.land);
-        let cells = (scene.ground.field.side - 1) / LAND_STEP;
-        pass.draw(0..cells * cells * 6, 0..1);
     }
 }
 

@@ -29,14 +29,15 @@ fn leaf(in: Out) {
     }
 }
 
-// The land as a grid of every fourth sample, two triangles a cell, without buffers.
+// The land as a grid of every so many samples, two triangles a cell, without buffers.
+override LAND_STEP: u32;
+
 @vertex
 fn land(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    let step = 4u;
-    let cells = (u32(view.field.x) - 1u) / step;
+    let cells = (u32(view.field.x) - 1u) / LAND_STEP;
     let cell = index / 6u;
     let corner = array<vec2u, 6>(vec2u(0, 0), vec2u(0, 1), vec2u(1, 0), vec2u(1, 0), vec2u(0, 1), vec2u(1, 1))[index % 6u];
-    let sample = (vec2u(cell % cells, cell / cells) + corner) * step;
+    let sample = (vec2u(cell % cells, cell / cells) + corner) * LAND_STEP;
     // A little lower than it is, lest what stands on it be shaded by it.
     let height = textureLoad(heights, vec2i(sample), 0).r - 0.5;
     let world = vec4f(place_m(f32(sample.x)), height, place_m(f32(sample.y)), 1.0);

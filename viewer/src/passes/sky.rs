@@ -1,31 +1,28 @@
 //! Draws the sky behind everything (thesis 5).
 
-use super::{Layouts, Shape, pipeline};
-use crate::shaders::{ShaderError, Shaders};
+use super::{BoundScene, Compiler, DrawPass, PipelineDesc, Shader};
+use crate::options::Options;
+use crate::shaders::ShaderError;
 
-/// The pipeline.
+pub const SHADER: Shader = Shader { name: "sky", source: include_str!("sky.wgsl"), constants: &[] };
+
 #[derive(Debug)]
 pub struct Sky {
     pipeline: wgpu::RenderPipeline,
 }
 
 impl Sky {
-    /// Compiles it.
-    pub fn new(
-        device: &wgpu::Device,
-        layouts: &Layouts,
-        shaders: &Shaders,
-        samples: u32,
-    ) -> Result<Self, ShaderError> {
-        let module = shaders.module(device, "sky")?;
-        let groups = [Some(&layouts.view)];
-        let shape = Shape { depth_write: false, ..Shape::new("sky", &module, &groups, samples) };
-        Ok(Self { pipeline: pipeline(device, &shape) })
+    pub(super) fn new(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
+        let (module, groups) = (compiler.module(&SHADER)?, [&compiler.layouts.view]);
+        let desc = PipelineDesc { depth_write: false, ..PipelineDesc::new(&module, &groups) };
+        Ok(Self { pipeline: compiler.pipeline(&desc) })
     }
+}
 
-    /// One draw. Group 0 is set.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+impl DrawPass for Sky {
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, _: &BoundScene, _: &Options) -> u32 {
         pass.set_pipeline(&self.pipeline);
         pass.draw(0..3, 0..1);
+        1
     }
 }

@@ -23,14 +23,17 @@ fn sample_place(s: vec2u) -> vec3f {
     return vec3f(place_m(f32(s.x)), textureLoad(heights, vec2i(s), 0).r, place_m(f32(s.y)));
 }
 
-// The rule of `lod::morph` in Rust, which says why it leaves no cracks; the two are kept alike by a test of pictures.
-const GAP: f32 = 0.25;
+// The rule of `lod::morph` in Rust, which says why it leaves no cracks and what the gap is; a test of pictures keeps the
+// two alike.
+override GAP: f32;
+// Of a block, along a side.
+override BLOCK_VERTICES: u32;
 
 // λ: which level of detail a sample's place calls for. It depends on the place alone, so that neighbours agree.
 fn lambda_at(s: vec2u) -> f32 {
     let place = vec2f(place_m(f32(s.x)), place_m(f32(s.y)));
-    let offset = vec3f(place - view.lod_eye.xz, view.terrain_lod.z);
-    return clamp(log2(length(offset) / view.terrain_lod.x), 0.0, view.terrain_lod.y);
+    let offset = vec3f(place - view.lod_eye.xz, view.lod_above);
+    return clamp(log2(length(offset) / view.lod_unit), 0.0, view.lod_top);
 }
 
 // The coarsest level that uses a sample.
@@ -95,9 +98,9 @@ fn out_at(world: vec3f, normal: vec3f, level: f32) -> Out {
 
 @vertex
 fn block_vertex(block: Block, @builtin(vertex_index) index: u32) -> Out {
-    let s = block.origin + (vec2u(index % 17u, index / 17u) << vec2u(block.level));
+    let s = block.origin + (vec2u(index % BLOCK_VERTICES, index / BLOCK_VERTICES) << vec2u(block.level));
     var world: vec3f;
-    if ((view.flags & FLAG_MORPH) != 0u) {
+    if (view.morph_terrain != 0u) {
         world = drawn_place(s);
     } else {
         world = sample_place(s);
@@ -143,7 +146,7 @@ fn look(k: u32, at: Surface, parts: array<f32, 5>, far: f32) -> Tiles {
     let layer = min(k / 6u, 4u);
     let axis = (k / 2u) % 3u;
     let wide = (k & 1u) == 1u;
-    let tiles_m = array<f32, 5>(view.tiles.x, view.tiles.y, view.tiles.z, view.tiles.w, view.last_tile.x);
+    let tiles_m = array<f32, 5>(view.tiles.x, view.tiles.y, view.tiles.z, view.tiles.w, view.last_tile);
     let tile_m = entry(tiles_m, layer);
     var p = along(axis, at.world) / tile_m;
     var dx = along(axis, at.dx) / tile_m;
@@ -235,11 +238,11 @@ fn ground(in: Out) -> @location(0) vec4f {
         relief = clamp(dot(bumped, view.sun_direction) / max(dot(normal, view.sun_direction), 0.2), 0.0, 2.0);
         normal = bumped;
     }
-    if ((view.flags & FLAG_TINT) != 0u) {
+    if (view.tint_levels != 0u) {
         albedo = level_tint(in.level) * 0.5;
     }
     let irradiance = view.sun_irradiance * light.g * relief + view.sky_irradiance * light.r * (0.6 + 0.4 * normal.y);
-    return vec4f(through_air(albedo / PI * irradiance, away), 1.0);
+    return vec4f(aerial_perspective(albedo / PI * irradiance, away), 1.0);
 }
 
 // The ring around the field.
@@ -266,5 +269,5 @@ fn ring(in: RingOut) -> @location(0) vec4f {
     let normal = normalize(in.normal);
     let sun = view.sun_irradiance * max(dot(normal, view.sun_direction), 0.0);
     let sky = view.sky_irradiance * (0.5 + 0.5 * normal.y);
-    return vec4f(through_air(in.color / PI * (sun + sky), distance(in.world, view.eye)), 1.0);
+    return vec4f(aerial_perspective(in.color / PI * (sun + sky), distance(in.world, view.eye)), 1.0);
 }

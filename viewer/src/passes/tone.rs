@@ -1,45 +1,23 @@
-//! Radiance → finished picture.
+//! Tone mapping: radiance → finished picture.
 
-use super::{DISPLAY, Layouts};
-use crate::shaders::{ShaderError, Shaders};
+use super::{Compiler, PipelineDesc, Shader, Target};
+use crate::shaders::ShaderError;
 
-/// The pipeline.
+pub const SHADER: Shader = Shader { name: "tone", source: include_str!("tone.wgsl"), constants: &[] };
+
 #[derive(Debug)]
 pub struct Tone {
     pipeline: wgpu::RenderPipeline,
 }
 
 impl Tone {
-    /// Compiles it.
-    pub fn new(device: &wgpu::Device, layouts: &Layouts, shaders: &Shaders) -> Result<Self, ShaderError> {
-        let module = shaders.module(device, "tone")?;
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("tone"),
-            bind_group_layouts: &[Some(&layouts.view), Some(&layouts.radiance)],
-            immediate_size: 0,
-        });
-        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("tone"),
-            layout: Some(&layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("vertex"),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: Default::default(),
-            depth_stencil: None,
-            multisample: Default::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("fragment"),
-                compilation_options: Default::default(),
-                targets: &[Some(DISPLAY.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
-        Ok(Self { pipeline })
+    pub const NAME: &str = SHADER.name;
+
+    pub(super) fn new(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
+        let module = compiler.module(&SHADER)?;
+        let groups = [&compiler.layouts.view, &compiler.layouts.radiance];
+        let desc = PipelineDesc { target: Target::Display, ..PipelineDesc::new(&module, &groups) };
+        Ok(Self { pipeline: compiler.pipeline(&desc) })
     }
 
     /// One draw. Group 0 is set; `radiance` is group 1.

@@ -1,4 +1,5 @@
-// Radiance → display values, encoded as sRGB shows them: exposure, a film-like curve (AgX, Sobotka 2022, as fitted by Wrensch 2023), dither.
+// Tone mapping: radiance → display values, encoded as sRGB shows them: exposure, a film-like curve (AgX, Sobotka 2022, as
+// fitted by Wrensch 2023), dither.
 
 @group(1) @binding(0) var radiance: texture_2d<f32>;
 
@@ -18,8 +19,8 @@ const OUTSET = mat3x3f(
     vec3f(-0.0980208811401368, 1.15190312990417, -0.0980434501171241),
     vec3f(-0.0990297440797205, -0.0989611768448433, 1.15107367264116),
 );
-const LOWEST_EV: f32 = -12.47393;
-const HIGHEST_EV: f32 = 4.026069;
+const MIN_EV: f32 = -12.47393;
+const MAX_EV: f32 = 4.026069;
 
 fn curve(x: vec3f) -> vec3f {
     let x2 = x * x;
@@ -29,7 +30,7 @@ fn curve(x: vec3f) -> vec3f {
 
 fn film(linear: vec3f) -> vec3f {
     let wide = max(INSET * linear, vec3f(1e-10));
-    let ev = clamp((log2(wide) - LOWEST_EV) / (HIGHEST_EV - LOWEST_EV), vec3f(0.0), vec3f(1.0));
+    let ev = clamp((log2(wide) - MIN_EV) / (MAX_EV - MIN_EV), vec3f(0.0), vec3f(1.0));
     var toned = curve(ev);
     // A little more contrast and colour than the neutral look (Troy Sobotka's "Punchy", half way).
     let luma = dot(toned, vec3f(0.2126, 0.7152, 0.0722));

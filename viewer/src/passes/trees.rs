@@ -1,21 +1,24 @@
-//! Draws the trees that were chosen: one draw for each material.
+//! Draws the trees that culling left: one draw for each material.
 
-use super::cull::TreeLists;
-use super::{Layouts, Shape, pipeline};
-use crate::gpu::Gpu;
+use super::{BoundScene, BoundTrees, Compiler, DrawPass, FilledOrWire, PipelineDesc, Shader, buffer_layout};
+use crate::options::Options;
 use crate::scene::TreeVertex;
-use crate::shaders::{ShaderError, Shaders};
+use crate::shaders::ShaderError;
 use crate::upload::{DrawCommand, TreeSet};
 
-/// The pipelines, for filled and for wire pictures.
+pub const SHADER: Shader = Shader { name: "trees", source: include_str!("trees.wgsl"), constants: &[] };
+
 #[derive(Debug)]
 pub struct Trees {
-    filled: [wgpu::RenderPipeline; 2],
-    wire: Option<[wgpu::RenderPipeline; 2]>,
+    pipelines: FilledOrWire<TreePipelines>,
 }
 
-const OPAQUE: usize = 0;
-const MASKED: usize = 1;
+/// One for each kind of material.
+#[derive(Debug)]
+pub(super) struct TreePipelines {
+    pub opaque: wgpu::RenderPipeline,
+    pub masked: wgpu::RenderPipeline,
+}
 
 /// Attributes of [`TreeVertex`].
 pub const VERTEX: [wgpu::VertexAttribute; 8] = wgpu::vertex_attr_array![
@@ -28,103 +31,50 @@ pub const VISIBLE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![8 => Ui
 /// The two vertex buffers of every draw of trees.
 pub(super) fn buffers() -> [Option<wgpu::VertexBufferLayout<'static>>; 2] {
     [
-        Some(wgpu::VertexBufferLayout {
-            array_stride: size_of::<TreeVertex>() as u64,
-            step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &VERTEX,
-        }),
-        Some(wgpu::VertexBufferLayout {
-            array_stride: 8,
-            step_mode: wgpu::VertexStepMode::Instance,
-            attributes: &VISIBLE,
-        }),
+        buffer_layout::<TreeVertex>(wgpu::VertexStepMode::Vertex, &VERTEX),
+        buffer_layout::<[u32; 2]>(wgpu::VertexStepMode::Instance, &VISIBLE),
     ]
 }
 
 impl Trees {
-    /// Compiles them.
-    pub fn new(gpu: &Gpu, layouts: &Layouts, shaders: &Shaders, samples: u32) -> Result<Self, ShaderError> {
-        let module = shaders.module(&gpu.device, "trees")?;
-        let build = |wireframe: bool| {
-            [("bark", Some(wgpu::Face::Back)), ("leaf", None)].map(|(fragment, cull)| {
-                let groups = [Some(&layouts.view), Some(&layouts.trees), Some(&layouts.material)];
-                let buffers = buffers();
-                let usual = Shape::new(fragment, &module, &groups, samples);
-                let shape = Shape { fragment, buffers: &buffers, cull, wireframe, ..usual };
-                pipeline(&gpu.device, &shape)
-            })
+    pub(super) fn new(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
+        let (shader, layouts) = (compiler.module(&SHADER)?, compiler.layouts);
+        let (buffers, groups) = (buffers(), [&layouts.view, &layouts.trees, &layouts.material]);
+        let pipelines = |wireframe: bool| {
+            let build = |fragment: &str, cull: Option<wgpu::Face>| {
+                let usual = PipelineDesc::new(&shader, &groups);
+                let fragment = Some(fragment);
+                compiler.pipeline(&PipelineDesc { fragment, buffers: &buffers, cull, wireframe, ..usual })
+            };
+            TreePipelines { opaque: build("bark", Some(wgpu::Face::Back)), masked: build("leaf", None) }
         };
-        let lines = gpu.features.contains(wgpu::Features::POLYGON_MODE_LINE);
-        Ok(Self { filled: build(false), wire: lines.then(|| build(true)) })
-    }
-
-    /// One draw for each material. Group 0 is set.
-    pub fn draw(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        set: &TreeSet,
-        groups: &TreeGroups,
-        lists: &TreeLists,
-        wire: bool,
-    ) {
-        let pipelines = self.wire.as_ref().filter(|_| wire).unwrap_or(&self.filled);
-        draw_chosen(pass, set, groups, lists, pipelines);
+        Ok(Self { pipelines: FilledOrWire::new(compiler.gpu, pipelines) })
     }
 }
 
-/// Draws the trees that were chosen, with a pipeline for [`OPAQUE`] materials and one for [`MASKED`] ones.
-pub(super) fn draw_chosen(
-    pass: &mut wgpu::RenderPass<'_>,
-    set: &TreeSet,
-    groups: &TreeGroups,
-    lists: &TreeLists,
-    pipelines: &[wgpu::RenderPipeline; 2],
-) {
-    pass.set_bind_group(1, &groups.trees, &[]);
-    pass.set_vertex_buffer(0, set.vertices.slice(..));
-    pass.set_vertex_buffer(1, lists.visible.slice(..));
-    pass.set_index_buffer(set.indices.slice(..), wgpu::IndexFormat::Uint32);
-    for (slot, material) in set.materials.iter().enumerate() {
-        pass.set_pipeline(&pipelines[if material.masked { MASKED } else { OPAQUE }]);
-        pass.set_bind_group(2, &groups.materials[slot], &[]);
-        let first = slot as u64 * u64::from(lists.buckets) * size_of::<DrawCommand>() as u64;
-        pass.multi_draw_indexed_indirect(&lists.commands, first, lists.buckets);
+impl DrawPass for Trees {
+    fn is_needed(&self, bound: &BoundScene, options: &Options) -> bool {
+        options.draw_trees && bound.trees().is_some()
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, bound: &BoundScene, options: &Options) -> u32 {
+        bound.trees().map_or(0, |(set, trees)| self.pipelines.get(options.wireframe).draw(pass, set, trees))
     }
 }
 
-/// Bind groups of a landscape's trees.
-#[derive(Debug)]
-pub struct TreeGroups {
-    pub(super) trees: wgpu::BindGroup,
-    pub(super) materials: Vec<wgpu::BindGroup>,
-}
-
-impl TreeGroups {
-    /// Of that landscape.
-    pub fn new(gpu: &Gpu, layouts: &Layouts, set: &TreeSet) -> Self {
-        let trees = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("trees"),
-            layout: &layouts.trees,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: set.trees.as_entire_binding() }],
-        });
-        let material = |material: &crate::upload::TreeMaterial| {
-            let views = [&material.color, &material.normal].map(|t| t.create_view(&Default::default()));
-            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some(&material.name),
-                layout: &layouts.material,
-                entries: &[
-                    wgpu::BindGroupEntry { binding: 0, resource: material.uniform.as_entire_binding() },
-                    wgpu::BindGroupEntry {
-                        binding: 1,
-                        resource: wgpu::BindingResource::TextureView(&views[0]),
-                    },
-                    wgpu::BindGroupEntry {
-                        binding: 2,
-                        resource: wgpu::BindingResource::TextureView(&views[1]),
-                    },
-                ],
-            })
-        };
-        Self { trees, materials: set.materials.iter().map(material).collect() }
+impl TreePipelines {
+    /// Draws the trees that culling left and tells how many draws that takes.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, set: &TreeSet, bound: &BoundTrees) -> u32 {
+        pass.set_bind_group(1, &bound.trees_group, &[]);
+        pass.set_vertex_buffer(0, set.vertices.slice(..));
+        pass.set_vertex_buffer(1, bound.visible.slice(..));
+        pass.set_index_buffer(set.indices.slice(..), wgpu::IndexFormat::Uint32);
+        for (slot, (material, group)) in set.materials.iter().zip(&bound.material_groups).enumerate() {
+            pass.set_pipeline(if material.masked { &self.masked } else { &self.opaque });
+            pass.set_bind_group(2, group, &[]);
+            let first = slot as u64 * u64::from(bound.buckets) * size_of::<DrawCommand>() as u64;
+            pass.multi_draw_indexed_indirect(&bound.commands, first, bound.buckets);
+        }
+        set.materials.len() as u32
     }
 }

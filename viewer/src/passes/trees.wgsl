@@ -52,7 +52,7 @@ fn vertex(in: In) -> Out {
     out.uv = in.uv + alpha * in.uv_delta;
     out.color = in.color.rgb;
     out.open = in.color.a;
-    if ((view.flags & FLAG_TINT) != 0u) {
+    if (view.tint_levels != 0u) {
         out.color = level_tint(in.lambda) * 1.6;
     }
     return out;
@@ -83,7 +83,7 @@ fn bark(in: Out) -> @location(0) vec4f {
     if (facing > 0.0) {
         radiance += albedo / PI * view.sun_irradiance * facing * sun_visibility(in.world, 0.25);
     }
-    return vec4f(through_air(radiance, distance(in.world, view.eye)), 1.0);
+    return vec4f(aerial_perspective(radiance, distance(in.world, view.eye)), 1.0);
 }
 
 @fragment
@@ -110,5 +110,5 @@ fn leaf(in: Out, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let outward = select(-normal, normal, normal.y > 0.0);
     var radiance = ambient(outward, albedo.rgb) * (0.15 + 0.75 * in.open * in.open);
     radiance += (reflected + through * glow) / PI * view.sun_irradiance * sun;
-    return vec4f(through_air(radiance, distance(in.world, view.eye)), 1.0);
+    return vec4f(aerial_perspective(radiance, distance(in.world, view.eye)), 1.0);
 }

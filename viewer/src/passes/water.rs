@@ -1,35 +1,34 @@
 //! Draws the lake over everything else.
 
-use super::{Layouts, Shape, pipeline};
-use crate::shaders::{ShaderError, Shaders};
+use super::{BoundScene, Compiler, DrawPass, PipelineDesc, Shader};
+use crate::options::Options;
+use crate::shaders::ShaderError;
 
-/// The pipeline.
+pub const SHADER: Shader = Shader { name: "water", source: include_str!("water.wgsl"), constants: &[] };
+
 #[derive(Debug)]
 pub struct Water {
     pipeline: wgpu::RenderPipeline,
 }
 
 impl Water {
-    /// Compiles it.
-    pub fn new(
-        device: &wgpu::Device,
-        layouts: &Layouts,
-        shaders: &Shaders,
-        samples: u32,
-    ) -> Result<Self, ShaderError> {
-        let module = shaders.module(device, "water")?;
-        let groups = [Some(&layouts.view)];
-        let shape = Shape {
-            // A diver sees the surface from below, so it has two sides.
-            blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-            ..Shape::new("water", &module, &groups, samples)
-        };
-        Ok(Self { pipeline: pipeline(device, &shape) })
+    pub(super) fn new(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
+        let (module, groups) = (compiler.module(&SHADER)?, [&compiler.layouts.view]);
+        // Not culled: a diver sees the surface from below.
+        let blend = Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
+        let desc = PipelineDesc { blend, ..PipelineDesc::new(&module, &groups) };
+        Ok(Self { pipeline: compiler.pipeline(&desc) })
+    }
+}
+
+impl DrawPass for Water {
+    fn is_needed(&self, bound: &BoundScene, options: &Options) -> bool {
+        options.draw_terrain && bound.scene.ground.water_level_m.is_some()
     }
 
-    /// One draw. Group 0 is set.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, _: &BoundScene, _: &Options) -> u32 {
         pass.set_pipeline(&self.pipeline);
         pass.draw(0..6, 0..1);
+        1
     }
 }

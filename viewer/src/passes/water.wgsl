@@ -71,7 +71,7 @@ fn fragment(in: Out) -> @location(0) vec4f {
         let shore = field_uv(in.world.xz + mirrored.xz * hit.y);
         let light = textureSampleLevel(light_map, clamped, shore, 0.0);
         let lit = vec3f(0.07, 0.075, 0.05) / PI * (view.sun_irradiance * light.g + view.sky_irradiance * light.r);
-        sky = through_air(lit, hit.y);
+        sky = aerial_perspective(lit, hit.y);
     }
     // Schlick's fresnel with the reflectance of water.
     let facing = clamp(dot(normal, look), 0.0, 1.0);
@@ -88,5 +88,5 @@ fn fragment(in: Out) -> @location(0) vec4f {
     let edge = smoothstep(0.0, 0.12, depth);
     let radiance = mix(body * opaque, sky, mirror) + view.sun_irradiance * glint * mirror;
     let alpha = (mirror + (1.0 - mirror) * opaque) * edge;
-    return vec4f(through_air(radiance, away) * edge, alpha);
+    return vec4f(aerial_perspective(radiance, away) * edge, alpha);
 }

@@ -6,22 +6,25 @@ mod picture;
 mod sky;
 mod trees;
 
-pub use ground::{Apron, Detail, Ground, Heightfield, Surface};
+pub use genescape_schema::scene::{
+    GroundDetail, GroundSurface, Heightfield, Instance, StartView, TerrainLod,
+};
+pub use ground::{Apron, Ground};
 pub use picture::{HdrPicture, Picture};
-pub use sky::{CloudLayer, Sky};
-pub use trees::{Instance, Level, Material, Range, Template, TreeVertex, Trees};
+pub use sky::Sky;
+pub use trees::{Level, Material, Range, Template, TreeVertex, Trees};
 
 /// One landscape.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// The individual's name: "Oak valley in June".
     pub name: String,
-    /// The genome's values by gene, in their units, as the scene's file tells them.
-    pub genome: Vec<(String, f64)>,
     /// The land.
     pub ground: Ground,
     /// The trees.
     pub trees: Trees,
     /// Sky, sun and air.
     pub sky: Sky,
+    /// Where a walk starts.
+    pub start: StartView,
 }

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use genescape_schema::scene::Instance;
+
 use super::Picture;
 
 /// All trees of a landscape.
@@ -90,15 +92,4 @@ pub struct Material {
     pub normal: Option<Picture>,
     /// Pixels below this alpha are not drawn; `None` for opaque materials.
     pub alpha_cutoff: Option<f32>,
-}
-
-/// A tree that stands somewhere.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Instance {
-    /// World from the template's space, three rows of four.
-    pub world_from_tree: [[f32; 4]; 3],
-    /// Index into `Trees::templates`.
-    pub template: u32,
-    /// x, z and radius in metres of the trunk: a vertical cylinder without ends.
-    pub trunk_cylinder_m: [f32; 3],
 }

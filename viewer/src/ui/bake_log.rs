@@ -1,14 +1,13 @@
 //! What the last bake reused and what it built and why; and the full text of what is wrong with the person's files.
 
 use egui::{
-    Align, CollapsingHeader, CornerRadius, Frame, Layout, Margin, RichText, ScrollArea, Sense, Stroke, Ui,
-    vec2,
+    CollapsingHeader, CornerRadius, Frame, Label, Margin, RichText, ScrollArea, Sense, Stroke, Ui, vec2,
 };
 
 use super::icon::Icon;
 use super::model::{FileError, StageEntry};
 use super::theme::{self, Palette};
-use super::widgets::{section, sized_icon_button};
+use super::widgets::{ends, section, sized_icon_button, small};
 use crate::event::Event;
 
 /// Stages of the last bake; nothing if there was none.
@@ -47,18 +46,13 @@ fn row(ui: &mut Ui, entry: &StageEntry) {
         ui.painter().circle_filled(rect.center(), 3.5, color);
         let scene = entry.scene.map_or(String::new(), |scene| format!("{} ", scene + 1));
         let name = RichText::new(format!("{scene}{}", entry.stage)).color(palette.text);
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let word = if entry.reused { "reused".to_owned() } else { duration(entry.ms) };
-            ui.label(RichText::new(word).small().color(palette.weak));
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                ui.add(egui::Label::new(name).truncate());
-            });
-        });
+        let word = if entry.reused { "reused".to_owned() } else { duration(entry.ms) };
+        ends(ui, |ui| ui.add(Label::new(name).truncate()), |ui| small(ui, word));
     });
     if !entry.reused && !entry.why.is_empty() {
         ui.horizontal(|ui| {
             ui.add_space(18.0);
-            ui.add(egui::Label::new(RichText::new(&entry.why).small().color(palette.weak)).wrap());
+            ui.add(Label::new(RichText::new(&entry.why).small().color(palette.weak)).wrap());
         });
     }
 }
@@ -84,26 +78,29 @@ pub fn errors(ui: &mut Ui, errors: &[FileError], events: &mut Vec<Event>) {
 fn one(ui: &mut Ui, index: usize, error: &FileError, events: &mut Vec<Event>) {
     let palette = Palette::of(ui.visuals());
     ui.horizontal(|ui| {
-        let (rect, _) = ui.allocate_exact_size(vec2(16.0, 24.0), Sense::hover());
-        Icon::Warning.paint(ui.painter(), rect, palette.danger);
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.spacing_mut().item_spacing.x = 2.0;
-            let dismiss = format!("Dismiss: {}", error.title);
-            if sized_icon_button(ui, Icon::Close, &dismiss, false, 24.0).clicked() {
-                events.push(Event::DismissError(index));
-            }
-            let copy = format!("Copy: {}", error.title);
-            if sized_icon_button(ui, Icon::Copy, &copy, false, 24.0).clicked() {
-                ui.ctx().copy_text(error.report.clone());
-            }
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                ui.add(egui::Label::new(RichText::new(&error.title).strong()).truncate());
-            });
-        });
+        Icon::Warning.show(ui, 16.0, 24.0, palette.danger);
+        let title = Label::new(RichText::new(&error.title).strong()).truncate();
+        ends(
+            ui,
+            |ui| ui.add(title),
+            |ui| {
+                ui.spacing_mut().item_spacing.x = 2.0;
+                let mut button = |icon, verb| {
+                    let label = format!("{verb}: {}", error.title);
+                    sized_icon_button(ui, icon, &label, false, 24.0).clicked()
+                };
+                if button(Icon::Close, "Dismiss") {
+                    events.push(Event::DismissError(index));
+                }
+                if button(Icon::Copy, "Copy") {
+                    ui.ctx().copy_text(error.report.clone());
+                }
+            },
+        );
     });
     ScrollArea::both().id_salt("report").max_height(260.0).auto_shrink([false, true]).show(ui, |ui| {
         let text = RichText::new(&error.report).monospace().color(palette.text);
-        ui.add(egui::Label::new(text).extend().selectable(true));
+        ui.add(Label::new(text).extend().selectable(true));
     });
     ui.label(RichText::new("The last good landscapes stay. Save the file again when it is mended.").small());
 }

@@ -1,13 +1,13 @@
 //! What is shown where there is nothing to show yet: that landscapes are growing, or why they can't be shown and what
 //! to do about it.
 
-use egui::{Align2, Color32, CornerRadius, FontId, Rect, RichText, Sense, Ui, UiBuilder, pos2, vec2};
+use egui::{Align2, Color32, CornerRadius, FontId, Rect, RichText, Sense, Ui, UiBuilder, vec2};
 use genescape_schema::Category;
 
 use super::icon::Icon;
 use super::model::{Baking, Model, Situation};
 use super::theme::{self, Palette};
-use super::widgets::{primary_button, progress_bar};
+use super::widgets::{Asks, primary_button, progress_bar, small};
 use crate::event::Event;
 
 /// Draws it into what is left of `ui`; false if there is something to look at, and nothing was drawn.
@@ -33,9 +33,8 @@ fn growing(ui: &mut Ui, baking: Option<&Baking>) {
     let palette = Palette::of(ui.visuals());
     let (rect, _) = ui.allocate_exact_size(vec2(150.0, 44.0), Sense::hover());
     for (at, category) in Category::ALL.into_iter().enumerate() {
-        let center = pos2(rect.left() + 25.0 + 50.0 * at as f32, rect.center().y);
-        let icon = Rect::from_center_size(center, vec2(32.0, 32.0));
-        Icon::from(category).paint(ui.painter(), icon, palette.category(category));
+        let center = rect.left_center() + vec2(25.0 + 50.0 * at as f32, 0.0);
+        Icon::from(category).paint_at(ui.painter(), center, 32.0, palette.category(category));
     }
     ui.add_space(12.0);
     ui.label(RichText::new("Growing four landscapes…").size(21.0));
@@ -43,19 +42,17 @@ fn growing(ui: &mut Ui, baking: Option<&Baking>) {
     ui.weak("Each appears as soon as it is ready. What has grown once is kept.");
     ui.add_space(14.0);
     let (rect, _) = ui.allocate_exact_size(vec2(260.0f32.min(ui.available_width()), 6.0), Sense::hover());
-    let (done, total) = baking.map_or((0, 0), |baking| (baking.done, baking.total));
-    let part = done as f32 / total.max(1) as f32;
+    let part = baking.map_or(0.0, Baking::part);
     progress_bar(ui.painter(), rect, part, palette.accent, palette.button);
-    if total > 0 {
+    if let Some(Baking { done, total, .. }) = baking.filter(|baking| baking.total > 0) {
         ui.add_space(4.0);
-        ui.label(RichText::new(format!("{done} of {total} stages")).small().color(palette.weak));
+        small(ui, format!("{done} of {total} stages"));
     }
 }
 
 fn stuck(ui: &mut Ui, title: &str, what: &str, remedy: &str, events: &mut Vec<Event>) {
     let palette = Palette::of(ui.visuals());
-    let (rect, _) = ui.allocate_exact_size(vec2(40.0, 40.0), Sense::hover());
-    Icon::Warning.paint(ui.painter(), rect, palette.warning);
+    Icon::Warning.show(ui, 40.0, 40.0, palette.warning);
     ui.add_space(8.0);
     ui.label(RichText::new(title).size(21.0));
     ui.add_space(4.0);
@@ -63,9 +60,7 @@ fn stuck(ui: &mut Ui, title: &str, what: &str, remedy: &str, events: &mut Vec<Ev
     ui.add_space(8.0);
     ui.label(remedy);
     ui.add_space(14.0);
-    if primary_button(ui, "Try again", Icon::Reset).clicked() {
-        events.push(Event::Retry);
-    }
+    primary_button(ui, "Try again", Icon::Reset).asks(events, Event::Retry);
 }
 
 /// A sign over the window while a folder is held over it.

@@ -2,15 +2,16 @@
 //! snaps by itself, and is linear or logarithmic as declared), with marks where the other landscapes stand.
 
 use egui::{
-    Align, Align2, Color32, CornerRadius, FontId, Layout, Rect, Response, Sense, Stroke, Ui, pos2, vec2,
+    Align, Align2, Color32, CornerRadius, FontId, Layout, Rect, Response, RichText, Sense, Stroke, Ui,
 };
-use genescape_schema::{Category, Genome, INDIVIDUALS, Parameter};
+use egui::{pos2, vec2};
+use genescape_schema::Parameter;
 
 use super::icon::Icon;
 use super::model::Genes;
 use super::theme::Palette;
-use super::widgets::sized_icon_button;
-use crate::event::{Event, Phase};
+use super::widgets::{Asks, sized_icon_button, small};
+use crate::event::Event;
 
 /// What is being dragged or typed just now; the model hears of it by events only.
 #[derive(Clone, Debug, Default)]
@@ -19,6 +20,17 @@ pub struct State {
     dragged: Option<(usize, String, u32)>,
     /// Landscape, gene and text as it stands in the field.
     typed: Option<(usize, String, String)>,
+}
+
+/// One gene of one landscape.
+struct Row<'a> {
+    genes: &'a Genes,
+    individual: usize,
+    parameter: &'a Parameter,
+    locked: bool,
+    /// Under the pointer while it is dragged, else the landscape's own.
+    code: u32,
+    bred: u32,
 }
 
 /// Draws the row of one gene of landscape `individual`.
@@ -36,24 +48,173 @@ pub fn show(
         _ => genes.now[individual].code(parameter),
     };
     let bred = genes.bred[individual].code(parameter);
+    let row = Row { genes, individual, parameter, locked, code, bred };
     ui.push_id((individual, &parameter.name), |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         ui.horizontal(|ui| {
             ui.set_min_height(24.0);
-            name(ui, parameter, code != bred);
+            row.name(ui);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 ui.spacing_mut().item_spacing.x = 2.0;
-                lock(ui, genes, parameter, events);
-                match code != bred {
-                    true => reset(ui, individual, parameter, bred, locked, events),
-                    false => ui.add_space(26.0),
-                }
-                value(ui, individual, parameter, code, locked, state, events);
+                row.lock(ui, events);
+                row.reset(ui, events);
+                row.value(ui, state, events);
             });
         });
-        let others = genes.now.each_ref().map(|genome| genome.code(parameter));
-        slider(ui, individual, parameter, code, others, locked, state, events);
+        row.slider(ui, state, events);
     });
+}
+
+impl Row<'_> {
+    fn event(&self, code: u32) -> Event {
+        let (name, value) = (self.parameter.name.clone(), self.parameter.value(code));
+        Event::Genes { individual: self.individual, values: vec![(name, value)] }
+    }
+
+    fn name(&self, ui: &mut Ui) {
+        let (parameter, palette) = (self.parameter, Palette::of(ui.visuals()));
+        let text = RichText::new(spoken(parameter)).color(palette.text);
+        let label = egui::Label::new(text).truncate().sense(Sense::hover());
+        let room = (ui.available_width() - 170.0).max(40.0);
+        let response = ui
+            .scope(|ui| {
+                ui.set_max_width(room);
+                ui.add(label)
+            })
+            .inner;
+        if self.code != self.bred {
+            let dot = pos2(response.rect.left() - 6.0, response.rect.center().y);
+            ui.painter().circle_filled(dot, 2.5, palette.category(parameter.category));
+        }
+        response.on_hover_ui(|ui| {
+            ui.set_max_width(300.0);
+            ui.label(&parameter.help);
+            let scale = parameter.scale.name();
+            let text = format!("{} · {} · {scale}", parameter.name, parameter.range_text());
+            small(ui, text);
+        });
+    }
+
+    fn lock(&self, ui: &mut Ui, events: &mut Vec<Event>) {
+        let (name, locked) = (&self.parameter.name, self.locked);
+        let by_category = self.genes.locked_categories[self.parameter.category as usize];
+        let (icon, verb) = if locked { (Icon::Locked, "Unlock") } else { (Icon::Unlocked, "Lock") };
+        ui.scope(|ui| {
+            if !locked {
+                ui.multiply_opacity(0.5);
+            }
+            let button = |ui: &mut Ui| sized_icon_button(ui, icon, &format!("{verb} {name}"), locked, 24.0);
+            let response = ui.add_enabled_ui(!by_category, button).inner;
+            response.asks(events, Event::LockGene { name: name.clone(), locked: !locked });
+            if by_category {
+                response.on_disabled_hover_text("Locked with its whole category");
+            }
+        });
+    }
+
+    fn reset(&self, ui: &mut Ui, events: &mut Vec<Event>) {
+        if self.code == self.bred {
+            return ui.add_space(26.0);
+        }
+        let Parameter { name, unit, .. } = self.parameter;
+        let label = format!("Reset {name} to {} {unit}", self.parameter.text(self.bred));
+        let button = |ui: &mut Ui| sized_icon_button(ui, Icon::Reset, label.trim_end(), false, 24.0);
+        ui.add_enabled_ui(!self.locked, button).inner.asks(events, self.event(self.bred));
+    }
+
+    /// The value as text, with its unit behind it; Enter or leaving the field takes what was typed.
+    fn value(&self, ui: &mut Ui, state: &mut State, events: &mut Vec<Event>) {
+        let (individual, parameter, palette) = (self.individual, self.parameter, Palette::of(ui.visuals()));
+        let (rect, _) = ui.allocate_exact_size(vec2(30.0, 22.0), Sense::hover());
+        let unit = if parameter.unit == "deg" { "°" } else { &parameter.unit };
+        let font = FontId::proportional(12.0);
+        ui.painter().text(rect.left_center(), Align2::LEFT_CENTER, unit, font, palette.weak);
+        let mine = |(of, name, _): &&(usize, String, String)| *of == individual && *name == parameter.name;
+        let typed = state.typed.as_ref().filter(mine).map(|(_, _, text)| text.clone());
+        let mine = typed.is_some();
+        let mut text = typed.unwrap_or_else(|| parameter.text(self.code));
+        let understood = parse(&text, parameter).is_some();
+        let field = egui::TextEdit::singleline(&mut text)
+            .id(ui.scope_id().with("value"))
+            .font(egui::TextStyle::Body)
+            .margin(egui::Margin::symmetric(5, 2))
+            .align(Align2::RIGHT_CENTER)
+            .text_color(if understood { palette.text } else { palette.danger })
+            .background_color(if mine { palette.sunken } else { Color32::TRANSPARENT })
+            .frame(egui::Frame::NONE)
+            .desired_width(58.0);
+        let response = ui.add_enabled(!self.locked, field);
+        let response = response.accessible_name(format!("Value of {}", parameter.name));
+        if response.has_focus() {
+            state.typed = Some((individual, parameter.name.clone(), text));
+        } else if mine {
+            state.typed = None;
+            let given_up = ui.input(|input| input.key_pressed(egui::Key::Escape));
+            let typed = parse(&text, parameter).map(|value| parameter.snap(value));
+            if let Some(typed) = typed.filter(|&typed| typed != self.code && !self.locked && !given_up) {
+                events.push(self.event(typed));
+            }
+        }
+        response.on_hover_text(format!("Type a value: {}", parameter.range_text()));
+    }
+
+    fn slider(&self, ui: &mut Ui, state: &mut State, events: &mut Vec<Event>) {
+        let (parameter, mut chosen) = (self.parameter, self.code);
+        let palette = Palette::of(ui.visuals());
+        let color = palette.category(parameter.category);
+        let response = ui
+            .add_enabled_ui(!self.locked, |ui| {
+                ui.spacing_mut().slider_width = ui.available_width();
+                ui.spacing_mut().interact_size.y = 20.0;
+                let visuals = ui.visuals_mut();
+                visuals.selection.bg_fill = color.gamma_multiply(0.75);
+                let widgets = &mut visuals.widgets;
+                widgets.inactive.bg_fill = palette.button;
+                for state in [&mut widgets.inactive, &mut widgets.hovered, &mut widgets.active] {
+                    state.fg_stroke = Stroke::new(2.0, color);
+                    state.bg_stroke = Stroke::new(2.0, color);
+                    state.corner_radius = CornerRadius::same(2);
+                }
+                let range = 0..=parameter.last_code();
+                ui.add(egui::Slider::new(&mut chosen, range).show_value(false).smart_aim(false))
+            })
+            .inner
+            .accessible_name(parameter.name.clone());
+        self.marks(ui, &response);
+        if self.locked {
+            return;
+        }
+        let moving = response.dragged() || response.is_pointer_button_down_on();
+        if response.drag_stopped() {
+            // A press that moved nothing asks for nothing.
+            if state.dragged.take().is_some() || chosen != self.code {
+                events.push(self.event(chosen));
+            }
+        } else if chosen != self.code {
+            // While it moves only the panel shows it; it is written when it is let go.
+            state.dragged = moving.then(|| (self.individual, parameter.name.clone(), chosen));
+            if !moving {
+                events.push(self.event(chosen));
+            }
+        }
+    }
+
+    /// Ticks under the rail where the other three landscapes stand.
+    fn marks(&self, ui: &Ui, response: &Response) {
+        let palette = Palette::of(ui.visuals());
+        let rail = response.rect.x_range().shrink(response.rect.height() / 2.5);
+        let codes = self.genes.now.each_ref().map(|genome| genome.code(self.parameter));
+        for (view, &code) in codes.iter().enumerate().filter(|&(_, &code)| code != codes[self.individual]) {
+            let part = code as f32 / self.parameter.last_code() as f32;
+            let at = pos2(egui::lerp(rail, part), response.rect.center().y + 4.0);
+            let tick = Rect::from_min_max(at - vec2(0.75, 0.0), at + vec2(0.75, 5.0));
+            ui.painter().rect_filled(tick, CornerRadius::ZERO, palette.weak);
+            if response.hovered() || response.dragged() {
+                let (place, font) = (at + vec2(0.0, 4.0), FontId::proportional(9.0));
+                ui.painter().text(place, Align2::CENTER_TOP, view + 1, font, palette.weak);
+            }
+        }
+    }
 }
 
 /// A gene's name for people: without the unit, with spaces.
@@ -65,125 +226,6 @@ pub fn spoken(parameter: &Parameter) -> String {
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// Whether the four landscapes do not agree on a gene.
-pub fn differs(genomes: &[Genome; INDIVIDUALS], parameter: &Parameter) -> bool {
-    genomes.iter().any(|genome| genome.code(parameter) != genomes[0].code(parameter))
-}
-
-fn name(ui: &mut Ui, parameter: &Parameter, changed: bool) {
-    let palette = Palette::of(ui.visuals());
-    let text = egui::RichText::new(spoken(parameter)).color(palette.text);
-    let label = egui::Label::new(text).truncate().sense(Sense::hover());
-    let room = (ui.available_width() - 170.0).max(40.0);
-    let response = ui
-        .scope(|ui| {
-            ui.set_max_width(room);
-            ui.add(label)
-        })
-        .inner;
-    if changed {
-        let dot = pos2(response.rect.left() - 6.0, response.rect.center().y);
-        ui.painter().circle_filled(dot, 2.5, palette.category(parameter.category));
-    }
-    response.on_hover_ui(|ui| {
-        ui.set_max_width(300.0);
-        ui.label(&parameter.help);
-        let scale = parameter.scale.name();
-        let text = format!("{} · {} · {scale}", parameter.name, parameter.range_text());
-        ui.label(egui::RichText::new(text).small().color(Palette::of(ui.visuals()).weak));
-    });
-}
-
-fn lock(ui: &mut Ui, genes: &Genes, parameter: &Parameter, events: &mut Vec<Event>) {
-    let by_category = genes.locked_categories[parameter.category as usize];
-    let locked = genes.is_locked(parameter);
-    let (icon, verb) = if locked { (Icon::Locked, "Unlock") } else { (Icon::Unlocked, "Lock") };
-    let label = format!("{verb} {}", parameter.name);
-    ui.scope(|ui| {
-        if !locked {
-            ui.multiply_opacity(0.5);
-        }
-        let response =
-            ui.add_enabled_ui(!by_category, |ui| sized_icon_button(ui, icon, &label, locked, 24.0)).inner;
-        if response.clicked() {
-            events.push(Event::LockGene { name: parameter.name.clone(), locked: !locked });
-        }
-        if by_category {
-            response.on_disabled_hover_text("Locked with its whole category");
-        }
-    });
-}
-
-fn reset(
-    ui: &mut Ui,
-    individual: usize,
-    parameter: &Parameter,
-    bred: u32,
-    locked: bool,
-    events: &mut Vec<Event>,
-) {
-    let label = format!("Reset {} to {} {}", parameter.name, parameter.text(bred), parameter.unit);
-    let response =
-        ui.add_enabled_ui(!locked, |ui| sized_icon_button(ui, Icon::Reset, label.trim_end(), false, 24.0));
-    if response.inner.clicked() {
-        events.push(gene(individual, parameter, bred, Phase::Committed));
-    }
-}
-
-fn gene(individual: usize, parameter: &Parameter, code: u32, phase: Phase) -> Event {
-    Event::Gene { individual, name: parameter.name.clone(), value: parameter.value(code), phase }
-}
-
-/// The value as text, with its unit behind it; Enter or leaving the field takes what was typed.
-fn value(
-    ui: &mut Ui,
-    individual: usize,
-    parameter: &Parameter,
-    code: u32,
-    locked: bool,
-    state: &mut State,
-    events: &mut Vec<Event>,
-) {
-    let palette = Palette::of(ui.visuals());
-    let (rect, _) = ui.allocate_exact_size(vec2(30.0, 22.0), Sense::hover());
-    let unit = if parameter.unit == "deg" { "°" } else { &parameter.unit };
-    ui.painter().text(
-        rect.left_center(),
-        Align2::LEFT_CENTER,
-        unit,
-        FontId::proportional(12.0),
-        palette.weak,
-    );
-    let mine = matches!(&state.typed, Some((of, name, _)) if *of == individual && *name == parameter.name);
-    let mut text = match &state.typed {
-        Some((_, _, text)) if mine => text.clone(),
-        _ => parameter.text(code),
-    };
-    let understood = parse(&text, parameter).is_some();
-    let field = egui::TextEdit::singleline(&mut text)
-        .id(ui.scope_id().with("value"))
-        .font(egui::TextStyle::Body)
-        .margin(egui::Margin::symmetric(5, 2))
-        .align(egui::Align2::RIGHT_CENTER)
-        .text_color(if understood { palette.text } else { palette.danger })
-        .background_color(if mine { palette.sunken } else { Color32::TRANSPARENT })
-        .frame(egui::Frame::NONE)
-        .desired_width(58.0);
-    let response = ui.add_enabled(!locked, field);
-    let response = response.accessible_name(format!("Value of {}", parameter.name));
-    if response.has_focus() {
-        state.typed = Some((individual, parameter.name.clone(), text));
-    } else if mine {
-        let typed = parse(&text, parameter).map(|value| parameter.snap(value));
-        state.typed = None;
-        let given_up = ui.input(|input| input.key_pressed(egui::Key::Escape));
-        if let Some(typed) = typed.filter(|&typed| typed != code && !locked && !given_up) {
-            events.push(gene(individual, parameter, typed, Phase::Committed));
-        }
-    }
-    response.on_hover_text(format!("Type a value: {}", parameter.range_text()));
-}
-
 /// A number in range, with or without the unit; comma or point.
 fn parse(text: &str, parameter: &Parameter) -> Option<f64> {
     let text = text.trim();
@@ -191,97 +233,9 @@ fn parse(text: &str, parameter: &Parameter) -> Option<f64> {
     number.parse().ok().filter(|&value| parameter.contains(value))
 }
 
-#[expect(clippy::too_many_arguments, reason = "a row's own values, all small")]
-fn slider(
-    ui: &mut Ui,
-    individual: usize,
-    parameter: &Parameter,
-    code: u32,
-    others: [u32; INDIVIDUALS],
-    locked: bool,
-    state: &mut State,
-    events: &mut Vec<Event>,
-) {
-    let mut chosen = code;
-    let color = Palette::of(ui.visuals()).category(parameter.category);
-    let response = ui
-        .add_enabled_ui(!locked, |ui| {
-            ui.spacing_mut().slider_width = ui.available_width();
-            ui.spacing_mut().interact_size.y = 20.0;
-            ui.visuals_mut().selection.bg_fill = color.gamma_multiply(0.75);
-            let sunken = Palette::of(ui.visuals()).button;
-            ui.visuals_mut().widgets.inactive.bg_fill = sunken;
-            handle_colors(ui, color);
-            let range = 0..=parameter.last_code();
-            ui.add(egui::Slider::new(&mut chosen, range).show_value(false).smart_aim(false))
-        })
-        .inner
-        .accessible_name(parameter.name.clone());
-    marks(ui, &response, individual, parameter, others);
-    if locked {
-        return;
-    }
-    let moving = response.dragged() || response.is_pointer_button_down_on();
-    if response.drag_stopped() {
-        // A press that moved nothing asks for nothing.
-        if state.dragged.take().is_some() || chosen != code {
-            events.push(gene(individual, parameter, chosen, Phase::Committed));
-        }
-    } else if chosen != code {
-        let phase = if moving { Phase::Dragging } else { Phase::Committed };
-        state.dragged = moving.then(|| (individual, parameter.name.clone(), chosen));
-        events.push(gene(individual, parameter, chosen, phase));
-    }
-}
-
-fn handle_colors(ui: &mut Ui, color: Color32) {
-    let widgets = &mut ui.visuals_mut().widgets;
-    for state in [&mut widgets.inactive, &mut widgets.hovered, &mut widgets.active] {
-        state.fg_stroke = Stroke::new(2.0, color);
-        state.bg_stroke = Stroke::new(2.0, color);
-        state.corner_radius = CornerRadius::same(2);
-    }
-}
-
-/// Ticks under the rail where the other three landscapes stand.
-fn marks(ui: &Ui, response: &Response, individual: usize, parameter: &Parameter, others: [u32; INDIVIDUALS]) {
-    let palette = Palette::of(ui.visuals());
-    let radius = response.rect.height() / 2.5;
-    let rail = response.rect.x_range().shrink(radius);
-    let font = FontId::proportional(9.0);
-    let near = response.hovered() || response.dragged();
-    for (view, &code) in others.iter().enumerate().filter(|&(view, _)| view != individual) {
-        if code == others[individual] {
-            continue;
-        }
-        let part = code as f32 / parameter.last_code() as f32;
-        let at = pos2(egui::lerp(rail, part), response.rect.center().y + 4.0);
-        let tick = Rect::from_min_max(at - vec2(0.75, 0.0), at + vec2(0.75, 5.0));
-        ui.painter().rect_filled(tick, CornerRadius::ZERO, palette.weak);
-        if near {
-            let place = at + vec2(0.0, 4.0);
-            ui.painter().text(place, Align2::CENTER_TOP, view + 1, font.clone(), palette.weak);
-        }
-    }
-}
-
 /// Whether a gene is meant by what was typed into the search field.
 pub fn matches(parameter: &Parameter, search: &str) -> bool {
     let haystack = format!("{} {} {} {}", parameter.name, spoken(parameter), parameter.help, parameter.unit);
     let haystack = haystack.to_lowercase();
     search.to_lowercase().split_whitespace().all(|word| haystack.contains(word))
-}
-
-/// The genes of a category that are listed.
-pub fn listed<'g>(
-    genes: &'g Genes,
-    category: Category,
-    search: &'g str,
-    only_different: bool,
-) -> impl Iterator<Item = &'g Parameter> {
-    genes
-        .space
-        .category(category)
-        .filter(move |parameter| matches(parameter, search))
-        .filter(move |parameter| !only_different || differs(&genes.now, parameter))
 }

@@ -1,15 +1,13 @@
 //! The help: first steps in three lines, and what every key does, as the bindings say it.
 
-use egui::{
-    Align2, Area, Color32, CornerRadius, Frame, Id, Margin, Order, Rect, RichText, ScrollArea, Sense, Ui,
-    vec2,
-};
+use egui::{Align2, Area, Color32, CornerRadius, Id, Order, Rect, RichText, Sense, Ui, vec2};
 
 use super::icon::Icon;
-use super::model::{KeyGroup, Model};
+use super::model::Model;
 use super::theme::{self, Palette};
-use super::widgets::{icon_button, key_caps};
+use super::widgets::{icon_button, key_caps, scrolled};
 use crate::event::{Event, Panel};
+use crate::input::KeyGroup;
 
 /// What to do first.
 const FIRST_STEPS: [(&str, &str); 3] = [
@@ -21,7 +19,7 @@ const FIRST_STEPS: [(&str, &str); 3] = [
 /// Draws it in the middle of the window, over a veil that closes it.
 pub fn show(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
     let window = ui.ctx().content_rect();
-    let mut close = veil(ui, window);
+    let mut close = veil(ui, window) || ui.input(|input| input.key_pressed(egui::Key::Escape));
     let columns = if window.width() >= 900.0 { 2 } else { 1 };
     let width = (380.0 * columns as f32 + 40.0).min(window.width() - 32.0);
     Area::new(Id::unique("help"))
@@ -31,52 +29,32 @@ pub fn show(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
         .constrain_to(window.shrink(8.0))
         .accessible_name("Help")
         .show(ui.ctx(), |ui| {
-            let palette = Palette::of(ui.visuals());
-            let frame = Frame::NONE
-                .fill(palette.raised)
-                .corner_radius(CornerRadius::same(12))
-                .shadow(theme::card_shadow())
-                .inner_margin(Margin::same(20));
-            frame.show(ui, |ui| {
+            theme::card(Palette::of(ui.visuals())).corner_radius(12).inner_margin(20).show(ui, |ui| {
                 ui.set_width(width - 40.0);
-                close |= header(ui);
-                // An area offers no more than it had; so the list says itself how high it may be.
-                let room = window.height() - 130.0;
-                ScrollArea::vertical()
-                    .max_height(room)
-                    .min_scrolled_height(room)
-                    .auto_shrink([false, true])
-                    .show(ui, |ui| {
-                        first_steps(ui);
-                        ui.add_space(12.0);
-                        keys(ui, &model.keys, columns);
-                    });
+                ui.horizontal(|ui| {
+                    ui.label(RichText::new("Find a landscape by choosing").size(21.0));
+                    let layout = egui::Layout::right_to_left(egui::Align::Center);
+                    let button = |ui: &mut Ui| icon_button(ui, Icon::Close, "Close the help", false);
+                    close |= ui.with_layout(layout, button).inner.clicked();
+                });
+                scrolled(ui, window.height() - 130.0, |ui| {
+                    first_steps(ui);
+                    ui.add_space(12.0);
+                    keys(ui, &model.keys, columns);
+                });
             });
         });
-    if close || ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+    if close {
         events.push(Event::Panel { panel: Panel::Help, open: false });
     }
 }
 
 /// Darkens the window; true if it was clicked.
 fn veil(ui: &Ui, window: Rect) -> bool {
-    let area =
-        Area::new(Id::unique("help veil")).order(Order::Foreground).fixed_pos(window.min).interactable(true);
+    let area = Area::new(Id::unique("help veil")).order(Order::Foreground).fixed_pos(window.min);
     area.show(ui.ctx(), |ui| {
         ui.painter().rect_filled(window, CornerRadius::ZERO, Color32::from_black_alpha(120));
         ui.allocate_rect(window, Sense::click()).clicked()
-    })
-    .inner
-}
-
-/// Title and cross; true if the cross was pressed.
-fn header(ui: &mut Ui) -> bool {
-    ui.horizontal(|ui| {
-        ui.label(RichText::new("Find a landscape by choosing").size(21.0));
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            icon_button(ui, Icon::Close, "Close the help", false).clicked()
-        })
-        .inner
     })
     .inner
 }
@@ -103,16 +81,13 @@ fn first_steps(ui: &mut Ui) {
 /// The groups, shared out over columns of about equal length.
 fn keys(ui: &mut Ui, groups: &[KeyGroup], columns: usize) {
     let all: usize = groups.iter().map(|group| group.keys.len() + 2).sum();
-    let mut column_of = Vec::with_capacity(groups.len());
-    let mut before = 0;
-    for group in groups {
-        let length = group.keys.len() + 2;
-        column_of.push(((2 * before + length) * columns / (2 * all.max(1))).min(columns - 1));
-        before += length;
-    }
     ui.columns(columns, |uis| {
-        for (group, column) in groups.iter().zip(column_of) {
-            key_group(&mut uis[column], group);
+        let mut before = 0;
+        for group in groups {
+            let length = group.keys.len() + 2;
+            let column = (2 * before + length) * columns / (2 * all);
+            key_group(&mut uis[column.min(columns - 1)], group);
+            before += length;
         }
     });
 }

@@ -1,59 +1,32 @@
-//! The interface's pictograms as vectors in a unit square (x right, y down): sharp at every scale, one weight of line,
-//! no font needed.
+//! The interface's pictograms as vectors: sharp at every scale, one weight of line, no font needed.
 
 use egui::epaint::PathShape;
-use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, lerp, pos2};
+use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Ui, lerp, pos2};
 use genescape_schema::Category;
 
-/// A pictogram.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::VariantArray)]
 pub enum Icon {
-    /// A conifer.
     Tree,
-    /// Two peaks.
     Terrain,
-    /// A sun.
     Sky,
-    /// An arrow that turns back.
     Undo,
-    /// An arrow that turns on.
     Redo,
-    /// An arrow ahead.
     Next,
-    /// Four panes.
     Grid,
-    /// One pane.
     Single,
-    /// A pane in two halves.
     Compare,
-    /// Three sliders.
     Genome,
-    /// A graph of bars.
     Stats,
-    /// Two switches.
     Settings,
-    /// A question mark in a ring.
     Help,
-    /// A closed lock.
     Locked,
-    /// An open lock.
     Unlocked,
-    /// A camera.
     Camera,
-    /// Arrows into corners.
     Maximise,
-    /// A cross.
     Close,
-    /// An arrow in a circle.
     Reset,
-    /// A lens.
-    Search,
-    /// A triangle with an exclamation mark.
     Warning,
-    /// Two sheets.
     Copy,
-    /// A tick.
-    Check,
 }
 
 impl From<Category> for Icon {
@@ -61,22 +34,6 @@ impl From<Category> for Icon {
         [Self::Tree, Self::Terrain, Self::Sky][category as usize]
     }
 }
-
-/// A part of a pictogram.
-enum Part {
-    /// A filled convex polygon.
-    Fill(&'static [(f32, f32)]),
-    /// A line through points.
-    Line(&'static [(f32, f32)]),
-    /// A filled circle.
-    Dot((f32, f32), f32),
-    /// A ring of twice the usual weight.
-    Bold((f32, f32), f32),
-    /// Part of a circle, from and to in degrees, clockwise from the right.
-    Arc((f32, f32), f32, f32, f32),
-}
-
-use Part::{Arc, Bold, Dot, Fill, Line};
 
 /// Segments of a full circle.
 const SEGMENTS: f32 = 28.0;
@@ -87,145 +44,112 @@ impl Icon {
         let side = rect.width().min(rect.height());
         let square = Rect::from_center_size(rect.center(), egui::Vec2::splat(side));
         let stroke = Stroke::new((side * 0.095).max(1.2), color);
-        let at =
-            |&(x, y): &(f32, f32)| -> Pos2 { pos2(lerp(square.x_range(), x), lerp(square.y_range(), y)) };
-        for part in self.parts() {
-            painter.add(match part {
-                Fill(points) => {
-                    PathShape::convex_polygon(points.iter().map(at).collect(), color, Stroke::NONE).into()
+        let at = |x: f32, y: f32| pos2(lerp(square.x_range(), x), lerp(square.y_range(), y));
+        for (verb, numbers) in self.parts() {
+            let points = || numbers.chunks_exact(2).map(|point| at(point[0], point[1])).collect();
+            painter.add(match (verb, &numbers[..]) {
+                ("fill", _) => PathShape::convex_polygon(points(), color, Stroke::NONE).into(),
+                ("line", _) => Shape::line(points(), stroke),
+                ("dot", &[x, y, radius]) => Shape::circle_filled(at(x, y), radius * side, color),
+                ("ring", &[x, y, radius]) => {
+                    Shape::circle_stroke(at(x, y), radius * side, Stroke::new(0.17 * side, color))
                 }
-                Line(points) => Shape::line(points.iter().map(at).collect(), stroke),
-                Dot(center, radius) => Shape::circle_filled(at(center), radius * side, color),
-                Bold(center, radius) => {
-                    Shape::circle_stroke(at(center), radius * side, Stroke::new(0.17 * side, color))
+                ("arc", &[x, y, radius, from_deg, to_deg]) => {
+                    Shape::line(arc(at(x, y), radius * side, from_deg, to_deg), stroke)
                 }
-                Arc(center, radius, from, to) => {
-                    Shape::line(arc(at(center), radius * side, *from, *to), stroke)
-                }
+                part => unreachable!("{part:?} is no part of a pictogram"),
             });
         }
     }
 
-    fn parts(self) -> &'static [Part] {
+    /// The same around a point.
+    pub fn paint_at(self, painter: &Painter, center: Pos2, side: f32, color: Color32) {
+        self.paint(painter, Rect::from_center_size(center, egui::Vec2::splat(side)), color);
+    }
+
+    /// The same in the next place of a layout.
+    pub fn show(self, ui: &mut Ui, width: f32, height: f32, color: Color32) {
+        let (rect, _) = ui.allocate_exact_size(egui::vec2(width, height), egui::Sense::hover());
+        self.paint(ui.painter(), rect, color);
+    }
+
+    fn parts(self) -> impl Iterator<Item = (&'static str, Vec<f32>)> {
+        self.drawing().split("; ").map(|part| {
+            let (verb, numbers) = part.split_once(' ').unwrap_or((part, ""));
+            (verb, numbers.split(' ').filter_map(|number| number.parse().ok()).collect())
+        })
+    }
+
+    /// Its parts in a unit square, x right and y down: a filled convex polygon or a line through points; a dot or a ring
+    /// of twice the usual weight by centre and radius; an arc by centre, radius and two angles in degrees, clockwise from
+    /// the right.
+    fn drawing(self) -> &'static str {
         match self {
-            Self::Tree => &[
-                Fill(&[(0.5, 0.02), (0.76, 0.4), (0.24, 0.4)]),
-                Fill(&[(0.5, 0.22), (0.88, 0.78), (0.12, 0.78)]),
-                Fill(&[(0.43, 0.78), (0.57, 0.78), (0.57, 0.97), (0.43, 0.97)]),
-            ],
-            Self::Terrain => &[
-                Fill(&[(0.4, 0.16), (0.8, 0.86), (0.0, 0.86)]),
-                Fill(&[(0.74, 0.42), (1.0, 0.86), (0.48, 0.86)]),
-            ],
-            Self::Sky => &[
-                Dot((0.5, 0.5), 0.21),
-                Line(&[(0.5, 0.04), (0.5, 0.17)]),
-                Line(&[(0.5, 0.83), (0.5, 0.96)]),
-                Line(&[(0.04, 0.5), (0.17, 0.5)]),
-                Line(&[(0.83, 0.5), (0.96, 0.5)]),
-                Line(&[(0.175, 0.175), (0.267, 0.267)]),
-                Line(&[(0.733, 0.733), (0.825, 0.825)]),
-                Line(&[(0.175, 0.825), (0.267, 0.733)]),
-                Line(&[(0.733, 0.267), (0.825, 0.175)]),
-            ],
-            Self::Undo => &[
-                Line(&[(0.36, 0.1), (0.13, 0.33), (0.36, 0.56)]),
-                Line(&[(0.13, 0.33), (0.6, 0.33)]),
-                Arc((0.6, 0.59), 0.26, -90.0, 90.0),
-                Line(&[(0.6, 0.85), (0.3, 0.85)]),
-            ],
-            Self::Redo => &[
-                Line(&[(0.64, 0.1), (0.87, 0.33), (0.64, 0.56)]),
-                Line(&[(0.87, 0.33), (0.4, 0.33)]),
-                Arc((0.4, 0.59), 0.26, -90.0, -270.0),
-                Line(&[(0.4, 0.85), (0.7, 0.85)]),
-            ],
-            Self::Next => &[Line(&[(0.1, 0.5), (0.88, 0.5)]), Line(&[(0.58, 0.2), (0.88, 0.5), (0.58, 0.8)])],
-            Self::Grid => &[
-                Fill(&[(0.1, 0.1), (0.45, 0.1), (0.45, 0.45), (0.1, 0.45)]),
-                Fill(&[(0.55, 0.1), (0.9, 0.1), (0.9, 0.45), (0.55, 0.45)]),
-                Fill(&[(0.1, 0.55), (0.45, 0.55), (0.45, 0.9), (0.1, 0.9)]),
-                Fill(&[(0.55, 0.55), (0.9, 0.55), (0.9, 0.9), (0.55, 0.9)]),
-            ],
-            Self::Single => &[Line(&[(0.1, 0.16), (0.9, 0.16), (0.9, 0.84), (0.1, 0.84), (0.1, 0.11)])],
-            Self::Compare => &[
-                Line(&[(0.1, 0.16), (0.9, 0.16), (0.9, 0.84), (0.1, 0.84), (0.1, 0.11)]),
-                Fill(&[(0.5, 0.16), (0.9, 0.16), (0.9, 0.84), (0.5, 0.84)]),
-            ],
-            Self::Genome => &[
-                Line(&[(0.08, 0.2), (0.92, 0.2)]),
-                Line(&[(0.08, 0.5), (0.92, 0.5)]),
-                Line(&[(0.08, 0.8), (0.92, 0.8)]),
-                Dot((0.68, 0.2), 0.12),
-                Dot((0.3, 0.5), 0.12),
-                Dot((0.56, 0.8), 0.12),
-            ],
-            Self::Stats => &[
-                Fill(&[(0.1, 0.55), (0.27, 0.55), (0.27, 0.9), (0.1, 0.9)]),
-                Fill(&[(0.415, 0.12), (0.585, 0.12), (0.585, 0.9), (0.415, 0.9)]),
-                Fill(&[(0.73, 0.36), (0.9, 0.36), (0.9, 0.9), (0.73, 0.9)]),
-            ],
-            Self::Settings => &[
-                Bold((0.5, 0.5), 0.26),
-                Fill(&[(0.4, 0.02), (0.6, 0.02), (0.63, 0.25), (0.37, 0.25)]),
-                Fill(&[(0.37, 0.75), (0.63, 0.75), (0.6, 0.98), (0.4, 0.98)]),
-                Fill(&[(0.034, 0.347), (0.134, 0.173), (0.349, 0.262), (0.219, 0.488)]),
-                Fill(&[(0.651, 0.738), (0.781, 0.512), (0.966, 0.653), (0.866, 0.827)]),
-                Fill(&[(0.134, 0.827), (0.034, 0.653), (0.219, 0.512), (0.349, 0.738)]),
-                Fill(&[(0.781, 0.488), (0.651, 0.262), (0.866, 0.173), (0.966, 0.347)]),
-            ],
-            Self::Help => &[
-                Arc((0.5, 0.5), 0.43, 0.0, 360.0),
-                Arc((0.5, 0.38), 0.135, -180.0, 60.0),
-                Line(&[(0.567, 0.497), (0.5, 0.56), (0.5, 0.62)]),
-                Dot((0.5, 0.75), 0.06),
-            ],
-            Self::Locked => &[
-                Fill(&[(0.2, 0.46), (0.8, 0.46), (0.8, 0.92), (0.2, 0.92)]),
-                Arc((0.5, 0.36), 0.2, -180.0, 0.0),
-                Line(&[(0.3, 0.36), (0.3, 0.48)]),
-                Line(&[(0.7, 0.36), (0.7, 0.48)]),
-            ],
-            Self::Unlocked => &[
-                Line(&[(0.2, 0.46), (0.8, 0.46), (0.8, 0.92), (0.2, 0.92), (0.2, 0.42)]),
-                Arc((0.5, 0.28), 0.2, -180.0, -20.0),
-                Line(&[(0.3, 0.28), (0.3, 0.48)]),
-            ],
-            Self::Camera => &[
-                Line(&[
-                    (0.06, 0.28),
-                    (0.3, 0.28),
-                    (0.38, 0.14),
-                    (0.62, 0.14),
-                    (0.7, 0.28),
-                    (0.94, 0.28),
-                    (0.94, 0.84),
-                    (0.06, 0.84),
-                    (0.06, 0.23),
-                ]),
-                Arc((0.5, 0.55), 0.16, 0.0, 360.0),
-            ],
-            Self::Maximise => &[
-                Line(&[(0.58, 0.12), (0.88, 0.12), (0.88, 0.42)]),
-                Line(&[(0.42, 0.88), (0.12, 0.88), (0.12, 0.58)]),
-                Line(&[(0.88, 0.12), (0.58, 0.42)]),
-                Line(&[(0.12, 0.88), (0.42, 0.58)]),
-            ],
-            Self::Close => &[Line(&[(0.2, 0.2), (0.8, 0.8)]), Line(&[(0.8, 0.2), (0.2, 0.8)])],
-            Self::Reset => {
-                &[Arc((0.5, 0.54), 0.34, -40.0, 240.0), Line(&[(0.28, 0.02), (0.33, 0.25), (0.1, 0.31)])]
+            Self::Tree => {
+                "fill .5 .02 .76 .4 .24 .4; fill .5 .22 .88 .78 .12 .78; \
+                 fill .43 .78 .57 .78 .57 .97 .43 .97"
             }
-            Self::Search => &[Arc((0.42, 0.42), 0.3, 0.0, 360.0), Line(&[(0.64, 0.64), (0.92, 0.92)])],
-            Self::Warning => &[
-                Line(&[(0.5, 0.1), (0.95, 0.88), (0.05, 0.88), (0.5, 0.1), (0.55, 0.19)]),
-                Line(&[(0.5, 0.38), (0.5, 0.62)]),
-                Dot((0.5, 0.75), 0.06),
-            ],
-            Self::Copy => &[
-                Line(&[(0.1, 0.34), (0.66, 0.34), (0.66, 0.92), (0.1, 0.92), (0.1, 0.3)]),
-                Line(&[(0.34, 0.2), (0.34, 0.08), (0.9, 0.08), (0.9, 0.66), (0.78, 0.66)]),
-            ],
-            Self::Check => &[Line(&[(0.12, 0.54), (0.4, 0.82), (0.9, 0.2)])],
+            Self::Terrain => "fill .4 .16 .8 .86 0 .86; fill .74 .42 1 .86 .48 .86",
+            Self::Sky => {
+                "dot .5 .5 .21; line .5 .04 .5 .17; line .5 .83 .5 .96; line .04 .5 .17 .5; \
+                 line .83 .5 .96 .5; line .175 .175 .267 .267; line .733 .733 .825 .825; \
+                 line .175 .825 .267 .733; line .733 .267 .825 .175"
+            }
+            Self::Undo => {
+                "line .36 .1 .13 .33 .36 .56; line .13 .33 .6 .33; arc .6 .59 .26 -90 90; \
+                 line .6 .85 .3 .85"
+            }
+            Self::Redo => {
+                "line .64 .1 .87 .33 .64 .56; line .87 .33 .4 .33; arc .4 .59 .26 -90 -270; \
+                 line .4 .85 .7 .85"
+            }
+            Self::Next => "line .1 .5 .88 .5; line .58 .2 .88 .5 .58 .8",
+            Self::Grid => {
+                "fill .1 .1 .45 .1 .45 .45 .1 .45; fill .55 .1 .9 .1 .9 .45 .55 .45; \
+                 fill .1 .55 .45 .55 .45 .9 .1 .9; fill .55 .55 .9 .55 .9 .9 .55 .9"
+            }
+            Self::Single => "line .1 .16 .9 .16 .9 .84 .1 .84 .1 .11",
+            Self::Compare => "line .1 .16 .9 .16 .9 .84 .1 .84 .1 .11; fill .5 .16 .9 .16 .9 .84 .5 .84",
+            Self::Genome => {
+                "line .08 .2 .92 .2; line .08 .5 .92 .5; line .08 .8 .92 .8; dot .68 .2 .12; \
+                 dot .3 .5 .12; dot .56 .8 .12"
+            }
+            Self::Stats => {
+                "fill .1 .55 .27 .55 .27 .9 .1 .9; fill .415 .12 .585 .12 .585 .9 .415 .9; \
+                 fill .73 .36 .9 .36 .9 .9 .73 .9"
+            }
+            Self::Settings => {
+                "ring .5 .5 .26; fill .4 .02 .6 .02 .63 .25 .37 .25; fill .37 .75 .63 .75 .6 .98 .4 .98; \
+                 fill .034 .347 .134 .173 .349 .262 .219 .488; \
+                 fill .651 .738 .781 .512 .966 .653 .866 .827; \
+                 fill .134 .827 .034 .653 .219 .512 .349 .738; \
+                 fill .781 .488 .651 .262 .866 .173 .966 .347"
+            }
+            Self::Help => {
+                "arc .5 .5 .43 0 360; arc .5 .38 .135 -180 60; line .567 .497 .5 .56 .5 .62; \
+                 dot .5 .75 .06"
+            }
+            Self::Locked => {
+                "fill .2 .46 .8 .46 .8 .92 .2 .92; arc .5 .36 .2 -180 0; line .3 .36 .3 .48; \
+                 line .7 .36 .7 .48"
+            }
+            Self::Unlocked => {
+                "line .2 .46 .8 .46 .8 .92 .2 .92 .2 .42; arc .5 .28 .2 -180 -20; line .3 .28 .3 .48"
+            }
+            Self::Camera => {
+                "line .06 .28 .3 .28 .38 .14 .62 .14 .7 .28 .94 .28 .94 .84 .06 .84 .06 .23; \
+                 arc .5 .55 .16 0 360"
+            }
+            Self::Maximise => {
+                "line .58 .12 .88 .12 .88 .42; line .42 .88 .12 .88 .12 .58; line .88 .12 .58 .42; \
+                 line .12 .88 .42 .58"
+            }
+            Self::Close => "line .2 .2 .8 .8; line .8 .2 .2 .8",
+            Self::Reset => "arc .5 .54 .34 -40 240; line .28 .02 .33 .25 .1 .31",
+            Self::Warning => "line .5 .1 .95 .88 .05 .88 .5 .1 .55 .19; line .5 .38 .5 .62; dot .5 .75 .06",
+            Self::Copy => {
+                "line .1 .34 .66 .34 .66 .92 .1 .92 .1 .3; line .34 .2 .34 .08 .9 .08 .9 .66 .78 .66"
+            }
         }
     }
 }
@@ -239,4 +163,33 @@ pub fn arc(center: Pos2, radius: f32, from_deg: f32, to_deg: f32) -> Vec<Pos2> {
         center + egui::vec2(cos, sin) * radius
     };
     (0..=steps).map(point).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use strum::VariantArray;
+
+    use super::*;
+
+    #[test]
+    fn every_part_of_every_pictogram_is_understood_and_lies_within_it() {
+        for icon in Icon::VARIANTS {
+            for (verb, numbers) in icon.parts() {
+                let places = match (verb, numbers.len()) {
+                    ("fill", 6 | 8) => &numbers[..],
+                    ("line", 4..) if numbers.len() % 2 == 0 => &numbers[..],
+                    ("dot" | "ring", 3) | ("arc", 5) => &numbers[..3],
+                    _ => panic!("{icon:?}: {verb} {numbers:?}"),
+                };
+                assert!(places.iter().all(|place| (0.0..=1.0).contains(place)), "{icon:?}: {numbers:?}");
+                let written =
+                    icon.drawing().split([' ', ';']).filter(|word| word.parse::<f32>().is_ok()).count();
+                assert_eq!(
+                    written,
+                    icon.parts().map(|(_, numbers)| numbers.len()).sum::<usize>(),
+                    "{icon:?}"
+                );
+            }
+        }
+    }
 }

@@ -27,6 +27,7 @@ pub use views::Views;
 
 use crate::event::{Event, Panel};
 use model::Model;
+use widgets::Asks;
 
 /// What the panels remember between frames.
 pub struct State {
@@ -100,14 +101,6 @@ pub fn show(ui: &mut Ui, model: &Model, state: &mut State) -> Output {
     if model.panels.stats && !docked {
         stats::show_card(ui, &model.stats, area);
     }
-    overlays(ui, model, area, events);
-    dropped(ui, events);
-    state.toasts.show(ui.ctx());
-    output.typing = ui.ctx().egui_wants_keyboard_input();
-    output
-}
-
-fn overlays(ui: &mut Ui, model: &Model, area: Rect, events: &mut Vec<Event>) {
     if model.panels.settings {
         settings::show(ui, model, area, events);
     }
@@ -115,6 +108,11 @@ fn overlays(ui: &mut Ui, model: &Model, area: Rect, events: &mut Vec<Event>) {
         help::show(ui, model, events);
     }
     empty::drop_target(ui);
+    let dropped = ui.input(|input| input.raw.dropped_files.clone());
+    events.extend(dropped.into_iter().map(|file| Event::OpenFolder(file.path().to_path_buf())));
+    state.toasts.show(ui.ctx());
+    output.typing = ui.ctx().egui_wants_keyboard_input();
+    output
 }
 
 /// A line over the pictures while a file is broken and the panel that tells more is closed.
@@ -126,29 +124,15 @@ fn banner(ui: &mut Ui, model: &Model, area: Rect, events: &mut Vec<Event>) {
         .constrain_to(area)
         .show(ui.ctx(), |ui| {
             let palette = theme::Palette::of(ui.visuals());
-            let frame = egui::Frame::NONE
-                .fill(palette.raised)
-                .stroke(egui::Stroke::new(1.0, palette.danger))
-                .corner_radius(10)
-                .shadow(theme::card_shadow())
-                .inner_margin(egui::Margin::symmetric(12, 6));
-            frame.show(ui, |ui| {
+            let line = egui::Stroke::new(1.0, palette.danger);
+            let card = theme::card(palette).stroke(line).inner_margin(egui::Margin::symmetric(12, 6));
+            card.show(ui, |ui| {
                 ui.set_max_width(area.width() - 60.0);
                 ui.horizontal(|ui| {
-                    let (rect, _) = ui.allocate_exact_size(egui::vec2(16.0, 24.0), egui::Sense::hover());
-                    icon::Icon::Warning.paint(ui.painter(), rect, palette.danger);
-                    let text = format!("{} – the last good landscapes stay", error.title);
-                    ui.label(text);
-                    if ui.button("Show").clicked() {
-                        events.push(Event::Panel { panel: Panel::Genome, open: true });
-                    }
+                    icon::Icon::Warning.show(ui, 16.0, 24.0, palette.danger);
+                    ui.label(format!("{} – the last good landscapes stay", error.title));
+                    ui.button("Show").asks(events, Event::Panel { panel: Panel::Genome, open: true });
                 });
             });
         });
-}
-
-/// Folders that were dropped on the window.
-fn dropped(ui: &Ui, events: &mut Vec<Event>) {
-    let files = ui.input(|input| input.raw.dropped_files.clone());
-    events.extend(files.into_iter().map(|file| Event::OpenFolder(file.path().to_path_buf())));
 }

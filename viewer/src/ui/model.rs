@@ -5,10 +5,12 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use egui::TextureId;
-use genescape_schema::{Category, Genome, INDIVIDUALS, Parameter, Space};
+use genescape_schema::{Genome, INDIVIDUALS, Parameter, Space};
 
-use crate::event::{Arrangement, Ballots, Comfort, Panel};
-use crate::frame::Options;
+use crate::event::{Arrangement, Ballots, Panel};
+use crate::input::KeyGroup;
+use crate::options::Options;
+use crate::settings::Comfort;
 
 /// Everything that is on the screen.
 #[derive(Clone, Debug)]
@@ -21,9 +23,9 @@ pub struct Model {
     pub generations: Vec<u32>,
     /// What is being baked, if anything.
     pub baking: Option<Baking>,
-    /// The step that [`crate::event::Event::Undo`] would take back, in a few words: "vote on trees".
+    /// The step that [`crate::input::Command::Undo`] would take back, in a few words: "vote on trees".
     pub undo: Option<String>,
-    /// The step that [`crate::event::Event::Redo`] would do again.
+    /// The step that [`crate::input::Command::Redo`] would do again.
     pub redo: Option<String>,
     /// The four landscapes.
     pub views: [ViewModel; INDIVIDUALS],
@@ -54,7 +56,8 @@ pub struct Model {
 }
 
 /// Whether there is anything to look at, and if not, why.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum Situation {
     /// Four views, each in its own state.
     Ready,
@@ -106,7 +109,7 @@ pub enum ViewState {
 }
 
 /// Progress of the bake of a whole generation.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Baking {
     /// Which generation.
     pub generation: u32,
@@ -114,6 +117,13 @@ pub struct Baking {
     pub done: usize,
     /// All stages; 0 while that is not known.
     pub total: usize,
+}
+
+impl Baking {
+    /// How much of it is done, 0 to 1.
+    pub fn part(&self) -> f32 {
+        self.done as f32 / self.total.max(1) as f32
+    }
 }
 
 /// Genes of the four landscapes.
@@ -137,10 +147,9 @@ impl Genes {
         self.locked_categories[parameter.category as usize] || self.locked.contains(&parameter.name)
     }
 
-    /// How many genes of a category are not as they were bred.
-    pub fn changed(&self, individual: usize, category: Category) -> usize {
-        let (now, bred) = (&self.now[individual], &self.bred[individual]);
-        self.space.category(category).filter(|gene| now.code(gene) != bred.code(gene)).count()
+    /// Whether the four landscapes do not agree on a gene.
+    pub fn differ(&self, parameter: &Parameter) -> bool {
+        self.now.iter().any(|genome| genome.code(parameter) != self.now[0].code(parameter))
     }
 }
 
@@ -160,7 +169,7 @@ pub struct StageEntry {
 }
 
 /// A fault of a file that the person can mend.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct FileError {
     /// In a few words: "population/g0003.ron: 2 errors".
     pub title: String,
@@ -196,15 +205,6 @@ pub struct PassTime {
     pub ms: [f32; INDIVIDUALS],
 }
 
-/// Keys that belong together.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct KeyGroup {
-    /// "Walking".
-    pub title: String,
-    /// Keys ("W A S D") and what they do ("walk").
-    pub keys: Vec<(String, String)>,
-}
-
 /// Which panels are shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Panels {
@@ -219,23 +219,22 @@ pub struct Panels {
 }
 
 impl Panels {
-    /// Whether a panel is shown.
-    pub fn is_open(&self, panel: Panel) -> bool {
+    fn one(&mut self, panel: Panel) -> &mut bool {
         match panel {
-            Panel::Genome => self.genome,
-            Panel::Stats => self.stats,
-            Panel::Help => self.help,
-            Panel::Settings => self.settings,
+            Panel::Genome => &mut self.genome,
+            Panel::Stats => &mut self.stats,
+            Panel::Help => &mut self.help,
+            Panel::Settings => &mut self.settings,
         }
+    }
+
+    /// Whether a panel is shown.
+    pub fn is_open(mut self, panel: Panel) -> bool {
+        *self.one(panel)
     }
 
     /// Shows or hides a panel.
     pub fn set(&mut self, panel: Panel, open: bool) {
-        match panel {
-            Panel::Genome => self.genome = open,
-            Panel::Stats => self.stats = open,
-            Panel::Help => self.help = open,
-            Panel::Settings => self.settings = open,
-        }
+        *self.one(panel) = open;
     }
 }

@@ -1,16 +1,18 @@
 //! The settings: what is drawn and how, and how the program feels in the hand. Each change is one event with the whole
 //! new value.
 
-use egui::{
-    Align2, Area, CornerRadius, Frame, Id, Margin, Order, Rect, RichText, ScrollArea, Slider, Ui, vec2,
-};
+use std::ops::RangeInclusive;
+
+use egui::{Align2, Area, Id, Margin, Rect, RichText, Slider, Ui, vec2};
 
 use super::icon::Icon;
 use super::model::Model;
 use super::theme::{self, Palette};
-use super::widgets::{icon_button, section, segmented, switch};
-use crate::event::{Comfort, Event, Panel, Theme};
-use crate::frame::{Options, TerrainScheme, TreeScheme};
+use super::widgets::{Asks, close_button, icon_button, scrolled, section, segmented, switch};
+use crate::event::{Event, Panel};
+use crate::lod_mode::LodMode;
+use crate::options::{LOD_SWITCHES, Options, PICTURE_SWITCHES, Switch};
+use crate::settings::{Comfort, Theme};
 
 /// Width of the card, in points.
 const WIDTH: f32 = 330.0;
@@ -19,100 +21,60 @@ const WIDTH: f32 = 330.0;
 pub fn show(ui: &mut Ui, model: &Model, area: Rect, events: &mut Vec<Event>) {
     let width = WIDTH.min(area.width() - 24.0);
     Area::new(Id::unique("settings"))
-        .order(Order::Middle)
         .pivot(Align2::RIGHT_TOP)
         .fixed_pos(area.right_top() + vec2(-12.0, 12.0))
         .constrain_to(area)
         .accessible_name("Settings")
         .show(ui.ctx(), |ui| {
-            let palette = Palette::of(ui.visuals());
-            let frame = Frame::NONE
-                .fill(palette.raised)
-                .corner_radius(CornerRadius::same(10))
-                .shadow(theme::card_shadow())
-                .inner_margin(Margin { left: 14, right: 8, top: 8, bottom: 10 });
-            frame.show(ui, |ui| {
+            let margin = Margin { left: 14, right: 8, top: 8, bottom: 10 };
+            theme::card(Palette::of(ui.visuals())).inner_margin(margin).show(ui, |ui| {
                 ui.set_width(width - 22.0);
-                header(ui, events);
-                let room = area.height() - 80.0;
-                ScrollArea::vertical()
-                    .max_height(room)
-                    .min_scrolled_height(room)
-                    .auto_shrink([false, true])
-                    .show(ui, |ui| {
-                        ui.set_width(ui.available_width() - 10.0);
-                        options(ui, &model.options, events);
-                        comfort(ui, &model.comfort, events);
-                    });
+                ui.horizontal(|ui| header(ui, events));
+                scrolled(ui, area.height() - 80.0, |ui| {
+                    ui.set_width(ui.available_width() - 10.0);
+                    options(ui, &model.options, events);
+                    comfort(ui, &model.comfort, events);
+                });
             });
         });
 }
 
 fn header(ui: &mut Ui, events: &mut Vec<Event>) {
-    ui.horizontal(|ui| {
-        ui.label(RichText::new("Settings").heading());
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if icon_button(ui, Icon::Close, "Close the settings", false).clicked() {
-                events.push(Event::Panel { panel: Panel::Settings, open: false });
-            }
-            if icon_button(ui, Icon::Reset, "Reset all settings", false).clicked() {
-                events.push(Event::ResetSettings);
-            }
-        });
+    ui.label(RichText::new("Settings").heading());
+    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        close_button(ui, "Close the settings", Panel::Settings, events);
+        icon_button(ui, Icon::Reset, "Reset all settings", false).asks(events, Event::ResetSettings);
     });
 }
 
-const TREE_SCHEMES: [(TreeScheme, &str, &str); 4] = [
-    (TreeScheme::Simple, "Simple", "Continuous, by the number of vertices alone"),
-    (TreeScheme::Quality, "Quality", "Continuous, by the error of each mesh on the screen"),
-    (TreeScheme::Discrete, "Discrete", "By error, without morphing between levels"),
-    (TreeScheme::Off, "Off", "Always the finest mesh"),
-];
+/// A choice for each LOD mode.
+fn modes<M: LodMode>() -> Vec<(M, &'static str, &'static str)> {
+    M::VARIANTS.iter().map(|&mode| (mode, mode.label(), mode.help())).collect()
+}
 
-const TERRAIN_SCHEMES: [(TerrainScheme, &str, &str); 3] = [
-    (TerrainScheme::Morph, "Morph", "Blocks of a quadtree that morph in the vertex shader"),
-    (TerrainScheme::Roam, "ROAM", "Triangles split on the CPU where the land is rough, drawn as one strip"),
-    (TerrainScheme::Off, "Off", "Every sample"),
-];
+fn switches(ui: &mut Ui, all: &[Switch], options: &mut Options) {
+    for (name, help, value) in all {
+        switch(ui, value(options), name, help);
+    }
+}
 
 fn options(ui: &mut Ui, current: &Options, events: &mut Vec<Event>) {
     let mut options = *current;
     section(ui, "LEVELS OF DETAIL");
     ui.label("Trees");
-    if let Some(scheme) = segmented(ui, "Tree detail", &TREE_SCHEMES, options.tree_scheme) {
-        options.tree_scheme = scheme;
-    }
+    segmented(ui, "Tree detail", &modes(), &mut options.tree_lod);
     number(ui, &mut options.tree_error_px, 0.1..=16.0, "Error allowed on trees", " px", true);
     ui.label("Terrain");
-    if let Some(scheme) = segmented(ui, "Terrain detail", &TERRAIN_SCHEMES, options.terrain_scheme) {
-        options.terrain_scheme = scheme;
-    }
+    segmented(ui, "Terrain detail", &modes(), &mut options.terrain_lod);
     number(ui, &mut options.terrain_error_px, 0.1..=16.0, "Error allowed on terrain", " px", true);
-    switch(ui, &mut options.tint_levels, "Colour by level", "Colours say the level of detail");
-    switch(ui, &mut options.wireframe, "Wireframe", "Edges of triangles only");
-    switch(
-        ui,
-        &mut options.overhead,
-        "From above",
-        "The land from above, with the detail chosen for your place",
-    );
+    switches(ui, &LOD_SWITCHES, &mut options);
     section(ui, "PICTURE");
-    switch(ui, &mut options.draw_trees, "Trees", "");
-    switch(ui, &mut options.draw_terrain, "Terrain", "");
-    switch(
-        ui,
-        &mut options.grass,
-        "Grass",
-        "Blades around you; a tenth to a quarter of the time where the processor draws",
-    );
-    switch(ui, &mut options.drift_clouds, "Clouds drift", "");
+    switches(ui, &PICTURE_SWITCHES, &mut options);
     number(ui, &mut options.exposure, 0.125..=8.0, "Exposure", " ×", true);
     number(ui, &mut options.fov_y_deg, 20.0..=110.0, "Field of view", "°", false);
-    let samples = [(1, "1", "Fastest"), (4, "4", "Smooth edges")];
     ui.label("Samples a pixel");
-    if let Some(count) = segmented(ui, "Samples a pixel", &samples, options.samples) {
-        options.samples = count;
-    }
+    let samples = [(1, "1", "Fastest"), (4, "4", "Smooth edges")];
+    segmented(ui, "Samples a pixel", &samples, &mut options.samples);
     if options != *current {
         events.push(Event::Options(options));
     }
@@ -125,15 +87,11 @@ fn comfort(ui: &mut Ui, current: &Comfort, events: &mut Vec<Event>) {
     switch(ui, &mut comfort.invert_y, "Invert up and down", "Mouse up looks down");
     section(ui, "APPEARANCE");
     let themes = [(Theme::System, "System", ""), (Theme::Light, "Light", ""), (Theme::Dark, "Dark", "")];
-    if let Some(theme) = segmented(ui, "Theme", &themes, comfort.theme) {
-        comfort.theme = theme;
-    }
+    segmented(ui, "Theme", &themes, &mut comfort.theme);
     ui.label("Scale of the interface");
     let scales =
         [(0.8, "80 %", ""), (1.0, "100 %", ""), (1.25, "125 %", ""), (1.5, "150 %", ""), (2.0, "200 %", "")];
-    if let Some(scale) = segmented(ui, "Scale", &scales, comfort.ui_scale) {
-        comfort.ui_scale = scale;
-    }
+    segmented(ui, "Scale", &scales, &mut comfort.ui_scale);
     if comfort != *current {
         events.push(Event::Comfort(comfort));
     }
@@ -143,7 +101,7 @@ fn comfort(ui: &mut Ui, current: &Comfort, events: &mut Vec<Event>) {
 fn number(
     ui: &mut Ui,
     value: &mut f32,
-    range: std::ops::RangeInclusive<f32>,
+    range: RangeInclusive<f32>,
     name: &str,
     unit: &str,
     logarithmic: bool,

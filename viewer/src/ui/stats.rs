@@ -1,15 +1,13 @@
-//! Frame times and counts, beside the pictures or, in a small window, over them: a graph of the last frames, where the GPU's time goes pass by
-//! pass and view by view, what was drawn, and how many trees stand at each level of detail.
+//! Frame times and counts, beside the pictures or, in a small window, over them: a graph of the last frames, where the
+//! GPU's time goes pass by pass and view by view, what was drawn, and how many trees stand at each level of detail.
 
-use egui::{
-    Align, Align2, Color32, CornerRadius, FontId, Frame, Layout, Margin, Rect, Sense, Shape, Stroke, Ui,
-    pos2, vec2,
-};
+use egui::{Align2, Color32, CornerRadius, FontId, Frame, Margin, Rect, RichText, Sense, Shape, Stroke};
+use egui::{Ui, pos2, vec2};
 use genescape_schema::Category;
 
 use super::model::Stats;
 use super::theme::Palette;
-use super::widgets::section;
+use super::widgets::{ends, section};
 
 /// Width of the panel or card, in points.
 const WIDTH: f32 = 284.0;
@@ -41,10 +39,7 @@ pub fn show_docked(ui: &mut Ui, stats: &Stats) -> bool {
         .resizable(false)
         .frame(frame)
         .show_separator_line(false)
-        .show(ui, |ui| {
-            let room = ui.available_height();
-            body(ui, stats, room);
-        });
+        .show(ui, |ui| body(ui, stats, ui.available_height()));
     true
 }
 
@@ -76,12 +71,10 @@ fn body(ui: &mut Ui, stats: &Stats, room: f32) {
     ui.spacing_mut().item_spacing.y = 2.0;
     ui.spacing_mut().interact_size.y = 18.0;
     frames(ui, stats);
-    let triangles: u64 = stats.triangles.iter().sum();
     line(ui, "CPU to record", &format!("{:.2} ms", stats.cpu_record_ms));
-    line(ui, "Triangles", &thousands(triangles));
-    let draws = stats.draws.iter().sum::<u32>();
-    let most = stats.draws.iter().max().copied().unwrap_or(0);
-    line(ui, "Draws", &format!("{draws} (at most {most} a view)"));
+    line(ui, "Triangles", &thousands(stats.triangles.iter().sum()));
+    let (draws, max) = (stats.draws.iter().sum::<u32>(), stats.draws.iter().max().unwrap_or(&0));
+    line(ui, "Draws", &format!("{draws} (at most {max} a view)"));
     if room > 330.0 {
         gpu(ui, stats);
     }
@@ -89,31 +82,24 @@ fn body(ui: &mut Ui, stats: &Stats, room: f32) {
         levels(ui, &stats.trees_per_level);
     }
     if !stats.adapter.is_empty() {
-        let text = egui::RichText::new(&stats.adapter).small().color(palette.weak);
+        let text = RichText::new(&stats.adapter).small().color(palette.weak);
         ui.add(egui::Label::new(text).truncate());
     }
 }
 
 fn line(ui: &mut Ui, name: &str, value: &str) {
-    let palette = Palette::of(ui.visuals());
-    ui.horizontal(|ui| {
-        ui.label(egui::RichText::new(name).color(palette.weak));
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(value));
-    });
+    let name = RichText::new(name).color(Palette::of(ui.visuals()).weak);
+    ui.horizontal(|ui| ends(ui, |ui| ui.label(name), |ui| _ = ui.label(value)));
 }
 
 fn frames(ui: &mut Ui, stats: &Stats) {
-    let palette = Palette::of(ui.visuals());
+    let weak = Palette::of(ui.visuals()).weak;
     let (median, p99) = median_and_p99(&stats.frames_ms);
     ui.horizontal(|ui| {
         let fps = if median > 0.0 { 1000.0 / median } else { 0.0 };
-        ui.label(egui::RichText::new(format!("{fps:.0}")).size(24.0));
-        ui.label(egui::RichText::new("fps").color(palette.weak));
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.label(
-                egui::RichText::new(format!("median {median:.1} · p99 {p99:.1} ms")).color(palette.weak),
-            );
-        });
+        ui.label(RichText::new(format!("{fps:.0}")).size(24.0));
+        let text = RichText::new(format!("median {median:.1} · p99 {p99:.1} ms")).color(weak);
+        ends(ui, |ui| ui.label(RichText::new("fps").color(weak)), |ui| _ = ui.label(text));
     });
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 54.0), Sense::hover());
     graph(ui, rect, &stats.frames_ms, p99);
@@ -129,16 +115,13 @@ fn graph(ui: &Ui, rect: Rect, frames_ms: &[f32], p99: f32) {
     let shown = &frames_ms[frames_ms.len().saturating_sub(rect.width() as usize)..];
     let step = rect.width() / shown.len().max(60) as f32;
     for (at, &ms) in shown.iter().rev().enumerate() {
-        let right = rect.right() - at as f32 * step;
-        let bar =
-            Rect::from_min_max(pos2(right - step, rect.bottom() - height(ms)), pos2(right, rect.bottom()));
-        let color = if ms > 2.0 * SMOOTH_MS {
-            palette.danger
-        } else if ms > 1.05 * SMOOTH_MS {
-            palette.warning
-        } else {
-            palette.accent
+        let corner = rect.right_bottom() - vec2(at as f32 * step, 0.0);
+        let color = match ms / SMOOTH_MS {
+            2.0.. => palette.danger,
+            1.05.. => palette.warning,
+            _ => palette.accent,
         };
+        let bar = Rect::from_min_max(corner - vec2(step, height(ms)), corner);
         painter.rect_filled(bar, CornerRadius::ZERO, color);
     }
     let y = rect.bottom() - height(SMOOTH_MS);
@@ -154,7 +137,7 @@ fn gpu(ui: &mut Ui, stats: &Stats) {
     let total: f32 = stats.gpu.iter().flat_map(|pass| pass.ms).sum();
     section(ui, "GPU");
     if stats.gpu.is_empty() {
-        ui.label(egui::RichText::new("This adapter tells no times.").color(palette.weak));
+        ui.label(RichText::new("This adapter tells no times.").color(palette.weak));
         return;
     }
     line(ui, "All passes, all views", &format!("{total:.2} ms"));
@@ -168,12 +151,8 @@ fn gpu(ui: &mut Ui, stats: &Stats) {
         for (view, &ms) in pass.ms.iter().enumerate() {
             let width = room * (ms / total.max(1e-6)).clamp(0.0, 1.0);
             let bar = Rect::from_min_size(pos2(x, rect.top() + 4.0), vec2(width, 9.0));
-            let shade = 1.0 - 0.17 * view as f32;
-            painter.rect_filled(
-                bar,
-                CornerRadius::ZERO,
-                palette.category(Category::Sky).gamma_multiply(shade),
-            );
+            let color = palette.category(Category::Sky).gamma_multiply(1.0 - 0.17 * view as f32);
+            painter.rect_filled(bar, CornerRadius::ZERO, color);
             x += width;
         }
         painter.text(rect.left_center(), Align2::LEFT_CENTER, &pass.name, font.clone(), palette.text);
@@ -192,15 +171,13 @@ fn levels(ui: &mut Ui, trees_per_level: &[u32]) {
     section(ui, "TREES BY LEVEL, FINEST FIRST");
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 46.0), Sense::hover());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{all} trees")));
-    let most = trees_per_level.iter().max().copied().unwrap_or(1).max(1) as f32;
+    let max = trees_per_level.iter().max().copied().unwrap_or(1).max(1) as f32;
     let step = rect.width() / trees_per_level.len() as f32;
     for (level, &trees) in trees_per_level.iter().enumerate() {
-        let height = (rect.height() - 14.0) * trees as f32 / most;
+        let height = (rect.height() - 14.0) * trees as f32 / max;
         let left = rect.left() + level as f32 * step;
-        let bar = Rect::from_min_max(
-            pos2(left + 1.0, rect.bottom() - height),
-            pos2(left + step - 1.0, rect.bottom()),
-        );
+        let top = pos2(left + 1.0, rect.bottom() - height);
+        let bar = Rect::from_min_max(top, pos2(left + step - 1.0, rect.bottom()));
         ui.painter().rect_filled(bar, CornerRadius::same(2), palette.category(Category::Tree));
         let place = pos2(bar.center().x, bar.top() - 1.0);
         let font = FontId::proportional(10.0);
@@ -216,13 +193,9 @@ const SPACE: char = '\u{a0}';
 
 /// 1234567 → "1 234 567".
 pub fn thousands(number: u64) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (at, digit) in digits.chars().enumerate() {
-        if at > 0 && (digits.len() - at).is_multiple_of(3) {
-            text.push(SPACE);
-        }
-        text.push(digit);
+    let mut text = number.to_string();
+    for at in (1..text.len()).rev().filter(|at| (text.len() - at).is_multiple_of(3)).collect::<Vec<_>>() {
+        text.insert(at, SPACE);
     }
     text
 }

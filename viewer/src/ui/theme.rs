@@ -6,33 +6,34 @@ use std::collections::BTreeMap;
 
 use egui::style::{HandleShape, ScrollStyle, Selection, WidgetVisuals, Widgets};
 use egui::{
-    Color32, Context, CornerRadius, FontFamily, FontId, Margin, Shadow, Stroke, Style, TextStyle, Visuals,
+    Color32, Context, CornerRadius, FontFamily, FontId, Frame, Margin, Shadow, Stroke, Style, TextStyle,
 };
-use egui::{epaint, vec2};
+use egui::{Visuals, vec2};
 use genescape_schema::Category;
 
-use crate::event;
+use crate::settings;
+
+/// A colour as in CSS.
+const fn rgb(hex: u32) -> Color32 {
+    Color32::from_rgb((hex >> 16) as u8, (hex >> 8) as u8, hex as u8)
+}
 
 /// Ground behind text and buttons on a picture: white text on it is readable even over snow.
 pub const SCRIM: Color32 = Color32::from_black_alpha(168);
 /// The same under the pointer.
 pub const SCRIM_HOVERED: Color32 = Color32::from_black_alpha(215);
 /// Text on a scrim.
-pub const ON_SCRIM: Color32 = Color32::from_rgb(250, 250, 248);
+pub const ON_SCRIM: Color32 = rgb(0xfafaf8);
 /// Text on a scrim that matters less.
-pub const ON_SCRIM_WEAK: Color32 = Color32::from_rgb(214, 216, 214);
+pub const ON_SCRIM_WEAK: Color32 = rgb(0xd6d8d6);
 /// Text on a category's bright colour.
-pub const ON_BRIGHT: Color32 = Color32::from_rgb(16, 22, 18);
+pub const ON_BRIGHT: Color32 = rgb(0x101612);
 /// Corners of pictures and cards, in points.
 pub const RADIUS: u8 = 7;
 
 /// A category's colour on pictures, bright in both themes.
 pub fn bright(category: Category) -> Color32 {
-    match category {
-        Category::Tree => Color32::from_rgb(134, 207, 126),
-        Category::Terrain => Color32::from_rgb(235, 182, 102),
-        Category::Sky => Color32::from_rgb(133, 193, 244),
-    }
+    [rgb(0x86cf7e), rgb(0xebb666), rgb(0x85c1f4)][category as usize]
 }
 
 /// What a category is called on buttons.
@@ -75,46 +76,38 @@ pub struct Palette {
 
 /// Light text on dark ground.
 pub const DARK: Palette = Palette {
-    ground: Color32::from_rgb(12, 13, 14),
-    panel: Color32::from_rgb(25, 27, 28),
-    raised: Color32::from_rgb(35, 38, 39),
-    sunken: Color32::from_rgb(17, 18, 19),
-    line: Color32::from_rgb(52, 56, 57),
-    text: Color32::from_rgb(226, 229, 226),
-    weak: Color32::from_rgb(153, 160, 157),
-    button: Color32::from_rgb(44, 48, 49),
-    hovered: Color32::from_rgb(60, 65, 66),
-    accent: Color32::from_rgb(143, 203, 172),
-    on_accent: Color32::from_rgb(14, 26, 20),
-    danger: Color32::from_rgb(240, 138, 124),
-    warning: Color32::from_rgb(233, 190, 112),
-    categories: [
-        Color32::from_rgb(134, 207, 126),
-        Color32::from_rgb(226, 173, 92),
-        Color32::from_rgb(126, 185, 236),
-    ],
+    ground: rgb(0x0c0d0e),
+    panel: rgb(0x191b1c),
+    raised: rgb(0x232627),
+    sunken: rgb(0x111213),
+    line: rgb(0x343839),
+    text: rgb(0xe2e5e2),
+    weak: rgb(0x99a09d),
+    button: rgb(0x2c3031),
+    hovered: rgb(0x3c4142),
+    accent: rgb(0x8fcbac),
+    on_accent: rgb(0x0e1a14),
+    danger: rgb(0xf08a7c),
+    warning: rgb(0xe9be70),
+    categories: [rgb(0x86cf7e), rgb(0xe2ad5c), rgb(0x7eb9ec)],
 };
 
 /// Dark text on light ground.
 pub const LIGHT: Palette = Palette {
-    ground: Color32::from_rgb(222, 224, 220),
-    panel: Color32::from_rgb(246, 246, 243),
-    raised: Color32::from_rgb(255, 255, 253),
-    sunken: Color32::from_rgb(232, 233, 229),
-    line: Color32::from_rgb(211, 213, 208),
-    text: Color32::from_rgb(33, 38, 35),
-    weak: Color32::from_rgb(92, 99, 95),
-    button: Color32::from_rgb(229, 231, 227),
-    hovered: Color32::from_rgb(214, 218, 213),
-    accent: Color32::from_rgb(32, 105, 74),
-    on_accent: Color32::from_rgb(250, 255, 252),
-    danger: Color32::from_rgb(168, 45, 32),
-    warning: Color32::from_rgb(133, 86, 8),
-    categories: [
-        Color32::from_rgb(40, 112, 44),
-        Color32::from_rgb(140, 86, 14),
-        Color32::from_rgb(28, 98, 158),
-    ],
+    ground: rgb(0xdee0dc),
+    panel: rgb(0xf6f6f3),
+    raised: rgb(0xfffffd),
+    sunken: rgb(0xe8e9e5),
+    line: rgb(0xd3d5d0),
+    text: rgb(0x212623),
+    weak: rgb(0x5c635f),
+    button: rgb(0xe5e7e3),
+    hovered: rgb(0xd6dad5),
+    accent: rgb(0x20694a),
+    on_accent: rgb(0xfafffc),
+    danger: rgb(0xa82d20),
+    warning: rgb(0x855608),
+    categories: [rgb(0x28702c), rgb(0x8c560e), rgb(0x1c629e)],
 };
 
 impl Palette {
@@ -136,11 +129,11 @@ pub fn install(ctx: &Context) {
 }
 
 /// Follows the person's choice of theme and scale; every frame.
-pub fn follow(ctx: &Context, comfort: &event::Comfort) {
+pub fn follow(ctx: &Context, comfort: &settings::Comfort) {
     let preference = match comfort.theme {
-        event::Theme::System => egui::ThemePreference::System,
-        event::Theme::Light => egui::ThemePreference::Light,
-        event::Theme::Dark => egui::ThemePreference::Dark,
+        settings::Theme::System => egui::ThemePreference::System,
+        settings::Theme::Light => egui::ThemePreference::Light,
+        settings::Theme::Dark => egui::ThemePreference::Dark,
     };
     ctx.set_theme(preference);
     ctx.set_zoom_factor(comfort.ui_scale.clamp(0.5, 2.5));
@@ -183,14 +176,9 @@ fn visuals(palette: &Palette, base: Visuals) -> Visuals {
             bg_fill: palette.accent.gamma_multiply(0.45),
             stroke: Stroke::new(1.0, palette.text),
         },
-        hyperlink_color: palette.accent,
         weak_text_color: Some(palette.weak),
-        faint_bg_color: palette.sunken,
         extreme_bg_color: palette.sunken,
         text_edit_bg_color: Some(palette.sunken),
-        code_bg_color: palette.sunken,
-        warn_fg_color: palette.warning,
-        error_fg_color: palette.danger,
         window_fill: palette.raised,
         window_stroke: Stroke::new(1.0, palette.line),
         window_corner_radius: CornerRadius::same(10),
@@ -226,8 +214,13 @@ fn widgets(palette: &Palette) -> Widgets {
     }
 }
 
+/// A card that lies on pictures or on other panels.
+pub fn card(palette: &Palette) -> Frame {
+    Frame::NONE.fill(palette.raised).corner_radius(10).shadow(card_shadow())
+}
+
 /// Shadow that sets a card off from a picture.
-pub fn card_shadow() -> epaint::Shadow {
+pub fn card_shadow() -> Shadow {
     Shadow { offset: [0, 3], blur: 14, spread: 0, color: Color32::from_black_alpha(90) }
 }
 

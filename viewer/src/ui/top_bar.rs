@@ -1,14 +1,15 @@
 //! The slim bar on top: the line of generations, undo and the way on at the left; progress in the middle; arrangement,
 //! screenshot and panels at the right.
 
-use egui::{Align, Color32, CornerRadius, Frame, Layout, Margin, Rect, Sense, Stroke, TextStyle, Ui, vec2};
+use egui::{Align, Frame, Layout, Margin, Rect, Sense, Stroke, TextStyle, Ui, vec2};
 
 use super::icon::Icon;
-use super::model::Model;
-use super::theme::{self, Palette};
+use super::model::{Baking, Model};
+use super::theme::Palette;
 use super::votes;
-use super::widgets::{ICON_BUTTON, icon_button, name_button, primary_button, progress_bar};
+use super::widgets::{Asks, ICON_BUTTON, flat_button, icon_button, primary_button, progress_bar};
 use crate::event::{Arrangement, Event, Panel};
+use crate::input::Command;
 
 /// Height of the bar, in points.
 const HEIGHT: f32 = 40.0;
@@ -47,14 +48,10 @@ fn panels(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
             let center = response.rect.right_top() + vec2(-6.0, 6.0);
             ui.painter().circle_filled(center, 4.0, Palette::of(ui.visuals()).danger);
         }
-        if response.clicked() {
-            events.push(Event::Panel { panel, open: !open });
-        }
+        response.asks(events, Event::Panel { panel, open: !open });
     }
     divider(ui);
-    if icon_button(ui, Icon::Camera, "Save a screenshot", false).clicked() {
-        events.push(Event::Screenshot);
-    }
+    icon_button(ui, Icon::Camera, "Save a screenshot", false).asks(events, Command::Screenshot.into());
 }
 
 fn arrangements(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
@@ -80,9 +77,9 @@ fn divider(ui: &mut Ui) {
 }
 
 fn generations(ui: &mut Ui, model: &Model, words: bool, events: &mut Vec<Event>) {
-    step(ui, Icon::Undo, "Undo", model.undo.as_deref(), Event::Undo, events);
+    step(ui, Icon::Undo, "Undo", model.undo.as_deref(), Command::Undo, events);
     if model.redo.is_some() {
-        step(ui, Icon::Redo, "Redo", model.redo.as_deref(), Event::Redo, events);
+        step(ui, Icon::Redo, "Redo", model.redo.as_deref(), Command::Redo, events);
     }
     divider(ui);
     let way_on = if words { 330.0 } else { 36.0 };
@@ -90,27 +87,25 @@ fn generations(ui: &mut Ui, model: &Model, words: bool, events: &mut Vec<Event>)
     next(ui, model, words, events);
     if words && let Some(baking) = &model.baking {
         ui.add_space(6.0);
-        let part = baking.done as f32 / baking.total.max(1) as f32;
+        let (Baking { generation, done, total }, part) = (baking, baking.part());
         let (rect, response) = ui.allocate_exact_size(vec2(90.0, 18.0), Sense::hover());
         let bar = Rect::from_center_size(rect.center(), vec2(90.0, 5.0));
         let palette = Palette::of(ui.visuals());
         progress_bar(ui.painter(), bar, part, palette.accent, palette.button);
-        let text =
-            format!("Growing generation {}: {} of {} stages", baking.generation, baking.done, baking.total);
-        response.on_hover_text(text);
-        ui.small(format!("g{} {}%", baking.generation, (part * 100.0) as u32));
+        response.on_hover_text(format!("Growing generation {generation}: {done} of {total} stages"));
+        ui.small(format!("g{generation} {}%", (part * 100.0) as u32));
     }
 }
 
 /// Takes a step back or does it again; `what` says which, `None` that there is none.
-fn step(ui: &mut Ui, icon: Icon, verb: &str, what: Option<&str>, event: Event, events: &mut Vec<Event>) {
+fn step(ui: &mut Ui, icon: Icon, verb: &str, what: Option<&str>, command: Command, events: &mut Vec<Event>) {
     let label = match what {
         Some(what) => format!("{verb}: {what}"),
         None => format!("Nothing to {}", verb.to_lowercase()),
     };
-    if ui.add_enabled_ui(what.is_some(), |ui| icon_button(ui, icon, &label, false)).inner.clicked() {
-        events.push(event);
-    }
+    ui.add_enabled_ui(what.is_some(), |ui| icon_button(ui, icon, &label, false))
+        .inner
+        .asks(events, command.into());
 }
 
 /// The line of generations, the newest at the right; scrolls when it is longer than `room`.
@@ -142,19 +137,12 @@ fn generation_tab(ui: &mut Ui, model: &Model, generation: u32, events: &mut Vec<
     let color = if current { palette.text } else { palette.weak };
     let galley = ui.painter().layout_no_wrap(text, TextStyle::Button.resolve(ui.style()), color);
     let size = vec2(galley.size().x + 16.0, ICON_BUTTON);
-    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-    let fill = match (current, response.hovered() || response.has_focus()) {
-        (_, true) => palette.hovered,
-        (true, false) => palette.button,
-        (false, false) => Color32::TRANSPARENT,
-    };
-    ui.painter().rect_filled(rect, CornerRadius::same(theme::RADIUS), fill);
+    let (rect, response) = flat_button(ui, size, &format!("Generation {generation}"), current);
     ui.painter().galley(rect.center() - 0.5 * galley.size(), galley, color);
     if current {
         let y = rect.bottom() - 2.5;
         ui.painter().hline(rect.x_range().shrink(8.0), y, Stroke::new(2.0, palette.accent));
     }
-    name_button(ui, &response, &format!("Generation {generation}"), current);
     if response.clicked() && !current {
         events.push(Event::GoToGeneration(generation));
     }
@@ -173,9 +161,7 @@ fn next(ui: &mut Ui, model: &Model, words: bool, events: &mut Vec<Event>) {
             false => icon_button(ui, Icon::Next, "Next generation", true),
         })
         .inner;
-    if response.clicked() {
-        events.push(Event::NextGeneration);
-    }
+    response.asks(events, Command::NextGeneration.into());
     match hindrance {
         Some(text) => response.on_disabled_hover_text(text),
         None => response.on_hover_text("Breed four new landscapes from what you chose"),

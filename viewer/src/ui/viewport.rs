@@ -8,7 +8,7 @@ use genescape_schema::INDIVIDUALS;
 use super::icon::Icon;
 use super::model::{Model, ViewState};
 use super::theme;
-use super::widgets::{name_button, progress_ring};
+use super::widgets::{Asks, painted_button, progress_ring};
 use crate::event::{Arrangement, Event};
 
 /// Side of a button on a picture, in points.
@@ -23,25 +23,34 @@ pub fn show(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool, e
         ViewState::Baking { done, total, stage } => baking(ui, rect, *done, *total, stage),
         ViewState::Failed { what, remedy } => failed(ui, view, rect, what, remedy, events),
     }
-    if lively && model.arrangement == Arrangement::Grid {
-        let right = pos2(rect.right() - 10.0 - BUTTON, rect.top() + 10.0);
-        let button =
-            |at: f32| Rect::from_min_size(right - vec2(at * (BUTTON + 4.0), 0.0), vec2(BUTTON, BUTTON));
-        if tool(ui, view, button(0.0), Icon::Maximise, "Show this one alone") {
-            events.push(Event::Arrange(Arrangement::One(view)));
-        }
-        if tool(ui, view, button(1.0), Icon::Compare, "Compare with another") {
-            let right = (view + 1) % INDIVIDUALS;
-            events.push(Event::Arrange(Arrangement::Compare { left: view, right }));
-        }
-    }
-    if lively && matches!(model.arrangement, Arrangement::One(_)) {
-        let corner = pos2(rect.right() - 10.0 - BUTTON, rect.top() + 10.0);
+    let compared = Arrangement::Compare { left: view, right: (view + 1) % INDIVIDUALS };
+    let tools: &[(Icon, &str, Arrangement)] = match model.arrangement {
+        Arrangement::Grid => &[
+            (Icon::Maximise, "Show this one alone", Arrangement::One(view)),
+            (Icon::Compare, "Compare with another", compared),
+        ],
+        Arrangement::One(_) => &[(Icon::Grid, "Show all four", Arrangement::Grid)],
+        Arrangement::Compare { .. } => &[],
+    };
+    let mut corner = rect.right_top() + vec2(-10.0 - BUTTON, 10.0);
+    for &(icon, label, arrangement) in tools.iter().filter(|_| lively) {
         let rect = Rect::from_min_size(corner, vec2(BUTTON, BUTTON));
-        if tool(ui, view, rect, Icon::Grid, "Show all four") {
-            events.push(Event::Arrange(Arrangement::Grid));
-        }
+        let name = format!("{label}: {}", view + 1);
+        let (response, lit) = painted_button(ui, rect, (label, view), &name, false);
+        ui.painter().rect_filled(rect, CornerRadius::same(13), scrim(lit));
+        icon.paint(ui.painter(), rect.shrink(7.0), theme::ON_SCRIM);
+        response.on_hover_text(label).asks(events, Event::Arrange(arrangement));
+        corner.x -= BUTTON + 4.0;
     }
+}
+
+/// The ground of a button on a picture.
+fn scrim(lit: bool) -> Color32 {
+    if lit { theme::SCRIM_HOVERED } else { theme::SCRIM }
+}
+
+fn text(size: f32, color: Color32) -> TextFormat {
+    TextFormat { font_id: FontId::proportional(size), color, ..Default::default() }
 }
 
 /// Four numbers below the name that choose which landscape this side of the comparison shows.
@@ -51,10 +60,9 @@ pub fn choose_side(ui: &mut Ui, model: &Model, side: usize, half: Rect, events: 
     for view in 0..INDIVIDUALS {
         let corner = pos2(half.left() + 10.0 + view as f32 * 30.0, half.top() + 44.0);
         let rect = Rect::from_min_size(corner, vec2(26.0, 24.0));
-        let response = ui.interact(rect, ui.scope_id().with(("side", view)), Sense::click());
-        let side_name = ["left", "right"][side];
-        name_button(ui, &response, &format!("Show {} on the {side_name}", view + 1), view == shown);
-        let (fill, ink) = match (view == shown, response.hovered() || response.has_focus()) {
+        let name = format!("Show {} on the {}", view + 1, ["left", "right"][side]);
+        let (response, lit) = painted_button(ui, rect, ("side", view), &name, view == shown);
+        let (fill, ink) = match (view == shown, lit) {
             (true, _) => (theme::ON_SCRIM, theme::ON_BRIGHT),
             (false, true) => (theme::SCRIM_HOVERED, theme::ON_SCRIM),
             (false, false) => (theme::SCRIM, theme::ON_SCRIM_WEAK),
@@ -70,25 +78,13 @@ pub fn choose_side(ui: &mut Ui, model: &Model, side: usize, half: Rect, events: 
 
 fn name_tag(ui: &Ui, model: &Model, view: usize, rect: Rect, room: f32) {
     let mut job = LayoutJob::default();
-    let format = |color| TextFormat { font_id: FontId::proportional(14.0), color, ..Default::default() };
-    job.append(&format!("{}", view + 1), 0.0, format(theme::DARK.accent));
-    job.append(&model.views[view].name, 8.0, format(theme::ON_SCRIM));
+    job.append(&format!("{}", view + 1), 0.0, text(14.0, theme::DARK.accent));
+    job.append(&model.views[view].name, 8.0, text(14.0, theme::ON_SCRIM));
     job.wrap = TextWrapping::truncate_at_width((room - 20.0).max(20.0));
     let galley = ui.painter().layout_job(job);
     let tag = Rect::from_min_size(rect.min + vec2(10.0, 10.0), galley.size() + vec2(20.0, 9.0));
     ui.painter().rect_filled(tag, CornerRadius::same(13), theme::SCRIM);
     ui.painter().galley(tag.min + vec2(10.0, 4.5), galley, theme::ON_SCRIM);
-}
-
-/// A small round button on a picture; true if it was pressed.
-fn tool(ui: &mut Ui, view: usize, rect: Rect, icon: Icon, label: &str) -> bool {
-    let response = ui.interact(rect, ui.scope_id().with((label, view)), Sense::click());
-    name_button(ui, &response, &format!("{label}: {}", view + 1), false);
-    let lit = response.hovered() || response.has_focus();
-    let fill = if lit { theme::SCRIM_HOVERED } else { theme::SCRIM };
-    ui.painter().rect_filled(rect, CornerRadius::same(13), fill);
-    icon.paint(ui.painter(), rect.shrink(7.0), theme::ON_SCRIM);
-    response.on_hover_text(label).clicked()
 }
 
 fn baking(ui: &Ui, rect: Rect, done: usize, total: usize, stage: &str) {
@@ -98,18 +94,15 @@ fn baking(ui: &Ui, rect: Rect, done: usize, total: usize, stage: &str) {
     let radius = 24.0f32.min(rect.height() * 0.18);
     painter.circle_filled(center, radius + 10.0, theme::SCRIM);
     progress_ring(&painter, center, radius, part, theme::DARK.accent, Color32::from_white_alpha(40));
-    let text = match total {
-        0 => "…".to_owned(),
-        _ => format!("{}%", (part * 100.0) as u32),
-    };
-    painter.text(center, Align2::CENTER_CENTER, text, FontId::proportional(13.0), theme::ON_SCRIM);
+    let percent = if total == 0 { "…".to_owned() } else { format!("{}%", (part * 100.0) as u32) };
+    let font = FontId::proportional(13.0);
+    painter.text(center, Align2::CENTER_CENTER, percent, font.clone(), theme::ON_SCRIM);
     let line = match (total, stage) {
         (0, "") => "waiting to grow".to_owned(),
         (0, stage) => stage.to_owned(),
         (_, "") => format!("{done} of {total} stages"),
         (_, stage) => format!("{stage} · {done} of {total}"),
     };
-    let font = FontId::proportional(13.0);
     let mut job = LayoutJob::simple_singleline(line, font, theme::ON_SCRIM);
     job.wrap = TextWrapping::truncate_at_width((rect.width() - 44.0).max(20.0));
     let galley = painter.layout_job(job);
@@ -122,32 +115,26 @@ fn baking(ui: &Ui, rect: Rect, done: usize, total: usize, stage: &str) {
 fn failed(ui: &mut Ui, view: usize, rect: Rect, what: &str, remedy: &str, events: &mut Vec<Event>) {
     let width = (rect.width() - 40.0).clamp(80.0, 420.0);
     let mut job = LayoutJob::default();
-    let format =
-        |size, color| TextFormat { font_id: FontId::proportional(size), color, ..Default::default() };
-    job.append(what, 0.0, format(14.0, theme::ON_SCRIM));
-    job.append("\n\n", 0.0, format(5.0, theme::ON_SCRIM));
-    job.append(remedy, 0.0, format(13.0, theme::ON_SCRIM_WEAK));
+    job.append(what, 0.0, text(14.0, theme::ON_SCRIM));
+    job.append("\n\n", 0.0, text(5.0, theme::ON_SCRIM));
+    job.append(remedy, 0.0, text(13.0, theme::ON_SCRIM_WEAK));
     job.wrap = TextWrapping { max_width: width - 52.0, max_rows: 7, ..Default::default() };
     let galley = ui.painter().layout_job(job);
-    let size = vec2(width, galley.size().y + 62.0);
-    let card = Rect::from_center_size(rect.center(), size);
+    let card = Rect::from_center_size(rect.center(), vec2(width, galley.size().y + 62.0));
     let line = Stroke::new(1.0, theme::DARK.danger.gamma_multiply(0.7));
     let fill = Color32::from_rgba_unmultiplied(20, 20, 20, 235);
     ui.painter().rect(card, CornerRadius::same(10), fill, line, StrokeKind::Inside);
     let icon_rect = Rect::from_min_size(card.min + vec2(14.0, 15.0), vec2(18.0, 18.0));
     Icon::Warning.paint(ui.painter(), icon_rect, theme::DARK.danger);
     ui.painter().galley(card.min + vec2(42.0, 14.0), galley, theme::ON_SCRIM);
-    let button = Rect::from_min_size(pos2(card.left() + 40.0, card.bottom() - 38.0), vec2(92.0, 26.0));
-    let response = ui.interact(button, ui.scope_id().with(("retry", view)), Sense::click());
-    name_button(ui, &response, &format!("Try again: {}", view + 1), false);
-    let lit = response.hovered() || response.has_focus();
+    let button = Rect::from_min_size(card.left_bottom() + vec2(40.0, -38.0), vec2(92.0, 26.0));
+    let name = format!("Try again: {}", view + 1);
+    let (response, lit) = painted_button(ui, button, ("retry", view), &name, false);
     let fill = Color32::from_white_alpha(if lit { 60 } else { 32 });
     ui.painter().rect_filled(button, CornerRadius::same(theme::RADIUS), fill);
     let font = FontId::proportional(13.0);
     ui.painter().text(button.center(), Align2::CENTER_CENTER, "Try again", font, theme::ON_SCRIM);
-    if response.clicked() {
-        events.push(Event::Retry);
-    }
+    response.asks(events, Event::Retry);
     let full = format!("{what}\n{remedy}");
     ui.interact(card, ui.scope_id().with(("failed", view)), Sense::hover())
         .on_hover_text(&full)

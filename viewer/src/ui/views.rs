@@ -2,7 +2,7 @@
 //! its vote buttons. Says which rectangles the renderer has to fill and where the pointer is.
 
 use egui::{
-    Color32, CornerRadius, CursorIcon, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2, pos2, vec2,
+    Color32, CornerRadius, CursorIcon, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2, pos2, vec2,
 };
 
 use super::arrange::{Slot, slots};
@@ -46,9 +46,9 @@ pub fn show(ui: &mut Ui, model: &Model, state: &mut State, events: &mut Vec<Even
     ui.painter().rect_filled(area, CornerRadius::ZERO, Palette::of(ui.visuals()).ground);
     let slots = slots(area.shrink(4.0), model.arrangement, ui.pixels_per_point());
     let mut views = Views::default();
-    match model.arrangement {
-        Arrangement::Compare { .. } if slots.len() == 2 => {
-            compare(ui, model, [slots[0], slots[1]], state, &mut views, events);
+    match (model.arrangement, &slots[..]) {
+        (Arrangement::Compare { .. }, &[left, right]) => {
+            compare(ui, model, [left, right], state, &mut views, events);
         }
         _ => {
             for slot in &slots {
@@ -60,30 +60,21 @@ pub fn show(ui: &mut Ui, model: &Model, state: &mut State, events: &mut Vec<Even
             }
         }
     }
-    votes::hub(ui, model, hub_anchor(model, area, &slots), beside_hub(model, &slots, area), events);
+    let (anchor, beside) = hub_place(model.arrangement, area, &slots);
+    votes::hub(ui, model, anchor, beside, events);
     views.slots = slots;
     views
 }
 
-/// The middle of the hub's lower edge.
-fn hub_anchor(model: &Model, area: Rect, slots: &[Slot]) -> egui::Pos2 {
-    match (model.arrangement, slots) {
+/// The middle of the hub's lower edge, and the width of the pictures whose vote buttons are beside it.
+fn hub_place(arrangement: Arrangement, area: Rect, slots: &[Slot]) -> (Pos2, f32) {
+    let (first, last) = (slots[0].rect, slots[slots.len() - 1].rect);
+    match arrangement {
         // Just below the crossing, where the name of the lower right picture begins.
-        (Arrangement::Grid, [first, .., last]) => {
-            pos2(0.5 * (first.rect.right() + last.rect.left()), last.rect.top() + 2.0)
-        }
+        Arrangement::Grid => (pos2(0.5 * (first.right() + last.left()), last.top() + 2.0), first.width()),
         // Between the vote buttons of the two halves.
-        (Arrangement::Compare { .. }, _) => pos2(area.center().x, area.bottom() - 9.0),
-        _ => pos2(area.center().x, area.top() + 50.0),
-    }
-}
-
-/// Width of the pictures whose vote buttons are beside the hub.
-fn beside_hub(model: &Model, slots: &[Slot], area: Rect) -> f32 {
-    match (model.arrangement, slots) {
-        (Arrangement::Compare { .. }, _) => 0.5 * area.width(),
-        (_, [first, ..]) => first.rect.width(),
-        _ => area.width(),
+        Arrangement::Compare { .. } => (pos2(area.center().x, area.bottom() - 9.0), 0.5 * area.width()),
+        Arrangement::One(_) => (pos2(area.center().x, area.top() + 50.0), first.width()),
     }
 }
 
@@ -137,16 +128,13 @@ fn paint_picture(ui: &Ui, model: &Model, view: usize, rect: Rect, clip: Rect) {
             let shape = egui::epaint::RectShape::filled(rect, corner, tint).with_texture(texture, whole);
             painter.add(shape.with_round_to_pixels(false));
         }
-        None => {
-            painter.rect_filled(rect, corner, Color32::from_rgb(30, 34, 33));
-        }
+        None => _ = painter.rect_filled(rect, corner, Color32::from_rgb(30, 34, 33)),
     }
 }
 
 /// A line around the chosen picture while the genome panel is open, and around the one under the pointer.
 fn frame(ui: &Ui, model: &Model, slot: &Slot, lively: bool) {
-    let chosen = model.panels.genome && model.chosen == slot.view;
-    let color = match (chosen, lively) {
+    let color = match (model.panels.genome && model.chosen == slot.view, lively) {
         (true, _) => Palette::of(ui.visuals()).accent,
         (false, true) => Color32::from_white_alpha(110),
         (false, false) => return,
@@ -172,16 +160,12 @@ fn compare(
     events: &mut Vec<Event>,
 ) {
     let rect = left.rect;
-    let split_x = egui::lerp(rect.x_range(), state.split);
-    let (mut left_part, mut right_part) = (rect, rect);
-    left_part.set_right(split_x);
-    right_part.set_left(split_x);
-    let mut lively = [false; 2];
-    for (side, (slot, part)) in [(left, left_part), (right, right_part)].into_iter().enumerate() {
+    let parts = rect.split_left_right_at_fraction(state.split);
+    let lively = [(0, left, parts.0), (1, right, parts.1)].map(|(side, slot, part)| {
         let response =
             ui.push_id(("side", side), |ui| picture(ui, model, slot.view, rect, part, views, events)).inner;
-        lively[side] = !model.captured && response.contains_pointer();
-    }
+        !model.captured && response.contains_pointer()
+    });
     // Names and votes keep to their half however far the splitter is moved.
     let halves = rect.split_left_right_at_fraction(0.5);
     for (side, (slot, half)) in [(left, halves.0), (right, halves.1)].into_iter().enumerate() {
@@ -191,7 +175,7 @@ fn compare(
             vote_bar(ui, model, slot.view, half, lively[side], events);
         });
     }
-    splitter(ui, rect, split_x, state);
+    splitter(ui, rect, parts.0.right(), state);
 }
 
 fn splitter(ui: &mut Ui, rect: Rect, split_x: f32, state: &mut State) {
@@ -212,12 +196,8 @@ fn splitter(ui: &mut Ui, rect: Rect, split_x: f32, state: &mut State) {
     ui.painter().add(theme::card_shadow().as_shape(knob, CornerRadius::same(11)));
     ui.painter().rect_filled(knob, CornerRadius::same(11), Color32::WHITE);
     for offset in [-3.0, 3.0] {
-        let x = split_x + offset;
-        ui.painter().vline(
-            x,
-            knob.center().y - 6.0..=knob.center().y + 6.0,
-            Stroke::new(1.5, Color32::from_gray(90)),
-        );
+        let groove = Stroke::new(1.5, Color32::from_gray(90));
+        ui.painter().vline(split_x + offset, knob.y_range().shrink(11.0), groove);
     }
     response.on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
 }

@@ -2,16 +2,17 @@
 //! to the next generation. Colour says which category; a filled button is a vote that was won here.
 
 use egui::{
-    Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui, pos2,
-    vec2,
+    Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui,
 };
+use egui::{pos2, vec2};
 use genescape_schema::Category;
 
 use super::icon::Icon;
 use super::model::Model;
 use super::theme;
-use super::widgets::{name_button, progress_ring};
+use super::widgets::{Asks, painted_button, progress_ring};
 use crate::event::{Ballot, Event};
+use crate::input::Command;
 
 /// Height of a vote button, in points.
 const PILL: f32 = 28.0;
@@ -21,17 +22,6 @@ const WORDS_FROM: f32 = 400.0;
 const CHIP: f32 = 26.0;
 /// The hub's shorter side, in points.
 const HUB: f32 = 38.0;
-
-/// Which way a vote button looks.
-#[derive(Clone, Copy, PartialEq)]
-enum Standing {
-    /// Nothing was voted yet.
-    Open,
-    /// This picture won.
-    Won,
-    /// Another won, or none pleases.
-    Lost,
-}
 
 /// The vote buttons of one picture, centred at `bottom`; `lively` when the pointer is over the picture.
 pub fn bar(ui: &mut Ui, model: &Model, view: usize, within: Rect, lively: bool, events: &mut Vec<Event>) {
@@ -74,56 +64,35 @@ fn pill(
     words: bool,
     events: &mut Vec<Event>,
 ) {
-    let standing = match model.ballots.get(category) {
-        Ballot::Open => Standing::Open,
-        Ballot::For(best) if best == view => Standing::Won,
-        _ => Standing::Lost,
-    };
-    let response = ui.interact(rect, ui.scope_id().with(("vote", view, category.name())), Sense::click());
-    let won = standing == Standing::Won;
-    let label = format!("{}: best in {}", theme::title(category), view + 1);
-    name_button(ui, &response, &label, won);
-    if response.clicked() {
-        let ballot = if won { Ballot::Open } else { Ballot::For(view) };
-        events.push(Event::Vote { category, ballot });
-    }
-    paint_pill(ui.painter(), rect, category, standing, response.hovered() || response.has_focus(), words);
-    response.on_hover_text(if won {
-        format!("{} is best here. Click to take the vote back.", theme::title(category))
-    } else {
-        format!("Vote: “{}” has the best {}", model.views[view].name, theme::title(category).to_lowercase())
-    });
-}
-
-fn paint_pill(
-    painter: &Painter,
-    rect: Rect,
-    category: Category,
-    standing: Standing,
-    hovered: bool,
-    words: bool,
-) {
-    let bright = theme::bright(category);
-    let (fill, picture, word) = match (standing, hovered) {
-        (Standing::Won, false) => (bright, theme::ON_BRIGHT, theme::ON_BRIGHT),
-        (Standing::Won, true) => {
-            (bright.lerp_to_gamma(Color32::WHITE, 0.25), theme::ON_BRIGHT, theme::ON_BRIGHT)
+    let (ballot, title) = (model.ballots.get(category), theme::title(category));
+    let won = ballot == Ballot::For(view);
+    let name = format!("{title}: best in {}", view + 1);
+    let (response, lit) = painted_button(ui, rect, ("vote", view, category.name()), &name, won);
+    response
+        .asks(events, Event::Vote { category, ballot: if won { Ballot::Open } else { Ballot::For(view) } });
+    let (bright, none, white) = (theme::bright(category), Color32::TRANSPARENT, Color32::from_white_alpha);
+    let (fill, line, picture, word) = match (ballot, lit) {
+        (_, false) if won => (bright, none, theme::ON_BRIGHT, theme::ON_BRIGHT),
+        (_, true) if won => {
+            (bright.lerp_to_gamma(Color32::WHITE, 0.25), none, theme::ON_BRIGHT, theme::ON_BRIGHT)
         }
-        (_, true) => (theme::SCRIM_HOVERED, bright, theme::ON_SCRIM),
-        (Standing::Open, false) => (theme::SCRIM, bright, theme::ON_SCRIM),
-        (Standing::Lost, false) => {
-            (Color32::from_black_alpha(110), Color32::from_white_alpha(120), Color32::from_white_alpha(150))
-        }
+        (_, true) => (theme::SCRIM_HOVERED, bright, bright, theme::ON_SCRIM),
+        (Ballot::Open, false) => (theme::SCRIM, none, bright, theme::ON_SCRIM),
+        _ => (Color32::from_black_alpha(110), none, white(120), white(150)),
     };
-    let line = if hovered && standing != Standing::Won { bright } else { Color32::TRANSPARENT };
+    let painter = ui.painter();
     painter.rect(rect, CornerRadius::same(14), fill, Stroke::new(1.5, line), StrokeKind::Inside);
-    let icon_center = if words { pos2(rect.left() + 18.0, rect.center().y) } else { rect.center() };
-    let icon_rect = Rect::from_center_size(icon_center, vec2(16.0, 16.0));
-    Icon::from(category).paint(painter, icon_rect, picture);
+    let icon_center = if words { rect.left_center() + vec2(18.0, 0.0) } else { rect.center() };
+    Icon::from(category).paint_at(painter, icon_center, 16.0, picture);
     if words {
-        let at = pos2(rect.left() + 32.0, rect.center().y);
-        painter.text(at, Align2::LEFT_CENTER, theme::title(category), word_font(), word);
+        let at = rect.left_center() + vec2(32.0, 0.0);
+        painter.text(at, Align2::LEFT_CENTER, title, word_font(), word);
     }
+    response.on_hover_text(if won {
+        format!("{title} is best here. Click to take the vote back.")
+    } else {
+        format!("Vote: “{}” has the best {}", model.views[view].name, title.to_lowercase())
+    });
 }
 
 /// Why the next generation cannot be bred now; `None` if it can.
@@ -136,46 +105,21 @@ pub fn hindrance(model: &Model) -> Option<String> {
     (!names.is_empty()).then(|| format!("Still to vote on: {}", names.join(", ")))
 }
 
-/// How the hub fits between the vote buttons of the pictures beside it.
-#[derive(Clone, Copy, PartialEq)]
-enum Form {
-    /// In a row, with words.
-    Words,
-    /// In a row.
-    Row,
-    /// In a column, where pictures are narrow.
-    Column,
-}
-
-impl Form {
-    /// The widest that leaves the vote buttons of pictures of that width free.
-    fn of(picture_width: f32) -> Self {
-        match picture_width {
-            520.0.. => Self::Words,
-            300.0.. => Self::Row,
-            _ => Self::Column,
-        }
-    }
-
-    /// Length of what leads on, after the ballots.
-    fn way_on(self, model: &Model, ready: bool) -> f32 {
-        match (self, ready, &model.baking) {
-            (Self::Words, true, _) => 164.0,
-            (_, true, _) => 38.0,
-            (_, false, Some(_)) => 34.0,
-            (_, false, None) => 0.0,
-        }
-    }
-}
-
 /// The hub between the pictures: three ballots, and the way on. `anchor` is the middle of its lower edge.
 pub fn hub(ui: &mut Ui, model: &Model, anchor: Pos2, picture_width: f32, events: &mut Vec<Event>) {
     let hindrance = hindrance(model);
-    let form = Form::of(picture_width);
-    let length = 3.0 * CHIP + 20.0 + form.way_on(model, hindrance.is_none());
-    let (size, step) = match form {
-        Form::Column => (vec2(HUB, length), vec2(0.0, CHIP + 4.0)),
-        _ => (vec2(length, HUB), vec2(CHIP + 4.0, 0.0)),
+    // Whatever leaves the vote buttons beside it free: a row with words, a row, or a column where pictures are narrow.
+    let (words, column) = (picture_width >= 520.0, picture_width < 300.0);
+    let way_on = match (&hindrance, &model.baking) {
+        (None, _) if words => 164.0,
+        (None, _) => 38.0,
+        (Some(_), Some(_)) => 34.0,
+        (Some(_), None) => 0.0,
+    };
+    let length = 3.0 * CHIP + 20.0 + way_on;
+    let (size, step) = match column {
+        true => (vec2(HUB, length), vec2(0.0, CHIP + 4.0)),
+        false => (vec2(length, HUB), vec2(CHIP + 4.0, 0.0)),
     };
     let rect = Rect::from_min_size(anchor - vec2(0.5 * size.x, size.y), size);
     // The hub takes clicks itself, so that none falls through to a picture.
@@ -191,11 +135,10 @@ pub fn hub(ui: &mut Ui, model: &Model, anchor: Pos2, picture_width: f32, events:
     let rest =
         Rect::from_min_max(first.min + 3.0 * step + step.normalized() * 2.0, rect.max - vec2(6.0, 6.0));
     match (&model.baking, hindrance) {
-        (_, None) => next_button(ui, rest, form == Form::Words, events),
+        (_, None) => next_button(ui, rest, words, events),
         (Some(baking), Some(text)) => {
-            let part = baking.done as f32 / baking.total.max(1) as f32;
             let rest_color = Color32::from_white_alpha(45);
-            progress_ring(ui.painter(), rest.center(), 9.0, part, DARK_ACCENT, rest_color);
+            progress_ring(ui.painter(), rest.center(), 9.0, baking.part(), DARK_ACCENT, rest_color);
             ui.interact(rest, ui.scope_id().with("hub baking"), Sense::hover()).on_hover_text(text);
         }
         (None, Some(_)) => {}
@@ -206,21 +149,18 @@ pub fn hub(ui: &mut Ui, model: &Model, anchor: Pos2, picture_width: f32, events:
 const DARK_ACCENT: Color32 = theme::DARK.accent;
 
 fn next_button(ui: &mut Ui, rect: Rect, words: bool, events: &mut Vec<Event>) {
-    let response = ui.interact(rect, ui.scope_id().with("next generation"), Sense::click());
-    name_button(ui, &response, "Next generation (hub)", false);
-    let lit = response.hovered() || response.has_focus();
+    let name = "Next generation (hub)";
+    let (response, lit) = painted_button(ui, rect, "next generation", name, false);
     let fill = if lit { DARK_ACCENT.lerp_to_gamma(Color32::WHITE, 0.3) } else { DARK_ACCENT };
     ui.painter().rect_filled(rect, CornerRadius::same(14), fill);
     let ink = theme::DARK.on_accent;
     let icon_center = if words { pos2(rect.right() - 17.0, rect.center().y) } else { rect.center() };
-    Icon::Next.paint(ui.painter(), Rect::from_center_size(icon_center, vec2(13.0, 13.0)), ink);
+    Icon::Next.paint_at(ui.painter(), icon_center, 13.0, ink);
     if words {
         let at = pos2(rect.left() + 14.0, rect.center().y);
         ui.painter().text(at, Align2::LEFT_CENTER, "Next generation", word_font(), ink);
     }
-    if response.clicked() {
-        events.push(Event::NextGeneration);
-    }
+    response.asks(events, Command::NextGeneration.into());
     response.on_hover_text("Breed four new landscapes from what you chose");
 }
 
@@ -228,16 +168,12 @@ fn next_button(ui: &mut Ui, rect: Rect, words: bool, events: &mut Vec<Event>) {
 fn chip(ui: &mut Ui, model: &Model, category: Category, rect: Rect, events: &mut Vec<Event>) {
     let ballot = model.ballots.get(category);
     let title = theme::title(category);
-    let response = ui.interact(rect, ui.scope_id().with(("ballot", category.name())), Sense::click());
-    name_button(ui, &response, &format!("{title}: none of the four"), ballot == Ballot::Nobody);
-    if response.clicked() {
-        let ballot = if ballot == Ballot::Nobody { Ballot::Open } else { Ballot::Nobody };
-        events.push(Event::Vote { category, ballot });
-    }
+    let (name, none) = (format!("{title}: none of the four"), ballot == Ballot::Nobody);
+    let (response, lit) = painted_button(ui, rect, ("ballot", category.name()), &name, none);
+    response.asks(events, Event::Vote { category, ballot: if none { Ballot::Open } else { Ballot::Nobody } });
     let bright = theme::bright(category);
     let painter = ui.painter();
     let icon_rect = Rect::from_center_size(rect.center(), vec2(14.0, 14.0));
-    let lit = response.hovered() || response.has_focus();
     let line = Stroke::new(1.5, if lit { Color32::WHITE } else { bright.gamma_multiply(0.55) });
     match ballot {
         Ballot::For(best) => {

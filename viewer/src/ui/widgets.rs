@@ -2,12 +2,13 @@
 //! Each has a name for those who use a screen reader (and for the tests).
 
 use egui::{
-    Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Response, Role, Sense, Shape, Stroke,
-    StrokeKind, TextStyle, Ui, WidgetInfo, vec2,
+    Align, Align2, Color32, CornerRadius, FontId, Layout, Painter, Pos2, Rect, Response, RichText, Role,
 };
+use egui::{Sense, Shape, Stroke, StrokeKind, TextStyle, Ui, Vec2, WidgetInfo, vec2};
 
 use super::icon::{Icon, arc};
-use super::theme::Palette;
+use super::theme::{self, Palette};
+use crate::event::{Event, Panel};
 
 /// Side of a button that shows a pictogram, in points.
 pub const ICON_BUTTON: f32 = 28.0;
@@ -19,24 +20,88 @@ pub fn icon_button(ui: &mut Ui, icon: Icon, label: &str, active: bool) -> Respon
 
 /// The same of another size, in points.
 pub fn sized_icon_button(ui: &mut Ui, icon: Icon, label: &str, active: bool, side: f32) -> Response {
-    let (rect, response) = ui.allocate_exact_size(vec2(side, side), Sense::click());
+    let color = if active { Palette::of(ui.visuals()).accent } else { Palette::of(ui.visuals()).text };
+    let (rect, response) = flat_button(ui, vec2(side, side), label, active);
+    icon.paint(ui.painter(), rect.shrink(side * 0.24), color);
+    response.on_hover_text(label)
+}
+
+/// The ground of a button that is invisible at rest unless it is `active`; its caller paints what is on it.
+pub fn flat_button(ui: &mut Ui, size: Vec2, name: &str, active: bool) -> (Rect, Response) {
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let palette = Palette::of(ui.visuals());
-    let fill = match (active, response.hovered() || response.has_focus()) {
+    let fill = match (active, is_lit(&response)) {
         (_, true) => palette.hovered,
         (true, false) => palette.button,
         (false, false) => Color32::TRANSPARENT,
     };
-    let color = if active { palette.accent } else { palette.text };
-    ui.painter().rect_filled(rect, CornerRadius::same(super::theme::RADIUS), fill);
-    icon.paint(ui.painter(), rect.shrink(side * 0.24), color);
-    name_button(ui, &response, label, active);
-    response.on_hover_text(label)
+    ui.painter().rect_filled(rect, CornerRadius::same(theme::RADIUS), fill);
+    name_button(ui, &response, name, active);
+    (rect, response)
+}
+
+/// A button that its caller paints; the flag says whether it is to look as under the pointer. `id` tells it from the
+/// others of this [`Ui`].
+pub fn painted_button(
+    ui: &Ui,
+    rect: Rect,
+    id: impl egui::AsIdSalt,
+    name: &str,
+    selected: bool,
+) -> (Response, bool) {
+    let response = ui.interact(rect, ui.scope_id().with(id), Sense::click());
+    name_button(ui, &response, name, selected);
+    let lit = is_lit(&response);
+    (response, lit)
+}
+
+/// What a click asks for.
+pub trait Asks {
+    fn asks(&self, events: &mut Vec<Event>, event: Event);
+}
+
+impl Asks for Response {
+    fn asks(&self, events: &mut Vec<Event>, event: Event) {
+        if self.clicked() {
+            events.push(event);
+        }
+    }
+}
+
+/// Under the pointer, or reached by the keyboard.
+fn is_lit(response: &Response) -> bool {
+    response.hovered() || response.has_focus()
 }
 
 /// Tells a hand-painted button's name and state.
-pub fn name_button(ui: &Ui, response: &Response, label: &str, selected: bool) {
+fn name_button(ui: &Ui, response: &Response, label: &str, selected: bool) {
     let enabled = ui.is_enabled();
     response.widget_info(|| WidgetInfo::selected(Role::Button, enabled, selected, label));
+}
+
+/// The cross that closes a panel.
+pub fn close_button(ui: &mut Ui, label: &str, panel: Panel, events: &mut Vec<Event>) {
+    icon_button(ui, Icon::Close, label, false).asks(events, Event::Panel { panel, open: false });
+}
+
+/// Something at the right end of a row, and something that fills the rest from the left.
+pub fn ends<T>(ui: &mut Ui, left: impl FnOnce(&mut Ui) -> T, right: impl FnOnce(&mut Ui)) {
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        right(ui);
+        ui.with_layout(Layout::left_to_right(Align::Center), left);
+    });
+}
+
+/// Text that is read when looked for.
+pub fn small(ui: &mut Ui, text: impl Into<String>) {
+    ui.label(RichText::new(text).small().color(Palette::of(ui.visuals()).weak));
+}
+
+/// A list that scrolls and takes up to `room` points; in an [`egui::Area`], which offers no more than it had, it has to
+/// say so itself.
+pub fn scrolled(ui: &mut Ui, room: f32, list: impl FnOnce(&mut Ui)) {
+    let area = egui::ScrollArea::vertical().max_height(room).min_scrolled_height(room);
+    area.auto_shrink([false, true]).show(ui, list);
 }
 
 /// The one button that leads on: filled with the accent. `icon` stands after the text.
@@ -46,7 +111,7 @@ pub fn primary_button(ui: &mut Ui, text: &str, icon: Icon) -> Response {
     let galley = ui.painter().layout_no_wrap(text.to_owned(), font, palette.on_accent);
     let size = vec2(galley.size().x + 42.0, ICON_BUTTON);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-    let (fill, ink) = match (ui.is_enabled(), response.hovered() || response.has_focus()) {
+    let (fill, ink) = match (ui.is_enabled(), is_lit(&response)) {
         (false, _) => (palette.button, palette.text),
         (true, true) => (palette.accent.lerp_to_gamma(palette.text, 0.25), palette.on_accent),
         (true, false) => (palette.accent, palette.on_accent),
@@ -54,21 +119,17 @@ pub fn primary_button(ui: &mut Ui, text: &str, icon: Icon) -> Response {
     ui.painter().rect_filled(rect, CornerRadius::same(14), fill);
     let at = Pos2::new(rect.left() + 14.0, rect.center().y - 0.5 * galley.size().y);
     ui.painter().galley_with_override_text_color(at, galley, ink);
-    let icon_rect = Rect::from_center_size(Pos2::new(rect.right() - 18.0, rect.center().y), vec2(12.0, 12.0));
-    icon.paint(ui.painter(), icon_rect, ink);
+    icon.paint_at(ui.painter(), rect.right_center() - vec2(18.0, 0.0), 12.0, ink);
     name_button(ui, &response, text, false);
     response
 }
 
-/// A switch with its text on the left, over the whole width; true if it was flipped.
-pub fn switch(ui: &mut Ui, on: &mut bool, text: &str, help: &str) -> bool {
+/// A switch with its text on the left, over the whole width.
+pub fn switch(ui: &mut Ui, on: &mut bool, text: &str, help: &str) {
     let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
-    let (rect, mut response) = ui.allocate_exact_size(size, Sense::click());
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let palette = Palette::of(ui.visuals());
-    if response.clicked() {
-        *on = !*on;
-        response.mark_changed();
-    }
+    *on ^= response.clicked();
     let font = TextStyle::Body.resolve(ui.style());
     ui.painter().text(rect.left_center(), Align2::LEFT_CENTER, text, font, palette.text);
     let track = Rect::from_center_size(Pos2::new(rect.right() - 16.0, rect.center().y), vec2(32.0, 18.0));
@@ -86,57 +147,46 @@ pub fn switch(ui: &mut Ui, on: &mut bool, text: &str, help: &str) -> bool {
     ui.painter().circle_filled(knob, 6.0, knob_color);
     let (enabled, state) = (ui.is_enabled(), *on);
     response.widget_info(|| WidgetInfo::selected(Role::Switch, enabled, state, text));
-    let changed = response.changed();
     if !help.is_empty() {
         response.on_hover_text(help);
     }
-    changed
 }
 
-/// Choices in a row, one of which is chosen; the new one if it was changed. `name` stands before each choice's own
-/// for screen readers.
-pub fn segmented<T: Copy + PartialEq>(
-    ui: &mut Ui,
-    name: &str,
-    choices: &[(T, &str, &str)],
-    current: T,
-) -> Option<T> {
+/// Choices in a row, one of which is `chosen`. `name` stands before each choice's own for screen readers.
+pub fn segmented<T: Copy + PartialEq>(ui: &mut Ui, name: &str, choices: &[(T, &str, &str)], chosen: &mut T) {
     let palette = Palette::of(ui.visuals());
     let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
     let (_, rect) = ui.allocate_space(size);
-    ui.painter().rect_filled(rect, CornerRadius::same(super::theme::RADIUS), palette.sunken);
+    ui.painter().rect_filled(rect, CornerRadius::same(theme::RADIUS), palette.sunken);
     let step = rect.width() / choices.len().max(1) as f32;
     let font = TextStyle::Button.resolve(ui.style());
-    let mut chosen = None;
+    let current = *chosen;
     for (at, &(value, text, help)) in choices.iter().enumerate() {
         let corner = rect.left_top() + vec2(at as f32 * step, 0.0);
         let cell = Rect::from_min_size(corner, vec2(step, rect.height())).shrink(2.0);
-        let response = ui.interact(cell, ui.scope_id().with((name, text)), Sense::click());
         let selected = value == current;
-        if selected || response.hovered() || response.has_focus() {
+        let label = format!("{name}: {text}");
+        let (response, lit) = painted_button(ui, cell, (name, text), &label, selected);
+        if selected || lit {
             let fill = if selected { palette.hovered } else { palette.button };
             ui.painter().rect_filled(cell, CornerRadius::same(5), fill);
         }
         let color = if selected { palette.text } else { palette.weak };
         ui.painter().text(cell.center(), Align2::CENTER_CENTER, text, font.clone(), color);
-        let label = format!("{name}: {text}");
-        name_button(ui, &response, &label, selected);
-        if response.clicked() && !selected {
-            chosen = Some(value);
+        if response.clicked() {
+            *chosen = value;
         }
         if !help.is_empty() {
             response.on_hover_text(help);
         }
     }
-    chosen
 }
 
 /// A ring that is filled clockwise from the top, as far as `part` (0 to 1).
 pub fn progress_ring(painter: &Painter, center: Pos2, radius: f32, part: f32, color: Color32, rest: Color32) {
     painter.circle_stroke(center, radius, Stroke::new(3.5, rest));
-    let part = if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 };
     if part > 0.0 {
-        let points = arc(center, radius, -90.0, -90.0 + 360.0 * part);
+        let points = arc(center, radius, -90.0, -90.0 + 360.0 * part.min(1.0));
         painter.add(Shape::line(points, Stroke::new(3.5, color)));
     }
 }
@@ -145,9 +195,8 @@ pub fn progress_ring(painter: &Painter, center: Pos2, radius: f32, part: f32, co
 pub fn progress_bar(painter: &Painter, rect: Rect, part: f32, color: Color32, rest: Color32) {
     let radius = CornerRadius::same((rect.height() * 0.5) as u8);
     painter.rect_filled(rect, radius, rest);
-    let part = if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 };
     if part > 0.0 {
-        let width = (rect.width() * part).max(rect.height());
+        let width = (rect.width() * part.min(1.0)).max(rect.height());
         painter.rect_filled(Rect::from_min_size(rect.min, vec2(width, rect.height())), radius, color);
     }
 }
@@ -155,7 +204,7 @@ pub fn progress_bar(painter: &Painter, rect: Rect, part: f32, color: Color32, re
 /// A heading above a group of controls.
 pub fn section(ui: &mut Ui, text: &str) {
     ui.add_space(6.0);
-    ui.label(egui::RichText::new(text).small().strong().color(Palette::of(ui.visuals()).weak));
+    ui.label(RichText::new(text).small().strong().color(Palette::of(ui.visuals()).weak));
 }
 
 /// A keyboard's keys as caps, one for each word of `keys`.

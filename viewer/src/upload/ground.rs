@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::{PictureUse, Uploader};
 use crate::lod::quadtree;
-use crate::scene::{Apron, Ground};
+use crate::scene::{Apron, Ground, GroundDetail, Picture};
 
 /// How far a curtain hangs down from the ring's inner edge: more than the field's edge can lie below it.
 const CURTAIN_M: f32 = 40.0;
@@ -54,7 +54,7 @@ impl Uploader {
         let surface = &ground.surface;
         let half_m = 0.5 * ground.field.extent_m();
         let (vertices, indices) = ring(&ground.apron, half_m);
-        let pick = |choose: fn(&crate::scene::Detail) -> &crate::scene::Picture| {
+        let pick = |choose: fn(&GroundDetail<Picture>) -> &Picture| {
             surface.details.iter().map(choose).collect::<Vec<_>>()
         };
         if surface.details.len() != 5 {

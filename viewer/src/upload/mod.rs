@@ -9,6 +9,8 @@ mod trees;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, Weak};
 
+use genescape_schema::scene::SkyLight;
+
 pub use ground::{GroundBuffers, RingVertex};
 pub use sky::SkyTextures;
 pub use texture::PictureUse;
@@ -18,7 +20,7 @@ pub use trees::{
 };
 
 use crate::gpu::Gpu;
-use crate::scene::{Ground, Scene, Sky};
+use crate::scene::{Ground, Scene};
 
 /// A landscape on the device.
 #[derive(Debug)]
@@ -28,11 +30,11 @@ pub struct SceneBuffers {
     /// The plain values that a view needs besides: heights to choose levels of detail by, light.
     pub ground: Ground,
     /// Sun and air.
-    pub sky: Sky,
+    pub sky: SkyLight,
     /// The land.
     pub land: GroundBuffers,
     /// Sky pictures.
-    pub heaven: SkyTextures,
+    pub sky_textures: SkyTextures,
     /// Trees; none if the land is bare.
     pub trees: Option<TreeSet>,
     /// Shadows as seen from the sun; drawn into once.
@@ -57,9 +59,9 @@ impl Uploader {
         Ok(SceneBuffers {
             name: scene.name.clone(),
             ground: scene.ground.clone(),
-            sky: scene.sky.clone(),
+            sky: scene.sky.light.clone(),
             land: self.ground(&scene.ground)?,
-            heaven: self.sky(&scene.sky),
+            sky_textures: self.sky(&scene.sky),
             trees: self.trees(&scene.trees),
             shadow_map: self.shadow_map(),
         })

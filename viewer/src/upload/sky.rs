@@ -22,7 +22,7 @@ pub struct SkyTextures {
 
 impl Uploader {
     pub(super) fn sky(&self, sky: &Sky) -> SkyTextures {
-        let layer = |name: &str| sky.layers.iter().find(|layer| layer.name == name);
+        let layer = |name: &str| sky.images.layers.iter().find(|layer| layer.name == name);
         let nothing = Picture {
             name: "nothing".into(),
             width_px: 1,
@@ -36,8 +36,8 @@ impl Uploader {
         let measure = |name: &str| layer(name).map_or([0.0; 2], |layer| [layer.altitude_m, layer.extent_m]);
         let ([a, b], [c, d]) = (measure("cumulus"), measure("cirrus"));
         SkyTextures {
-            cube: self.cube(&sky.faces),
-            clear_cube: self.cube(&sky.clear_faces),
+            cube: self.cube(&sky.images.faces),
+            clear_cube: self.cube(&sky.images.clear_faces),
             cumulus: texture("cumulus"),
             cirrus: texture("cirrus"),
             sheets_m: [a, b, c, d],

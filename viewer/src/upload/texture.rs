@@ -98,7 +98,7 @@ impl Uploader {
     }
 
     /// Six faces of half floats as a cube.
-    pub(super) fn cube(&self, faces: &[HdrPicture; 6]) -> Arc<wgpu::Texture> {
+    pub(super) fn cube(&self, faces: &[HdrPicture]) -> Arc<wgpu::Texture> {
         let names: Vec<&str> = faces.iter().map(|face| face.name.as_str()).collect();
         self.shared(names.join(" "), || {
             let side = faces[0].width_px;

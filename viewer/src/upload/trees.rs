@@ -2,13 +2,10 @@
 
 use std::sync::Arc;
 
-use glam::{Mat3, Vec3};
-
 use super::{PictureUse, Uploader};
 use crate::scene::{Instance, Material, Picture, Template, TreeVertex, Trees};
 
-/// The most levels of detail of a kind of tree; as in `cull.wgsl`.
-pub const MAX_LEVELS: usize = 12;
+pub use crate::lod::tree::MAX_LEVELS;
 /// The most materials that all trees of a landscape may have: each is one draw.
 pub const MATERIALS_PER_TREE_SET: usize = 4;
 
@@ -42,7 +39,7 @@ pub struct TemplateData {
     pub first: u32,
     /// How many entries each of its lists has room for.
     pub capacity: u32,
-    /// Error of the simple scheme, [`crate::lod::tree::simple_error_m`].
+    /// Error of the simple mode, [`crate::lod::tree::simple_error_m`].
     pub simple_error: f32,
 }
 
@@ -247,21 +244,9 @@ fn tree_data(instance: &Instance) -> TreeData {
     TreeData {
         rows: instance.world_from_tree,
         template_index: instance.template,
-        scale: greatest_stretch(&instance.world_from_tree),
+        scale: instance.max_scale(),
         pad: [0.0; 2],
     }
-}
-
-/// The greatest singular value of an affine map's linear part, never too small by more than rounding: 24 steps of
-/// power iteration on AᵀA, which for the mild shears of trees is exact.
-fn greatest_stretch(rows: &[[f32; 4]; 3]) -> f32 {
-    let transposed = Mat3::from_cols_array_2d(&rows.map(|[x, y, z, _]| [x, y, z]));
-    let gram = transposed * transposed.transpose();
-    let mut direction = Vec3::new(0.62, 0.55, 0.56);
-    for _ in 0..24 {
-        direction = (gram * direction).normalize_or(Vec3::Y);
-    }
-    (gram * direction).dot(direction).max(0.0).sqrt()
 }
 
 /// Materials of all kinds, equal ones once; beyond the greatest number the first stands in.
@@ -282,30 +267,4 @@ fn same(a: &Material, b: &Material) -> bool {
     let name = |picture: &Option<Picture>| picture.as_ref().map(|picture| picture.name.clone());
     (name(&a.color), name(&a.normal), a.color_factor, a.alpha_cutoff)
         == (name(&b.color), name(&b.normal), b.color_factor, b.alpha_cutoff)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    proptest! {
-        #[test]
-        fn no_direction_is_stretched_more(
-            rows in proptest::array::uniform3(proptest::array::uniform4(-2f32..2.)),
-            x in -1f32..1., y in -1f32..1., z in -1f32..1.,
-        ) {
-            let direction = Vec3::new(x, y, z);
-            prop_assume!(direction.length() > 0.1);
-            let unit = direction.normalize();
-            let image = rows.map(|[a, b, c, _]| Vec3::new(a, b, c).dot(unit));
-            prop_assert!(Vec3::from(image).length() <= greatest_stretch(&rows) * 1.02 + 1e-4);
-        }
-    }
-
-    #[test]
-    fn a_uniform_scale_is_itself() {
-        let rows = [[0.0, 0.0, 3.0, 9.0], [3.0, 0.0, 0.0, 9.0], [0.0, 3.0, 0.0, 9.0]];
-        assert!((greatest_stretch(&rows) - 3.0).abs() < 1e-5);
-    }
 }

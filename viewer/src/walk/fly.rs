@@ -1,4 +1,4 @@
-//! Flying: one altitude above zero in all views, and through trees, which no branch could stop anyway. Where one
+//! Flying: one altitude above zero in all views, and through trees. Where one
 //! landscape's ground is higher than that, its view alone is lifted over it; so a valley can be flown through in one
 //! view although a mountain stands there in another.
 
@@ -9,19 +9,20 @@ use crate::input::Controls;
 
 /// Speed at the start, in m/s.
 pub(super) const SPEED_MPS: f32 = 12.0;
-/// The slowest and the fastest that the wheel sets, in m/s.
-const SPEEDS_MPS: [f32; 2] = [0.5, 400.0];
+/// What the wheel sets, in m/s.
+const MIN_SPEED_MPS: f32 = 0.5;
+const MAX_SPEED_MPS: f32 = 400.0;
 /// One line of the wheel, as a factor.
 const WHEEL: f32 = 1.2;
-/// Nobody flies higher.
-const CEILING_M: f32 = 10_000.0;
+/// The eye never rises above this.
+const MAX_ALTITUDE_M: f32 = 10_000.0;
 
 /// The speed after a turn of the wheel, in m/s.
 pub(super) fn speed_mps(before_mps: f32, wheel: f32) -> f32 {
     if !wheel.is_finite() {
         return before_mps;
     }
-    (before_mps * libm::powf(WHEEL, wheel)).clamp(SPEEDS_MPS[0], SPEEDS_MPS[1])
+    (before_mps * libm::powf(WHEEL, wheel)).clamp(MIN_SPEED_MPS, MAX_SPEED_MPS)
 }
 
 /// Direction of a wish, no longer than 1: forward goes where one looks, up goes straight up.
@@ -48,5 +49,5 @@ pub(super) fn keep_above(pose: &mut Pose, lands: &[&Land]) {
     if lowest_m.is_finite() {
         pose.altitude_m = pose.altitude_m.max(lowest_m);
     }
-    pose.altitude_m = pose.altitude_m.min(CEILING_M.max(lowest_m.min(f32::MAX)));
+    pose.altitude_m = pose.altitude_m.min(MAX_ALTITUDE_M.max(lowest_m.min(f32::MAX)));
 }

@@ -6,12 +6,12 @@ use glam::{Vec2, Vec3};
 
 use super::Trunks;
 use crate::camera::Camera;
-use crate::scene::{Heightfield, Scene};
+use crate::scene::{Heightfield, Scene, StartView};
 
 /// Height of a walker's eyes above what it stands on.
-pub const EYE_HEIGHT_M: f32 = 1.6;
+pub const EYE_HEIGHT_M: f32 = StartView::EYE_HEIGHT_M;
 /// No eye comes nearer to the ground, in any mode.
-pub const LEAST_HEIGHT_M: f32 = 0.5;
+pub const MIN_HEIGHT_M: f32 = 0.5;
 /// A walker wades no deeper; where a lake is deeper it swims, its feet this far below the surface.
 pub const WADING_DEPTH_M: f32 = 1.2;
 /// Radius of a walker's body.
@@ -24,10 +24,14 @@ pub const EDGE_M: f32 = 1.0;
 pub struct Land {
     /// Its heights.
     pub field: Arc<Heightfield>,
+    /// Height of its highest point in metres.
+    pub top_m: f32,
     /// Surface of its lake in metres, if there is one.
     pub water_level_m: Option<f32>,
     /// Its trees' trunks.
     pub trunks: Trunks,
+    /// Where a walk starts, if it is the only landscape.
+    pub start: StartView,
 }
 
 impl Land {
@@ -35,16 +39,17 @@ impl Land {
     pub fn of(scene: &Scene) -> Self {
         Self {
             field: scene.ground.field.clone(),
+            top_m: scene.ground.lod.range_m()[1],
             water_level_m: scene.ground.water_level_m,
             trunks: Trunks::of(&scene.trees.instances),
+            start: scene.start,
         }
     }
 
     /// The camera that looks on from above, as in the thesis's figures 12 and 13: over the middle, all of the land in
     /// a square picture.
     pub fn overhead(&self, fov_y_rad: f32) -> Camera {
-        let [_, high_m] = self.field.range_m();
-        let height_m = high_m + 0.5 * self.field.extent_m() / libm::tanf(0.5 * fov_y_rad);
+        let height_m = self.top_m + 0.5 * self.field.extent_m() / libm::tanf(0.5 * fov_y_rad);
         Camera {
             position_m: Vec3::new(0.0, height_m, 0.0),
             yaw_rad: 0.0,
@@ -70,7 +75,7 @@ impl Land {
     /// No eye may be lower, in metres: above the ground, and above the lake (from below, a lake is only a lid).
     pub fn floor_m(&self, place_m: Vec2) -> f32 {
         let ground_m = self.ground_m(place_m);
-        self.water_level_m.map_or(ground_m, |water_m| ground_m.max(water_m)) + LEAST_HEIGHT_M
+        self.water_level_m.map_or(ground_m, |water_m| ground_m.max(water_m)) + MIN_HEIGHT_M
     }
 }
 

@@ -6,7 +6,6 @@
 //! all four landscapes); flying keeps one altitude in all views ([`fly`]); orbiting circles a point on the ground
 //! ([`orbit`]).
 
-mod detour;
 mod fly;
 mod land;
 mod orbit;
@@ -20,22 +19,21 @@ mod trunks;
 
 use std::f32::consts::{PI, TAU};
 
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec3Swizzles};
 use serde::{Deserialize, Serialize};
 
-pub use detour::{Detour, Side};
-pub use land::{BODY_RADIUS_M, EDGE_M, EYE_HEIGHT_M, LEAST_HEIGHT_M, Land, WADING_DEPTH_M, reach_m, within};
-pub use start::{START_RADIUS_M, start_pose};
+pub use land::{BODY_RADIUS_M, EDGE_M, EYE_HEIGHT_M, Land, MIN_HEIGHT_M, WADING_DEPTH_M, reach_m, within};
+pub use start::start_pose;
 pub use steps::{advance, free, nearest_free};
 pub use trunks::{Trunk, Trunks};
 
 use crate::camera::Camera;
 use crate::input::Controls;
 
-/// Nobody looks straight up or down: there, left and right have no meaning.
-pub const MOST_PITCH_RAD: f32 = 89.0 * PI / 180.0;
-/// Of a longer frame the rest does not count: who comes back to a window that hung has not walked on meanwhile.
-pub const LONGEST_STEP_S: f32 = 0.25;
+/// Never straight up or down: there, left and right have no meaning.
+pub const MAX_PITCH_RAD: f32 = 89.0 * PI / 180.0;
+/// What is left of a longer frame is not walked: a window that hung must not make the walker jump.
+pub const MAX_STEP_S: f32 = 0.25;
 /// A change of mode moves the eyes up or down in this time.
 const BLEND_S: f32 = 0.4;
 
@@ -52,16 +50,11 @@ pub enum Mode {
 }
 
 impl Mode {
-    /// All of them.
     pub const ALL: [Self; 3] = [Self::Walk, Self::Fly, Self::Orbit];
 
-    /// The mode that the person gets who asks for another one.
+    /// Walk, fly, orbit, and around again.
     pub fn next(self) -> Self {
-        match self {
-            Self::Walk => Self::Fly,
-            Self::Fly => Self::Orbit,
-            Self::Orbit => Self::Walk,
-        }
+        Self::ALL[(self as usize + 1) % Self::ALL.len()]
     }
 
     /// 1 for this mode, 0 for the others.
@@ -162,14 +155,12 @@ impl Default for Feel {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rig {
     pose: Pose,
-    /// What of the last frames' wishes still moves it; x, y, z.
+    /// Follows the wish with a lag; x, y, z.
     velocity_mps: Vec3,
     /// Set by the wheel.
     fly_mps: f32,
     /// What an orbit circles: (x, z).
     target_m: Vec2,
-    /// How it is getting out of a pocket between trunks.
-    detour: Detour,
     /// Parts of walking, flying and orbiting in the eyes' height; their sum is 1, and soon the mode's own part is.
     parts: [f32; 3],
 }
@@ -182,41 +173,34 @@ impl Rig {
             velocity_mps: Vec3::ZERO,
             fly_mps: fly::SPEED_MPS,
             target_m: Vec2::ZERO,
-            detour: Detour::default(),
             parts: Mode::Walk.alone(),
         };
         rig.go(pose, lands);
         rig
     }
 
-    /// Where it is: what a bookmark keeps.
+    /// What a bookmark keeps.
     pub fn pose(&self) -> Pose {
         self.pose
     }
 
-    /// How it moves.
     pub fn mode(&self) -> Mode {
         self.pose.mode
-    }
-
-    /// Speed of flying in m/s, as the wheel has set it.
-    pub fn fly_mps(&self) -> f32 {
-        self.fly_mps
     }
 
     /// Jumps to a pose. What no camera can have (not a number, off the land, inside a trunk) becomes the nearest that
     /// it can.
     pub fn go(&mut self, pose: Pose, lands: &[&Land]) {
-        let sound = |value: f32, otherwise: f32| if value.is_finite() { value } else { otherwise };
+        let finite = |value: f32, otherwise: f32| if value.is_finite() { value } else { otherwise };
         let usual = Pose::default();
         self.pose = Pose {
-            x_m: sound(pose.x_m, 0.0),
-            z_m: sound(pose.z_m, 0.0),
-            yaw_rad: wrapped(sound(pose.yaw_rad, 0.0)),
-            pitch_rad: sound(pose.pitch_rad, 0.0).clamp(-MOST_PITCH_RAD, MOST_PITCH_RAD),
+            x_m: finite(pose.x_m, 0.0),
+            z_m: finite(pose.z_m, 0.0),
+            yaw_rad: wrapped(finite(pose.yaw_rad, 0.0)),
+            pitch_rad: finite(pose.pitch_rad, 0.0).clamp(-MAX_PITCH_RAD, MAX_PITCH_RAD),
             mode: pose.mode,
-            altitude_m: sound(pose.altitude_m, 0.0),
-            distance_m: orbit::distance(sound(pose.distance_m, usual.distance_m)),
+            altitude_m: finite(pose.altitude_m, 0.0),
+            distance_m: orbit::distance(finite(pose.distance_m, usual.distance_m)),
         };
         (self.velocity_mps, self.parts) = (Vec3::ZERO, pose.mode.alone());
         match pose.mode {
@@ -226,11 +210,9 @@ impl Rig {
         }
     }
 
-    /// Changes the mode where the camera is; the eyes move up or down in a moment, not at once.
-    pub fn set_mode(&mut self, mode: Mode, lands: &[&Land]) {
-        if mode == self.pose.mode {
-            return;
-        }
+    /// Changes to the next mode where the camera is; the eyes move up or down in a moment, not at once.
+    pub fn cycle_mode(&mut self, lands: &[&Land]) {
+        let mode = self.pose.mode.next();
         let heights_m: Vec<f32> = lands.iter().map(|land| self.height_m(land)).collect();
         (self.pose.mode, self.velocity_mps) = (mode, Vec3::ZERO);
         match mode {
@@ -238,19 +220,11 @@ impl Rig {
             Mode::Fly => {
                 self.pose.put(within(lands, self.pose.place_m()));
                 // From the highest of the four, so that no view dives.
-                self.pose.altitude_m = heights_m.into_iter().fold(f32::NEG_INFINITY, f32::max);
-                if !self.pose.altitude_m.is_finite() {
-                    self.pose.altitude_m = EYE_HEIGHT_M;
-                }
+                self.pose.altitude_m = heights_m.into_iter().reduce(f32::max).unwrap_or(EYE_HEIGHT_M);
                 fly::keep_above(&mut self.pose, lands);
             }
             Mode::Orbit => self.target_m = orbit::begin(&mut self.pose, lands, &heights_m),
         }
-    }
-
-    /// Walk, fly, orbit, and around again.
-    pub fn cycle_mode(&mut self, lands: &[&Land]) {
-        self.set_mode(self.pose.mode.next(), lands);
     }
 
     /// Makes a walker's place a free one, after a landscape was swapped: the nearest, or the same if there is none.
@@ -259,15 +233,12 @@ impl Rig {
         if self.pose.mode != Mode::Walk || (within(lands, place_m) == place_m && free(lands, place_m)) {
             return;
         }
-        match nearest_free(lands, place_m) {
-            Some(found_m) => self.pose.put(found_m),
-            None => self.pose.put(within(lands, place_m)),
-        }
+        self.pose.put(nearest_free(lands, place_m).unwrap_or_else(|| within(lands, place_m)));
     }
 
-    /// Moves on by a frame. Frames of any length lead to the same place; see [`LONGEST_STEP_S`].
+    /// Moves on by a frame. Frames of any length lead to the same place; see [`MAX_STEP_S`].
     pub fn step(&mut self, dt_s: f32, controls: &Controls, feel: &Feel, lands: &[&Land]) {
-        let dt_s = if dt_s.is_finite() { dt_s.clamp(0.0, LONGEST_STEP_S) } else { 0.0 };
+        let dt_s = if dt_s.is_finite() { dt_s.clamp(0.0, MAX_STEP_S) } else { 0.0 };
         self.blend(dt_s);
         self.turn(dt_s, controls, feel);
         match self.pose.mode {
@@ -281,9 +252,9 @@ impl Rig {
             Mode::Orbit => {
                 orbit::zoom(&mut self.pose, controls, dt_s);
                 let speed_mps = orbit::speed_mps(&self.pose, feel.walk_mps) * pace(controls, feel);
-                let wish_mps = level(level_wish(&self.pose, controls) * speed_mps);
+                let wish_mps = level_wish(&self.pose, controls) * speed_mps;
                 let moved_m = glide(&mut self.velocity_mps, wish_mps, dt_s, feel.smooth_s);
-                self.target_m = within(lands, self.target_m + Vec2::new(moved_m.x, moved_m.z));
+                self.target_m = within(lands, self.target_m + moved_m.xz());
                 orbit::circle(&mut self.pose, self.target_m);
             }
         }
@@ -339,19 +310,14 @@ impl Rig {
         }
         let up = if feel.invert { -turn.y } else { turn.y };
         self.pose.yaw_rad = wrapped(self.pose.yaw_rad - turn.x);
-        self.pose.pitch_rad = (self.pose.pitch_rad + up).clamp(-MOST_PITCH_RAD, MOST_PITCH_RAD);
+        self.pose.pitch_rad = (self.pose.pitch_rad + up).clamp(-MAX_PITCH_RAD, MAX_PITCH_RAD);
     }
 
     fn walk(&mut self, dt_s: f32, controls: &Controls, feel: &Feel, lands: &[&Land]) {
         self.settle(lands);
-        let wish_mps = level(level_wish(&self.pose, controls) * feel.walk_mps * pace(controls, feel));
+        let wish_mps = level_wish(&self.pose, controls) * feel.walk_mps * pace(controls, feel);
         let moved_m = glide(&mut self.velocity_mps, wish_mps, dt_s, feel.smooth_s);
-        let from_m = self.pose.place_m();
-        let by_m = Vec2::new(moved_m.x, moved_m.z);
-        if by_m == Vec2::ZERO {
-            self.detour = Detour::default();
-        }
-        self.pose.put(advance(lands, from_m, by_m, &mut self.detour));
+        self.pose.put(advance(lands, self.pose.place_m(), moved_m.xz()));
     }
 }
 
@@ -359,14 +325,10 @@ fn pace(controls: &Controls, feel: &Feel) -> f32 {
     if controls.run { feel.run_factor } else { 1.0 }
 }
 
-/// The level direction (x, z) of a wish, no longer than 1: two keys together are no faster than one.
-fn level_wish(pose: &Pose, controls: &Controls) -> Vec2 {
+/// The level direction of a wish, no longer than 1: two keys together are no faster than one.
+fn level_wish(pose: &Pose, controls: &Controls) -> Vec3 {
     let wish = pose.ahead() * controls.forward + pose.right() * controls.right;
-    if wish.is_finite() { wish.clamp_length_max(1.0) } else { Vec2::ZERO }
-}
-
-fn level(wish: Vec2) -> Vec3 {
-    Vec3::new(wish.x, 0.0, wish.y)
+    if wish.is_finite() { wish.clamp_length_max(1.0).extend(0.0).xzy() } else { Vec3::ZERO }
 }
 
 /// Draws the velocity towards the wish, v' = (wish − v)/τ, and gives the way that this leads in dt, in metres: the

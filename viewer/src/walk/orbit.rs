@@ -1,17 +1,18 @@
 //! Orbiting: the eye on a sphere around a point on the ground, always looking down at it. The point's x and z are the
 //! same in all views, its y is each landscape's own ground; so the eye's x and z are the same too, and its height above
 //! the point. Where a hill would swallow the eye, that view's eye alone is lifted onto it and then sees the point a
-//! little lower in its picture, as the pitch is everybody's.
+//! little lower in its picture, because all views share the pitch.
 
 use glam::Vec2;
 
 use super::{Land, Pose, within};
 use crate::input::Controls;
 
-/// Nearest and farthest distance from the point.
-const DISTANCES_M: [f32; 2] = [2.0, 5000.0];
-/// Nobody looks along the ground or up: there the circle would lie in the ground.
-const FLATTEST_RAD: f32 = -4.0 * std::f32::consts::PI / 180.0;
+/// Distance from the point.
+const MIN_DISTANCE_M: f32 = 2.0;
+const MAX_DISTANCE_M: f32 = 5000.0;
+/// The pitch of an orbit stays below this: looking along the ground or up, the circle would lie in the ground.
+const MAX_PITCH_RAD: f32 = -4.0 * std::f32::consts::PI / 180.0;
 /// An orbit that begins looks down at least this much, from at least this far.
 const BEGIN_RAD: f32 = -12.0 * std::f32::consts::PI / 180.0;
 const BEGIN_M: f32 = 15.0;
@@ -24,12 +25,12 @@ const PAN_PER_S: f32 = 0.5;
 
 /// A distance within its range.
 pub(super) fn distance(wanted_m: f32) -> f32 {
-    wanted_m.clamp(DISTANCES_M[0], DISTANCES_M[1])
+    wanted_m.clamp(MIN_DISTANCE_M, MAX_DISTANCE_M)
 }
 
 /// The point that a pose looks at; the pose is put on the circle around it.
 pub(super) fn aim(pose: &mut Pose, lands: &[&Land]) -> Vec2 {
-    pose.pitch_rad = pose.pitch_rad.min(FLATTEST_RAD);
+    pose.pitch_rad = pose.pitch_rad.min(MAX_PITCH_RAD);
     let target_m = within(lands, pose.place_m() + offset_m(pose));
     circle(pose, target_m);
     target_m
@@ -67,7 +68,7 @@ pub(super) fn speed_mps(pose: &Pose, walk_mps: f32) -> f32 {
 
 /// Puts the eye where it looks at the point from the wished distance.
 pub(super) fn circle(pose: &mut Pose, target_m: Vec2) {
-    pose.pitch_rad = pose.pitch_rad.min(FLATTEST_RAD);
+    pose.pitch_rad = pose.pitch_rad.min(MAX_PITCH_RAD);
     pose.put(target_m - offset_m(pose));
 }
 

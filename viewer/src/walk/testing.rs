@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg32;
 
 use super::{Land, Trunk, Trunks};
-use crate::scene::Heightfield;
+use crate::scene::{Heightfield, StartView};
 
 /// A trunk.
 pub fn trunk(center_m: Vec2, radius_m: f32) -> Trunk {
@@ -47,8 +47,7 @@ fn land(height_m: impl Fn(f32, f32) -> f32, trunks: impl IntoIterator<Item = Tru
         .flat_map(|&z| places.iter().map(move |&x| (x, z)))
         .map(|(x, z)| height_m(x, z))
         .collect();
-    let lowest = field.heights_m.iter().copied().fold(f32::INFINITY, f32::min);
-    let highest = field.heights_m.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-    field.block_ranges_m = vec![[lowest, highest]];
-    Land { field: Arc::new(field), water_level_m: None, trunks: Trunks::new(trunks) }
+    let [_, top_m] = field.range_m();
+    let start = StartView { position_m: Vec3::ZERO, direction: Vec3::NEG_Z };
+    Land { field: Arc::new(field), top_m, water_level_m: None, trunks: Trunks::new(trunks), start }
 }

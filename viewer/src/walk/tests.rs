@@ -48,10 +48,15 @@ fn frames() -> impl Strategy<Value = Vec<(f32, Controls, u8)>> {
     prop::collection::vec((dt_s, controls(), 1u8..4), 1..4)
 }
 
+/// Ten times as many where `GENESCAPE_LONG` is set.
+fn walks() -> u32 {
+    if std::env::var_os("GENESCAPE_LONG").is_some() { 10_000 } else { 1000 }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 10_000, max_shrink_iters: 2000, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: walks(), max_shrink_iters: 2000, ..ProptestConfig::default() })]
     #[test]
-    fn ten_thousand_walks_end_outside_every_trunk_and_on_the_ground(
+    fn walks_end_outside_every_trunk_and_on_the_ground(
         set in 0usize..24, x in -70f32..70., z in -70f32..70., yaw_rad in -9f32..9., speed in 0.5f32..40.,
         frames in frames()
     ) {
@@ -64,7 +69,7 @@ proptest! {
                 let place = rig.pose().place_m();
                 for land in lands {
                     // One by one, without the index.
-                    for trunk in land.trunks.iter() {
+                    for trunk in &land.trunks.trunks {
                         prop_assert!(trunk.clears(place, BODY_RADIUS_M), "{place} is inside {trunk:?}");
                     }
                     let eye = rig.camera(land, 1.0).position_m;
@@ -96,16 +101,16 @@ proptest! {
             };
             for (camera, land) in cameras.iter().zip(lands) {
                 prop_assert_eq!(shared(camera), shared(&cameras[0]));
-                prop_assert!(camera.pitch_rad.abs() <= MOST_PITCH_RAD);
+                prop_assert!(camera.pitch_rad.abs() <= MAX_PITCH_RAD);
                 let ground_m = land.field.height_m(camera.position_m.x, camera.position_m.z);
-                prop_assert!(camera.position_m.y >= ground_m + LEAST_HEIGHT_M - 1e-3, "{camera:?} {ground_m}");
+                prop_assert!(camera.position_m.y >= ground_m + MIN_HEIGHT_M - 1e-3, "{camera:?} {ground_m}");
             }
         }
     }
 
     #[test]
     fn one_long_frame_leads_where_many_short_ones_do(
-        dt_s in 0.01f32..LONGEST_STEP_S, pieces in 2u32..40, mut wish in controls(), mode in 0u8..2,
+        dt_s in 0.01f32..MAX_STEP_S, pieces in 2u32..40, mut wish in controls(), mode in 0u8..2,
         before in (-8f32..8., -8f32..8.)
     ) {
         let land = land_with([]);
@@ -156,7 +161,7 @@ proptest! {
             let camera = rig.camera(&land, 1.0);
             let seen = camera.position_m + camera.forward() * rig.pose().distance_m;
             // Low and near, the eye is lifted to keep off the ground.
-            let lifted = (LEAST_HEIGHT_M - rig.pose().distance_m * libm::sinf(-rig.pose().pitch_rad)).max(0.0);
+            let lifted = (MIN_HEIGHT_M - rig.pose().distance_m * libm::sinf(-rig.pose().pitch_rad)).max(0.0);
             prop_assert!((seen.y - lifted).abs() < 0.01 && within(&lands, rig.target_m) == rig.target_m);
             prop_assert!(Vec2::new(seen.x, seen.z).distance(rig.target_m) < 0.01, "{seen} {}", rig.target_m);
         }
@@ -232,7 +237,7 @@ fn the_mouse_looks_where_it_moves() {
     assert!(look(10.0, 0.0, false).ahead().x > 0.0, "to the right is east, facing north");
     assert!(look(0.0, -10.0, false).pitch_rad > 0.0, "up is up");
     assert!(look(0.0, -10.0, true).pitch_rad < 0.0, "unless inverted");
-    assert_eq!(look(0.0, 1e6, false).pitch_rad, -MOST_PITCH_RAD);
+    assert_eq!(look(0.0, 1e6, false).pitch_rad, -MAX_PITCH_RAD);
 }
 
 #[test]
@@ -245,19 +250,55 @@ fn a_lake_carries_and_does_not_drown() {
     assert_eq!(rig.camera(&lake, 1.0).position_m.y, EYE_HEIGHT_M, "shallow water is waded through");
 }
 
+/// Walks east; where that leads no farther, turns aside for a moment, as a person does: a little to the left, to the
+/// right, more to the left, and so on.
+fn crosses(rig: &mut Rig, lands: &[&Land], to_x_m: f32) -> bool {
+    const ASIDE: [f32; 6] = [0.3, -0.3, 0.5, -0.5, 0.8, -0.8];
+    const EAST_RAD: f32 = -0.5 * PI;
+    let wish = Controls { forward: 1.0, ..Controls::default() };
+    let walk = |rig: &mut Rig, yaw_rad: f32| {
+        let from = rig.pose();
+        rig.pose.yaw_rad = yaw_rad;
+        (0..30).for_each(|_| rig.step(1.0 / 60.0, &wish, &Feel::default(), lands));
+        rig.pose().place_m().distance(from.place_m())
+    };
+    let mut turns = 0;
+    for _ in 0..2000 {
+        if rig.pose().x_m > to_x_m {
+            return true;
+        }
+        if walk(rig, EAST_RAD) < 0.3 {
+            let aside_rad = ASIDE[turns % ASIDE.len()] * PI;
+            (0..2 + turns / ASIDE.len()).for_each(|_| _ = walk(rig, EAST_RAD + aside_rad));
+            turns += 1;
+        }
+    }
+    false
+}
+
 #[test]
-fn who_walks_straight_on_gets_through_four_forests() {
-    // A trunk each 7 m²: sliding alone ends in a pocket.
+fn a_walker_that_turns_aside_where_it_is_stuck_crosses_four_forests() {
+    // A trunk each 7 m²: straight on alone ends in a pocket.
     let lands: [Land; 4] = std::array::from_fn(|view| land_with(forest(900 + view as u64, 500, 60.0)));
     let lands = borrowed(&lands);
-    let wish = Controls { forward: 1.0, run: true, ..Controls::default() };
     for line in 0..40 {
-        let start = Pose { x_m: -58.0, z_m: 2.0 * line as f32 - 40.0, yaw_rad: -0.5 * PI, ..Pose::default() };
+        let start = Pose { x_m: -58.0, z_m: 2.0 * line as f32 - 40.0, ..Pose::default() };
         let mut rig = Rig::new(start, &lands);
-        let arrived = (0..6000).any(|_| {
-            rig.step(1.0 / 60.0, &wish, &Feel::default(), &lands);
-            rig.pose().x_m > 2.0
-        });
-        assert!(arrived, "line {line} ended at {}", rig.pose().place_m());
+        assert!(crosses(&mut rig, &lands, 2.0), "line {line} ended at {}", rig.pose().place_m());
     }
+}
+
+#[test]
+fn the_same_wishes_lead_to_the_same_place() {
+    let lands = borrowed(&FORESTS[7]);
+    let walked = || {
+        let mut rig = Rig::new(Pose::default(), &lands);
+        for frame in 0..600 {
+            let controls =
+                Controls { forward: 1.0, turn_px: Vec2::new(frame as f32 % 7.0, 0.0), ..Controls::default() };
+            rig.step(0.01 + 0.0001 * frame as f32, &controls, &Feel::default(), &lands);
+        }
+        rig
+    };
+    assert_eq!(walked(), walked());
 }

@@ -1,9 +1,8 @@
 //! Trunks of a landscape → an index that answers in microseconds which of them a walker would touch. A trunk is a
 //! vertical cylinder without ends (thesis 6.2), so all of it happens on the (x, z) plane, in metres.
 //!
-//! Trunks lie in a uniform grid by their centres, sorted by cell (a counting sort: two passes, no allocation per cell).
-//! A query widens its reach by the thickest trunk's radius instead of each trunk being listed in every cell it touches:
-//! so the index never holds more than one entry a trunk, whatever a file says.
+//! Trunks are sorted from west to east. A query looks at a strip as wide as its reach and the thickest trunk: of n trunks
+//! that stand evenly some √n.
 
 use glam::{DVec2, Vec2};
 
@@ -35,12 +34,9 @@ impl Trunk {
 /// All trunks of a landscape.
 #[derive(Clone, Debug, Default)]
 pub struct Trunks {
-    /// Sorted by cell.
-    trunks: Vec<Trunk>,
-    /// Cell c holds `trunks[starts[c]..starts[c + 1]]`; row by row from the north-west.
-    starts: Vec<u32>,
-    grid: Grid,
-    thickest_m: f32,
+    /// From west to east.
+    pub(super) trunks: Vec<Trunk>,
+    max_radius_m: f32,
 }
 
 impl Trunks {
@@ -52,114 +48,25 @@ impl Trunks {
         }))
     }
 
-    /// Index of any trunks. Those that are not finite or have no radius are left out: nobody can touch them.
+    /// Index of any trunks. Those that are not finite or have no radius are left out: nothing can touch them.
     pub fn new(trunks: impl IntoIterator<Item = Trunk>) -> Self {
         let touchable = |t: &Trunk| t.center_m.is_finite() && t.radius_m.is_finite() && t.radius_m > 0.0;
-        let given: Vec<Trunk> = trunks.into_iter().filter(touchable).collect();
-        let thickest_m = given.iter().fold(0.0f32, |most, trunk| most.max(trunk.radius_m));
-        let grid = Grid::around(&given, thickest_m);
-        let cells: Vec<u32> = given.iter().map(|trunk| grid.cell(trunk.center_m)).collect();
-        let mut starts = vec![0u32; grid.len() + 1];
-        for &cell in &cells {
-            starts[cell as usize + 1] += 1;
-        }
-        for cell in 1..starts.len() {
-            starts[cell] += starts[cell - 1];
-        }
-        let mut next = starts.clone();
-        let mut sorted = given.clone();
-        for (trunk, &cell) in given.iter().zip(&cells) {
-            let place = &mut next[cell as usize];
-            sorted[*place as usize] = *trunk;
-            *place += 1;
-        }
-        Self { trunks: sorted, starts, grid, thickest_m }
+        let mut trunks: Vec<Trunk> = trunks.into_iter().filter(touchable).collect();
+        trunks.sort_by(|a, b| a.center_m.x.total_cmp(&b.center_m.x));
+        let max_radius_m = trunks.iter().fold(0.0, |max: f32, trunk| max.max(trunk.radius_m));
+        Self { trunks, max_radius_m }
     }
 
-    /// Number of trunks.
-    pub fn len(&self) -> usize {
-        self.trunks.len()
-    }
-
-    /// True if nothing stands here.
-    pub fn is_empty(&self) -> bool {
-        self.trunks.is_empty()
-    }
-
-    /// All trunks, in no order that means anything.
-    pub fn iter(&self) -> impl Iterator<Item = &Trunk> {
-        self.trunks.iter()
-    }
-
-    /// At least those trunks that come nearer than `reach_m` to `place_m`, with a few more from cells nearby.
+    /// At least those trunks that come nearer than `reach_m` to `place_m`, with others as far east as these.
     pub fn near(&self, place_m: Vec2, reach_m: f32) -> impl Iterator<Item = &Trunk> {
-        let reach_m = reach_m + self.thickest_m;
-        let (columns, rows) = if self.trunks.is_empty() || !place_m.is_finite() {
-            (0..0, 0..0)
-        } else {
-            self.grid.window(place_m - reach_m, place_m + reach_m)
-        };
-        rows.flat_map(move |row| {
-            // The cells of a row lie one after the other, and so do their trunks.
-            let row = row * self.grid.columns;
-            let first = self.starts[(row + columns.start) as usize] as usize;
-            let last = self.starts[(row + columns.end) as usize] as usize;
-            &self.trunks[first..last]
-        })
+        let reach_m = reach_m + self.max_radius_m;
+        let first = self.trunks.partition_point(|trunk| trunk.center_m.x < place_m.x - reach_m);
+        self.trunks[first..].iter().take_while(move |trunk| trunk.center_m.x <= place_m.x + reach_m)
     }
 
     /// True if a disc of `reach_m` around `place_m` touches no trunk.
     pub fn clear(&self, place_m: Vec2, reach_m: f32) -> bool {
         self.near(place_m, reach_m).all(|trunk| trunk.clears(place_m, reach_m))
-    }
-}
-
-/// Cells of equal size over the box that holds all centres.
-#[derive(Clone, Copy, Debug, Default)]
-struct Grid {
-    low_m: Vec2,
-    cells_per_m: f32,
-    columns: u32,
-    rows: u32,
-}
-
-impl Grid {
-    /// About one trunk a cell where they stand evenly, but no cell thinner than the thickest trunk.
-    fn around(trunks: &[Trunk], thickest_m: f32) -> Self {
-        let Some(first) = trunks.first() else { return Self::default() };
-        let (low_m, high_m) = trunks.iter().fold((first.center_m, first.center_m), |(low, high), trunk| {
-            (low.min(trunk.center_m), high.max(trunk.center_m))
-        });
-        // Halved first, so that even the widest of finite boxes has a finite size.
-        let size_m = (high_m * 0.5 - low_m * 0.5) * 2.0;
-        let size_m = size_m.min(Vec2::splat(f32::MAX)).max(Vec2::ZERO);
-        let side = (trunks.len() as f32).sqrt().ceil().min(4096.0);
-        let cell_m = (size_m.max_element() / side).max(2.0 * thickest_m).max(0.5);
-        let lines = |size_m: f32| ((size_m / cell_m) as u32).min(side as u32) + 1;
-        Self { low_m, cells_per_m: 1.0 / cell_m, columns: lines(size_m.x), rows: lines(size_m.y) }
-    }
-
-    fn len(&self) -> usize {
-        self.columns as usize * self.rows as usize
-    }
-
-    /// Column and row of a place; of the nearest cell if it lies outside.
-    fn column_row(&self, place_m: Vec2) -> (u32, u32) {
-        let at = (place_m - self.low_m) * self.cells_per_m;
-        // `as` saturates: below zero is 0.
-        ((at.x as u32).min(self.columns - 1), (at.y as u32).min(self.rows - 1))
-    }
-
-    fn cell(&self, place_m: Vec2) -> u32 {
-        let (column, row) = self.column_row(place_m);
-        row * self.columns + column
-    }
-
-    /// Columns and rows that a box touches. A box outside gets the cells of the border: their trunks are then refused
-    /// one by one.
-    fn window(&self, low_m: Vec2, high_m: Vec2) -> (std::ops::Range<u32>, std::ops::Range<u32>) {
-        let ((left, top), (right, bottom)) = (self.column_row(low_m), self.column_row(high_m));
-        (left..right + 1, top..bottom + 1)
     }
 }
 
@@ -184,7 +91,7 @@ mod tests {
             let all = trunks.iter().all(|trunk| trunk.clears(place, reach_m));
             let index = Trunks::new(trunks.iter().copied());
             prop_assert_eq!(index.clear(place, reach_m), all);
-            prop_assert_eq!(index.len(), trunks.len());
+            prop_assert_eq!(index.trunks.len(), trunks.len());
         }
     }
 
@@ -201,18 +108,17 @@ mod tests {
             trunk(1.0, 2.0, 0.5),
         ];
         let index = Trunks::new(bad);
-        assert_eq!(index.len(), 3);
+        assert_eq!(index.trunks.len(), 3);
         assert!(!index.clear(Vec2::new(1.0, 2.6), 0.2));
         assert!(index.clear(Vec2::new(f32::NAN, 0.0), 0.2), "nowhere touches nothing");
         assert!(Trunks::default().clear(Vec2::ZERO, 1.0));
     }
 
     #[test]
-    fn one_entry_a_trunk_and_few_looked_at() {
+    fn few_are_looked_at() {
         let at = |i: u32| Vec2::new((i % 316) as f32 * 3.0, (i / 316) as f32 * 3.0);
         let index = Trunks::new((0..100_000).map(|i| Trunk { center_m: at(i), radius_m: 0.3 }));
-        let looked_at = index.near(Vec2::new(400.0, 400.0), 0.3).count();
-        assert!((1..=9).contains(&looked_at), "{looked_at}");
-        assert!(index.grid.len() < 4 * index.len());
+        let looked_at = index.near(Vec2::new(399.0, 400.0), 0.3).count();
+        assert!((1..=317).contains(&looked_at), "{looked_at}");
     }
 }

@@ -171,11 +171,9 @@ impl Picture {
     /// Writes it for people to look at.
     pub fn save(&self, name: &str) {
         let path = pictures().join(name);
-        let file = std::fs::File::create(&path).expect("the target folder is ours");
-        let mut encoder = png::Encoder::new(file, self.size[0] as u32, self.size[1] as u32);
-        encoder.set_color(png::ColorType::Rgb);
-        let bytes: Vec<u8> = self.pixels.iter().flatten().copied().collect();
-        encoder.write_header().and_then(|mut png| png.write_image_data(&bytes)).expect("written");
+        let [width, height] = self.size.map(|side| side as u32);
+        image::save_buffer(path, self.pixels.as_flattened(), width, height, image::ExtendedColorType::Rgb8)
+            .expect("written");
     }
 
     /// Brightness, 0 to 255, in a rectangle: mean and standard deviation.

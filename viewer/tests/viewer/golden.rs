@@ -10,11 +10,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use genescape_viewer::camera::Camera;
-use genescape_viewer::frame::{FrameInput, Options, TerrainScheme, TreeScheme};
-use genescape_viewer::picture_file::{self, Pixels};
-use genescape_viewer::scene::{Apron, Detail, Scene, Trees};
-use genescape_viewer::screenshot::Studio;
+use genescape_viewer::headless::Headless;
+use genescape_viewer::lod_mode::{TerrainLodMode, TreeLodMode};
+use genescape_viewer::options::{FrameInput, Options};
+use genescape_viewer::picture_file;
+use genescape_viewer::scene::{Apron, GroundDetail, Heightfield, Picture, Scene, Trees};
 use glam::Vec3;
+use image::RgbaImage;
 
 use crate::made_up;
 
@@ -29,7 +31,7 @@ fn landscape() -> Scene {
         kinds.iter().map(|errors_m| Arc::new(made_up::template(&format!("{errors_m:?}"), errors_m)));
     let tree = |n: u32| {
         let [x, z] = [n, n + 500].map(|n| 120.0 * made_up::hash(n, 3, 4) - 60.0);
-        let y = field.height_m(x, z);
+        let y = field.field.height_m(x, z);
         (y > -1.0).then(|| made_up::instance(n % 2, [x, y, z], 0.7 + 0.6 * made_up::hash(n, 1, 2), n as f32))
     };
     let instances = (0..140).filter_map(tree).collect();
@@ -49,16 +51,16 @@ fn landscape() -> Scene {
     });
     ground.surface.details = (0..5).map(tile).collect();
     ground.apron = Arc::new(frame_of_land(&ground.field));
-    scene.sky.haze_extinction_per_m = 0.002;
+    scene.sky.light.haze_extinction_per_m = 0.002;
     scene
 }
 
 /// A tiling texture of soft blots.
-fn tile(layer: u32) -> Detail {
+fn tile(layer: u32) -> GroundDetail<Picture> {
     let blot = move |i: u32, j: u32| {
         0.5 * made_up::hash(i % 16, j % 16, layer) + 0.5 * made_up::hash(i / 2, j / 2, layer)
     };
-    Detail {
+    GroundDetail {
         name: format!("blots {layer}"),
         detail: made_up::picture(&format!("blots {layer}"), 16, |i, j| [(90.0 + 76.0 * blot(i, j)) as u8; 4]),
         normal: made_up::picture(&format!("bumps {layer}"), 16, |i, j| {
@@ -69,7 +71,7 @@ fn tile(layer: u32) -> Detail {
 }
 
 /// Level land from the field's border outwards.
-fn frame_of_land(field: &genescape_viewer::scene::Heightfield) -> Apron {
+fn frame_of_land(field: &Heightfield) -> Apron {
     let half = 0.5 * field.extent_m();
     let ring = |half: f32, y: f32| [[-half, y, -half], [half, y, -half], [half, y, half], [-half, y, half]];
     Apron {
@@ -84,7 +86,7 @@ fn frame_of_land(field: &genescape_viewer::scene::Heightfield) -> Apron {
 
 /// What is drawn: name, where from (x, z, above the ground, yaw, pitch), options.
 fn pictures() -> Vec<(&'static str, [f32; 5], Options)> {
-    let trees = Options { tree_scheme: TreeScheme::Quality, tree_error_px: 1.0, ..Options::default() };
+    let trees = Options { tree_lod: TreeLodMode::Quality, tree_error_px: 1.0, ..Options::default() };
     let plain = Options { drift_clouds: false, ..trees };
     vec![
         ("walk", [20.0, 30.0, 1.7, 0.4, -0.1], plain),
@@ -92,12 +94,12 @@ fn pictures() -> Vec<(&'static str, [f32; 5], Options)> {
         (
             "simple",
             [-20.0, 10.0, 4.0, 2.4, -0.2],
-            Options { tree_scheme: TreeScheme::Simple, tree_error_px: 4.0, ..plain },
+            Options { tree_lod: TreeLodMode::Simple, tree_error_px: 4.0, ..plain },
         ),
         (
             "roam",
             [0.0, 55.0, 30.0, 0.0, -0.5],
-            Options { terrain_scheme: TerrainScheme::Roam, grass: false, ..plain },
+            Options { terrain_lod: TerrainLodMode::Roam, grass: false, ..plain },
         ),
         (
             "levels",
@@ -108,11 +110,11 @@ fn pictures() -> Vec<(&'static str, [f32; 5], Options)> {
 }
 
 fn shoot(
-    studio: &Studio,
+    studio: &Headless,
     scene: &Scene,
     [x, z, above, yaw_rad, pitch_rad]: [f32; 5],
     options: Options,
-) -> Pixels {
+) -> RgbaImage {
     let buffers = made_up::upload(studio, scene);
     let position_m = Vec3::new(x, scene.ground.field.height_m(x, z) + above, z);
     let camera = Camera { position_m, yaw_rad, pitch_rad, fov_y_rad: 1.0 };
@@ -124,19 +126,15 @@ fn golden(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name).with_extension("png")
 }
 
-fn read(name: &str) -> Pixels {
-    let file = std::fs::File::open(golden(name)).expect("a picture; `cargo xtask bless pictures` writes it");
-    let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().expect("a PNG file");
-    let mut rgba = vec![0; reader.output_buffer_size().expect("of some size")];
-    let info = reader.next_frame(&mut rgba).expect("a picture");
-    Pixels { width_px: info.width, height_px: info.height, rgba }
+fn read(name: &str) -> RgbaImage {
+    image::open(golden(name)).expect("a picture; `cargo xtask bless pictures` writes it").into_rgba8()
 }
 
-fn difference(a: &Pixels, b: &Pixels) -> f32 {
-    assert_eq!((a.width_px, a.height_px), (b.width_px, b.height_px));
-    let image = |pixels: &Pixels| {
-        let rgb: Vec<u8> = pixels.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
-        nv_flip::FlipImageRgb8::with_data(pixels.width_px, pixels.height_px, &rgb)
+fn difference(a: &RgbaImage, b: &RgbaImage) -> f32 {
+    assert_eq!(a.dimensions(), b.dimensions());
+    let image = |image: &RgbaImage| {
+        let rgb: Vec<u8> = image.pixels().flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+        nv_flip::FlipImageRgb8::with_data(image.width(), image.height(), &rgb)
     };
     let map = nv_flip::flip(image(a), image(b), nv_flip::DEFAULT_PIXELS_PER_DEGREE);
     nv_flip::FlipPool::from_image(&map).mean()
@@ -173,7 +171,7 @@ fn what_should_be_noticed_is_and_nothing_else() {
     let before = shoot(&studio, &scene, *walk, *plain);
     assert_eq!(shoot(&studio, &scene, *walk, *plain), before, "run-to-run noise is 0");
     let mut later = scene.clone();
-    later.sky.sun_direction = turned(scene.sky.sun_direction, 5f32.to_radians());
+    later.sky.light.sun_direction = turned(scene.sky.light.sun_direction, 5f32.to_radians());
     let from_above = shoot(&studio, &scene, *above, *coarse);
     // Levels of the land hardly show, which is their purpose; in the picture that tints them they do.
     let (_, levels, tinted) = pictures()[4];
@@ -192,7 +190,8 @@ fn what_should_be_noticed_is_and_nothing_else() {
 }
 
 /// About the vertical.
-fn turned([x, y, z]: [f32; 3], by_rad: f32) -> [f32; 3] {
+fn turned(direction: Vec3, by_rad: f32) -> Vec3 {
+    let [x, y, z] = direction.to_array();
     let (sin, cos) = libm::sincosf(by_rad);
-    [cos * x + sin * z, y, cos * z - sin * x]
+    Vec3::new(cos * x + sin * z, y, cos * z - sin * x)
 }

@@ -1,18 +1,22 @@
-//! The device chooses trees and levels as the reference in Rust does: the same trees, each once, at the same λ.
+//! The device chooses trees and levels as a reference in Rust does: the same trees, each once, at the same λ. What holds for
+//! the reference, for any distance and errors, then holds for the device.
 
 use genescape_viewer::camera::{Camera, Frustum};
-use genescape_viewer::frame::{Options, TreeScheme};
 use genescape_viewer::gpu::Gpu;
-use genescape_viewer::lod::tree::{Control, distance_m, lod_number, simple_error_m};
-use genescape_viewer::passes::{CullUniform, TreeLists};
+use genescape_viewer::headless::Headless;
+use genescape_viewer::lod::tree::{MAX_LEVELS, MIN_DISTANCE_M, simple_error_m};
+use genescape_viewer::lod_mode::TreeLodMode;
+use genescape_viewer::options::Options;
+use genescape_viewer::passes::{BoundTrees, CullUniform};
 use genescape_viewer::picture_file;
 use genescape_viewer::scene::Trees;
-use genescape_viewer::screenshot::Studio;
 use genescape_viewer::upload::{DrawCommand, SceneBuffers};
 use glam::Vec3;
+use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg32;
 use std::sync::Arc;
+use strum::VariantArray;
 
 use crate::made_up;
 
@@ -85,14 +89,14 @@ fn fetch(gpu: &Gpu, from: &wgpu::Buffer) -> Vec<u8> {
 
 /// λ of each tree as the device chose it, `None` where it is not seen. Checks lists, counts and commands on the way.
 fn chosen(
-    studio: &Studio,
+    studio: &Headless,
     buffers: &SceneBuffers,
     uniform: &CullUniform,
     forest: &Forest,
 ) -> Vec<Option<f32>> {
     let gpu = &studio.gpu;
     let set = buffers.trees.as_ref().expect("trees");
-    let lists = TreeLists::new(gpu, &studio.passes.layouts, set);
+    let lists = BoundTrees::new(gpu, &studio.passes.layouts, set);
     lists.set(&gpu.queue, uniform);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     studio.passes.cull.dispatch(&mut encoder.begin_compute_pass(&Default::default()), &lists);
@@ -128,22 +132,22 @@ fn margin_m(frustum: &Frustum, center_m: Vec3, radius_m: f32) -> f32 {
         .fold(f32::MAX, f32::min)
 }
 
-fn compare(studio: &Studio, seed: u64) -> [usize; 2] {
+fn compare(studio: &Headless, seed: u64) -> [usize; 2] {
     let mut rng = Pcg32::seed_from_u64(seed);
     let forest = forest(&mut rng);
     let scene = made_up::scene(made_up::field(17, 2.0, 1.0, 0.1), [90; 4], [1.0; 3], forest.trees.clone());
     let buffers = genescape_viewer::upload::Uploader::new(&studio.gpu).upload(&scene).expect("uploaded");
     let set = buffers.trees.as_ref().expect("trees");
     let mut seen = [0; 2];
-    for scheme in [TreeScheme::Quality, TreeScheme::Simple, TreeScheme::Discrete, TreeScheme::Off] {
+    for &mode in TreeLodMode::VARIANTS {
         let camera = eye(&mut rng, &forest.trees);
         let frustum = camera.frustum(1.6);
         let control = Control {
-            scheme,
+            mode,
             focal_px: rng.random_range(100.0..900.0f32),
             error_px: rng.random_range(0.3..8.0f32),
         };
-        let options = Options { tree_scheme: scheme, tree_error_px: control.error_px, ..Options::default() };
+        let options = Options { tree_lod: mode, tree_error_px: control.error_px, ..Options::default() };
         let uniform = CullUniform::for_view(set, &frustum, camera.position_m, control.focal_px, &options);
         let device = chosen(studio, &buffers, &uniform, &forest);
         for (tree, lambda) in device.into_iter().enumerate() {
@@ -170,7 +174,7 @@ fn compare(studio: &Studio, seed: u64) -> [usize; 2] {
             // Rounding may tip a tree over the edge of a level.
             let [lower, upper] = [0.999, 1.001].map(|factor| number(&control, factor * away_m));
             let close = (lambda - expected).abs() < ROUNDING || lambda == lower || lambda == upper;
-            assert!(close, "seed {seed}, {scheme:?}, tree {tree}: λ {lambda} instead of {expected}");
+            assert!(close, "seed {seed}, {mode:?}, tree {tree}: λ {lambda} instead of {expected}");
         }
     }
     seen
@@ -186,4 +190,157 @@ fn the_device_chooses_as_the_reference_does() {
         seen = [seen[0] + more[0], seen[1] + more[1]];
     }
     assert!(seen.iter().all(|&count| count > 500), "some are seen and some are not: {seen:?}");
+}
+
+/// What one frame asks of all trees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Control {
+    /// How levels are chosen.
+    mode: TreeLodMode,
+    /// Pixels a radian in the middle of the picture, ½·height/tan(½·fov).
+    focal_px: f32,
+    /// Error allowed on the screen.
+    error_px: f32,
+}
+
+/// Distance in metres from the eye to the sphere around a tree; [`MIN_DISTANCE_M`] inside it. `center_distance_m`:
+/// to the sphere's centre.
+fn distance_m(center_distance_m: f32, radius_m: f32) -> f32 {
+    (center_distance_m - radius_m).max(MIN_DISTANCE_M)
+}
+
+/// λ of an instance at [`distance_m`]. `errors_m`: of D_0 … D_k, positive and increasing; `simple_error_m`: of
+/// [`simple_error_m`]; `scale`: the largest singular value of the instance's linear part. 0 for what makes no sense.
+fn lod_number(control: &Control, errors_m: &[f32], simple_error_m: f32, distance_m: f32, scale: f32) -> f32 {
+    let allowed_m = control.error_px / control.focal_px * distance_m / scale;
+    match control.mode {
+        TreeLodMode::Quality => by_quality(errors_m, allowed_m),
+        TreeLodMode::Simple => by_count(errors_m.len(), simple_error_m, allowed_m),
+        TreeLodMode::Discrete => by_quality(errors_m, allowed_m).floor(),
+        TreeLodMode::Off => 0.0,
+    }
+}
+
+/// r⁻¹(log `allowed_m`), r(λ) = log q(λ).
+fn by_quality(errors_m: &[f32], allowed_m: f32) -> f32 {
+    let mut lambda = 0.0;
+    for i in 1..errors_m.len() {
+        let (fine_m, coarse_m) = (errors_m[i - 1], errors_m[i]);
+        if allowed_m >= coarse_m {
+            lambda = i as f32;
+        } else {
+            if allowed_m > fine_m {
+                let part = libm::log2f(allowed_m / fine_m) / libm::log2f(coarse_m / fine_m);
+                lambda += part.clamp(0.0, 1.0);
+            }
+            break;
+        }
+    }
+    lambda
+}
+
+/// 2·log₂ d + β.
+fn by_count(levels: usize, simple_error_m: f32, allowed_m: f32) -> f32 {
+    let k = levels.max(1) as f32 - 1.0;
+    // Also false for what is not a number.
+    if allowed_m > simple_error_m { (2.0 * libm::log2f(allowed_m / simple_error_m)).min(k) } else { 0.0 }
+}
+
+prop_compose! {
+    fn errors()(first in 1e-4f32..0.1, ratios in prop::collection::vec(1.05f32..8.0, 0..MAX_LEVELS)) -> Vec<f32> {
+        let mut errors = vec![first];
+        for ratio in ratios {
+            errors.push(errors[errors.len() - 1] * ratio);
+        }
+        errors
+    }
+}
+
+fn control(mode: TreeLodMode, error_px: f32) -> Control {
+    Control { mode, focal_px: 800.0, error_px }
+}
+
+fn mode() -> impl Strategy<Value = TreeLodMode> {
+    prop::sample::select(vec![
+        TreeLodMode::Quality,
+        TreeLodMode::Simple,
+        TreeLodMode::Discrete,
+        TreeLodMode::Off,
+    ])
+}
+
+proptest! {
+    #[test]
+    fn number_is_bounded_and_grows_with_distance(
+        errors in errors(), mode in mode(), near in 0.0f32..2000., more in 0.0f32..500., scale in 0.2f32..4.
+    ) {
+        let control = control(mode, 1.0);
+        let q = simple_error_m(&errors);
+        let at = |distance| lod_number(&control, &errors, q, distance, scale);
+        let k = errors.len() as f32 - 1.0;
+        prop_assert!((0.0..=k).contains(&at(near)));
+        prop_assert!(at(near + more) >= at(near) - 1e-4);
+    }
+
+    #[test]
+    fn number_is_continuous_unless_discrete(
+        errors in errors(), simple in any::<bool>(), distance in 0.1f32..2000., scale in 0.2f32..4.
+    ) {
+        let mode = if simple { TreeLodMode::Simple } else { TreeLodMode::Quality };
+        let control = control(mode, 1.0);
+        let q = simple_error_m(&errors);
+        let at = |distance| lod_number(&control, &errors, q, distance, scale);
+        // Steepest where neighbours differ least: log₂(1.0001) / log₂ 1.05.
+        prop_assert!((at(distance * 1.0001) - at(distance)).abs() < 3e-3);
+    }
+
+    #[test]
+    fn error_on_the_screen_is_kept_wherever_detail_is_left_out(
+        errors in errors(), discrete in any::<bool>(), distance in 0.1f32..2000., scale in 0.2f32..4.,
+        error_px in 0.1f32..8.
+    ) {
+        let mode = if discrete { TreeLodMode::Discrete } else { TreeLodMode::Quality };
+        let control = control(mode, error_px);
+        let lambda = lod_number(&control, &errors, 0.1, distance, scale);
+        let (i, alpha) = (lambda as usize, lambda.fract());
+        let next = errors.get(i + 1).copied().unwrap_or(1.0);
+        let fine = errors[i];
+        let shown = fine * libm::powf(next / fine, alpha) * scale * control.focal_px / distance;
+        prop_assert!(lambda == 0.0 || shown <= error_px * 1.001, "{lambda}: {shown} px");
+    }
+
+    #[test]
+    fn no_number_is_poison(
+        errors in errors(), mode in mode(), pick in 0usize..6, other in 0usize..6, third in 0usize..6
+    ) {
+        let odd = [f32::NAN, f32::INFINITY, 0.0, -1.0, f32::NEG_INFINITY, 1.0];
+        let control = Control { mode, focal_px: odd[third], error_px: 1.0 };
+        let lambda = lod_number(&control, &errors, simple_error_m(&errors), odd[pick], odd[other]);
+        prop_assert!(lambda >= 0.0 && lambda <= errors.len() as f32 - 1.0, "{lambda}");
+    }
+}
+
+#[test]
+fn inside_the_crown_every_leaf_is_drawn() {
+    for mode in [TreeLodMode::Quality, TreeLodMode::Simple, TreeLodMode::Discrete] {
+        let distance = distance_m(3.0, 5.0);
+        assert_eq!(lod_number(&control(mode, 1.0), &[0.001, 0.01, 0.1], 0.005, distance, 1.0), 0.0);
+    }
+}
+
+#[test]
+fn simple_mode_asks_as_much_as_quality_if_errors_follow_counts() {
+    let errors: Vec<f32> = (0..8).map(|i| 0.01 * libm::exp2f(0.5 * i as f32)).collect();
+    let q = simple_error_m(&errors);
+    for distance in [5.0, 20.0, 37.0, 60.0, 300.0] {
+        let [a, b] = [TreeLodMode::Simple, TreeLodMode::Quality]
+            .map(|mode| lod_number(&control(mode, 1.0), &errors, q, distance, 1.3));
+        assert!((a - b).abs() < 1e-3, "{a} {b}");
+    }
+}
+
+#[test]
+fn a_tree_without_levels_is_drawn_as_it_is() {
+    assert_eq!(lod_number(&control(TreeLodMode::Simple, 1.0), &[], simple_error_m(&[]), 1e9, 1.0), 0.0);
+    assert_eq!(lod_number(&control(TreeLodMode::Quality, 1.0), &[0.1], 0.1, 1e9, 1.0), 0.0);
 }

@@ -2,24 +2,25 @@
 
 use std::sync::Arc;
 
-use genescape_bake::model;
 use genescape_bake::stages::terrain_lod;
+use genescape_schema::scene::{Heightfield, SkyImages, SkyLight};
+use genescape_viewer::headless::Headless;
 use genescape_viewer::scene::{
-    Apron, Detail, Ground, HdrPicture, Heightfield, Instance, Level, Material, Picture, Range, Scene, Sky,
-    Surface, Template, TreeVertex, Trees,
+    Apron, Ground, GroundDetail, GroundSurface, HdrPicture, Instance, Level, Material, Picture, Range, Scene,
+    Sky, StartView, Template, TerrainLod, TreeVertex, Trees,
 };
-use genescape_viewer::screenshot::Studio;
 use genescape_viewer::shaders::Shaders;
 use genescape_viewer::upload::{SceneBuffers, Uploader};
+use glam::Vec3;
 
 /// A device to draw with.
-pub fn studio() -> Studio {
-    Studio::open(&Shaders::builtin(), 1)
+pub fn studio() -> Headless {
+    Headless::open(&Shaders::builtin(), 1)
         .expect("a Vulkan driver; on Debian and Ubuntu, mesa-vulkan-drivers has one in software")
 }
 
 /// Brings a landscape to the device, with shadows.
-pub fn upload(studio: &Studio, scene: &Scene) -> Arc<SceneBuffers> {
+pub fn upload(studio: &Headless, scene: &Scene) -> Arc<SceneBuffers> {
     let buffers = Uploader::new(&studio.gpu).upload(scene).expect("a landscape that can be drawn");
     studio.passes.shadow.bake(&studio.gpu, &studio.passes.layouts, &studio.passes.cull, &buffers);
     Arc::new(buffers)
@@ -33,23 +34,13 @@ pub fn hash(i: u32, j: u32, seed: u32) -> f32 {
 }
 
 /// The land whose sample (i, j) is `height_m(i, j)` high.
-pub fn land(side: u32, spacing_m: f32, height_m: impl Fn(u32, u32) -> f32) -> Heightfield {
+pub fn land(side: u32, spacing_m: f32, height_m: impl Fn(u32, u32) -> f32) -> TerrainLod {
     let heights_m = (0..side * side).map(|n| height_m(n % side, n / side)).collect();
-    let field = model::Heightfield { side, spacing_m, heights_m };
-    let lod = terrain_lod::lod(&field);
-    Heightfield {
-        side,
-        spacing_m,
-        heights_m: field.heights_m,
-        wedgies_m: lod.wedgies_m,
-        displacements_m: lod.displacements_m,
-        levels: lod.levels,
-        block_ranges_m: lod.block_ranges_m,
-    }
+    terrain_lod::lod(&Heightfield { side, spacing_m, heights_m })
 }
 
 /// Land with waves `relief_m` high and noise of `rough_m`.
-pub fn field(side: u32, spacing_m: f32, relief_m: f32, rough_m: f32) -> Heightfield {
+pub fn field(side: u32, spacing_m: f32, relief_m: f32, rough_m: f32) -> TerrainLod {
     let height = |i: u32, j: u32| {
         let (x, z) = (i as f32 / side as f32, j as f32 / side as f32);
         let waves = libm::sinf(8.0 * x) * libm::cosf(6.0 * z) + 0.4 * libm::sinf(19.0 * (x + z));
@@ -65,19 +56,20 @@ pub fn picture(name: &str, side: u32, pixel: impl Fn(u32, u32) -> [u8; 4]) -> Pi
 }
 
 /// Faces of one colour each, linear.
-pub fn faces(name: &str, color: impl Fn(usize) -> [f32; 3]) -> [HdrPicture; 6] {
-    std::array::from_fn(|face| {
+pub fn faces(name: &str, color: impl Fn(usize) -> [f32; 3]) -> Vec<HdrPicture> {
+    let face = |face| {
         let [r, g, b] = color(face);
         let halves = [r, g, b, 1.0].map(|value| half::f16::from_f32(value).to_le_bytes());
         let pixels: Arc<[u8]> = halves.as_flattened().into();
         HdrPicture { name: format!("{name} {face}"), width_px: 1, height_px: 1, pixels }
-    })
+    };
+    (0..6).map(face).collect()
 }
 
-/// A landscape: `field` in one colour, evenly lit, under an even sky.
-pub fn scene(field: Heightfield, color: [u8; 4], sky: [f32; 3], trees: Trees) -> Scene {
+/// A landscape: land in one colour, evenly lit, under an even sky.
+pub fn scene(lod: TerrainLod, color: [u8; 4], sky: [f32; 3], trees: Trees) -> Scene {
     let plain = |name: &str, pixel: [u8; 4]| picture(name, 1, |_, _| pixel);
-    let detail = |layer: u32| Detail {
+    let detail = |layer: u32| GroundDetail {
         name: format!("tile {layer}"),
         detail: plain(&format!("tile {layer}"), [128; 4]),
         normal: plain(&format!("normals {layer}"), [128, 128, 255, 255]),
@@ -85,12 +77,12 @@ pub fn scene(field: Heightfield, color: [u8; 4], sky: [f32; 3], trees: Trees) ->
     };
     Scene {
         name: "made up".to_owned(),
-        genome: Vec::new(),
         ground: Ground {
-            name: format!("field {} {:?}", field.side, field.range_m()),
-            field: Arc::new(field),
+            name: format!("field {} {:?}", lod.field.side, lod.range_m()),
+            field: lod.field.clone(),
+            lod: Arc::new(lod),
             water_level_m: None,
-            surface: Surface {
+            surface: GroundSurface {
                 color: plain(&format!("color {color:?}"), color),
                 weights: plain("weights", [0; 4]),
                 light: plain("light", [255; 4]),
@@ -100,17 +92,24 @@ pub fn scene(field: Heightfield, color: [u8; 4], sky: [f32; 3], trees: Trees) ->
         },
         trees,
         sky: Sky {
-            faces: faces(&format!("sky {sky:?}"), |_| sky),
-            clear_faces: faces(&format!("clear {sky:?}"), |_| sky),
-            layers: Vec::new(),
-            sun_direction: [0.48, 0.64, 0.6],
-            sun_angular_radius_rad: 0.0046,
-            sun_irradiance_linear: [3.0; 3],
-            sky_irradiance_linear: [0.6; 3],
-            haze_linear: sky,
-            haze_extinction_per_m: 0.0,
-            exposure: 1.0,
+            images: SkyImages {
+                equirect: faces("equirect", |_| sky).remove(0),
+                faces: faces(&format!("sky {sky:?}"), |_| sky),
+                clear_faces: faces(&format!("clear {sky:?}"), |_| sky),
+                layers: Vec::new(),
+            },
+            light: SkyLight {
+                sun_direction: Vec3::new(0.48, 0.64, 0.6),
+                sun_angular_radius_rad: 0.0046,
+                sun_irradiance_linear: [3.0; 3],
+                sky_irradiance_linear: [0.6; 3],
+                zonal_radiance_linear: Vec::new(),
+                haze_linear: sky,
+                haze_extinction_per_m: 0.0,
+                exposure: 1.0,
+            },
         },
+        start: StartView { position_m: Vec3::ZERO, direction: Vec3::NEG_Z },
     }
 }
 

@@ -4,13 +4,10 @@
 use std::mem::{offset_of, size_of};
 
 use genescape_viewer::lod::quadtree::Block;
-use genescape_viewer::lod::tree::LEAST_DISTANCE_M;
-use genescape_viewer::passes::{CullUniform, ViewUniform, grass, terrain, trees};
+use genescape_viewer::passes::{CullUniform, SHADERS, ViewUniform, grass, terrain, trees};
 use genescape_viewer::scene::TreeVertex;
 use genescape_viewer::shaders::Shaders;
-use genescape_viewer::upload::{
-    DrawCommand, MAX_LEVELS, MaterialUniform, RingVertex, TemplateData, TreeData,
-};
+use genescape_viewer::upload::{DrawCommand, MaterialUniform, RingVertex, TemplateData, TreeData};
 use naga::{ScalarKind, TypeInner};
 
 fn module(name: &str) -> naga::Module {
@@ -56,7 +53,7 @@ fn every_shader_is_valid_and_one_that_is_not_is_told_with_its_line() {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("sky.wgsl"), "\n\nfn broken() -> f32 { return 1u; }\n")
         .expect("written");
-    let error = Shaders::from_folder(folder.path().to_owned()).check("sky").expect_err("it is wrong");
+    let error = Shaders::from(Some(folder.path().to_owned())).check("sky").expect_err("it is wrong");
     assert!(error.to_string().contains("sky.wgsl") && error.to_string().contains("1u"), "{error}");
 }
 
@@ -79,16 +76,19 @@ fn uniforms_are_laid_out_alike() {
             haze_extinction,
             haze,
             water_level,
-            viewport_px,
             focal_px,
-            flags,
+            tint_levels,
+            drift_clouds,
+            morph_terrain,
             clouds,
             lod_eye,
-            unused,
+            lod_unit,
             field,
-            terrain_lod,
             tiles,
             last_tile,
+            lod_top,
+            lod_above,
+            unused,
         }
     );
     same!(
@@ -102,7 +102,7 @@ fn uniforms_are_laid_out_alike() {
             templates,
             levels,
             materials,
-            scheme,
+            lod_mode,
             fixed_error_m,
             planes_used,
             first,
@@ -208,26 +208,15 @@ fn shaders_read_the_attributes_as_they_are_written() {
     assert_eq!(inputs("grass", "vertex"), written(&[&grass::CLUMP]));
 }
 
-/// A constant that is a plain number.
-fn constant(shader: &str, name: &str) -> f64 {
-    let module = module(shader);
-    let found = module.constants.iter().find(|(_, c)| c.name.as_deref() == Some(name));
-    let (_, constant) = found.unwrap_or_else(|| panic!("there is no constant {name}"));
-    match module.global_expressions[constant.init] {
-        naga::Expression::Literal(naga::Literal::F32(value)) => f64::from(value),
-        naga::Expression::Literal(naga::Literal::U32(value)) => f64::from(value),
-        ref other => panic!("{name} is {other:?}"),
-    }
-}
-
 #[test]
-fn constants_are_the_same_numbers() {
-    assert_eq!(constant("cull", "MAX_LEVELS"), MAX_LEVELS as f64);
-    assert_eq!(constant("cull", "LEAST_DISTANCE_M"), f64::from(LEAST_DISTANCE_M));
-    assert_eq!(constant("grass", "BLADES"), f64::from(grass::BLADES));
-    assert_eq!(constant("grass", "CLUMPS"), f64::from(grass::CLUMPS));
-    for (name, value) in [("CELL_M", grass::CELL_M), ("DENSE_M", grass::DENSE_M), ("REACH_M", grass::REACH_M)]
-    {
-        assert_eq!(constant("grass", name), f64::from(value), "{name}");
+fn rust_tells_each_shader_all_its_overrides_and_no_others() {
+    for shader in SHADERS {
+        let module = module(shader.name);
+        let mut declared: Vec<&str> =
+            module.overrides.iter().filter_map(|(_, o)| o.name.as_deref()).collect();
+        let mut told: Vec<&str> = shader.constants.iter().map(|(name, _)| *name).collect();
+        declared.sort_unstable();
+        told.sort_unstable();
+        assert_eq!(declared, told, "{}.wgsl", shader.name);
     }
 }

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use clap::Parser;
 use genescape_schema::{Parent, Space, Votes};
 use genescape_viewer::settings::SettingsFile;
-use genescape_viewer::world_files::WorldFiles;
+use genescape_world::World;
 use serde_json::json;
 
 use crate::display::{Display, Picture, keys};
@@ -26,7 +26,7 @@ const IN_PICTURE: [i16; 2] = [160, 140];
 /// A folder of our own with a world in it, and a display.
 struct Stage {
     folder: tempfile::TempDir,
-    files: WorldFiles,
+    files: World,
     display: Display,
 }
 
@@ -34,7 +34,7 @@ impl Stage {
     fn set() -> Self {
         let display = Display::start(SIZE);
         let folder = tempfile::tempdir().expect("a temporary folder");
-        let files = WorldFiles::new(folder.path().join("world"));
+        let files = World::new(folder.path().join("world"));
         Self { folder, files, display }
     }
 
@@ -244,18 +244,12 @@ fn a_picture_is_saved(stage: &Stage, viewer: &mut Viewer) {
     stage.display.tap(keys::F12);
     let path = stage.path("pictures/genescape-0001.png");
     // It is there at once, but written when its last bytes can be read.
-    let read = || {
-        let mut reader =
-            png::Decoder::new(std::io::BufReader::new(fs::File::open(&path).ok()?)).read_info().ok()?;
-        let mut pixels = vec![0; reader.output_buffer_size()?];
-        let info = reader.next_frame(&mut pixels).ok()?;
-        pixels.truncate(info.buffer_size());
-        Some((info.width, info.height, pixels))
-    };
+    let read = || image::open(&path).ok().map(image::DynamicImage::into_rgba8);
     viewer.until("a picture is saved", |_| read().is_some());
-    let (width, height, pixels) = read().expect("it was just there");
-    assert!(width > 600 && height > 350, "{width} × {height}");
-    let distinct: std::collections::BTreeSet<_> = pixels.chunks_exact(4).collect();
+    let image = read().expect("it was just there");
+    let (width_px, height_px) = image.dimensions();
+    assert!(width_px > 600 && height_px > 350, "{width_px} × {height_px}");
+    let distinct: std::collections::BTreeSet<_> = image.as_raw().chunks_exact(4).collect();
     assert!(distinct.len() > 1000, "{} colours", distinct.len());
 }
 
@@ -275,14 +269,14 @@ fn the_window_changes_its_size(stage: &Stage, viewer: &mut Viewer) {
 /// What was chosen is there again after a second start, and the window and the walker are as they were.
 fn it_ends_and_remembers(stage: &Stage, mut viewer: Viewer) {
     stage.display.tap(keys::F5);
-    viewer.until("another scheme", |viewer| viewer.get("wish", "wish") == "CycleTreeScheme");
+    viewer.until("another LOD mode", |viewer| viewer.get("wish", "wish") == "NextTreeLod");
     stage.display.resize(viewer.window, [600, 440]);
     viewer.until("another size", |viewer| *viewer.get("screen", "size_px") == json!([600, 440]));
     let left = place(&viewer);
     assert_eq!(viewer.quit(&stage.display).code(), Some(0));
     let kept = SettingsFile::open(stage.path("settings.ron"));
-    assert_eq!(kept.problem, None);
-    assert_eq!(kept.settings.options.tree_scheme, genescape_viewer::frame::TreeScheme::Discrete);
+    assert_eq!(kept.problems, [""; 0]);
+    assert_eq!(kept.settings.options.tree_lod, genescape_viewer::lod_mode::TreeLodMode::Discrete);
 
     let mut viewer = stage.viewer(&["--no-bake"]);
     viewer.until("the second start shows all", |viewer| viewer.shows(0));
@@ -307,7 +301,7 @@ fn a_baker_that_is_killed_leaves_the_viewer_going_and_another_bakes_the_rest() {
     let mut viewer = stage.viewer(&["--no-bake", "--size", "640x480"]);
     viewer.until("an empty world is told", |viewer| viewer.get("screen", "situation") == "stuck");
     let baker = baker(stage.files.root());
-    let baked = |files: &WorldFiles| (0..4).filter(|scene| files.scene_path(0, *scene).is_file()).count();
+    let baked = |files: &World| (0..4).filter(|scene| files.scene_path(0, *scene).is_file()).count();
     let start = Instant::now();
     while baked(&stage.files) == 0 {
         assert!(start.elapsed() < Duration::from_secs(180), "nothing is baked");

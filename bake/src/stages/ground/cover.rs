@@ -3,6 +3,7 @@
 
 use super::GroundParams;
 use super::traits::Traits;
+use crate::math::{hermite, lerp_array as lerp};
 use crate::model::Landform;
 use crate::noise::hash01;
 use crate::seed::noise_seed;
@@ -25,30 +26,32 @@ impl Noise {
     }
 }
 
-/// Parts of the ground, which sum to 1 with grass.
-pub(super) struct Cover {
-    rock: f32,
-    scree: f32,
-    snow: f32,
-    mud: f32,
-}
-
 /// Grass, rock, scree, snow and mud.
 pub(super) const KINDS: usize = 5;
+
+/// Parts of the ground: rock, scree, snow and mud, which sum to 1 with grass.
+pub(super) struct Cover([f32; KINDS - 1]);
 
 impl Cover {
     /// The part of each kind, grass first.
     #[inline]
     pub fn parts(&self) -> [f32; KINDS] {
-        let grass = 1.0 - self.rock - self.scree - self.snow - self.mud;
-        [grass, self.rock, self.scree, self.snow, self.mud]
+        let [rock, scree, snow, mud] = self.0;
+        [1.0 - rock - scree - snow - mud, rock, scree, snow, mud]
     }
 
     /// Blend weights as bytes: rock, scree, snow, mud; their sum is at most 255.
     #[inline]
     pub fn bytes(&self) -> [u8; 4] {
         // Rounded down, so that four of them cannot pass 255.
-        [self.rock, self.scree, self.snow, self.mud].map(|w| (w * 255.0) as u8)
+        self.0.map(|w| (w * 255.0) as u8)
+    }
+
+    /// Lays `part` of a kind over the others.
+    #[inline]
+    fn over(&mut self, kind: usize, part: f32) {
+        self.0 = self.0.map(|other| other * (1.0 - part));
+        self.0[kind] += part;
     }
 }
 
@@ -99,7 +102,7 @@ pub(super) struct Climate {
 impl Climate {
     pub fn new(params: &GroundParams, land: &Landform) -> Self {
         let seed = noise_seed(params.terrain_seed.into(), "ground climate", 0);
-        let (lo, hi) = land.field.range_m();
+        let [lo, hi] = land.field.range_m();
         let chance = |salt| hash01(seed, salt, 0, 0);
         // Where snow lies low it is cold and moist.
         let dryness = (chance(1) * 0.95 - 0.35 * (0.8 - params.snow_line).max(0.0)).clamp(0.0, 1.0);
@@ -143,10 +146,10 @@ impl Climate {
         let mud = shore.max(bed);
         let snow = self.snow(t, broken);
         // Each lies over the ones before it.
-        let mut cover = Cover { rock: 0.0, scree: 0.0, snow: 0.0, mud };
-        cover.over(scree).scree += scree;
-        cover.over(rock).rock += rock;
-        cover.over(snow).snow += snow;
+        let mut cover = Cover([0.0, 0.0, 0.0, mud]);
+        cover.over(1, scree);
+        cover.over(0, rock);
+        cover.over(2, snow);
         cover
     }
 
@@ -170,25 +173,25 @@ impl Climate {
     /// Its colour.
     #[inline]
     pub fn color(&self, t: &Traits, cover: &Cover, n: &Noise) -> Rgb {
-        let grass = 1.0 - cover.rock - cover.scree - cover.snow - cover.mud;
+        let [grass, rock, scree, snow, mud] = cover.parts();
         let mut color = [0.0; 3];
         if grass > 0.0 {
             add(&mut color, self.grass(t, n), grass);
         }
-        if cover.rock + cover.scree > 0.0 {
+        if rock + scree > 0.0 {
             // Beds of another stone, tilted and bent, and stains that run down.
             let bed = (t.height_m * 0.11 + 1.9 * t.outcrop + 0.8 * t.tuft + 0.8 * n.broad) * 0.5;
             let bed = (bed - bed.floor() - 0.5).abs() * 2.0;
             let stone = lerp(self.rock, self.rock_band, step(0.3, 0.7, bed));
             let stone = scale(stone, 1.0 + 0.22 * n.broad + 0.20 * n.fine + 0.25 * n.grain);
-            add(&mut color, stone, cover.rock);
-            add(&mut color, scale(lerp(stone, GRAVEL, 0.35), 1.12 + 0.35 * n.grain), cover.scree);
+            add(&mut color, stone, rock);
+            add(&mut color, scale(lerp(stone, GRAVEL, 0.35), 1.12 + 0.35 * n.grain), scree);
         }
-        if cover.mud > 0.0 {
-            add(&mut color, self.mud(t, n), cover.mud);
+        if mud > 0.0 {
+            add(&mut color, self.mud(t, n), mud);
         }
-        if cover.snow > 0.0 {
-            add(&mut color, scale(SNOW, 1.0 + 0.03 * n.broad + 0.05 * n.grain), cover.snow);
+        if snow > 0.0 {
+            add(&mut color, scale(SNOW, 1.0 + 0.03 * n.broad + 0.05 * n.grain), snow);
         }
         color.map(|c| if c > 0.0 { c } else { 0.0 })
     }
@@ -223,26 +226,6 @@ impl Climate {
     }
 }
 
-impl Cover {
-    /// Makes room for a layer of `part` on top.
-    #[inline]
-    fn over(&mut self, part: f32) -> &mut Self {
-        let left = 1.0 - part;
-        *self = Self {
-            rock: self.rock * left,
-            scree: self.scree * left,
-            snow: self.snow * left,
-            mud: self.mud * left,
-        };
-        self
-    }
-}
-
-#[inline]
-fn lerp(a: Rgb, b: Rgb, t: f32) -> Rgb {
-    [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t, a[2] + (b[2] - a[2]) * t]
-}
-
 #[inline]
 fn scale(a: Rgb, s: f32) -> Rgb {
     [a[0] * s, a[1] * s, a[2] * s]
@@ -255,11 +238,10 @@ fn add(sum: &mut Rgb, a: Rgb, weight: f32) {
     }
 }
 
-/// 0 below `lo`, 1 above `hi`, smooth between.
+/// [`crate::math::smoothstep`] by a multiplication, which is not the same to the last bit.
 #[inline]
 fn step(lo: f32, hi: f32, x: f32) -> f32 {
     let t = (x - lo) * (1.0 / (hi - lo));
     let t = if t > 0.0 { t } else { 0.0 };
-    let t = if t < 1.0 { t } else { 1.0 };
-    t * t * (3.0 - 2.0 * t)
+    hermite(if t < 1.0 { t } else { 1.0 })
 }

@@ -5,33 +5,23 @@
 //! near mesh, bit by bit, so there is no crack; colour, relief and grain of its own fade towards the border, so
 //! there is no seam.
 
+use bytemuck::Zeroable;
 use glam::{Vec2, Vec3};
-use rayon::prelude::*;
 
 use super::GroundParams;
-use super::cover::{Climate, KINDS};
-use super::grain::Grain;
+use super::cover::KINDS;
 use super::grass::grass;
+use super::patch::{Patch, SIDE_M, corner, plan};
 use super::textures::{TILE_M, TILE_MEAN};
-use super::traits::{Patches, TraitsMap};
-use crate::model::{Foreground, Heightfield, Landform, Material, Mesh, Part, PartKind, StartView};
+use super::window::MapWindow;
+use crate::model::{Foreground, Landform, Material, Mesh, Part, PartKind, StartView};
 use crate::noise::{fbm2, gradient2};
+use crate::raster::raster;
 use crate::seed::noise_seed;
 
-/// Metres a side of the blocks that the near mesh is made of; the piece is a whole number of them.
-pub const BLOCK_M: f32 = 16.0;
-pub(super) const SIDE_M: f32 = 6.0 * BLOCK_M;
 /// Cells a side of the fine grid.
 const CELLS: usize = 128;
 const CELL_M: f32 = SIDE_M / CELLS as f32;
-/// Metres ahead of the eye where the middle of the piece should lie: what lies behind is seen by few.
-const AHEAD_M: f32 = 26.0;
-/// Metres over which the piece takes on the look of the land around it.
-const FADE_M: f32 = 14.0;
-/// Values of a texel: colour, parts, and the colour that grass has there.
-const TRAITS: usize = 6 + KINDS;
-/// Height in metres of the humps that the heightfield is too coarse for.
-const HUMPS_M: f32 = 0.07;
 
 /// Cuts the foreground out of a near mesh given as positions and triangles, made with blocks of `BLOCK_M`. Colours
 /// come from the painter of [`super::maps`] with `map_px` texels a side. Nothing is cut where the land is smaller.
@@ -59,26 +49,8 @@ pub fn foreground(
     Foreground { mesh, map_uvs, rest, grass: grass(&patch, &window, view) }
 }
 
-/// The north-west corner of the square of blocks that suits a view best.
-fn corner(field: &Heightfield, view: &StartView) -> Option<Vec2> {
-    let extent_m = field.extent_m();
-    if extent_m < SIDE_M || field.spacing_m > BLOCK_M {
-        return None;
-    }
-    let along = Vec2::new(view.direction.x, view.direction.z).normalize_or_zero();
-    let wanted = plan(view.position_m.to_array()) + along * AHEAD_M - 0.5 * SIDE_M + 0.5 * extent_m;
-    let blocks = (wanted / BLOCK_M + 0.5)
-        .floor()
-        .clamp(Vec2::ZERO, Vec2::splat((extent_m - SIDE_M) / BLOCK_M).floor());
-    Some(blocks * BLOCK_M - 0.5 * extent_m)
-}
-
-fn plan(p: [f32; 3]) -> Vec2 {
-    Vec2::new(p[0], p[2])
-}
-
 /// A vertex before it has a texture.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Zeroable)]
 struct Point {
     position: [f32; 3],
     normal: [f32; 3],
@@ -87,87 +59,7 @@ struct Point {
     parts: [f32; KINDS],
 }
 
-/// The texels of the map around the piece, painted again.
-pub(super) struct MapWindow {
-    first: [i32; 2],
-    across: usize,
-    texel_m: f32,
-    half_m: f32,
-    values: Vec<[f32; TRAITS]>,
-}
-
-impl MapWindow {
-    fn new(params: &GroundParams, land: &Landform, map_px: u32, corner: Vec2) -> Self {
-        let extent_m = land.field.extent_m();
-        let texel_m = extent_m / map_px as f32;
-        let across = (SIDE_M / texel_m) as usize + 3;
-        let first = [corner.x, corner.y].map(|m| ((m + 0.5 * extent_m) / texel_m) as i32 - 1);
-        let climate = Climate::new(params, land);
-        let place = |k: i32| (k.clamp(0, map_px as i32 - 1) as f32 + 0.5) / map_px as f32;
-        let rows = place(first[1])..=place(first[1] + across as i32);
-        // Traits are kept on a grid, so patches are needed as far as the samples around.
-        let apart = 2.0 / (land.field.side - 1).min(512) as f32;
-        let wider = (rows.start() - apart).max(0.0)..=(rows.end() + apart).min(1.0);
-        let traits = TraitsMap::new(&Patches::new(params.terrain_seed, extent_m, wider), land, rows);
-        let grain = Grain::new(params.terrain_seed, map_px);
-        let mut values = vec![[0.0; TRAITS]; across * across];
-        values.par_chunks_mut(across).enumerate().for_each(|(j, row)| {
-            let j = (first[1] + j as i32).clamp(0, map_px as i32 - 1);
-            let traits = traits.row(place(j));
-            for (i, value) in row.iter_mut().enumerate() {
-                let i = (first[0] + i as i32).clamp(0, map_px as i32 - 1);
-                let (here, noise) = (traits.at(place(i)), grain.at(i as usize, j as usize));
-                let cover = climate.cover(&here, &noise);
-                value[..3].copy_from_slice(&climate.color(&here, &cover, &noise));
-                value[3..3 + KINDS].copy_from_slice(&cover.parts());
-                value[3 + KINDS..].copy_from_slice(&climate.grass(&here, &noise));
-            }
-        });
-        Self { first, across, texel_m, half_m: 0.5 * extent_m, values }
-    }
-
-    /// Colour and parts at a point, as a viewer filters the map.
-    pub fn at(&self, p: Vec2) -> [f32; TRAITS] {
-        let cell = |m: f32, first: i32| {
-            let g =
-                ((m + self.half_m) / self.texel_m - 0.5 - first as f32).clamp(0.0, (self.across - 1) as f32);
-            let whole = (g as usize).min(self.across - 2);
-            (whole, g - whole as f32)
-        };
-        let ((i, u), (j, v)) = (cell(p.x, self.first[0]), cell(p.y, self.first[1]));
-        let k = j * self.across + i;
-        let [a, b, c, d] = [k, k + 1, k + self.across, k + self.across + 1].map(|k| &self.values[k]);
-        std::array::from_fn(|n| (a[n] * (1.0 - u) + b[n] * u) * (1.0 - v) + (c[n] * (1.0 - u) + d[n] * u) * v)
-    }
-
-    /// The colour of grass at a point.
-    pub fn grass(&self, p: Vec2) -> [f32; 3] {
-        let value = self.at(p);
-        [value[3 + KINDS], value[4 + KINDS], value[5 + KINDS]]
-    }
-}
-
-/// The piece of land.
-pub(super) struct Patch<'a> {
-    land: &'a Landform,
-    pub corner: Vec2,
-    pub seed: u32,
-}
-
 impl Patch<'_> {
-    /// 0 on the border, 1 from `FADE_M` inside.
-    pub fn inward(&self, p: Vec2) -> f32 {
-        let from_border = (p - self.corner).min(self.corner + SIDE_M - p).min_element();
-        let t = (from_border / FADE_M).clamp(0.0, 1.0);
-        t * t * (3.0 - 2.0 * t)
-    }
-
-    pub fn height_m(&self, p: Vec2) -> f32 {
-        let inward = self.inward(p);
-        let humps = if inward > 0.0 { fbm2(self.seed, p.x / 2.6, p.y / 2.6, 2, 0.5, 0) } else { 0.0 };
-        self.land.field.height_m(p.x, p.y) + HUMPS_M * inward * humps
-    }
-
     fn normal(&self, p: Vec2) -> Vec3 {
         let (dx, dz) = (Vec2::new(CELL_M, 0.0), Vec2::new(0.0, CELL_M));
         let slope = |step: Vec2| (self.height_m(p + step) - self.height_m(p - step)) / (2.0 * CELL_M);
@@ -199,14 +91,12 @@ impl Patch<'_> {
 
     /// The grid's points but those of its border, row by row.
     fn points(&self, window: &MapWindow) -> Vec<Point> {
-        let mut points = vec![Point::default(); (CELLS - 1) * (CELLS - 1)];
-        points.par_chunks_mut(CELLS - 1).enumerate().for_each(|(j, row)| {
-            for (i, point) in row.iter_mut().enumerate() {
+        raster(CELLS - 1, CELLS - 1, |j| {
+            move |i| {
                 let offset = Vec2::new((i + 1) as f32, (j + 1) as f32) * CELL_M;
-                *point = self.point(window, self.corner + offset);
+                self.point(window, self.corner + offset)
             }
-        });
-        points
+        })
     }
 
     /// Adds the vertices of the near mesh on the border; gives their numbers by side: north, south, west, east, each

@@ -8,7 +8,8 @@ use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::cover::KINDS;
-use super::foreground::{MapWindow, Patch, SIDE_M};
+use super::patch::{Patch, SIDE_M, plan};
+use super::window::MapWindow;
 use crate::model::{Material, Mesh, Part, PartKind, StartView};
 use crate::noise::{gradient2, hash01};
 
@@ -25,8 +26,8 @@ pub const BLADE_WHITE: f32 = 0.5;
 
 /// Blades on the piece of ground around the eye; one part, `Material::Foreign(5)`, empty where no grass grows.
 pub(super) fn grass(patch: &Patch<'_>, window: &MapWindow, view: &StartView) -> Mesh {
-    let eye = Vec2::new(view.position_m.x, view.position_m.z);
-    let ahead = Vec2::new(view.direction.x, view.direction.z).normalize_or_zero();
+    let eye = plan(view.position_m.to_array());
+    let ahead = plan(view.direction.to_array()).normalize_or_zero();
     let across = (SIDE_M / TUFT_M) as i32;
     let field = Meadow { patch, window, eye: view.position_m, ahead };
     let rows: Vec<Vec<Blade>> = (0..across)

@@ -10,36 +10,44 @@ mod cover;
 mod foreground;
 mod grain;
 mod grass;
+mod patch;
 mod patterns;
+mod stage;
 #[cfg(test)]
 mod tests;
 mod textures;
 mod traits;
+mod window;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::math::lerp_array;
 use crate::model::{GroundMaps, Image8, Landform};
+use crate::raster::raster;
 use cover::{Climate, Noise};
-pub use foreground::{BLOCK_M, foreground};
+pub use foreground::foreground;
 use grain::Grain;
 pub use grass::BLADE_WHITE;
+pub use patch::BLOCK_M;
+pub use stage::{ForegroundStage, GroundMapsStage, GroundTextureFiles, GroundTexturesStage};
+use textures::SrgbTable;
 pub use textures::{TEXTURES, textures, tile_srgb};
 use traits::{Patches, Traits, TraitsMap};
 
 /// The genes that colour the ground; names, ranges and meanings as in the parameter space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GroundParams {
-    /// Which land of its kind: the kind of rock, how dry the climate is, where patches lie.
+    /// Chooses the rock, how dry the climate is, where patches lie.
     pub terrain_seed: u32,
-    /// Steepest slope in degrees that loose stone holds: scree lies up to it.
+    /// Scree lies up to it.
     pub talus_angle_deg: f32,
-    /// Altitude of the snow as part of the relief: a low snow line means a cold land.
+    /// A low snow line means a cold land.
     pub snow_line: f32,
 }
 
 /// Paints the field on `side_px`² texels: albedo and blend weights.
-pub fn maps(params: &GroundParams, land: &Landform, side_px: u32) -> GroundMaps {
+pub fn maps(params: &GroundParams, land: &Landform, side_px: u32) -> GroundMaps<Image8> {
     let side_px = side_px.max(1);
     let climate = Climate::new(params, land);
     let traits =
@@ -61,7 +69,7 @@ pub fn maps(params: &GroundParams, land: &Landform, side_px: u32) -> GroundMaps 
             weights[4 * i..][..4].copy_from_slice(&cover.bytes());
         }
     });
-    GroundMaps { color_srgb, weights }
+    GroundMaps { color: color_srgb, weights }
 }
 
 /// Colours the apron: linear red, green, blue and 255 for each of its samples, row by row, 0 to 255 for 0 to 1. On
@@ -72,9 +80,7 @@ pub fn apron_colors(params: &GroundParams, land: &Landform) -> Vec<[u8; 4]> {
     let apron = &land.apron;
     let half_m = 0.5 * land.field.extent_m();
     let place = |k: u32| (k as f32 - 0.5 * (apron.side - 1) as f32) * apron.spacing_m;
-    let mut colors = vec![[0; 4]; (apron.side * apron.side) as usize];
-    colors.par_iter_mut().enumerate().for_each(|(k, color)| {
-        let (i, j) = (k as u32 % apron.side, k as u32 / apron.side);
+    let color = |i: u32, j: u32| {
         let (x, z) = (place(i), place(j));
         let (inner_x, inner_z) = (x.clamp(-half_m, half_m), z.clamp(-half_m, half_m));
         let away_m = (x - inner_x).abs().max((z - inner_z).abs());
@@ -93,15 +99,16 @@ pub fn apron_colors(params: &GroundParams, land: &Landform) -> Vec<[u8; 4]> {
         let linear = match t {
             0.0 => border(),
             1.0 => own(),
-            t => {
-                let (a, b) = (border(), own());
-                [0, 1, 2].map(|c| a[c] + (b[c] - a[c]) * t)
-            }
+            t => lerp_array(border(), own(), t),
         };
         let [r, g, b] = linear.map(|c| (c * 255.0 + 0.5) as u8);
-        *color = [r, g, b, 255];
-    });
-    colors
+        [r, g, b, 255]
+    };
+    let side = apron.side as usize;
+    raster(side, side, |j| {
+        let color = &color;
+        move |i| color(i as u32, j as u32)
+    })
 }
 
 /// The mean of what sixteen texels with different grain would show.
@@ -114,23 +121,4 @@ fn mean_color(climate: &Climate, traits: impl Fn(u32) -> Traits) -> [f32; 3] {
         sum = [0, 1, 2].map(|c| sum[c] + color[c] * 0.0625);
     }
     sum
-}
-
-/// Linear reflectance to sRGB bytes by table: 4096 steps, finer than a byte everywhere above 0.001.
-struct SrgbTable(Vec<u8>);
-
-impl SrgbTable {
-    fn new() -> Self {
-        Self((0..4096).map(|k| (255.0 * srgb_from_linear((k as f32 + 0.5) / 4096.0) + 0.5) as u8).collect())
-    }
-
-    #[inline]
-    fn byte(&self, linear: f32) -> u8 {
-        self.0[((linear * 4096.0) as usize).min(4095)]
-    }
-}
-
-/// The sRGB transfer function (IEC 61966-2-1).
-fn srgb_from_linear(c: f32) -> f32 {
-    if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * libm::powf(c, 1.0 / 2.4) - 0.055 }
 }

@@ -1,22 +1,29 @@
-//! The five patterns of ground: a height of about 0 to 1 and a tone for each texel, both wrapping around.
+//! Nothing → the five tiling patterns of ground: a height of about 0 to 1 and a tone for each texel.
 //!
 //! Grass and scree are laid blade by blade and stone by stone, the higher over the lower; rock and mud are cracked
 //! along the borders of cellular noise (Worley 1996); snow is drifts and grain.
 
-use rayon::prelude::*;
+use bytemuck::Zeroable;
 
-use super::textures::SIDE;
 use crate::noise::{cellular2, fbm2_row, gradient2, hash01};
+use crate::raster::raster;
 
-/// Height and tone of each texel, row by row.
-pub(super) struct Pattern {
-    pub height: Vec<f32>,
-    pub tone: Vec<[f32; 3]>,
+/// Texels a side.
+pub(super) const SIDE: usize = 512;
+
+/// `SIDE`² texels, row by row.
+pub(super) type Pattern = Vec<Texel>;
+
+#[derive(Clone, Copy, Zeroable)]
+pub(super) struct Texel {
+    pub height: f32,
+    /// RGB, of any scale.
+    pub tone: [f32; 3],
 }
 
 /// Blades of grass that lean in tufts over moss.
 pub(super) fn grass() -> Pattern {
-    let mut pattern = from_texels([waves(11, 24, 3, 0.6)], |_, _, [moss]| {
+    let mut pattern = from_texels([Waves(11, 24, 3, 0.6)], |_, _, [moss]| {
         let moss = 0.5 + 0.5 * moss;
         let tone = 30.0 + 34.0 * moss;
         (0.16 * moss, [tone * 1.05, tone, tone * 0.9])
@@ -79,9 +86,9 @@ impl Blade {
                 }
                 let at = texel((x - sin * off) as i32, (y + cos * off) as i32);
                 let fold = 1.0 - 0.35 * (off / (half + 0.3)).abs();
-                if rise * fold > pattern.height[at] {
-                    pattern.height[at] = rise * fold;
-                    pattern.tone[at] = self.tone.map(|c| c * light * (0.8 + 0.2 * fold));
+                if rise * fold > pattern[at].height {
+                    let tone = self.tone.map(|c| c * light * (0.8 + 0.2 * fold));
+                    pattern[at] = Texel { height: rise * fold, tone };
                 }
             }
         }
@@ -90,7 +97,7 @@ impl Blade {
 
 /// Fractured rock: folds of sharp creases within folds, ledges, and a few open cracks.
 pub(super) fn rock() -> Pattern {
-    from_texels([waves(21, 5, 2, 0.5), waves(27, 90, 2, 0.7)], |u, v, [a, rough]| {
+    from_texels([Waves(21, 5, 2, 0.5), Waves(27, 90, 2, 0.7)], |u, v, [a, rough]| {
         let (wu, wv) = (u + 0.05 * a, v - 0.04 * a);
         // Each octave shifts the next, so that creases break off where they meet.
         let (mut relief, mut shift, mut amplitude) = (0.0, 0.0, 0.5);
@@ -114,7 +121,7 @@ pub(super) fn rock() -> Pattern {
 
 /// Stones of all sizes, the larger on top.
 pub(super) fn scree() -> Pattern {
-    let mut pattern = from_texels([waves(31, 64, 2, 0.7)], |_, _, [grit]| {
+    let mut pattern = from_texels([Waves(31, 64, 2, 0.7)], |_, _, [grit]| {
         let grit = 0.5 + 0.5 * grit;
         let tone = 34.0 + 40.0 * grit;
         (0.10 * grit, [tone * 1.04, tone, tone * 0.95])
@@ -125,14 +132,8 @@ pub(super) fn scree() -> Pattern {
         // From small to large; few are large.
         let size = k as f32 / count as f32;
         let radius = 4.5 + 6.0 * size + 15.0 * size * size * size * size * (0.4 + 0.6 * dice(3));
-        Stone::new(
-            dice(0) * SIDE as f32,
-            dice(1) * SIDE as f32,
-            radius,
-            0.15 + 0.4 * size + 0.2 * dice(2),
-            k,
-        )
-        .lay(&mut pattern);
+        let base = 0.15 + 0.4 * size + 0.2 * dice(2);
+        Stone::new(dice(0) * SIDE as f32, dice(1) * SIDE as f32, radius, base, k).lay(&mut pattern);
     }
     pattern
 }
@@ -187,17 +188,17 @@ impl Stone {
                 }
                 let at = texel(self.x as i32 + dx, self.y as i32 + dy);
                 if inside < 0.0 {
-                    pattern.tone[at] = pattern.tone[at].map(|c| c * 0.72);
+                    pattern[at].tone = pattern[at].tone.map(|c| c * 0.72);
                     continue;
                 }
                 let bevel = (inside / (0.35 * self.radius)).min(1.0);
                 let round = bevel * (2.0 - bevel);
                 let top = 1.0 + (fx * self.tilt[0] + fy * self.tilt[1]) / self.radius;
                 let height = self.base + 0.025 * self.radius * round * top;
-                if height > pattern.height[at] {
+                if height > pattern[at].height {
                     let grit = 0.88 + 0.24 * hash01(34, self.x as i32 + dx, self.y as i32 + dy, 0);
-                    pattern.height[at] = height;
-                    pattern.tone[at] = self.tone.map(|c| c * (0.68 + 0.32 * round) * grit);
+                    let tone = self.tone.map(|c| c * (0.68 + 0.32 * round) * grit);
+                    pattern[at] = Texel { height, tone };
                 }
             }
         }
@@ -206,7 +207,7 @@ impl Stone {
 
 /// Soft drifts, ripples that the wind left, and grain.
 pub(super) fn snow() -> Pattern {
-    let noise = [waves(41, 6, 2, 0.5), waves(42, 8, 3, 0.5), waves(44, 5, 1, 0.5), waves(45, 128, 2, 0.8)];
+    let noise = [Waves(41, 6, 2, 0.5), Waves(42, 8, 3, 0.5), Waves(44, 5, 1, 0.5), Waves(45, 128, 2, 0.8)];
     from_texels(noise, |u, v, [bend, drift, still, grain]| {
         // Ripples: the same noise drawn out across the wind, bent by it.
         let ripple = gradient2(43, u * 12.0 + 0.6 * bend, v * 48.0 + 3.0 * bend, 12);
@@ -235,7 +236,7 @@ fn plate(seed: u32, u: f32, v: f32, cells: i32) -> Plate {
 
 /// Mud that dried and cracked, with finer cracks inside its plates.
 pub(super) fn mud() -> Pattern {
-    let noise = [waves(51, 9, 2, 0.55), waves(52, 9, 2, 0.55), waves(55, 70, 2, 0.65)];
+    let noise = [Waves(51, 9, 2, 0.55), Waves(52, 9, 2, 0.55), Waves(55, 70, 2, 0.65)];
     from_texels(noise, |u, v, [a, b, silt]| {
         let plate_here = plate(53, u + 0.03 * a, v + 0.03 * b, 13);
         // Only some plates split again, and cracks close here and there.
@@ -253,17 +254,8 @@ pub(super) fn mud() -> Pattern {
     })
 }
 
-/// Fractal noise that tiles the pattern.
-struct Waves {
-    seed: u32,
-    cells: i32,
-    octaves: u32,
-    gain: f32,
-}
-
-fn waves(seed: u32, cells: i32, octaves: u32, gain: f32) -> Waves {
-    Waves { seed, cells, octaves, gain }
-}
+/// Fractal noise that tiles the pattern: seed, cells a side, octaves and gain.
+struct Waves(u32, i32, u32, f32);
 
 /// A pattern from each texel's (u, v) in 0..1 and the noise there.
 fn from_texels<const N: usize>(
@@ -272,20 +264,18 @@ fn from_texels<const N: usize>(
 ) -> Pattern {
     let part = |i: usize| i as f32 / SIDE as f32;
     let xs: Vec<Vec<f32>> =
-        noise.iter().map(|w| (0..SIDE).map(|i| part(i) * w.cells as f32).collect()).collect();
-    let mut pattern = Pattern { height: vec![0.0; SIDE * SIDE], tone: vec![[0.0; 3]; SIDE * SIDE] };
-    let rows = pattern.height.par_chunks_mut(SIDE).zip(pattern.tone.par_chunks_mut(SIDE)).enumerate();
-    rows.for_each(|(j, (heights, tones))| {
-        let v = part(j);
+        noise.iter().map(|waves| (0..SIDE).map(|i| part(i) * waves.1 as f32).collect()).collect();
+    raster(SIDE, SIDE, |j| {
+        let (texel, v) = (&texel, part(j));
         let mut values = [[0.0; SIDE]; N];
-        for ((w, xs), values) in noise.iter().zip(&xs).zip(&mut values) {
-            fbm2_row(w.seed, xs, v * w.cells as f32, w.octaves, w.gain, w.cells, values);
+        for ((&Waves(seed, cells, octaves, gain), xs), values) in noise.iter().zip(&xs).zip(&mut values) {
+            fbm2_row(seed, xs, v * cells as f32, octaves, gain, cells, values);
         }
-        for (i, (height, tone)) in heights.iter_mut().zip(tones).enumerate() {
-            (*height, *tone) = texel(part(i), v, std::array::from_fn(|k| values[k][i]));
+        move |i| {
+            let (height, tone) = texel(part(i), v, std::array::from_fn(|k| values[k][i]));
+            Texel { height, tone }
         }
-    });
-    pattern
+    })
 }
 
 /// The index of a texel, wrapped around.

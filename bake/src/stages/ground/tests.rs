@@ -3,6 +3,7 @@
 use std::sync::LazyLock;
 
 use super::*;
+use crate::math::srgb_from_linear;
 use crate::model::Material;
 use crate::stages::land::{LandParams, landform};
 
@@ -29,7 +30,7 @@ static LAND: LazyLock<Landform> = LazyLock::new(|| {
 
 const PARAMS: GroundParams = GroundParams { terrain_seed: 5, talus_angle_deg: 33.0, snow_line: 0.6 };
 
-static TEXTURES: LazyLock<crate::model::GroundTextures> = LazyLock::new(textures);
+static TEXTURES: LazyLock<Vec<crate::model::GroundDetail<crate::model::Image8>>> = LazyLock::new(textures);
 
 fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("thread pool").install(work)
@@ -79,7 +80,7 @@ fn snow_lies_high_and_rock_is_steep() {
 #[test]
 fn albedo_is_that_of_real_ground() {
     let made = maps(&PARAMS, &LAND, 256);
-    for (color, weights) in made.color_srgb.data.chunks_exact(3).zip(made.weights.data.chunks_exact(4)) {
+    for (color, weights) in made.color.data.chunks_exact(3).zip(made.weights.data.chunks_exact(4)) {
         // Linear 0.02 to 0.9 in green.
         assert!((25..=245).contains(&color[1]), "{color:?}");
         if weights[2] > 250 {
@@ -100,7 +101,7 @@ fn apron_continues_the_map() {
             let sum: f32 = texels
                 .clone()
                 .flat_map(|i| (0..12).map(move |j| (i, j)))
-                .map(|(i, j)| linear(made.color_srgb.pixel(i, j)[1]))
+                .map(|(i, j)| linear(made.color.pixel(i, j)[1]))
                 .sum();
             sum / (texels.len() * 12) as f32
         };
@@ -116,8 +117,8 @@ fn apron_continues_the_map() {
 
 #[test]
 fn textures_tile() {
-    for t in &TEXTURES.textures {
-        for image in [&t.detail_srgb, &t.normal] {
+    for t in TEXTURES.iter() {
+        for image in [&t.detail, &t.normal] {
             let across =
                 |a: u32, b: u32| (0..512).map(|j| apart(image.pixel(a, j), image.pixel(b, j))).sum::<u32>();
             let down =
@@ -146,12 +147,12 @@ fn apart(a: &[u8], b: &[u8]) -> u32 {
 
 #[test]
 fn textures_have_their_mean_and_point_outwards() {
-    let names: Vec<&str> = TEXTURES.textures.iter().map(|t| t.name.as_str()).collect();
+    let names: Vec<&str> = TEXTURES.iter().map(|t| t.name.as_str()).collect();
     assert_eq!(names, ["grass", "rock", "scree", "snow", "mud"]);
-    for t in &TEXTURES.textures {
+    for t in TEXTURES.iter() {
         assert!((3.0..=6.0).contains(&t.tile_m));
         for channel in 0..3 {
-            let sum: u64 = t.detail_srgb.data.iter().skip(channel).step_by(3).map(|&b| u64::from(b)).sum();
+            let sum: u64 = t.detail.data.iter().skip(channel).step_by(3).map(|&b| u64::from(b)).sum();
             let mean = sum as f64 / (512.0 * 512.0);
             assert!((mean - 128.0).abs() < 1.0, "{} has mean {mean}", t.name);
         }
@@ -160,19 +161,6 @@ fn textures_have_their_mean_and_point_outwards() {
             let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
             assert!((length - 1.0).abs() < 0.03 && n[2] > 0.0, "{} has the normal {n:?}", t.name);
         }
-    }
-}
-
-#[test]
-#[ignore = "writes pictures"]
-fn texture_pictures() {
-    use crate::stages::land::{cpu_s, write_picture};
-    let begin = cpu_s();
-    let made = textures();
-    eprintln!("textures: {:.0} ms", 1e3 * (cpu_s() - begin));
-    for t in &made.textures {
-        write_picture(&format!("{}-detail", t.name), 512, 512, &t.detail_srgb.data);
-        write_picture(&format!("{}-normal", t.name), 512, 512, &t.normal.data);
     }
 }
 
@@ -218,7 +206,7 @@ fn the_foreground_fills_its_hole_edge_by_edge() {
 #[test]
 fn the_foreground_looks_like_the_map_at_its_border() {
     let (_, made) = cut(10.0, -35.0);
-    let map = maps(&PARAMS, &LAND, 256).color_srgb;
+    let map = maps(&PARAMS, &LAND, 256).color;
     let bounds = made.mesh.bounds();
     let (mut differences, mut count) = (0.0, 0.0);
     for part in &made.mesh.parts {

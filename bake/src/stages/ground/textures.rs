@@ -1,16 +1,15 @@
 //! Nothing → five tiling detail textures of 512² with tangent-space normals: grass, rock, scree, snow and mud.
 //!
 //! Detail multiplies the ground's colour: its bytes have the mean 128 in every channel, so that bytes / 128 is the
-//! factor. Normals are those of OpenGL and glTF: red to the right, green to the top of the picture, blue outwards.
+//! factor. Normals are those of OpenGL and glTF: red to the right, green to the top of the image, blue outwards.
 
 use rayon::prelude::*;
 
-use super::patterns::{self, Pattern};
-use super::{SrgbTable, cover::KINDS};
-use crate::model::{GroundTexture, GroundTextures, Image8};
-
-/// Texels a side.
-pub(super) const SIDE: usize = 512;
+use super::cover::KINDS;
+use super::patterns::{self, Pattern, SIDE, Texel};
+use crate::math::srgb_from_linear;
+use crate::model::{GroundDetail, Image8};
+use crate::raster::square_image;
 
 /// Names of the textures, in order.
 pub const TEXTURES: [&str; KINDS] = ["grass", "rock", "scree", "snow", "mud"];
@@ -33,7 +32,7 @@ pub fn tile_srgb(kind: usize, detail: &Image8) -> Image8 {
 }
 
 /// Makes the five textures; they are the same for every scene.
-pub fn textures() -> GroundTextures {
+pub fn textures() -> Vec<GroundDetail<Image8>> {
     type Make = fn() -> Pattern;
     let kinds: [(f32, Make); KINDS] = [
         (2.2, patterns::grass),
@@ -42,62 +41,68 @@ pub fn textures() -> GroundTextures {
         (3.2, patterns::snow),
         (2.4, patterns::mud),
     ];
-    let textures = kinds
+    kinds
         .into_par_iter()
         .zip(TEXTURES.into_par_iter().zip(TILE_M))
         .map(|((depth_px, make), (name, tile_m))| {
             let pattern = make();
-            let (detail_srgb, normal) = (detail(&pattern), normals(&pattern.height, depth_px));
-            GroundTexture { name: name.into(), detail_srgb, normal, tile_m }
+            let (detail, normal) = (detail(&pattern), normals(&pattern, depth_px));
+            GroundDetail { name: name.into(), detail, normal, tile_m }
         })
-        .collect();
-    GroundTextures { textures }
+        .collect()
 }
 
 /// Tones as bytes of mean 128.
-fn detail(pattern: &Pattern) -> Image8 {
-    let mut image = Image8::new(SIDE as u32, SIDE as u32, 3);
-    for channel in 0..3 {
-        let scale = scale_to_mean(&pattern.tone, channel);
-        for (pixel, tone) in image.data.chunks_exact_mut(3).zip(&pattern.tone) {
-            pixel[channel] = (tone[channel] * scale).clamp(0.0, 255.0) as u8;
-        }
-    }
-    image
+fn detail(pattern: &[Texel]) -> Image8 {
+    let scale = [0, 1, 2].map(|channel| scale_to_mean(pattern, channel));
+    square_image(SIDE, |j| {
+        let row = &pattern[j * SIDE..];
+        move |i| std::array::from_fn::<_, 3, _>(|c| (row[i].tone[c] * scale[c]).clamp(0.0, 255.0) as u8)
+    })
 }
 
 /// The factor that gives one channel the mean 128 after clamping to bytes, by the secant of its clamped mean.
-fn scale_to_mean(tone: &[[f32; 3]], channel: usize) -> f32 {
+fn scale_to_mean(pattern: &[Texel], channel: usize) -> f32 {
     let mut scale = 1.0;
     for _ in 0..3 {
         // Truncation to bytes takes half a step off.
-        let rows = tone
+        let rows = pattern
             .chunks_exact(SIDE)
-            .map(|row| row.iter().map(|t| (t[channel] * scale).clamp(0.0, 255.0)).sum::<f32>());
-        let mean = rows.sum::<f32>() / tone.len() as f32;
+            .map(|row| row.iter().map(|t| (t.tone[channel] * scale).clamp(0.0, 255.0)).sum::<f32>());
+        let mean = rows.sum::<f32>() / pattern.len() as f32;
         scale *= 128.5 / mean.max(1e-3);
     }
     scale
 }
 
 /// Normals of a height that is 0 to 1 for `depth_px` texels.
-fn normals(height: &[f32], depth_px: f32) -> Image8 {
-    let mut image = Image8::new(SIDE as u32, SIDE as u32, 3);
-    image.data.par_chunks_mut(SIDE * 3).enumerate().for_each(|(j, row)| {
-        let line = |j: usize| &height[(j % SIDE) * SIDE..][..SIDE];
-        let (above, here, below) = (line(j + SIDE - 1), line(j), line(j + 1));
-        for (i, pixel) in row.chunks_exact_mut(3).enumerate() {
-            let (west, east) = ((i + SIDE - 1) % SIDE, (i + 1) % SIDE);
+fn normals(pattern: &[Texel], depth_px: f32) -> Image8 {
+    square_image(SIDE, |j| {
+        let line = |j: usize| &pattern[(j % SIDE) * SIDE..][..SIDE];
+        let rows = [line(j + SIDE - 1), line(j), line(j + 1)];
+        move |i| {
+            let columns = [(i + SIDE - 1) % SIDE, i, (i + 1) % SIDE];
             // Sobel, so that single texels do not glitter.
-            let dx =
-                above[east] + 2.0 * here[east] + below[east] - above[west] - 2.0 * here[west] - below[west];
-            let dy = below[west] + 2.0 * below[i] + below[east] - above[west] - 2.0 * above[i] - above[east];
+            let [[nw, n, ne], [w, _, e], [sw, s, se]] = rows.map(|row| columns.map(|i| row[i].height));
+            let dx = ne + 2.0 * e + se - nw - 2.0 * w - sw;
+            let dy = sw + 2.0 * s + se - nw - 2.0 * n - ne;
             let (nx, ny) = (-dx * 0.125 * depth_px, dy * 0.125 * depth_px);
             let length = (nx * nx + ny * ny + 1.0).sqrt();
-            for (byte, n) in pixel.iter_mut().zip([nx, ny, 1.0]) {
-                *byte = (127.5 + 127.0 * n / length + 0.5) as u8;
-            }
+            [nx, ny, 1.0].map(|n| (127.5 + 127.0 * n / length + 0.5) as u8)
         }
-    });
-    image
+    })
+}
+
+/// Linear reflectance to sRGB bytes by table: 4096 steps, finer than a byte everywhere above 0.001.
+pub(super) struct SrgbTable(Vec<u8>);
+
+impl SrgbTable {
+    pub fn new() -> Self {
+        Self((0..4096).map(|k| (255.0 * srgb_from_linear((k as f32 + 0.5) / 4096.0) + 0.5) as u8).collect())
+    }
+
+    #[inline]
+    pub fn byte(&self, linear: f32) -> u8 {
+        self.0[((linear * 4096.0) as usize).min(4095)]
+    }
 }

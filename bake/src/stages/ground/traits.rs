@@ -5,17 +5,17 @@ use std::ops::RangeInclusive;
 
 use rayon::prelude::*;
 
+use crate::math::{self, lerp_array};
 use crate::model::{Heightfield, Landform};
 use crate::noise::{fbm2, fbm2_row};
 use crate::seed::noise_seed;
 
-/// Most samples a side that traits are kept for.
-const MOST: u32 = 513;
+/// Greatest number of samples a side that traits are kept for.
+const MAX_SIDE: u32 = 513;
 
 /// The traits of one place.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Traits {
-    /// Height in metres.
     pub height_m: f32,
     /// Tangent of the slope.
     pub slope: f32,
@@ -50,7 +50,7 @@ pub(super) struct TraitsMap {
 
 /// Samples of the field between those that traits are kept for.
 fn stride(land: &Landform) -> u32 {
-    ((land.field.side - 1) / (MOST - 1)).max(1)
+    ((land.field.side - 1) / (MAX_SIDE - 1)).max(1)
 }
 
 impl TraitsMap {
@@ -73,15 +73,13 @@ impl TraitsMap {
     pub fn row(&self, v: f32) -> TraitsRow {
         let (j, f) = cell(v, self.side);
         let row = |j: usize| &self.values[j * self.side..][..self.side];
-        let mix = |(a, b): (&[f32; COUNT], &[f32; COUNT])| std::array::from_fn(|k| a[k] + (b[k] - a[k]) * f);
-        TraitsRow { values: row(j).iter().zip(row(j + 1)).map(mix).collect() }
+        TraitsRow { values: row(j).iter().zip(row(j + 1)).map(|(&a, &b)| lerp_array(a, b, f)).collect() }
     }
 }
 
+/// The cell of `side` samples that a place in 0..1 lies in.
 fn cell(u: f32, side: usize) -> (usize, f32) {
-    let g = u * (side - 1) as f32;
-    let k = (g as usize).min(side - 2);
-    (k, g - k as f32)
+    math::cell(u * (side - 1) as f32, side)
 }
 
 /// The traits between two rows of samples.
@@ -94,12 +92,7 @@ impl TraitsRow {
     #[inline]
     pub fn at(&self, u: f32) -> Traits {
         let (i, f) = cell(u, self.values.len());
-        let (a, b) = (&self.values[i], &self.values[i + 1]);
-        let mut out = [0.0; COUNT];
-        for k in 0..COUNT {
-            out[k] = a[k] + (b[k] - a[k]) * f;
-        }
-        Traits::from_array(out)
+        Traits::from_array(lerp_array(self.values[i], self.values[i + 1], f))
     }
 }
 
@@ -180,12 +173,7 @@ impl Patches {
 
     fn at(&self, u: f32, v: f32) -> [f32; 3] {
         let ((i, f), (j, g)) = (cell(u, Self::SIDE), cell(v, Self::SIDE));
-        let k = j * Self::SIDE + i;
-        let (a, b) = (self.values[k], self.values[k + 1]);
-        let (c, d) = (self.values[k + Self::SIDE], self.values[k + Self::SIDE + 1]);
-        [0, 1, 2].map(|l| {
-            let (north, south) = (a[l] + (b[l] - a[l]) * f, c[l] + (d[l] - c[l]) * f);
-            north + (south - north) * g
-        })
+        let along = |k: usize| lerp_array(self.values[k], self.values[k + 1], f);
+        lerp_array(along(j * Self::SIDE + i), along((j + 1) * Self::SIDE + i), g)
     }
 }

@@ -1,9 +1,10 @@
 //! The land beyond the field: the same noise on a coarse grid out to the horizon, with hills that grow a little
 //! with distance, in metres.
 
-use super::grid::{Grid, smoothstep};
+use super::grid::Grid;
 use super::shape::{Shape, distance_to_field_m};
 use super::{FIELD_M, LandParams};
+use crate::math::smoothstep;
 use crate::noise::fbm2;
 use crate::seed::noise_seed;
 

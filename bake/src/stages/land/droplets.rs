@@ -23,7 +23,7 @@ const DEPOSITION: f32 = 0.12;
 /// Part of the water that is left after a step.
 const WETNESS: f32 = 0.965;
 /// Greatest height in metres that one drop takes or gives at one step.
-const MOST_M: f32 = 0.05;
+const MAX_M: f32 = 0.05;
 
 /// Rains on the land; `loose` gains what is laid down.
 pub(super) fn rain(land: &mut Grid, loose: &mut Grid, guard: &Grid, params: &LandParams) {
@@ -40,13 +40,10 @@ pub(super) fn rain(land: &mut Grid, loose: &mut Grid, guard: &Grid, params: &Lan
         ground.run(u * last, v * last);
     }
     // What one drop does at one sample is noise; what many do along a gully is not. Fans are smoother than gullies.
-    let mut cut = before.clone();
-    cut.values.iter_mut().zip(&land.values).for_each(|(b, a)| *b = (a - *b).min(0.0));
-    let mut laid = before.clone();
-    laid.values.iter_mut().zip(&land.values).for_each(|(b, a)| *b = (a - *b).max(0.0));
-    let (cut, laid) = (cut.smoothed(), laid.smoothed().smoothed().smoothed());
-    let changes = cut.values.iter().zip(&laid.values);
-    land.values.iter_mut().zip(&before.values).zip(changes).for_each(|((h, b), (c, l))| *h = b + c + l);
+    let cut = land.zip(&before, |after, before| (after - before).min(0.0)).smoothed();
+    let laid = land.zip(&before, |after, before| (after - before).max(0.0));
+    let laid = laid.smoothed().smoothed().smoothed();
+    *land = before.zip(&cut, |before, cut| before + cut).zip(&laid, |height, laid| height + laid);
     settle(loose, &before, land);
 }
 
@@ -84,10 +81,8 @@ impl Ground<'_> {
                 break;
             }
             let (old_x, old_z) = (x, z);
-            dx /= length;
-            dz /= length;
-            x += dx;
-            z += dz;
+            (dx, dz) = (dx / length, dz / length);
+            (x, z) = (x + dx, z + dz);
             if x < 1.0 || z < 1.0 || x >= last || z >= last {
                 break;
             }
@@ -95,18 +90,14 @@ impl Ground<'_> {
             let rise = next - height;
             if rise > 0.0 {
                 // It stands in a hollow: fill it, at most to the brim.
-                let laid = load.min(rise).min(MOST_M);
+                let laid = load.min(rise).min(MAX_M);
                 self.change(old_x, old_z, laid);
                 load -= laid;
                 speed = 0.3;
             } else {
                 let capacity = -rise * speed * water * CAPACITY;
-                let amount = if load > capacity {
-                    (load - capacity) * DEPOSITION
-                } else {
-                    (load - capacity) * EROSION
-                };
-                let amount = amount.clamp(-MOST_M, MOST_M).max(rise);
+                let rate = if load > capacity { DEPOSITION } else { EROSION };
+                let amount = ((load - capacity) * rate).clamp(-MAX_M, MAX_M).max(rise);
                 self.change(old_x, old_z, amount);
                 load -= amount;
                 speed = (speed * speed * 0.9 - rise * 1.2).max(0.05).sqrt().min(4.0);

@@ -3,6 +3,8 @@
 use rayon::prelude::*;
 
 use super::FIELD_M;
+use crate::math::smoothstep;
+use crate::raster::raster;
 
 /// side² values, row by row, `spacing_m` apart, centred on the origin as a `Heightfield` is.
 #[derive(Clone, Debug)]
@@ -20,20 +22,23 @@ impl Grid {
 
     /// A grid of any spacing, centred on the origin.
     pub fn from_square(side: u32, spacing_m: f32, value: impl Fn(f32, f32) -> f32 + Sync) -> Self {
-        let n = side as usize;
-        let mut values = vec![0.0; n * n];
         let place = |i: usize| (i as f32 - 0.5 * (side - 1) as f32) * spacing_m;
-        values.par_chunks_mut(n).enumerate().for_each(|(j, row)| {
-            for (i, v) in row.iter_mut().enumerate() {
-                *v = value(place(i), place(j));
-            }
-        });
-        Self { side, spacing_m, values }
+        let row = |j: usize| {
+            let (place, value, z) = (&place, &value, place(j));
+            move |i: usize| value(place(i), z)
+        };
+        Self { side, spacing_m, values: raster(side as usize, side as usize, row) }
     }
 
     /// The same grid with each value changed by itself.
     pub fn map(&self, f: impl Fn(f32) -> f32) -> Self {
         Self { values: self.values.iter().map(|&v| f(v)).collect(), ..*self }
+    }
+
+    /// The same grid with each value combined with that of another of the same size.
+    pub fn zip(&self, other: &Self, f: impl Fn(f32, f32) -> f32) -> Self {
+        let pairs = self.values.iter().zip(&other.values);
+        Self { values: pairs.map(|(&a, &b)| f(a, b)).collect(), ..*self }
     }
 
     /// Lowest and highest value.
@@ -111,9 +116,7 @@ fn midpoint(a: f32, b: f32, c: f32, d: f32) -> f32 {
 
 /// Adds to `field`, of any size, what turned `before` into `after`.
 pub(super) fn add_change(field: &mut Grid, before: &Grid, after: &Grid) {
-    let mut change = before.clone();
-    change.values.iter_mut().zip(&after.values).for_each(|(b, a)| *b = a - *b);
-    let change = change.resized(field.side);
+    let change = after.zip(before, |after, before| after - before).resized(field.side);
     field.values.iter_mut().zip(&change.values).for_each(|(h, c)| *h += c);
 }
 
@@ -123,17 +126,4 @@ pub(super) fn border_guard(side: u32) -> Grid {
         let inside_m = 0.5 * FIELD_M - x.abs().max(z.abs());
         smoothstep(4.0, 40.0, inside_m)
     })
-}
-
-/// 0 below `lo`, 1 above `hi`, smooth between.
-#[inline]
-pub(super) fn smoothstep(lo: f32, hi: f32, x: f32) -> f32 {
-    let t = ((x - lo) / (hi - lo)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
-}
-
-/// From `a` at t = 0 to `b` at t = 1.
-#[inline]
-pub(super) fn mix(a: f32, b: f32, t: f32) -> f32 {
-    a + (b - a) * t
 }

@@ -10,23 +10,20 @@
 mod apron;
 mod droplets;
 mod grid;
-#[cfg(test)]
-mod pictures;
 mod shape;
+mod stage;
 mod streams;
 #[cfg(test)]
 mod tests;
 mod thermal;
 mod water;
 
-#[cfg(test)]
-pub(crate) use pictures::{cpu_s, write as write_picture};
-
 use serde::{Deserialize, Serialize};
 
 use crate::model::{Heightfield, Landform};
 use grid::Grid;
 use shape::Shape;
+pub use stage::LandStage;
 
 /// Metres from edge to edge of the walkable field.
 pub const FIELD_M: f32 = 1024.0;
@@ -35,36 +32,22 @@ const FINE: u32 = 513;
 /// Samples a side of the grids that rivers work on, coarse to fine (8 m and 4 m spacing).
 const COARSE: [u32; 2] = [129, 257];
 
-/// The genes that shape the land; names, ranges and meanings as in the parameter space.
+/// The genes that shape the land; names, units, ranges and meanings as in `configs/space.ron`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LandParams {
-    /// Which land of its kind.
     pub terrain_seed: u32,
-    /// Height in metres from the lowest to the highest point of the field.
     pub relief_m: f32,
-    /// Size in metres of the largest landforms.
     pub wavelength_m: f32,
-    /// Smoothness H: amplitude falls by lacunarity^−H from octave to octave.
     pub hurst: f32,
-    /// Frequency ratio from octave to octave.
     pub lacunarity: f32,
-    /// 0 rounded hills, 1 sharp ridges.
     pub ridged: f32,
-    /// Folding of the landforms, 0 to 1.
     pub domain_warp: f32,
-    /// How flat lowlands stay compared with heights, 0 to 1.
     pub offset: f32,
-    /// Steps in the slopes, 0 to 1.
     pub terraces: f32,
-    /// Time that rivers had to cut valleys, in steps.
     pub stream_power_steps: u32,
-    /// Raindrops over the whole field.
     pub droplets: f32,
-    /// Steepest slope in degrees that loose stone holds.
     pub talus_angle_deg: f32,
-    /// Level of the lake as part of the relief; 0 is dry.
     pub water_level: f32,
-    /// Altitude of the snow as part of the relief; 1 is none.
     pub snow_line: f32,
 }
 

@@ -3,15 +3,18 @@
 
 use std::ops::Range;
 
+use bytemuck::Zeroable;
 use rayon::prelude::*;
 
-use super::grid::{Grid, mix, smoothstep};
+use super::grid::Grid;
 use super::{FIELD_M, LandParams};
+use crate::math::{lerp, smoothstep};
 use crate::noise::gradient2;
+use crate::raster::raster;
 use crate::seed::noise_seed;
 
 /// Wavelength in metres of the finest octave.
-const FINEST_M: f32 = 6.0;
+const MIN_WAVELENGTH_M: f32 = 6.0;
 /// Wavelength in metres from which on octaves are computed on every second sample only.
 const BROAD_M: f32 = 40.0;
 /// Greatest part of its wavelength that a landform may rise before a massif carries the rest of the relief.
@@ -36,7 +39,7 @@ pub(super) struct Shape {
 }
 
 /// The sum so far at a place.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Zeroable)]
 struct Sum {
     /// The place in metres after folding.
     u: f32,
@@ -55,7 +58,7 @@ struct Octave {
     /// 0 rounded, 1 ridged.
     ridged: f32,
     /// Lattice units per metre along the octave's own axes, as cosine and sine.
-    turn: [f32; 2],
+    rotation: [f32; 2],
     shift: [f32; 2],
 }
 
@@ -66,14 +69,14 @@ impl Octave {
         // A lattice cell is about half a wave.
         let frequency = 2.0 / wavelength_m;
         let shift = [(seed >> 20) as f32 * 0.037, (seed >> 8 & 0xFFF) as f32 * 0.037];
-        let turn = [libm::cosf(angle) * frequency, libm::sinf(angle) * frequency];
-        Self { seed, wavelength_m, amplitude, ridged: 0.0, turn, shift }
+        let rotation = [libm::cosf(angle) * frequency, libm::sinf(angle) * frequency];
+        Self { seed, wavelength_m, amplitude, ridged: 0.0, rotation, shift }
     }
 
     #[inline]
     fn at(&self, x: f32, z: f32) -> f32 {
-        let u = x * self.turn[0] - z * self.turn[1] + self.shift[0];
-        let v = x * self.turn[1] + z * self.turn[0] + self.shift[1];
+        let u = x * self.rotation[0] - z * self.rotation[1] + self.shift[0];
+        let v = x * self.rotation[1] + z * self.rotation[0] + self.shift[1];
         gradient2(self.seed, u, v, 0)
     }
 }
@@ -97,7 +100,7 @@ impl Shape {
         let (mut wavelength_m, mut amplitude, mut ridged) =
             (p.wavelength_m * (1.0 + 0.7 * p.ridged), 1.0f32, p.ridged);
         // An octave lower than 2 cm is not worth its time.
-        while wavelength_m >= FINEST_M && amplitude * p.relief_m > 0.04 {
+        while wavelength_m >= MIN_WAVELENGTH_M && amplitude * p.relief_m > 0.04 {
             let walkable = amplitude.min(1.6 * walkable_amplitude_m(wavelength_m) / (share * p.relief_m));
             let octave = Octave::new(seed(0), octaves.len() as u32, wavelength_m, walkable);
             octaves.push(Octave { ridged, ..octave });
@@ -132,12 +135,11 @@ impl Shape {
         let mut grid = self.multifractal_grid(side);
         self.range = grid.range();
         self.lift = self.needed_lift();
-        let (n, spacing_m) = (side as usize, grid.spacing_m);
-        let place = |i: usize| (i as f32 - 0.5 * (side - 1) as f32) * spacing_m;
-        grid.values.par_chunks_mut(n).enumerate().for_each(|(j, row)| {
-            for (i, h) in row.iter_mut().enumerate() {
-                *h = self.finish(*h, place(i), place(j));
-            }
+        let n = side as usize;
+        let place = |i: usize| (i as f32 - 0.5 * (side - 1) as f32) * grid.spacing_m;
+        grid.values = raster(n, n, |j| {
+            let (shape, row, place, z) = (&*self, &grid.values[j * n..], &place, place(j));
+            move |i| shape.finish(row[i], place(i), z)
         });
         grid
     }
@@ -162,12 +164,9 @@ impl Shape {
         let half = side / 2 + 1;
         let spacing_m = FIELD_M / (half - 1) as f32;
         let place = |k: usize| (k as f32 - 0.5 * (half - 1) as f32) * spacing_m;
-        let mut sums: Vec<Sum> = vec![Sum::default(); (half * half) as usize];
-        sums.par_chunks_mut(half as usize).enumerate().for_each(|(j, row)| {
-            for (i, sum) in row.iter_mut().enumerate() {
-                *sum = self.start(place(i), place(j));
-                self.add(sum, 0..fine, 0.0);
-            }
+        let sums: Vec<Sum> = raster(half as usize, half as usize, |j| {
+            let (place, z) = (&place, place(j));
+            move |i| self.sum(place(i), z, 0..fine, 0.0)
         });
         let layer = |f: fn(&Sum) -> f32| {
             Grid { side: half, spacing_m, values: sums.iter().map(f).collect() }.resized(side).values
@@ -185,9 +184,13 @@ impl Shape {
 
     /// A sum of octaves, each weaker where the land so far is low (Musgrave's hybrid multifractal).
     fn multifractal(&self, x: f32, z: f32, spacing_m: f32) -> f32 {
+        self.total(&self.sum(x, z, 0..self.octaves.len(), spacing_m))
+    }
+
+    fn sum(&self, x: f32, z: f32, octaves: Range<usize>, spacing_m: f32) -> Sum {
         let mut sum = self.start(x, z);
-        self.add(&mut sum, 0..self.octaves.len(), spacing_m);
-        self.total(&sum)
+        self.add(&mut sum, octaves, spacing_m);
+        sum
     }
 
     /// Folds the plane: where the octaves are read for a place.
@@ -214,13 +217,13 @@ impl Shape {
             let round = octave.at(sum.u, sum.v) * 1.25;
             // A ridge where the noise crosses zero, rounded just enough to be walked over.
             let ridge = 1.0 - 2.4 * (round * round + 0.0009).sqrt();
-            sum.height += octave.amplitude * sum.weight * kept * mix(round, ridge, octave.ridged);
-            sum.weight = mix(1.0, smoothstep(-0.7, 0.6, sum.height), 0.35 + 0.6 * self.offset);
+            sum.height += octave.amplitude * sum.weight * kept * lerp(round, ridge, octave.ridged);
+            sum.weight = lerp(1.0, smoothstep(-0.7, 0.6, sum.height), 0.35 + 0.6 * self.offset);
         }
     }
 
     fn total(&self, sum: &Sum) -> f32 {
-        mix(sum.massif * 1.4, sum.height, self.share)
+        lerp(sum.massif * 1.4, sum.height, self.share)
     }
 
     /// From a raw value to metres: fitted, flattened where low, stepped, lifted in the middle.
@@ -228,7 +231,7 @@ impl Shape {
         let (lo, hi) = self.range;
         let part = soften((value - lo) / (hi - lo).max(1e-6));
         let flattened = if part > 0.0 {
-            mix(part, part * part, 0.75 * self.offset)
+            lerp(part, part * part, 0.75 * self.offset)
         } else {
             part * (1.0 - 0.75 * self.offset)
         };
@@ -268,7 +271,7 @@ impl Terraces {
         let t = part * self.steps + bend;
         let tread = t.floor();
         let stepped = tread + smoothstep(0.3, 1.0, t - tread);
-        (mix(t, stepped, 0.8 * strength) - bend) / self.steps
+        (lerp(t, stepped, 0.8 * strength) - bend) / self.steps
     }
 }
 

@@ -4,7 +4,6 @@
 
 use super::LandParams;
 use super::grid::{self, Grid};
-use super::thermal::settle;
 use crate::noise::hash01;
 use crate::seed::noise_seed;
 
@@ -33,11 +32,9 @@ pub(super) fn carve_valleys(land: &mut Grid, loose: &mut Grid, params: &LandPara
             drainage.cut(&mut after, base_m);
             creep(&mut after, params.talus_angle_deg + 10.0);
         }
-        let mut gained = before.map(|_| 0.0);
-        settle(&mut gained, &before, &after);
+        let gained = after.zip(&before, |after, before| (after - before).max(0.0)).resized(land.side);
         grid::add_change(land, &before, &after);
-        let gained = gained.resized(land.side);
-        loose.values.iter_mut().zip(&gained.values).for_each(|(l, g)| *l += g.max(0.0));
+        *loose = loose.zip(&gained, |loose, gained| loose + gained.max(0.0));
     }
 }
 
@@ -46,8 +43,8 @@ pub(super) fn flow(land: &Grid, side: u32) -> Grid {
     let coarse = land.resized(side);
     let cell = coarse.spacing_m * coarse.spacing_m;
     let areas = Drainage::new(&coarse, 0).spread_areas(&coarse);
-    let most = areas.iter().fold(cell, |a, &b| a.max(b));
-    let scale = 1.0 / libm::logf(most / (4.0 * cell)).max(1.0);
+    let greatest = areas.iter().fold(cell, |a, &b| a.max(b));
+    let scale = 1.0 / libm::logf(greatest / (4.0 * cell)).max(1.0);
     let values = areas.iter().map(|a| (libm::logf((a / (4.0 * cell)).max(1.0)) * scale).min(1.0)).collect();
     Grid { values, ..coarse }.smoothed()
 }
@@ -87,15 +84,18 @@ impl Drainage {
         let n = self.side;
         let (lo, hi) = land.range();
         let scale = (BUCKETS - 1) as f32 / (hi - lo).max(1e-3);
-        let bucket = |h: f32| ((h - lo) * scale) as usize;
-        let mut queue = Queue::new(n * n);
+        let bucket = |h: f32| (((h - lo) * scale) as usize).min(BUCKETS - 1);
+        // Buckets of samples, first come first served within each.
+        let mut queue: Vec<Vec<u32>> = vec![Vec::new(); BUCKETS];
         let mut seen = vec![false; n * n];
         for k in (0..n * n).filter(|k| k % n == 0 || k % n == n - 1 || k / n == 0 || k / n == n - 1) {
             seen[k] = true;
-            queue.push(bucket(self.filled[k]), k as u32);
+            queue[bucket(self.filled[k])].push(k as u32);
         }
         for at in 0..BUCKETS {
-            while let Some(k) = queue.pop(at) {
+            let mut next = 0;
+            while let Some(&k) = queue[at].get(next) {
+                next += 1;
                 self.rank[k as usize] = self.order.len() as u32;
                 self.order.push(k);
                 let level = self.filled[k as usize];
@@ -106,7 +106,7 @@ impl Drainage {
                     seen[m] = true;
                     self.receiver[m] = k;
                     self.filled[m] = self.filled[m].max(level);
-                    queue.push(bucket(self.filled[m]).max(at), m as u32);
+                    queue[bucket(self.filled[m]).max(at)].push(m as u32);
                 }
             }
         }
@@ -236,40 +236,4 @@ fn neighbours(n: usize, k: usize) -> impl Iterator<Item = (usize, usize)> {
         let inside = x >= 0 && y >= 0 && x < n as i32 && y < n as i32;
         inside.then(|| (way, y as usize * n + x as usize))
     })
-}
-
-/// A queue of samples in buckets, first come first served within each.
-struct Queue {
-    first: Vec<u32>,
-    last: Vec<u32>,
-    next: Vec<u32>,
-}
-
-const NONE: u32 = u32::MAX;
-
-impl Queue {
-    fn new(count: usize) -> Self {
-        Self { first: vec![NONE; BUCKETS], last: vec![NONE; BUCKETS], next: vec![NONE; count] }
-    }
-
-    fn push(&mut self, bucket: usize, sample: u32) {
-        let bucket = bucket.min(BUCKETS - 1);
-        match self.last[bucket] {
-            NONE => self.first[bucket] = sample,
-            last => self.next[last as usize] = sample,
-        }
-        self.last[bucket] = sample;
-    }
-
-    fn pop(&mut self, bucket: usize) -> Option<u32> {
-        let sample = self.first[bucket];
-        if sample == NONE {
-            return None;
-        }
-        self.first[bucket] = self.next[sample as usize];
-        if self.first[bucket] == NONE {
-            self.last[bucket] = NONE;
-        }
-        Some(sample)
-    }
 }

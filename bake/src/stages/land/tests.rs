@@ -73,10 +73,10 @@ fn any_genes_give_finite_land_of_the_relief_asked_for() {
             (land.field.heights_m.len(), land.flow.len(), land.deposit.len()),
             (513 * 513, 513 * 513, 513 * 513)
         );
-        let (lo, hi) = land.field.range_m();
+        let [lo, hi] = land.field.range_m();
         assert!((hi - lo - params.relief_m).abs() < 0.04 * params.relief_m, "{} for {params:?}", hi - lo);
         assert!(land.flow.iter().chain(&land.deposit).all(|v| (0.0..=1.0).contains(v)), "{params:?}");
-        let (_, far) = land.apron.range_m();
+        let [_, far] = land.apron.range_m();
         assert!(far < hi + 1.6 * params.relief_m + 60.0, "the horizon towers over {params:?}");
         assert_eq!(params.snow_line > 0.999, land.snow_line_m > far.max(hi));
     }

@@ -4,7 +4,8 @@
 use rayon::prelude::*;
 
 use super::LandParams;
-use super::grid::{Grid, smoothstep};
+use super::grid::Grid;
+use crate::math::{lerp, smoothstep};
 use crate::noise::{fbm2, gradient2};
 use crate::seed::noise_seed;
 
@@ -14,10 +15,10 @@ const RIBS_M: f32 = 2.2;
 /// Slides the land and adds what came to rest to the `loose` layer.
 pub(super) fn slide(land: &mut Grid, loose: &mut Grid, params: &LandParams) {
     let hardness = hardness(land.side, params);
-    for sweeps in [4; 6] {
+    for _ in 0..6 {
         let steepest = steepest_drops(&hardness, loose, land.spacing_m, params.talus_angle_deg);
         let before = land.clone();
-        for sweep in 0..sweeps {
+        for sweep in 0..4 {
             relax(land, &steepest, sweep % 2 == 1);
         }
         settle(loose, &before, land);
@@ -68,13 +69,7 @@ fn steepest_drops(hardness: &Grid, loose: &Grid, spacing_m: f32, talus_deg: f32)
     let drop_m = |deg: f32| libm::tanf(deg.to_radians()) * spacing_m;
     let (talus, soft, hard) =
         (drop_m(talus_deg), drop_m(talus_deg + 5.0), drop_m((talus_deg + 15.0).min(54.0)));
-    let pairs = hardness.values.iter().zip(&loose.values);
-    pairs
-        .map(|(h, l)| {
-            let bare = soft + (hard - soft) * h;
-            bare + (talus - bare) * (l * 4.0).min(1.0)
-        })
-        .collect()
+    hardness.zip(loose, |h, l| lerp(lerp(soft, hard, h), talus, (l * 4.0).min(1.0))).values
 }
 
 /// One Jacobi sweep over four neighbours, the straight or the diagonal ones: what is steeper than it holds moves.

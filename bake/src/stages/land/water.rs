@@ -1,7 +1,8 @@
 //! The lake's surface in metres, chosen so that enough land stays dry, and gentle shores around it.
 
 use super::LandParams;
-use super::grid::{Grid, mix};
+use super::grid::Grid;
+use crate::math::lerp;
 
 /// Part of the field that stays dry at least.
 const DRY: f32 = 0.5;
@@ -38,7 +39,7 @@ impl Level {
         for h in heights_m {
             let depth = *h - water_m;
             let t = depth / self.shore_m;
-            *h = water_m + depth * mix(1.0, 0.32, 1.0 / (1.0 + t * t));
+            *h = water_m + depth * lerp(1.0, 0.32, 1.0 / (1.0 + t * t));
         }
     }
 }

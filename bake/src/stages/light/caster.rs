@@ -1,27 +1,28 @@
-//! A tree's coarse mesh and the sun → its shadow as a small picture of transmittance (0–1), in the plane across the
+//! A tree's coarse mesh and the sun → its shadow as a small image of transmittance (0–1), in the plane across the
 //! light, in metres of the tree's own space.
 //!
 //! Coordinates in that plane, from the tree's foot: `a` to the right as the sun sees it, `c` up. Front faces count
 //! like back faces, so that the ground under the trunk is shadowed and no gap opens at its base (thesis 4.4.2).
-//! The picture is drawn finely and then filtered: by a texel of the light map as the sun sees it, so that edges are
+//! The image is drawn finely and then filtered: by a texel of the light map as the sun sees it, so that edges are
 //! smooth; and by the sun's disc, more the higher a part stands, so that the trunk's shadow is sharp and the
 //! crown's is soft.
 
 use std::ops::Range;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::sun::Sun;
 use crate::model::{Material, Mesh};
 
 /// Part of the light that a leaf card holds back: cards are about half empty.
 const LEAF_OPACITY: f32 = 0.55;
-/// Cells of a picture, at most, across and up.
-const MOST_CELLS: [usize; 2] = [96, 192];
+/// Greatest number of cells of an image, across and up.
+const MAX_CELLS: [usize; 2] = [96, 192];
 /// Cells per texel of the light map.
 const CELLS_PER_TEXEL: f32 = 4.0;
 /// Triangles wholly below this height are roots in the ground.
-const LOWEST_M: f32 = -0.25;
+const MIN_HEIGHT_M: f32 = -0.25;
+
 /// What a crown hides of the sky, as a sphere squashed to its height.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Crown {
@@ -62,18 +63,18 @@ fn opacity(material: Material) -> f32 {
     if matches!(material, Material::Leaf | Material::Blossom) { LEAF_OPACITY } else { 1.0 }
 }
 
-/// The picture.
+/// A tree's shadow.
 pub(super) struct Shadow {
     /// Rows from low `c` to high.
     pub transmittance: Vec<f32>,
     pub columns: usize,
     pub rows: usize,
     /// Plane coordinates of the first cell's middle, and cells per metre.
-    pub origin: [f32; 2],
-    pub cells_per_m: [f32; 2],
+    pub origin: Vec2,
+    pub cells_per_m: Vec2,
     /// Least and greatest (a, c) that it covers.
-    pub low: [f32; 2],
-    pub high: [f32; 2],
+    pub low: Vec2,
+    pub high: Vec2,
     /// Greatest distance of the tree's parts from its axis in metres.
     pub reach_m: f32,
 }
@@ -83,29 +84,28 @@ impl Shadow {
     pub fn draw(mesh: &Mesh, sun: &Sun, front: [f32; 2], texel_m: f32) -> Option<Self> {
         let project = |p: &[f32; 3]| {
             let (away, right) = (p[0] * front[0] + p[2] * front[1], p[2] * front[0] - p[0] * front[1]);
-            [right, p[1] * sun.cos_elevation - away * sun.sin_elevation]
+            Vec2::new(right, p[1] * sun.cos_elevation - away * sun.sin_elevation)
         };
-        let points: Vec<[f32; 2]> = mesh.positions.iter().map(project).collect();
-        let first = points.first()?;
-        let fold = |f: fn(f32, f32) -> f32| points.iter().fold(*first, |m, p| [f(m[0], p[0]), f(m[1], p[1])]);
-        let (low, high) = (fold(f32::min), fold(f32::max));
+        let points: Vec<Vec2> = mesh.positions.iter().map(project).collect();
+        let first = *points.first()?;
+        let (low, high) = points.iter().fold((first, first), |(low, high), &p| (low.min(p), high.max(p)));
         let squares = mesh.positions.iter().map(|p| p[0] * p[0] + p[2] * p[2]);
         let reach_m = squares.fold(0.0, f32::max).sqrt();
         let top_m = mesh.positions.iter().fold(0.0_f32, |top, p| top.max(p[1]));
         let filter = Filter::new(sun, texel_m, top_m);
-        let border = filter.widths(top_m).map(|width| width + texel_m * 0.25);
-        let low = [low[0] - border[0], low[1] - border[1]];
-        let high = [high[0] + border[0], high[1] + border[1]];
+        let border = Vec2::from_array(filter.widths(top_m)) + texel_m * 0.25;
+        let (low, high) = (low - border, high + border);
         let cells = |axis: usize, texel_m: f32| {
             let wanted = ((high[axis] - low[axis]) * CELLS_PER_TEXEL / texel_m) as usize + 1;
-            wanted.clamp(4, MOST_CELLS[axis])
+            wanted.clamp(4, MAX_CELLS[axis])
         };
         let (columns, rows) = (cells(0, texel_m), cells(1, texel_m * sun.sin_elevation.max(0.02)));
-        let cells_per_m = [columns as f32 / (high[0] - low[0]), rows as f32 / (high[1] - low[1])];
-        let origin = [low[0] + 0.5 / cells_per_m[0], low[1] + 0.5 / cells_per_m[1]];
+        let cells_per_m = Vec2::new(columns as f32, rows as f32) / (high - low);
+        let origin = low + 0.5 / cells_per_m;
         let transmittance = vec![1.0; columns * rows];
         let mut shadow = Self { transmittance, columns, rows, origin, cells_per_m, low, high, reach_m };
-        let grid: Vec<[f32; 2]> = points.iter().map(|&p| shadow.cell(p)).collect();
+        // In cells; whole numbers are middles.
+        let grid: Vec<Vec2> = points.iter().map(|&p| (p - origin) * cells_per_m).collect();
         let slabs = filter.slabs(top_m);
         for (slab, range) in slabs.windows(2).enumerate() {
             let mut layer = vec![1.0; columns * rows];
@@ -121,16 +121,11 @@ impl Shadow {
         Some(shadow)
     }
 
-    /// Plane coordinates → cells; whole numbers are middles.
-    fn cell(&self, [a, c]: [f32; 2]) -> [f32; 2] {
-        [(a - self.origin[0]) * self.cells_per_m[0], (c - self.origin[1]) * self.cells_per_m[1]]
-    }
-
     /// Draws the triangles whose middle lies in a range of heights; the rows that it touched.
     fn draw_slab(
         &self,
         mesh: &Mesh,
-        grid: &[[f32; 2]],
+        grid: &[Vec2],
         range: [f32; 2],
         layer: &mut [f32],
     ) -> Option<Range<usize>> {
@@ -140,7 +135,7 @@ impl Shadow {
             for triangle in &part.triangles {
                 let heights = triangle.map(|v| mesh.positions[v as usize][1]);
                 let middle = (heights[0] + heights[1] + heights[2]) / 3.0;
-                if middle >= range[0] && middle < range[1] && heights.iter().any(|&y| y > LOWEST_M) {
+                if middle >= range[0] && middle < range[1] && heights.iter().any(|&y| y > MIN_HEIGHT_M) {
                     let rows = self.fill(triangle.map(|v| grid[v as usize]), left, layer);
                     let before = drawn.unwrap_or(rows.clone());
                     drawn = Some(before.start.min(rows.start)..before.end.max(rows.end));
@@ -152,18 +147,17 @@ impl Shadow {
 
     /// Multiplies the cells whose middle lies in a triangle; edges belong to one of the triangles that share them.
     /// Returns its rows.
-    fn fill(&self, [a, b, c]: [[f32; 2]; 3], left: f32, layer: &mut [f32]) -> Range<usize> {
-        let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-        let corners = if area > 0.0 { [a, b, c] } else { [a, c, b] };
+    fn fill(&self, [a, b, c]: [Vec2; 3], left: f32, layer: &mut [f32]) -> Range<usize> {
+        let corners = if (b - a).perp_dot(c - a) > 0.0 { [a, b, c] } else { [a, c, b] };
         // Each edge as its crossing with row 0 and its run per row; rising edges bound the right, falling the left.
         let edges: [(f32, f32, f32); 3] = std::array::from_fn(|k| {
             let (p, q) = (corners[k], corners[(k + 1) % 3]);
-            let rise = q[1] - p[1];
-            let run = if rise == 0.0 { 0.0 } else { (q[0] - p[0]) / rise };
-            (p[0] - p[1] * run, run, rise)
+            let rise = q.y - p.y;
+            let run = if rise == 0.0 { 0.0 } else { (q.x - p.x) / rise };
+            (p.x - p.y * run, run, rise)
         });
-        let low = ceil(a[1].min(b[1]).min(c[1]));
-        let high = ceil(a[1].max(b[1]).max(c[1])).min(self.rows);
+        let low = ceil(a.y.min(b.y).min(c.y));
+        let high = ceil(a.y.max(b.y).max(c.y)).min(self.rows);
         for row in low..high {
             let (mut from, mut to) = (0.0_f32, self.columns as f32);
             for (start, run, rise) in edges {
@@ -238,20 +232,20 @@ struct Filter {
     texel_m: [f32; 2],
     /// Radius of the sun's disc on the ground's side, per metre of height.
     spread: f32,
-    most_m: f32,
+    max_disc_m: f32,
 }
 
 impl Filter {
     fn new(sun: &Sun, texel_m: f32, top_m: f32) -> Self {
         let sin_elevation = sun.sin_elevation.max(0.02);
         let texel_m = [texel_m, texel_m * sin_elevation];
-        Self { texel_m, spread: sun.sin_radius / sin_elevation, most_m: 0.6 * top_m.max(0.0) }
+        Self { texel_m, spread: sun.sin_radius / sin_elevation, max_disc_m: 0.6 * top_m.max(0.0) }
     }
 
     /// Widths across and up of a box that, applied twice, spreads as much as a texel and the disc together, for
     /// parts at a height (the variance of a box is width²/12, of a disc radius²/4).
     fn widths(&self, height_m: f32) -> [f32; 2] {
-        let disc = (height_m * self.spread).min(self.most_m);
+        let disc = (height_m * self.spread).min(self.max_disc_m);
         self.texel_m.map(|texel| (6.0 * (disc * disc / 4.0 + texel * texel / 4.0)).sqrt())
     }
 

@@ -8,12 +8,14 @@
 
 use rayon::prelude::*;
 
+use crate::math::{cell, lerp};
 use crate::model::Heightfield;
+use crate::raster::raster;
 
 /// Horizon where all land ends: level.
 const OPEN: f32 = 0.0;
-/// The least slope: looking down a cliff.
-const LEAST: f32 = -4.0;
+/// The lowest slope: looking down a cliff.
+const MIN: f32 = -4.0;
 
 /// What stands around the field and how far to look, in metres from the field's border.
 pub(super) struct Beyond<'a> {
@@ -30,20 +32,19 @@ pub(super) fn slopes(field: &Heightfield, beyond: &Beyond, towards: [f32; 2]) ->
         hull.clear();
         lines.sweep(beyond, lines.first + line as i32, hull, slopes);
     });
-    let mut slopes = vec![0.0; side * side];
-    slopes.par_chunks_mut(side).enumerate().for_each(|(j, row)| {
-        for (i, slope) in row.iter_mut().enumerate() {
-            let (along, across) = if lines.along_x { (i, j) } else { (j, i) };
-            // The sample lies between two lines.
-            let at = across as f32 - lines.drift * along as f32 - lines.first as f32;
-            let whole = at as usize;
-            let part = at - whole as f32;
-            let near = swept[whole * side + along];
-            let next = swept[(whole + 1).min(lines.count - 1) * side + along];
-            *slope = near + (next - near) * part;
-        }
-    });
-    slopes
+    let slope = |i: usize, j: usize| {
+        let (along, across) = if lines.along_x { (i, j) } else { (j, i) };
+        // The sample lies between two lines.
+        let at = across as f32 - lines.drift * along as f32 - lines.first as f32;
+        let whole = at as usize;
+        let near = swept[whole * side + along];
+        let next = swept[(whole + 1).min(lines.count - 1) * side + along];
+        lerp(near, next, at - whole as f32)
+    };
+    raster(side, side, |j| {
+        let slope = &slope;
+        move |i| slope(i, j)
+    })
 }
 
 /// A point of the hull: metres along the line, away from where the horizon is looked for, and its height.
@@ -122,13 +123,10 @@ impl<'a> Lines<'a> {
     #[inline]
     fn height_m(&self, along: usize, across: f32) -> f32 {
         let side = self.field.side as usize;
-        let at = across.clamp(0.0, (side - 1) as f32);
-        let whole = (at as usize).min(side - 2);
-        let part = at - whole as f32;
+        let (whole, part) = cell(across.clamp(0.0, (side - 1) as f32), side);
         let index = if self.along_x { whole * side + along } else { along * side + whole };
         let next = if self.along_x { index + side } else { index + 1 };
-        let (near, far) = (self.field.heights_m[index], self.field.heights_m[next]);
-        near + (far - near) * part
+        lerp(self.field.heights_m[index], self.field.heights_m[next], part)
     }
 }
 
@@ -141,5 +139,5 @@ fn tangent(hull: &mut Vec<Point>, [at, height]: Point) -> f32 {
         }
         hull.pop();
     }
-    hull.last().map_or(OPEN, |top| ((top[1] - height) / (at - top[0])).max(LEAST))
+    hull.last().map_or(OPEN, |top| ((top[1] - height) / (at - top[0])).max(MIN))
 }

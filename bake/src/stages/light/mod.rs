@@ -1,30 +1,31 @@
-//! Sun, sky, land and trees → light on the ground: one 8-bit picture over the field (thesis 3.3 and 4.4.2). Linear
+//! Sun, sky, land and trees → light on the ground: one 8-bit image over the field (thesis 3.3 and 4.4.2). Linear
 //! fractions of what open level ground receives; metres; row 0 is north. What R, G and B mean: [`LightMap`].
 //!
 //! - [`horizon`]: how high the land stands towards an azimuth, for each sample (Timonen & Westerholm 2010);
 //! - [`sun`]: from there, which part of the sun's disc is above the land: a soft edge without sampling;
 //! - [`sky`]: from a fan of azimuths, which part of the sky's irradiance arrives;
-//! - [`caster`]: a tree's shadow as a filtered picture in the plane across the light;
-//! - [`trees`]: those pictures laid onto the ground, where it really is, for each tree.
+//! - [`caster`]: a tree's shadow as a filtered image in the plane across the light;
+//! - [`trees`]: those images laid onto the ground for each tree.
 
 mod caster;
 mod horizon;
 mod sky;
+mod stage;
 mod sun;
 mod trees;
 
 #[cfg(test)]
-mod pictures;
-#[cfg(test)]
 mod tests;
+
+use std::borrow::Borrow;
 
 use rayon::prelude::*;
 
-use crate::model::{Image8, Landform, LightMap, Mesh, Placement, SkyLight};
+use crate::math::{cell, lerp_array};
+use crate::model::{Instance, Landform, LightMap, Mesh, SkyLight};
+use crate::raster::square_image;
+pub use stage::LightMapStage;
 use sun::Sun;
-
-/// Texels a side of the light map by default: one per metre.
-pub const DEFAULT_SIDE_PX: u32 = 1024;
 
 /// The light on the field of `land`, `side_px`² texels (at least one).
 ///
@@ -34,10 +35,11 @@ pub const DEFAULT_SIDE_PX: u32 = 1024;
 pub fn light_map(
     light: &SkyLight,
     land: &Landform,
-    placement: &Placement,
-    casters: &[Mesh],
+    trees: &[Instance],
+    casters: &[impl Borrow<Mesh>],
     side_px: u32,
 ) -> LightMap {
+    let casters: Vec<&Mesh> = casters.iter().map(Borrow::borrow).collect();
     let side = side_px.max(1) as usize;
     let sun = Sun::of(light);
     let samples = land.field.side as usize;
@@ -47,21 +49,19 @@ pub fn light_map(
     let sky_side = sky::side(land);
     let sky_on_land = sky::on_land(light, land, sky_side);
     let to_sky = Resampling::from_samples(side, sky_side);
-    let shade = trees::shade(&sun, land, placement, casters, &ground_m, side);
+    let shade = trees::shade(&sun, land, trees, &casters, &ground_m, side);
     let to_crowns = Resampling::from_texels(side, shade.crown_side);
-    let mut image = Image8::new(side as u32, side as u32, 3);
-    image.data.par_chunks_mut(3 * side).enumerate().for_each(|(j, row)| {
+    let image = square_image(side, |j| {
         let struck = to_samples.row(j, &sun_on_land);
         let sky = to_sky.row(j, sky_on_land.as_chunks::<1>().0);
         let crowns = to_crowns.row(j, shade.crowns.as_chunks::<1>().0);
-        let leaves = &shade.sun[j * side..(j + 1) * side];
-        for (i, texel) in row.chunks_exact_mut(3).enumerate() {
+        let (leaves, sun) = (&shade.sun[j * side..(j + 1) * side], &sun);
+        move |i| {
             let [margin, edge, cosine, _] = struck[i];
             let visible = sun.visibility(margin, edge) * leaves[i];
             let noise = dither(i, j);
-            texel[0] = quantise((sky[i][0] * crowns[i][0]).min(1.0), noise);
-            texel[1] = quantise(cosine.max(0.0) * visible, noise);
-            texel[2] = quantise(visible, noise);
+            let sky = (sky[i][0] * crowns[i][0]).min(1.0);
+            [sky, cosine.max(0.0) * visible, visible].map(|value| quantise(value, noise))
         }
     });
     LightMap { image }
@@ -98,17 +98,16 @@ impl Resampling {
         Self::new(texels, side, |at| at * (side - 1) as f32)
     }
 
-    /// From another picture's texels.
+    /// From another image's texels.
     fn from_texels(texels: usize, side: usize) -> Self {
         Self::new(texels, side, |at| at * side as f32 - 0.5)
     }
 
     fn new(texels: usize, side: usize, place: impl Fn(f32) -> f32) -> Self {
-        let last = side.saturating_sub(2);
         let places = (0..texels).map(|texel| {
             let at = place((texel as f32 + 0.5) / texels as f32).clamp(0.0, (side - 1) as f32);
-            let whole = (at as usize).min(last);
-            (whole as u32, at - whole as f32)
+            let (whole, part) = cell(at, side.max(2));
+            (whole as u32, part)
         });
         Self { side, places: places.collect() }
     }
@@ -118,11 +117,10 @@ impl Resampling {
         let (j, v) = self.places[texel_row];
         let line = |j: usize| &grid[j * self.side..(j + 1) * self.side];
         let (north, south) = (line(j as usize), line((j as usize + 1).min(self.side - 1)));
-        let blend =
-            |a: &[f32; N], b: &[f32; N], part: f32| std::array::from_fn(|n| a[n] + (b[n] - a[n]) * part);
-        let mut blended: Vec<[f32; N]> = north.iter().zip(south).map(|(n, s)| blend(n, s, v)).collect();
+        let mut blended: Vec<[f32; N]> =
+            north.iter().zip(south).map(|(&n, &s)| lerp_array(n, s, v)).collect();
         blended.push(blended[self.side - 1]);
-        let texel = |&(i, u): &(u32, f32)| blend(&blended[i as usize], &blended[i as usize + 1], u);
+        let texel = |&(i, u): &(u32, f32)| lerp_array(blended[i as usize], blended[i as usize + 1], u);
         self.places.iter().map(texel).collect()
     }
 

@@ -5,7 +5,9 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::horizon::{Beyond, slopes};
+use crate::math::interpolate;
 use crate::model::{Heightfield, Landform, SkyLight};
+use crate::raster::raster;
 
 /// Azimuths in which the horizon is looked for.
 const AZIMUTHS: usize = 8;
@@ -13,7 +15,7 @@ const AZIMUTHS: usize = 8;
 const TABLE_STEPS: usize = 128;
 const ELEVATION_STEPS: usize = 1024;
 /// Samples a side at which the sky is computed, at most: it changes slowly.
-const MOST_SAMPLES: u32 = 257;
+const MAX_SAMPLES: u32 = 257;
 /// How far hills beyond the field count, in metres.
 const REACH_M: f32 = 2500.0;
 
@@ -23,7 +25,7 @@ pub(super) fn side(land: &Landform) -> usize {
 }
 
 fn stride(land: &Landform) -> u32 {
-    (land.field.side - 1).div_ceil(MOST_SAMPLES - 1).next_power_of_two()
+    (land.field.side - 1).div_ceil(MAX_SAMPLES - 1).next_power_of_two()
 }
 
 /// The sky's part for `side`² samples over the field.
@@ -60,19 +62,14 @@ fn smoothed(field: &Heightfield, stride: u32, side: usize) -> Heightfield {
         return field.clone();
     }
     let last = field.side - 1;
-    let mut heights_m = vec![0.0; side * side];
-    heights_m.par_chunks_mut(side).enumerate().for_each(|(j, row)| {
-        let j = j as u32 * stride;
-        let rows = [j.saturating_sub(stride / 2), j, (j + stride / 2).min(last)];
-        for (i, height) in row.iter_mut().enumerate() {
-            let i = i as u32 * stride;
-            let columns = [i.saturating_sub(stride / 2), i, (i + stride / 2).min(last)];
-            let [north, middle, south] = rows.map(|j| {
-                let [west, here, east] = columns.map(|i| field.at(i, j));
-                0.25 * west + 0.5 * here + 0.25 * east
-            });
-            *height = 0.25 * north + 0.5 * middle + 0.25 * south;
-        }
+    let around = |k: usize| {
+        let k = k as u32 * stride;
+        [k.saturating_sub(stride / 2), k, (k + stride / 2).min(last)]
+    };
+    let mean = |[a, b, c]: [f32; 3]| 0.25 * a + 0.5 * b + 0.25 * c;
+    let heights_m = raster(side, side, |j| {
+        let rows = around(j);
+        move |i| mean(rows.map(|j| mean(around(i).map(|i| field.at(i, j)))))
     });
     Heightfield { side: side as u32, spacing_m: field.spacing_m * stride as f32, heights_m }
 }
@@ -91,6 +88,7 @@ impl Table {
         let step = std::f32::consts::FRAC_PI_2 / ELEVATION_STEPS as f32;
         let (mut level, mut wall) = (0.0, 0.0);
         let mut entry = TABLE_STEPS;
+        let radiance = radiance_by_elevation(light);
         // From the zenith down; the table's entry is filled when its horizon is reached.
         for k in (0..ELEVATION_STEPS).rev() {
             let elevation = (k as f32 + 0.5) * step;
@@ -99,7 +97,7 @@ impl Table {
                 (upright[entry], sideways[entry]) = (level, wall);
                 entry -= 1;
             }
-            let radiance = radiance(light, elevation);
+            let radiance = radiance(elevation);
             level += radiance * sin * cos * step;
             wall += radiance * cos * cos * step;
         }
@@ -113,26 +111,17 @@ impl Table {
     fn arriving(&self, normal: Vec3, towards: [f32; 2], slope: f32) -> f32 {
         let slope = slope.max(0.0);
         let at = slope / (1.0 + slope * slope).sqrt() * TABLE_STEPS as f32;
-        let whole = (at as usize).min(TABLE_STEPS - 1);
-        let part = at - whole as f32;
-        let read = |table: &[f32]| table[whole] + (table[whole + 1] - table[whole]) * part;
         let facing = normal.x * towards[0] + normal.z * towards[1];
-        (normal.y * read(&self.upright) + facing * read(&self.sideways)).max(0.0)
+        let (upright, sideways) = (interpolate(&self.upright, at), interpolate(&self.sideways, at));
+        (normal.y * upright + facing * sideways).max(0.0)
     }
 }
 
-/// Luminance of the sky at an elevation; a sky that says nothing (or is black) is taken as even.
-fn radiance(light: &SkyLight, elevation_rad: f32) -> f32 {
+/// Luminance of the sky at an elevation in radians; a sky that says nothing or is black is taken as even.
+fn radiance_by_elevation(light: &SkyLight) -> impl Fn(f32) -> f32 + use<> {
     let zones = &light.zonal_radiance_linear;
-    let luminance = |zone: usize| {
-        let [r, g, b] = zones[zone];
-        (0.2126 * r + 0.7152 * g + 0.0722 * b).max(0.0)
-    };
-    if zones.iter().flatten().all(|&radiance| radiance <= 0.0) {
-        return 1.0;
-    }
-    let at = elevation_rad / std::f32::consts::FRAC_PI_2 * (zones.len() - 1) as f32;
-    let whole = (at as usize).min(zones.len().saturating_sub(2));
-    let next = (whole + 1).min(zones.len() - 1);
-    luminance(whole) + (luminance(next) - luminance(whole)) * (at - whole as f32)
+    let even = zones.len() < 2 || zones.iter().flatten().all(|&radiance| radiance <= 0.0);
+    let luminance = |&[r, g, b]: &[f32; 3]| (0.2126 * r + 0.7152 * g + 0.0722 * b).max(0.0);
+    let zones: Vec<f32> = if even { vec![1.0; 2] } else { zones.iter().map(luminance).collect() };
+    move |elevation| interpolate(&zones, elevation / std::f32::consts::FRAC_PI_2 * (zones.len() - 1) as f32)
 }

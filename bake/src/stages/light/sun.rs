@@ -4,10 +4,12 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::horizon::{Beyond, slopes};
+use crate::math::interpolate;
 use crate::model::{Landform, SkyLight};
+use crate::raster::raster;
 
-/// The least sine of the sun's angular radius, so that a point-like sun still has a defined edge (0.05°).
-const LEAST_RADIUS: f32 = 0.000_87;
+/// The smallest sine of the sun's angular radius, so that a point-like sun still has a defined edge (0.05°).
+const MIN_RADIUS: f32 = 0.000_87;
 /// Entries of the table of the disc's visible part.
 const DISC_STEPS: usize = 512;
 
@@ -32,7 +34,7 @@ impl Sun {
         let direction = light.sun_direction.normalize_or(Vec3::Y);
         let level = (direction.x * direction.x + direction.z * direction.z).sqrt();
         let towards = if level > 1.0e-6 { [direction.x / level, direction.z / level] } else { [1.0, 0.0] };
-        let sin_radius = libm::sinf(light.sun_angular_radius_rad.clamp(0.0, 0.5)).max(LEAST_RADIUS);
+        let sin_radius = libm::sinf(light.sun_angular_radius_rad.clamp(0.0, 0.5)).max(MIN_RADIUS);
         let disc = Disc::new();
         let open = disc.above(direction.y / sin_radius);
         Self { direction, towards, sin_elevation: direction.y, cos_elevation: level, sin_radius, open, disc }
@@ -74,9 +76,7 @@ impl Disc {
     /// The part above a line that passes `distance` radii below the middle: ½ + (asin d + d·√(1−d²))/π.
     #[inline]
     pub fn above(&self, distance: f32) -> f32 {
-        let at = (distance.clamp(-1.0, 1.0) + 1.0) * (0.5 * DISC_STEPS as f32);
-        let whole = (at as usize).min(DISC_STEPS - 1);
-        self.0[whole] + (self.0[whole + 1] - self.0[whole]) * (at - whole as f32)
+        interpolate(&self.0, (distance.clamp(-1.0, 1.0) + 1.0) * (0.5 * DISC_STEPS as f32))
     }
 }
 
@@ -85,8 +85,8 @@ impl Disc {
 pub(super) fn on_land(sun: &Sun, land: &Landform) -> Vec<[f32; 4]> {
     let field = &land.field;
     let side = field.side as usize;
-    let (lowest, _) = field.range_m();
-    let (_, highest) = land.apron.range_m();
+    let [lowest, _] = field.range_m();
+    let [_, highest] = land.apron.range_m();
     // Beyond this, even the highest hill stands below the sun's lower limb seen from the lowest place.
     let tan_limb = (sun.sin_elevation - sun.sin_radius).max(0.02) / sun.cos_elevation.max(1.0e-3);
     let beyond = Beyond { apron: &land.apron, reach_m: ((highest - lowest) / tan_limb).min(8000.0) };
@@ -96,17 +96,16 @@ pub(super) fn on_land(sun: &Sun, land: &Landform) -> Vec<[f32; 4]> {
         let above = (sun.sin_elevation - sun.cos_elevation * *slope) / (1.0 + *slope * *slope).sqrt();
         *slope = above / sun.sin_radius;
     });
-    let mut struck = vec![[0.0; 4]; side * side];
-    struck.par_chunks_mut(side).enumerate().for_each(|(j, row)| {
+    raster(side, side, |j| {
         let (north, south) = (j.saturating_sub(1) * side, (j + 1).min(side - 1) * side);
-        for (i, sample) in row.iter_mut().enumerate() {
+        let margin = &margin;
+        move |i| {
             let (west, east) = (i.saturating_sub(1), (i + 1).min(side - 1));
             let dx = margin[j * side + east] - margin[j * side + west];
             let dz = margin[south + i] - margin[north + i];
             let edge = 0.35 * (dx * dx + dz * dz).sqrt();
             let cosine = field.normal_at(i as u32, j as u32).dot(sun.direction);
-            *sample = [margin[j * side + i], edge, cosine, 0.0];
+            [margin[j * side + i], edge, cosine, 0.0]
         }
-    });
-    struck
+    })
 }

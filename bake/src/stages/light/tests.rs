@@ -8,7 +8,7 @@ use crate::model::{Heightfield, Instance, Material, Part, PartKind};
 use crate::noise::fbm2;
 
 /// A sky without clouds whose sun stands at an elevation and azimuth (clockwise from north), in degrees.
-pub(super) fn light(elevation_deg: f32, azimuth_deg: f32, sun_size_deg: f32) -> SkyLight {
+fn light(elevation_deg: f32, azimuth_deg: f32, sun_size_deg: f32) -> SkyLight {
     let (sin, cos) = libm::sincosf(elevation_deg.to_radians());
     let (east, north) = libm::sincosf(azimuth_deg.to_radians());
     SkyLight {
@@ -24,7 +24,7 @@ pub(super) fn light(elevation_deg: f32, azimuth_deg: f32, sun_size_deg: f32) -> 
 }
 
 /// Land of 1024 m with heights by a function of (x, z), its apron likewise.
-pub(super) fn land(side: u32, height_m: impl Fn(f32, f32) -> f32) -> Landform {
+fn land(side: u32, height_m: impl Fn(f32, f32) -> f32) -> Landform {
     let field = |side: u32, spacing_m: f32| {
         let place = |k: u32| (k as f32 - 0.5 * (side - 1) as f32) * spacing_m;
         let heights_m = (0..side * side).map(|k| height_m(place(k % side), place(k / side))).collect();
@@ -51,7 +51,7 @@ fn trunk(radius_m: f32, height_m: f32) -> Mesh {
     mesh
 }
 
-pub(super) fn at(template: u32, x: f32, y: f32, z: f32, turn_rad: f32, scale: f32) -> Instance {
+fn at(template: u32, x: f32, y: f32, z: f32, turn_rad: f32, scale: f32) -> Instance {
     let (sin, cos) = libm::sincosf(turn_rad);
     let world_from_tree =
         [[cos * scale, 0.0, sin * scale, x], [0.0, scale, 0.0, y], [-sin * scale, 0.0, cos * scale, z]];
@@ -59,7 +59,7 @@ pub(super) fn at(template: u32, x: f32, y: f32, z: f32, turn_rad: f32, scale: f3
 }
 
 fn bare(light: &SkyLight, land: &Landform, side_px: u32) -> LightMap {
-    light_map(light, land, &Placement::default(), &[], side_px)
+    light_map(light, land, &[], &[] as &[Mesh], side_px)
 }
 
 /// R, G, B at world (x, z).
@@ -159,7 +159,7 @@ fn a_trunks_shadow_touches_its_foot_and_points_away_from_the_sun() {
             for elevation in [25.0, 50.0] {
                 let light = light(elevation, azimuth, 0.53);
                 let (x, z) = (40.5, -20.5);
-                let placement = Placement { instances: vec![at(0, x, slope(x, z), z, turn, 1.0)] };
+                let placement = vec![at(0, x, slope(x, z), z, turn, 1.0)];
                 let map = light_map(&light, &land, &placement, &[trunk(1.5, 15.0)], 1024);
                 let open = bare(&light, &land, 1024);
                 let s = light.sun_direction;
@@ -192,12 +192,12 @@ fn a_trunks_shadow_touches_its_foot_and_points_away_from_the_sun() {
 fn a_shadow_climbs_a_step_where_the_land_does() {
     // Sun in the west at 45°: a trunk of 20 m at x = 0 shades 20 m of plain, but only 8 m if a step of 12 m rises.
     let land = land(513, |x, _| if x > 4.0 { 12.0 } else { 0.0 });
-    let placement = Placement { instances: vec![at(0, 0.0, 0.0, 0.5, 0.0, 1.0)] };
+    let placement = vec![at(0, 0.0, 0.0, 0.5, 0.0, 1.0)];
     let map = light_map(&light(45.0, 270.0, 0.53), &land, &placement, &[trunk(1.0, 20.0)], 1024);
     assert!(texel(&map, 6.5, 0.5)[2] < 128 && texel(&map, 12.0, 0.5)[2] == 255);
 }
 
-fn forest(count: u32) -> (Landform, Placement, Vec<Mesh>) {
+fn forest(count: u32) -> (Landform, Vec<Instance>, Vec<Mesh>) {
     let height = |x: f32, z: f32| 80.0 * fbm2(5, x / 300.0, z / 300.0, 5, 0.5, 0);
     let land = land(129, height);
     let mut leafy = trunk(0.4, 9.0);
@@ -207,7 +207,7 @@ fn forest(count: u32) -> (Landform, Placement, Vec<Mesh>) {
         let (x, z) = (x * 1000.0 - 500.0, z * 1000.0 - 500.0);
         at(k % 2, x, height(x, z), z, k as f32, 0.7 + (k % 7) as f32 * 0.1)
     });
-    (land, Placement { instances: instances.collect() }, vec![trunk(0.5, 12.0), leafy])
+    (land, instances.collect(), vec![trunk(0.5, 12.0), leafy])
 }
 
 #[test]
@@ -228,7 +228,7 @@ fn more_trees_never_make_it_lighter() {
     let light = light(35.0, 100.0, 1.0);
     let mut last = bare(&light, &land, 256);
     for count in [1, 30, 120] {
-        let some = Placement { instances: placement.instances[..count].to_vec() };
+        let some = placement[..count].to_vec();
         let map = light_map(&light, &land, &some, &casters, 256);
         assert!(map.image.data.iter().zip(&last.image.data).all(|(now, before)| now <= before));
         assert_ne!(map, last);
@@ -240,11 +240,11 @@ fn more_trees_never_make_it_lighter() {
 fn nothing_breaks_on_odd_input() {
     let (land, mut placement, mut casters) = forest(20);
     casters.push(Mesh::default());
-    placement.instances[0].template = 2;
-    placement.instances[1].template = 99;
-    placement.instances[2].world_from_tree = [[0.0; 4]; 3];
-    placement.instances[3].world_from_tree[1][3] = f32::NAN;
-    placement.instances[4].world_from_tree[0][3] = 1e7;
+    placement[0].template = 2;
+    placement[1].template = 99;
+    placement[2].world_from_tree = [[0.0; 4]; 3];
+    placement[3].world_from_tree[1][3] = f32::NAN;
+    placement[4].world_from_tree[0][3] = 1e7;
     let mut odd = light(-5.0, 0.0, 0.0);
     odd.zonal_radiance_linear.clear();
     for side_px in [1, 2, 33] {

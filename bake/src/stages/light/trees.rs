@@ -12,16 +12,16 @@ use rayon::prelude::*;
 
 use super::caster::{Crown, Shadow};
 use super::sun::Sun;
-use crate::model::{Instance, Landform, Mesh, Placement};
+use crate::model::{Instance, Landform, Mesh};
 
 /// Directions around a template for which shadows are drawn.
 const DIRECTIONS: usize = 16;
 /// Rows of texels that one task works on.
 const BAND_ROWS: usize = 32;
 /// Shadows end here, in metres, however low the sun.
-const LONGEST_M: f32 = 1000.0;
-/// A crown's part of the sky below this is left out.
-const LEAST_CROWN: f32 = 0.008;
+const MAX_LENGTH_M: f32 = 1000.0;
+/// A crown that hides less of the sky than this is left out.
+const MIN_CROWN: f32 = 0.008;
 
 /// What trees leave of sun and sky.
 pub(super) struct Shade {
@@ -36,62 +36,70 @@ pub(super) struct Shade {
 pub(super) fn shade(
     sun: &Sun,
     land: &Landform,
-    placement: &Placement,
-    casters: &[Mesh],
+    trees: &[Instance],
+    casters: &[&Mesh],
     ground_m: &[f32],
     side: usize,
 ) -> Shade {
-    let ground = Ground { heights_m: ground_m, side, extent_m: land.field.extent_m() };
-    let mut shade = Shade { sun: vec![1.0; side * side], crowns: Vec::new(), crown_side: side.div_ceil(2) };
-    shade.crowns = vec![1.0; shade.crown_side * shade.crown_side];
-    let crowns: Vec<Crown> = casters.iter().map(Crown::of).collect();
-    let poses: Vec<Pose> = placement.instances.iter().filter_map(|i| Pose::of(i, sun, casters)).collect();
-    let bowers: Vec<Bower> = poses.iter().filter_map(|pose| Bower::of(pose, &crowns)).collect();
-    bands(&mut shade.crowns, shade.crown_side, |first, rows| {
-        bowers.iter().for_each(|bower| bower.lay(&ground, first, rows, shade.crown_side));
+    let extent_m = land.field.extent_m();
+    let ground = Ground { heights_m: ground_m, texels: Texels { side, extent_m } };
+    let texels = Texels { side: side.div_ceil(2), extent_m };
+    let mut shade = Shade {
+        sun: vec![1.0; side * side],
+        crowns: vec![1.0; texels.side * texels.side],
+        crown_side: texels.side,
+    };
+    let crowns: Vec<Crown> = casters.iter().map(|caster| Crown::of(caster)).collect();
+    let poses: Vec<Pose> = trees.iter().filter_map(|i| Pose::of(i, sun, casters)).collect();
+    let crowns: Vec<_> =
+        poses.iter().filter_map(|pose| CrownShade::of(pose, &crowns[pose.template])).collect();
+    bands(&mut shade.crowns, texels.side, |first, rows| {
+        crowns.iter().for_each(|crown| crown.darken(&texels, first, rows));
     });
     if sun.is_up() {
-        let shadows = draw_shadows(sun, casters, &poses, ground.texel_m());
-        let laid = poses.par_iter().map(|pose| {
+        let shadows = draw_shadows(sun, casters, &poses, ground.texels.texel_m());
+        let placed = poses.par_iter().map(|pose| {
             let shadow = shadows[pose.template * DIRECTIONS + pose.direction].as_ref()?;
-            Laid::of(pose, shadow, sun, &ground)
+            PlacedShadow::of(pose, shadow, sun, &ground)
         });
-        let laid: Vec<Option<Laid>> = laid.collect();
+        let placed: Vec<Option<PlacedShadow>> = placed.collect();
         bands(&mut shade.sun, side, |first, rows| {
-            laid.iter().flatten().for_each(|laid| laid.lay(&ground, first, rows));
+            placed.iter().flatten().for_each(|shadow| shadow.darken(&ground, first, rows));
         });
     }
     shade
 }
 
-/// Runs `work(first row, rows)` on bands of a square picture.
-fn bands(picture: &mut [f32], side: usize, work: impl Fn(usize, &mut [f32]) + Sync) {
-    picture
-        .par_chunks_mut(BAND_ROWS * side)
-        .enumerate()
-        .for_each(|(band, rows)| work(band * BAND_ROWS, rows));
+/// Runs `work(first row, rows)` on bands of a square image.
+fn bands(image: &mut [f32], side: usize, work: impl Fn(usize, &mut [f32]) + Sync) {
+    let bands = image.par_chunks_mut(BAND_ROWS * side).enumerate();
+    bands.for_each(|(band, rows)| work(band * BAND_ROWS, rows));
 }
 
 /// The shadows that some instance needs.
-fn draw_shadows(sun: &Sun, casters: &[Mesh], poses: &[Pose], texel_m: f32) -> Vec<Option<Shadow>> {
+fn draw_shadows(sun: &Sun, casters: &[&Mesh], poses: &[Pose], texel_m: f32) -> Vec<Option<Shadow>> {
     let mut wanted = vec![false; casters.len() * DIRECTIONS];
     poses.iter().for_each(|pose| wanted[pose.template * DIRECTIONS + pose.direction] = true);
     let draw = |(index, &wanted): (usize, &bool)| {
-        let angle = (index % DIRECTIONS) as f32 * (std::f32::consts::TAU / DIRECTIONS as f32);
-        let front = [libm::cosf(angle), libm::sinf(angle)];
-        wanted.then(|| Shadow::draw(&casters[index / DIRECTIONS], sun, front, texel_m)).flatten()
+        let (caster, front) = (casters[index / DIRECTIONS], front(index % DIRECTIONS));
+        wanted.then(|| Shadow::draw(caster, sun, front, texel_m)).flatten()
     };
     wanted.par_iter().enumerate().map(draw).collect()
 }
 
-/// The texels' places and heights.
-struct Ground<'a> {
-    heights_m: &'a [f32],
+/// Unit vector (x, z) of a direction.
+fn front(direction: usize) -> [f32; 2] {
+    let angle = direction as f32 * (std::f32::consts::TAU / DIRECTIONS as f32);
+    [libm::cosf(angle), libm::sinf(angle)]
+}
+
+/// Where the texels of an image lie.
+struct Texels {
     side: usize,
     extent_m: f32,
 }
 
-impl Ground<'_> {
+impl Texels {
     fn texel_m(&self) -> f32 {
         self.extent_m / self.side as f32
     }
@@ -107,12 +115,20 @@ impl Ground<'_> {
     fn texel(&self, along_m: f32) -> f32 {
         (along_m + 0.5 * self.extent_m) / self.texel_m() - 0.5
     }
+}
 
+/// The light map's texels and their heights.
+struct Ground<'a> {
+    heights_m: &'a [f32],
+    texels: Texels,
+}
+
+impl Ground<'_> {
     /// Height of the texel nearest to a point; `None` off the field.
     fn height_m(&self, x_m: f32, z_m: f32) -> Option<f32> {
-        let (i, j) = (self.texel(x_m) + 0.5, self.texel(z_m) + 0.5);
-        let inside = |at: f32| at >= 0.0 && at < self.side as f32;
-        (inside(i) && inside(j)).then(|| self.heights_m[j as usize * self.side + i as usize])
+        let (i, j) = (self.texels.texel(x_m) + 0.5, self.texels.texel(z_m) + 0.5);
+        let inside = |at: f32| at >= 0.0 && at < self.texels.side as f32;
+        (inside(i) && inside(j)).then(|| self.heights_m[j as usize * self.texels.side + i as usize])
     }
 }
 
@@ -127,7 +143,7 @@ struct Pose {
 }
 
 impl Pose {
-    fn of(instance: &Instance, sun: &Sun, casters: &[Mesh]) -> Option<Self> {
+    fn of(instance: &Instance, sun: &Sun, casters: &[&Mesh]) -> Option<Self> {
         let template = instance.template as usize;
         let [x, y, z] = instance.world_from_tree.map(|row| Vec3::new(row[0], row[1], row[2]));
         let world_from_tree = Mat3::from_cols(x, y, z).transpose();
@@ -140,9 +156,7 @@ impl Pose {
         let to_sun = world_from_tree.inverse() * sun.direction;
         let turns = libm::atan2f(to_sun.z, to_sun.x) / std::f32::consts::TAU;
         let direction = ((turns + 1.0) * DIRECTIONS as f32 + 0.5) as usize % DIRECTIONS;
-        let angle = direction as f32 * (std::f32::consts::TAU / DIRECTIONS as f32);
-        let front = [libm::cosf(angle), libm::sinf(angle)];
-        Some(Self { template, direction, world_from_tree, foot, front })
+        Some(Self { template, direction, world_from_tree, foot, front: front(direction) })
     }
 
     /// How much it is widened in plan.
@@ -152,14 +166,12 @@ impl Pose {
     }
 }
 
-/// A shadow in its place. `u` and `v` are world metres in the plane across the light from the tree's foot, to the
-/// right as the sun sees it and up; `away` is metres in plan from the foot away from the sun.
-struct Laid<'a> {
+/// A shadow in its place on the ground. `u` and `v` are world metres in the plane across the light from the tree's foot,
+/// to the right as the sun sees it and up; `away` is metres in plan from the foot away from the sun.
+struct PlacedShadow<'a> {
     shadow: &'a Shadow,
+    sun: &'a Sun,
     foot: Vec3,
-    towards: [f32; 2],
-    sin_elevation: f32,
-    cos_elevation: f32,
     /// Cells of the shadow per metre of u and of v, and the foot's cell.
     per_u: Vec2,
     per_v: Vec2,
@@ -169,16 +181,14 @@ struct Laid<'a> {
     rows: [usize; 2],
 }
 
-impl<'a> Laid<'a> {
-    fn of(pose: &Pose, shadow: &'a Shadow, sun: &Sun, ground: &Ground) -> Option<Self> {
+impl<'a> PlacedShadow<'a> {
+    fn of(pose: &Pose, shadow: &'a Shadow, sun: &'a Sun, ground: &Ground) -> Option<Self> {
         let [fx, fz] = sun.towards;
         let project = |p: Vec3| {
-            Vec2::new(
-                p.z * fx - p.x * fz,
-                p.y * sun.cos_elevation - (p.x * fx + p.z * fz) * sun.sin_elevation,
-            )
+            let up = p.y * sun.cos_elevation - (p.x * fx + p.z * fz) * sun.sin_elevation;
+            Vec2::new(p.z * fx - p.x * fz, up)
         };
-        // Directions of the tree's space that stand for the picture's a and c: c is the trunk's direction while
+        // Directions of the tree's space that stand for the image's a and c: c is the trunk's direction while
         // the sun sees it from the side, and that away from the sun when it stands overhead.
         let right = Vec3::new(-pose.front[1], 0.0, pose.front[0]);
         let up = if sun.cos_elevation > 0.26 {
@@ -187,59 +197,57 @@ impl<'a> Laid<'a> {
             Vec3::new(-pose.front[0], 0.0, -pose.front[1]) / sun.sin_elevation
         };
         let (a, c) = (project(pose.world_from_tree * right), project(pose.world_from_tree * up));
-        let area = a.x * c.y - a.y * c.x;
+        let area = a.perp_dot(c);
         if !area.is_finite() || area.abs() < 1.0e-6 {
             return None;
         }
         let (mut low, mut high) = (Vec2::MAX, Vec2::MIN);
-        for (ka, kc) in [(shadow.low[0], shadow.low[1]), (shadow.high[0], shadow.low[1])] {
-            for kc in [kc, shadow.high[1]] {
+        for ka in [shadow.low.x, shadow.high.x] {
+            for kc in [shadow.low.y, shadow.high.y] {
                 let corner = a * ka + c * kc;
                 (low, high) = (low.min(corner), high.max(corner));
             }
         }
-        let cells = Vec2::from_array(shadow.cells_per_m);
-        let mut laid = Self {
+        let cells = shadow.cells_per_m;
+        let mut placed = Self {
             shadow,
+            sun,
             foot: pose.foot,
-            towards: sun.towards,
-            sin_elevation: sun.sin_elevation,
-            cos_elevation: sun.cos_elevation,
             per_u: Vec2::new(c.y, -a.y) / area * cells,
             per_v: Vec2::new(-c.x, a.x) / area * cells,
-            foot_cell: (Vec2::ZERO - Vec2::from_array(shadow.origin)) * cells,
+            foot_cell: (Vec2::ZERO - shadow.origin) * cells,
             u: [low.x, high.x],
-            away: [-(shadow.reach_m * pose.widening() + 2.0 * ground.texel_m()), 0.0],
+            away: [-(shadow.reach_m * pose.widening() + 2.0 * ground.texels.texel_m()), 0.0],
             rows: [0, 0],
         };
-        laid.away[1] = laid.end_m(high.y, ground);
-        laid.rows = laid.rows(ground);
-        (laid.rows[0] < laid.rows[1]).then_some(laid)
+        placed.away[1] = placed.end_m(high.y, ground);
+        placed.rows = placed.rows(ground);
+        (placed.rows[0] < placed.rows[1]).then_some(placed)
     }
 
     /// How far from the foot the land rises above the rays that pass over the treetop (at height `top` across the
     /// light), on three lines along the light. Behind that the land itself hides the sun.
     fn end_m(&self, top: f32, ground: &Ground) -> f32 {
-        let step_m = 2.0 * ground.texel_m();
+        let step_m = 2.0 * ground.texels.texel_m();
         let lines = [self.u[0], 0.5 * (self.u[0] + self.u[1]), self.u[1]];
         let mut away = step_m;
-        while away < LONGEST_M {
+        while away < MAX_LENGTH_M {
             let lit = |u: f32| {
                 let (x, z) = self.place(u, away);
                 let height = ground.height_m(x, z)?;
-                Some((height - self.foot.y) * self.cos_elevation + away * self.sin_elevation > top)
+                Some((height - self.foot.y) * self.sun.cos_elevation + away * self.sun.sin_elevation > top)
             };
             if lines.iter().all(|&u| lit(u).unwrap_or(true)) {
                 return away + step_m;
             }
             away += step_m;
         }
-        LONGEST_M
+        MAX_LENGTH_M
     }
 
     /// World (x, z) at u and away.
     fn place(&self, u: f32, away: f32) -> (f32, f32) {
-        let [fx, fz] = self.towards;
+        let [fx, fz] = self.sun.towards;
         (self.foot.x - fz * u - fx * away, self.foot.z + fx * u - fz * away)
     }
 
@@ -252,38 +260,38 @@ impl<'a> Laid<'a> {
                 (low, high) = (low.min(z), high.max(z));
             }
         }
-        let row = |at: f32| at.clamp(0.0, ground.side as f32) as usize;
-        [row(ground.texel(low).ceil()), row(ground.texel(high).floor() + 1.0)]
+        let row = |at: f32| at.clamp(0.0, ground.texels.side as f32) as usize;
+        [row(ground.texels.texel(low).ceil()), row(ground.texels.texel(high).floor() + 1.0)]
     }
 
     /// Darkens the texels of a band that it touches.
-    fn lay(&self, ground: &Ground, first: usize, band: &mut [f32]) {
-        let side = ground.side;
+    fn darken(&self, ground: &Ground, first: usize, band: &mut [f32]) {
+        let side = ground.texels.side;
         let rows = self.rows[0].max(first)..self.rows[1].min(first + band.len() / side);
-        let [fx, fz] = self.towards;
-        let texel_m = ground.texel_m();
+        let [fx, fz] = self.sun.towards;
+        let texel_m = ground.texels.texel_m();
         for j in rows {
-            let dz = ground.place(j) - self.foot.z;
+            let dz = ground.texels.place(j) - self.foot.z;
             let mut span = [f32::MIN, f32::MAX];
             narrow(&mut span, -fz, dz * fx, self.u);
             narrow(&mut span, -fx, -dz * fz, self.away);
             if span[0] > span[1] {
                 continue;
             }
-            let column = |dx: f32| ground.texel(self.foot.x + dx).clamp(-1.0, side as f32);
-            let (from, to) = (column(span[0]).ceil().max(0.0) as usize, (column(span[1]) + 1.0) as usize);
-            let to = to.min(side);
+            let column = |dx: f32| ground.texels.texel(self.foot.x + dx).clamp(-1.0, side as f32);
+            let from = column(span[0]).ceil().max(0.0) as usize;
+            let to = ((column(span[1]) + 1.0) as usize).min(side);
             if from >= to {
                 continue;
             }
             let heights = &ground.heights_m[j * side + from..j * side + to];
             let texels = &mut band[(j - first) * side + from..(j - first) * side + to];
-            let start = ground.place(from) - self.foot.x;
+            let start = ground.texels.place(from) - self.foot.x;
             for (k, (texel, height)) in texels.iter_mut().zip(heights).enumerate() {
                 let dx = start + k as f32 * texel_m;
                 let u = dz * fx - dx * fz;
-                let v =
-                    (height - self.foot.y) * self.cos_elevation - (dx * fx + dz * fz) * self.sin_elevation;
+                let v = (height - self.foot.y) * self.sun.cos_elevation
+                    - (dx * fx + dz * fz) * self.sun.sin_elevation;
                 *texel *= self.transmittance(u, v);
             }
         }
@@ -291,14 +299,10 @@ impl<'a> Laid<'a> {
 
     #[inline]
     fn transmittance(&self, u: f32, v: f32) -> f32 {
-        let column = self.foot_cell.x + self.per_u.x * u + self.per_v.x * v + 0.5;
-        let row = self.foot_cell.y + self.per_u.y * u + self.per_v.y * v + 0.5;
-        if column >= 0.0 && row >= 0.0 && column < self.shadow.columns as f32 && row < self.shadow.rows as f32
-        {
-            self.shadow.transmittance[row as usize * self.shadow.columns + column as usize]
-        } else {
-            1.0
-        }
+        let Shadow { columns, rows, transmittance, .. } = self.shadow;
+        let cell = self.foot_cell + self.per_u * u + self.per_v * v + 0.5;
+        let inside = cell.x >= 0.0 && cell.y >= 0.0 && cell.x < *columns as f32 && cell.y < *rows as f32;
+        if inside { transmittance[cell.y as usize * columns + cell.x as usize] } else { 1.0 }
     }
 }
 
@@ -316,7 +320,7 @@ fn narrow(span: &mut [f32; 2], slope: f32, offset: f32, range: [f32; 2]) {
 }
 
 /// What a crown hides of the sky around its foot.
-struct Bower {
+struct CrownShade {
     foot: Vec3,
     height_m: f32,
     radius_m: f32,
@@ -324,29 +328,22 @@ struct Bower {
     reach_m: f32,
 }
 
-impl Bower {
-    fn of(pose: &Pose, crowns: &[Crown]) -> Option<Self> {
-        let crown = crowns[pose.template];
+impl CrownShade {
+    fn of(pose: &Pose, crown: &Crown) -> Option<Self> {
         let height_m = (crown.height_m * pose.world_from_tree.y_axis.y).max(0.1);
         let radius_m = crown.radius_m * pose.widening();
-        let square = radius_m * radius_m * height_m * crown.opacity / LEAST_CROWN;
+        let square = radius_m * radius_m * height_m * crown.opacity / MIN_CROWN;
         let reach_m = libm::cbrtf(square).min(40.0);
-        (reach_m > height_m).then_some(Self {
-            foot: pose.foot,
-            height_m,
-            radius_m,
-            opacity: crown.opacity,
-            reach_m,
-        })
+        let (foot, opacity) = (pose.foot, crown.opacity);
+        (reach_m > height_m).then_some(Self { foot, height_m, radius_m, opacity, reach_m })
     }
 
     /// Form factor of a sphere (radius R, h above, r aside) seen from level ground: R²h / (h²+r²)^{3/2}.
-    fn lay(&self, ground: &Ground, first: usize, band: &mut [f32], side: usize) {
-        let texel_m = ground.extent_m / side as f32;
-        let texel = |along_m: f32| (along_m + 0.5 * ground.extent_m) / texel_m - 0.5;
-        let from = |at: f32, least: usize| (at - self.reach_m / texel_m).ceil().max(least as f32) as usize;
-        let to = |at: f32, most: usize| ((at + self.reach_m / texel_m + 1.0).max(0.0) as usize).min(most);
-        let (i, j) = (texel(self.foot.x), texel(self.foot.z));
+    fn darken(&self, texels: &Texels, first: usize, band: &mut [f32]) {
+        let (side, texel_m) = (texels.side, texels.texel_m());
+        let from = |at: f32, min: usize| (at - self.reach_m / texel_m).ceil().max(min as f32) as usize;
+        let to = |at: f32, max: usize| ((at + self.reach_m / texel_m + 1.0).max(0.0) as usize).min(max);
+        let (i, j) = (texels.texel(self.foot.x), texels.texel(self.foot.z));
         let strength = self.radius_m * self.radius_m * self.height_m;
         for row in from(j, first)..to(j, first + band.len() / side) {
             let dz = (row as f32 - j) * texel_m;
@@ -356,7 +353,7 @@ impl Bower {
                 let square = level + dx * dx;
                 let hidden = (strength / (square * square.sqrt())).min(0.95) * self.opacity;
                 // Less what it is at the end of its reach, so that no edge shows there.
-                let hidden = (hidden - LEAST_CROWN).max(0.0);
+                let hidden = (hidden - MIN_CROWN).max(0.0);
                 band[(row - first) * side + column] *= 1.0 - hidden;
             }
         }

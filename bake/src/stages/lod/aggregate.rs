@@ -1,34 +1,33 @@
-//! Leaf cards and the like: the order in which elements go, what that costs in metres, and how much the rest grow.
+//! Leaf cards and the like: the order in which elements are removed, what that costs in metres, and how much the rest
+//! grow.
 //!
 //! Cook, Halstead, Planck, Ryu, "Stochastic simplification of aggregate detail" (2007). The order is stratified:
-//! elements are paired with their neighbours in a k-d tree, one of each pair goes, pairs taken in a sequence that is
-//! spread over the whole; then the survivors pair up again. So no hole opens. Of a pair the one nearer the middle of
-//! the crown goes, for the outer one carries the silhouette.
+//! elements are paired with their neighbours in a k-d tree, one of each pair is removed, pairs taken in a sequence that
+//! is spread over the whole; then the survivors pair up again. So no hole opens. Of a pair the one nearer the middle of
+//! the crown is removed, for the outer one carries the silhouette.
 
 use glam::Vec3;
 
 use super::coverage::{Element, Silhouettes};
-use super::state::{PartSpan, State};
+use super::state::{PartSpan, State, Vertex};
 
 /// No part keeps fewer elements than this.
-const LEAST_ELEMENTS: usize = 6;
+const MIN_ELEMENTS: usize = 6;
 /// An element may grow to this part of the extent of all.
-const GREATEST_GROWN: f32 = 0.3;
+const MAX_GROWN: f32 = 0.3;
 
 /// One aggregate part.
 pub struct Aggregate {
-    /// Which part of the mesh.
+    /// Index of the part in the mesh.
     pub part: usize,
-    /// Elements in the order in which they go, without those that stay for ever.
-    pub order: Vec<u32>,
-    /// How many have gone.
-    pub gone: usize,
-    /// Elements at full detail, and vertices and triangles of each.
-    pub elements: (u32, u32, u32),
+    /// Elements in the order in which they are removed, without those that always stay.
+    order: Vec<u32>,
+    removed: usize,
+    /// Elements at full detail.
+    elements: usize,
     /// Error in metres per unit of growth.
     weight_m: f64,
-    /// Greatest allowed scale.
-    most: f32,
+    max_scale: f32,
     silhouettes: Silhouettes,
     lives: Vec<bool>,
     /// Scale and number of elements when last calibrated.
@@ -39,7 +38,6 @@ impl Aggregate {
     /// Plans the removal of a part's elements; `None` for surfaces and for empty parts.
     pub fn new(state: &State, part: usize, weight: f32, fill: f32) -> Option<Self> {
         let span = &state.parts[part];
-        let elements = span.elements()?;
         let places = places(state, span)?;
         let count = places.len();
         let radius = places.iter().map(|place| f64::from(place.radius)).sum::<f64>() / count as f64;
@@ -51,33 +49,32 @@ impl Aggregate {
         Some(Self {
             part,
             order: removal_order(&places, (low + high) * 0.5),
-            gone: 0,
-            elements,
+            removed: 0,
+            elements: count,
             weight_m: f64::from(weight) * radius,
-            most: (GREATEST_GROWN * extent / radius as f32).max(1.0),
+            max_scale: (MAX_GROWN * extent / radius as f32).max(1.0),
             silhouettes: Silhouettes::new(shapes, low, high, fill),
             lives: vec![true; count],
             last: (1.0, count),
         })
     }
 
-    /// Elements that live.
     pub fn living(&self) -> usize {
-        self.elements.0 as usize - self.gone
+        self.elements - self.removed
     }
 
-    /// The error in metres once the next element has gone: by how much elements will have grown to keep the area.
+    /// The error in metres once the next element is removed: by how much elements will have grown to keep the area.
     pub fn next_cost_m(&self) -> Option<f64> {
-        (self.gone < self.order.len()).then(|| {
-            let ratio = f64::from(self.elements.0) / (self.living() - 1) as f64;
+        (self.removed < self.order.len()).then(|| {
+            let ratio = self.elements as f64 / (self.living() - 1) as f64;
             self.weight_m * (ratio.sqrt() - 1.0)
         })
     }
 
-    /// Takes the next element.
+    /// Removes the next element.
     pub fn take_next(&mut self) -> Option<u32> {
-        let element = *self.order.get(self.gone)?;
-        self.gone += 1;
+        let element = *self.order.get(self.removed)?;
+        self.removed += 1;
         self.lives[element as usize] = false;
         Some(element)
     }
@@ -89,24 +86,21 @@ impl Aggregate {
         if now == before {
             return last;
         }
-        let target = self.silhouettes.full() as f32;
-        let least = last;
+        let target = self.silhouettes.full as f32;
         let same_area = last * (before as f32 / now as f32).sqrt();
-        let most = (1.25 * same_area).min(self.most).max(least);
+        let max = (1.25 * same_area).min(self.max_scale).max(last);
         let cover = |scale: f32| self.silhouettes.covered(&self.lives, scale) as f32;
-        let mut near = (same_area.min(most), 0.0);
+        let mut near = (same_area.min(max), 0.0);
         near.1 = cover(near.0);
         let mut best = near;
         for step in 0..3 {
             let slope = if step == 0 { 1.3 * near.1 / near.0 } else { (best.1 - near.1) / (best.0 - near.0) };
             let slope = if slope.is_finite() && slope > 0.0 { slope } else { near.1 / near.0 };
-            let wanted = (best.0 + (target - best.1) / slope.max(1e-3)).clamp(least, most);
+            let wanted = (best.0 + (target - best.1) / slope.max(1e-3)).clamp(last, max);
             if (best.1 - target).abs() <= 0.004 * target || wanted == best.0 {
                 break;
             }
-            let found = (wanted, cover(wanted));
-            near = best;
-            best = found;
+            (near, best) = (best, (wanted, cover(wanted)));
         }
         self.last = (best.0, now);
         best.0
@@ -121,10 +115,10 @@ struct Place {
 
 fn places(state: &State, span: &PartSpan) -> Option<Vec<Place>> {
     let (count, per, _) = span.elements()?;
-    let place = |e: u32| {
-        let ids = (span.first_vertex + e * per) as usize..(span.first_vertex + (e + 1) * per) as usize;
+    let place = |element: u32| {
+        let [ids, _] = span.element(element);
         let centre = Vec3::from_array(state.centre(ids.clone()));
-        let square = |v: &super::state::Vertex| Vec3::from_array(v.position).distance_squared(centre);
+        let square = |v: &Vertex| Vec3::from_array(v.position).distance_squared(centre);
         let sum: f32 = state.vertices[ids].iter().map(square).sum();
         Place { centre, radius: (sum / per as f32).sqrt() }
     };
@@ -133,18 +127,18 @@ fn places(state: &State, span: &PartSpan) -> Option<Vec<Place>> {
     (sound && places.iter().any(|p| p.radius > 0.0)).then_some(places)
 }
 
-fn element(state: &State, span: &PartSpan, e: usize, place: &Place) -> Element {
-    let (_, per, triangles) = span.elements().unwrap_or_default();
-    let start = span.first_vertex as usize + e * per as usize;
-    let vertices = &state.vertices[start..start + per as usize];
-    let offsets = vertices.iter().map(|v| Vec3::from_array(v.position) - place.centre).collect();
-    let first = span.first_triangle as usize + e * triangles as usize;
-    let of_element = &state.triangles[first..first + triangles as usize];
-    let triangles = of_element.iter().map(|t| t.map(|v| v - start as u32)).collect();
-    Element { centre: place.centre, offsets, triangles }
+fn element(state: &State, span: &PartSpan, element: usize, place: &Place) -> Element {
+    let [vertices, triangles] = span.element(element as u32);
+    let start = vertices.start as u32;
+    let offset = |v: &Vertex| Vec3::from_array(v.position) - place.centre;
+    Element {
+        centre: place.centre,
+        offsets: state.vertices[vertices].iter().map(offset).collect(),
+        triangles: state.triangles[triangles].iter().map(|t| t.map(|v| v - start)).collect(),
+    }
 }
 
-/// Elements in the order in which they go; the last few never do.
+/// Elements in the order in which they are removed; the last few never are.
 fn removal_order(places: &[Place], middle: Vec3) -> Vec<u32> {
     let mut living: Vec<u32> = (0..places.len() as u32).collect();
     neighbours_together(&mut living, places);
@@ -153,20 +147,17 @@ fn removal_order(places: &[Place], middle: Vec3) -> Vec<u32> {
         let place = &places[e as usize];
         place.centre.distance(middle) + place.radius
     };
-    while living.len() >= 2 * LEAST_ELEMENTS {
+    while living.len() >= 2 * MIN_ELEMENTS {
         let mut leaving: Vec<(u32, u32)> = Vec::with_capacity(living.len() / 2);
+        let (pairs, odd) = living.as_chunks::<2>();
         let mut staying = Vec::with_capacity(living.len().div_ceil(2));
-        for (index, pair) in living.chunks(2).enumerate() {
-            match *pair {
-                [p, q] => {
-                    let (goes, stays) = if worth(p) <= worth(q) { (p, q) } else { (q, p) };
-                    staying.push(stays);
-                    // Multiples of the golden ratio spread the pairs evenly at every length of the sequence.
-                    leaving.push(((index as u32).wrapping_mul(0x9E37_79B9), goes));
-                }
-                _ => staying.extend_from_slice(pair),
-            }
+        for (index, &[p, q]) in pairs.iter().enumerate() {
+            let (goes, stays) = if worth(p) <= worth(q) { (p, q) } else { (q, p) };
+            staying.push(stays);
+            // Multiples of the golden ratio spread the pairs evenly at every length of the sequence.
+            leaving.push(((index as u32).wrapping_mul(0x9E37_79B9), goes));
         }
+        staying.extend_from_slice(odd);
         leaving.sort_unstable();
         order.extend(leaving.into_iter().map(|(_, element)| element));
         living = staying;

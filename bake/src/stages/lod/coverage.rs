@@ -23,7 +23,8 @@ pub struct Silhouettes {
     triangles: Vec<[u32; 3]>,
     /// For each view, each element's centre and the offsets of its vertices, in pixels.
     views: Vec<View>,
-    full: u32,
+    /// Pixels that all elements cover at their own size.
+    pub full: u32,
 }
 
 struct View {
@@ -55,11 +56,6 @@ impl Silhouettes {
         };
         silhouettes.full = silhouettes.covered(&vec![true; elements.len()], 1.0);
         silhouettes
-    }
-
-    /// Pixels that all elements cover at their own size.
-    pub fn full(&self) -> u32 {
-        self.full
     }
 
     /// Pixels that the living elements cover when each is scaled about its centre.

@@ -1,21 +1,22 @@
 //! The simplification sequence → distinguished meshes and the geomorphs between them.
 //!
-//! D_{i+1} has half the vertices of D_i (thesis 4.3.1). A vertex of D_i that is gone in D_{i+1} morphs to the vertex
-//! that it merged into, or to where its piece shrank to. Errors are the greatest so far (thesis 4.3.3). For D_0,
+//! D_{i+1} has half the vertices of D_i (thesis 4.3.1). A vertex of D_i that D_{i+1} lacks morphs to the vertex that it
+//! merged into, or to where its piece shrank to. Errors are the greatest so far (thesis 4.3.3). For D_0,
 //! which no collapse made, log q is continued in a straight line from the error at √½ of the vertices (λ = ½) and
 //! that of D_1: q₀ = q(½)² / q(1).
 
 use crate::model::{Level, LevelledMesh, Mesh, Morph};
 
+use super::progressive::{self, Mark};
 use super::sequence::Sequence;
 use super::state::{NONE, State};
-use super::{LodOptions, progressive, strip};
+use super::{LodOptions, strip};
 
 /// A level may miss its number of vertices by one in so many; otherwise there is no such level.
 const TOLERANCE: usize = 50;
-/// An error may not be less than this part of the mesh's diagonal, and must grow by `LEAST_GROWTH` a level.
-const LEAST_ERROR: f32 = 1e-7;
-const LEAST_GROWTH: f32 = 1.05;
+/// An error may not be less than this part of the mesh's diagonal, and must grow by `MIN_GROWTH` a level.
+const MIN_ERROR: f32 = 1e-7;
+const MIN_GROWTH: f32 = 1.05;
 
 /// One level before it gets its morph.
 struct Snapshot {
@@ -26,14 +27,12 @@ struct Snapshot {
 }
 
 /// Makes all levels of a sound mesh.
-pub fn build(mesh: &Mesh, options: &LodOptions) -> LevelledMesh {
-    let state = State::new(mesh);
-    let mut sequence = Sequence::new(state, options);
-    let mut marks = vec![progressive::Mark::of(&sequence, 0.0)];
-    let mut snapshots =
-        vec![Snapshot { mesh: mesh.clone(), now: (0..mesh.positions.len() as u32).collect(), error_m: 0.0 }];
+pub fn build(mesh: Mesh, options: &LodOptions) -> LevelledMesh {
+    let mut sequence = Sequence::new(State::new(&mesh), options);
+    let mut marks = vec![Mark::of(&sequence, 0.0)];
     let full = mesh.positions.len();
     let half_way = (full as f64 / 2.0_f64.sqrt()) as usize;
+    let mut snapshots = vec![Snapshot { mesh, now: (0..full as u32).collect(), error_m: 0.0 }];
     let mut error_half_way_m = 0.0;
     for _ in 0..options.max_levels {
         let before = sequence.state.vertex_count;
@@ -49,38 +48,37 @@ pub fn build(mesh: &Mesh, options: &LodOptions) -> LevelledMesh {
         if sequence.state.vertex_count > target + target / TOLERANCE {
             break;
         }
-        let mark = progressive::Mark::calibrated(&mut sequence);
+        let mark = Mark::calibrated(&mut sequence);
         let (mesh, now) = sequence.state.to_mesh(&mark.scales());
         snapshots.push(Snapshot { mesh, now, error_m: sequence.error_m as f32 });
         marks.push(mark);
     }
-    set_errors(&mut snapshots, &mut marks, error_half_way_m as f32, mesh);
-    let progressive = progressive::encode(&sequence.state, &sequence.log, &marks);
-    LevelledMesh { levels: finish(snapshots, &sequence), progressive }
+    set_errors(&mut snapshots, &mut marks, error_half_way_m as f32);
+    let progressive = progressive::encode(&sequence.state, &marks);
+    LevelledMesh { levels: finish(snapshots, &sequence.state), progressive }
 }
 
-fn set_errors(snapshots: &mut [Snapshot], marks: &mut [progressive::Mark], half_way_m: f32, mesh: &Mesh) {
-    let bounds = mesh.bounds();
+fn set_errors(snapshots: &mut [Snapshot], marks: &mut [Mark], half_way_m: f32) {
+    let bounds = snapshots[0].mesh.bounds();
     let diagonal = (bounds.max - bounds.min).length();
-    let least = (diagonal * LEAST_ERROR).clamp(f32::MIN_POSITIVE, f32::MAX);
     let first = match snapshots.get(1) {
         Some(next) if next.error_m > 0.0 => half_way_m * (half_way_m / next.error_m),
         _ => 0.0,
     };
-    snapshots[0].error_m = first.min(snapshots.get(1).map_or(0.0, |next| next.error_m / LEAST_GROWTH));
-    let mut floor = least;
+    snapshots[0].error_m = first.min(snapshots.get(1).map_or(0.0, |next| next.error_m / MIN_GROWTH));
+    let mut floor = (diagonal * MIN_ERROR).clamp(f32::MIN_POSITIVE, f32::MAX);
     for (snapshot, mark) in snapshots.iter_mut().zip(marks) {
         snapshot.error_m = snapshot.error_m.max(floor);
         mark.error_m = snapshot.error_m;
-        floor = snapshot.error_m * LEAST_GROWTH;
+        floor = snapshot.error_m * MIN_GROWTH;
     }
 }
 
-fn finish(snapshots: Vec<Snapshot>, sequence: &Sequence) -> Vec<Level> {
+fn finish(snapshots: Vec<Snapshot>, state: &State) -> Vec<Level> {
     let morphs: Vec<_> = snapshots
         .iter()
         .enumerate()
-        .map(|(index, level)| snapshots.get(index + 1).map(|next| morph(level, next, sequence)))
+        .map(|(index, level)| snapshots.get(index + 1).map(|next| morph(level, next, state)))
         .collect();
     let level = |(snapshot, morph): (Snapshot, Option<Morph>)| {
         let vertices = snapshot.mesh.positions.len();
@@ -91,26 +89,24 @@ fn finish(snapshots: Vec<Snapshot>, sequence: &Sequence) -> Vec<Level> {
 }
 
 /// What takes one level's vertices to their places in the next.
-fn morph(level: &Snapshot, next: &Snapshot, sequence: &Sequence) -> Morph {
+fn morph(level: &Snapshot, next: &Snapshot, state: &State) -> Morph {
     let mut morph = Morph::default();
     for (id, &here) in level.now.iter().enumerate().filter(|(_, here)| **here != NONE) {
         let here = here as usize;
         let mut last = id;
-        while next.now[last] == NONE && sequence.heirs[last] != NONE {
-            last = sequence.heirs[last] as usize;
+        while next.now[last] == NONE && state.merged_into[last] != NONE {
+            last = state.merged_into[last] as usize;
         }
         let there = (next.now[last] != NONE).then_some(next.now[last] as usize);
-        let place = there.map_or(sequence.graves[last], |there| next.mesh.positions[there]);
+        let place = there.map_or(state.collapsed_to[last], |there| next.mesh.positions[there]);
         morph.positions.push(difference(place, level.mesh.positions[here]));
-        let delta = |from: &[[f32; 3]], to: &[[f32; 3]]| {
-            there.map_or([0.0; 3], |there| difference(to[there], from[here]))
-        };
         if !level.mesh.normals.is_empty() {
-            morph.normals.push(delta(&level.mesh.normals, &next.mesh.normals));
+            let delta = |there: usize| difference(next.mesh.normals[there], level.mesh.normals[here]);
+            morph.normals.push(there.map_or([0.0; 3], delta));
         }
         if !level.mesh.uvs.is_empty() {
-            let uv = |there: usize| difference(next.mesh.uvs[there], level.mesh.uvs[here]);
-            morph.uvs.push(there.map_or([0.0; 2], uv));
+            let delta = |there: usize| difference(next.mesh.uvs[there], level.mesh.uvs[here]);
+            morph.uvs.push(there.map_or([0.0; 2], delta));
         }
     }
     morph

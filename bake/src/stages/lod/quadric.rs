@@ -1,4 +1,4 @@
-//! What a collapse costs and where its vertex goes: the interface, and area-weighted quadrics behind it.
+//! What a collapse costs and where its vertex goes, by area-weighted quadrics.
 //!
 //! Garland and Heckbert, "Surface simplification using quadric error metrics" (1997); the new vertex is kept on the
 //! collapsed edge as in Merry's thesis, appendix A. Costs are metres: the square root of the quadric over the area
@@ -24,23 +24,6 @@ pub struct Placed {
     pub along: f64,
     /// How far the surface moves, in metres.
     pub error_m: f64,
-}
-
-/// Judges edge collapses. Points are numbered from 0; each starts without any cost.
-pub trait Metric {
-    /// Forgets everything and prepares for so many points.
-    fn reset(&mut self, points: usize);
-    /// A triangle of the original surface.
-    fn add_triangle(&mut self, points: [usize; 3], corners: [DVec3; 3]);
-    /// An edge of the original where the surface or its texture ends: keeps points from leaving its line. The plane
-    /// through the edge with unit normal `across` lies athwart the surface.
-    fn add_crease(&mut self, points: [usize; 2], ends: [DVec3; 2], across: DVec3, weight: f64);
-    /// The best allowed place on the edge from `start` to `end`, which lie at `ends`.
-    fn place(&self, start: usize, end: usize, ends: [DVec3; 2], freedom: Freedom) -> Placed;
-    /// The error in metres with the new vertex anywhere.
-    fn error_m(&self, start: usize, end: usize, at: DVec3) -> f64;
-    /// The edge has collapsed: `kept` stands for both.
-    fn merge(&mut self, kept: usize, gone: usize);
 }
 
 /// xᵀQx + 2bᵀx + c over an area.
@@ -83,27 +66,24 @@ impl Quadric {
     }
 }
 
-/// Quadrics weighted by area, in double precision, relative to an origin near the mesh.
-#[derive(Clone, Debug, Default)]
-pub struct QuadricMetric {
-    quadrics: Vec<Quadric>,
-}
+/// A quadric for each point, weighted by area, in double precision, relative to an origin near the mesh.
+#[derive(Clone, Debug)]
+pub struct Quadrics(Vec<Quadric>);
 
-impl QuadricMetric {
+impl Quadrics {
+    /// Points without any cost.
+    pub fn new(points: usize) -> Self {
+        Self(vec![Quadric::default(); points])
+    }
+
     fn add(&mut self, points: &[usize], quadric: &Quadric) {
         for &point in points {
-            self.quadrics[point] = self.quadrics[point].plus(quadric);
+            self.0[point] = self.0[point].plus(quadric);
         }
     }
-}
 
-impl Metric for QuadricMetric {
-    fn reset(&mut self, points: usize) {
-        self.quadrics.clear();
-        self.quadrics.resize(points, Quadric::default());
-    }
-
-    fn add_triangle(&mut self, points: [usize; 3], [p, q, r]: [DVec3; 3]) {
+    /// Adds a triangle of the original surface.
+    pub fn add_triangle(&mut self, points: [usize; 3], [p, q, r]: [DVec3; 3]) {
         let cross = (q - p).cross(r - p);
         let double_area = cross.length();
         if double_area > 0.0 {
@@ -113,13 +93,16 @@ impl Metric for QuadricMetric {
         }
     }
 
-    fn add_crease(&mut self, points: [usize; 2], [p, q]: [DVec3; 2], across: DVec3, weight: f64) {
+    /// Adds an edge of the original where the surface or its texture ends: points are kept on its line. The plane
+    /// through the edge with unit normal `across` lies athwart the surface.
+    pub fn add_crease(&mut self, points: [usize; 2], [p, q]: [DVec3; 2], across: DVec3, weight: f64) {
         let plane = Quadric::plane(across, p, weight * (q - p).length_squared(), 0.0);
         self.add(&points, &plane);
     }
 
-    fn place(&self, start: usize, end: usize, [p, q]: [DVec3; 2], freedom: Freedom) -> Placed {
-        let sum = self.quadrics[start].plus(&self.quadrics[end]);
+    /// The best allowed place on the edge from `start` to `end`, which lie at `ends`.
+    pub fn place(&self, start: usize, end: usize, [p, q]: [DVec3; 2], freedom: Freedom) -> Placed {
+        let sum = self.0[start].plus(&self.0[end]);
         let edge = q - p;
         let along = match freedom {
             Freedom::Start => 0.0,
@@ -135,11 +118,13 @@ impl Metric for QuadricMetric {
         Placed { along, error_m: sum.error_m(p + edge * along) }
     }
 
-    fn error_m(&self, start: usize, end: usize, at: DVec3) -> f64 {
-        self.quadrics[start].plus(&self.quadrics[end]).error_m(at)
+    /// The error in metres with the new vertex anywhere.
+    pub fn error_m(&self, start: usize, end: usize, at: DVec3) -> f64 {
+        self.0[start].plus(&self.0[end]).error_m(at)
     }
 
-    fn merge(&mut self, kept: usize, gone: usize) {
-        self.quadrics[kept] = self.quadrics[kept].plus(&self.quadrics[gone]);
+    /// After the collapse of an edge, `kept` stands for both ends.
+    pub fn merge(&mut self, kept: usize, removed: usize) {
+        self.0[kept] = self.0[kept].plus(&self.0[removed]);
     }
 }

@@ -1,19 +1,18 @@
-//! The order of everything that goes: edge collapses, whole pieces (twigs), elements of aggregates, by one cost in
-//! metres, until a mesh has at most so many vertices.
+//! The order of simplification: edge collapses, removal of whole pieces (twigs) and of elements of aggregates, by one
+//! cost in metres, until a mesh has at most so many vertices.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::LodOptions;
 use super::aggregate::Aggregate;
-use super::collapse::{Dead, Surface};
-use super::quadric::QuadricMetric;
-use super::state::{Log, NONE, State};
+use super::collapse::Surface;
+use super::state::{NONE, State};
 
-/// Nothing goes that costs more than this part of the mesh's diagonal.
-const GREATEST_COST: f64 = 0.06;
+/// No step may cost more than this part of the mesh's diagonal.
+const MAX_COST: f64 = 0.06;
 /// Refused collapses are tried again whenever costs have grown by this factor.
 const RETRY_GROWTH: f64 = 1.4;
 /// A piece may take a level this far below its target.
@@ -22,21 +21,16 @@ const OVERSHOOT: usize = 4;
 /// A mesh on its way down.
 pub struct Sequence {
     pub state: State,
-    pub log: Log,
     pub aggregates: Vec<Aggregate>,
-    /// Vertex that each one that is gone merged into, or `NONE`.
-    pub heirs: Vec<u32>,
-    /// Place that each one that is gone without an heir shrank to.
-    pub graves: Vec<[f32; 3]>,
     /// Greatest error so far, in metres.
     pub error_m: f64,
-    surface: Surface<QuadricMetric>,
+    surface: Surface,
     queue: BinaryHeap<Reverse<(u32, u32, u32, u32)>>,
     versions: Vec<u32>,
     /// Collapses that were refused and may be possible later.
     refused: Vec<(u32, u32, u32)>,
     retry_above_m: f64,
-    most_m: f64,
+    max_cost_m: f64,
     /// Pieces by falling cost, and those put off because they are too large for the level.
     pieces: Vec<(f64, u32)>,
     put_off: Vec<(f64, u32)>,
@@ -51,20 +45,18 @@ enum Next {
 }
 
 impl Sequence {
-    /// Everything in place, nothing gone.
+    /// The whole mesh.
     pub fn new(state: State, options: &LodOptions) -> Self {
-        let surface = Surface::new(&state, QuadricMetric::default(), options.placement);
+        let surface = Surface::new(&state);
         let aggregate = |p| Aggregate::new(&state, p, options.aggregate_weight, options.element_fill);
         let aggregates: Vec<_> = (0..state.parts.len()).filter_map(aggregate).collect();
         let mut used = vec![false; state.vertices.len()];
         state.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
         for span in &state.parts {
-            let Some((elements, per, _)) = span.elements() else { continue };
-            used[span.first_vertex as usize..][..(elements * per) as usize].fill(true);
+            let elements = span.elements().map_or(0, |(elements, ..)| elements);
+            (0..elements).for_each(|element| used[span.element(element)[0].clone()].fill(true));
         }
         let mut sequence = Self {
-            heirs: vec![NONE; state.vertices.len()],
-            graves: vec![[0.0; 3]; state.vertices.len()],
             versions: vec![0; surface.topology.positions.len()],
             unused: (0..used.len() as u32).filter(|&v| !used[v as usize]).collect(),
             pieces: pieces_by_cost(&surface, f64::from(options.piece_weight)),
@@ -72,9 +64,8 @@ impl Sequence {
             queue: BinaryHeap::new(),
             refused: Vec::new(),
             retry_above_m: 0.0,
-            most_m: GREATEST_COST * diagonal_m(&state),
+            max_cost_m: MAX_COST * diagonal_m(&state),
             found: Vec::new(),
-            log: Log::default(),
             error_m: 0.0,
             aggregates,
             surface,
@@ -84,7 +75,7 @@ impl Sequence {
         sequence
     }
 
-    /// Simplifies until at most `target` vertices live or nothing more can go. `watch` sees the number of vertices
+    /// Simplifies until at most `target` vertices live or nothing more can be removed. `watch` sees the number of vertices
     /// and the error after every step.
     pub fn reduce_to(&mut self, target: usize, mut watch: impl FnMut(usize, f64)) {
         self.pieces.append(&mut self.put_off);
@@ -92,7 +83,7 @@ impl Sequence {
         self.retry();
         self.drop_unused(target);
         while self.state.vertex_count > target {
-            let Some((next, cost_m)) = self.next().filter(|&(_, cost_m)| cost_m <= self.most_m) else {
+            let Some((next, cost_m)) = self.next().filter(|&(_, cost_m)| cost_m <= self.max_cost_m) else {
                 break;
             };
             if cost_m > self.retry_above_m && !self.refused.is_empty() {
@@ -109,7 +100,7 @@ impl Sequence {
         }
     }
 
-    /// Queues collapses again that were refused: what stood in their way may be gone.
+    /// Queues refused collapses again: what made them impossible may have been removed.
     fn retry(&mut self) {
         for (a, b, version) in std::mem::take(&mut self.refused) {
             if self.version(a, b) == version {
@@ -119,24 +110,15 @@ impl Sequence {
     }
 
     fn next(&self) -> Option<(Next, f64)> {
-        let mut best = None;
-        let mut offer = |next, cost: f64| {
-            if best.as_ref().is_none_or(|&(_, least)| cost < least) {
-                best = Some((next, cost));
-            }
-        };
-        if let Some(&Reverse((bits, ..))) = self.queue.peek() {
-            offer(Next::Edge, f64::from(f32::from_bits(bits)));
-        }
-        if let Some(&(cost, _)) = self.pieces.last() {
-            offer(Next::Piece, cost);
-        }
-        for (index, aggregate) in self.aggregates.iter().enumerate() {
-            if let Some(cost) = aggregate.next_cost_m() {
-                offer(Next::Element(index), cost);
-            }
-        }
-        best
+        let edge =
+            self.queue.peek().map(|&Reverse((bits, ..))| (Next::Edge, f64::from(f32::from_bits(bits))));
+        let piece = self.pieces.last().map(|&(cost, _)| (Next::Piece, cost));
+        let elements = self.aggregates.iter().enumerate();
+        let elements = elements.filter_map(|(index, part)| Some((Next::Element(index), part.next_cost_m()?)));
+        edge.into_iter()
+            .chain(piece)
+            .chain(elements)
+            .reduce(|best, next| if next.1 < best.1 { next } else { best })
     }
 
     fn version(&self, a: u32, b: u32) -> u32 {
@@ -157,9 +139,12 @@ impl Sequence {
 
     fn queue_edge(&mut self, a: u32, b: u32) {
         if let Some(candidate) = self.surface.candidate(&self.state, a, b) {
-            let bits = (candidate.cost as f32).to_bits();
-            self.queue.push(Reverse((bits, a, b, self.version(a, b))));
+            self.push(candidate.cost, a, b);
         }
+    }
+
+    fn push(&mut self, cost: f64, a: u32, b: u32) {
+        self.queue.push(Reverse(((cost as f32).to_bits(), a, b, self.version(a, b))));
     }
 
     fn collapse_next(&mut self) {
@@ -168,20 +153,18 @@ impl Sequence {
             return;
         }
         let Some(candidate) = self.surface.candidate(&self.state, a, b) else { return };
-        let mut dead = Dead { heirs: &mut self.heirs, graves: &mut self.graves };
-        let done = self.surface.collapse(&mut self.state, &mut self.log, &mut dead, [a, b], candidate);
-        let Some(done) = done else {
+        let Some(done) = self.surface.collapse(&mut self.state, [a, b], candidate) else {
             self.refused.push((a, b, version));
             return;
         };
         self.error_m = self.error_m.max(done.error_m);
-        self.versions[a as usize] = self.versions[a as usize].wrapping_add(1);
-        self.versions[b as usize] = self.versions[b as usize].wrapping_add(1);
+        for point in [a, b] {
+            self.versions[point as usize] = self.versions[point as usize].wrapping_add(1);
+        }
         let mut found = std::mem::take(&mut self.found);
         self.surface.candidates(&self.state, done.point, &mut found);
         for &(cost, other) in &found {
-            let version = self.version(done.point, other);
-            self.queue.push(Reverse(((cost as f32).to_bits(), done.point, other, version)));
+            self.push(cost, done.point, other);
         }
         self.found = found;
     }
@@ -195,29 +178,27 @@ impl Sequence {
         }
         let triangles = piece.triangles.clone();
         let axis = self.piece_axis(triangles.clone());
-        let mut dead = Dead { heirs: &mut self.heirs, graves: &mut self.graves };
         for k in triangles {
             let t = self.surface.topology.piece_triangles[k];
             if !self.state.triangle_lives[t as usize] {
                 continue;
             }
-            let vertices = self.state.triangles[t as usize];
-            self.log.triangles.push((t, vertices));
-            self.state.triangle_lives[t as usize] = false;
-            for v in vertices {
+            self.state.remove_triangle(t);
+            for v in self.state.triangles[t as usize] {
                 let point = self.surface.topology.point_of[v as usize] as usize;
                 self.versions[point] = self.versions[point].wrapping_add(1);
                 if self.state.vertex_lives[v as usize] {
-                    dead.lay(&mut self.state, &mut self.log, v, NONE);
-                    dead.graves[v as usize] = axis.nearest(self.surface.topology.positions[point]);
+                    self.state.remove_vertex(v, NONE);
+                    self.state.collapsed_to[v as usize] =
+                        axis.nearest(self.surface.topology.positions[point]);
                 }
             }
         }
-        self.log.finish_record();
+        self.state.end_step();
         self.error_m = self.error_m.max(cost);
     }
 
-    /// The line that a piece thins out to: through its middle along its longest extent.
+    /// The line that a removed piece shrinks to: through its middle along its longest extent.
     fn piece_axis(&self, triangles: std::ops::Range<usize>) -> Axis {
         let topology = &self.surface.topology;
         let living = triangles.map(|k| topology.piece_triangles[k] as usize);
@@ -238,32 +219,24 @@ impl Sequence {
 
     fn drop_element(&mut self, index: usize, cost_m: f64) {
         let aggregate = &mut self.aggregates[index];
-        let (_, per, triangles) = aggregate.elements;
         let Some(element) = aggregate.take_next() else { return };
-        let span = &self.state.parts[aggregate.part];
-        let first = span.first_vertex + element * per;
-        let first_triangle = span.first_triangle + element * triangles;
-        let centre = self.state.centre(first as usize..(first + per) as usize);
-        for t in first_triangle..first_triangle + triangles {
-            self.log.triangles.push((t, self.state.triangles[t as usize]));
-            self.state.triangle_lives[t as usize] = false;
+        let [vertices, triangles] = self.state.parts[aggregate.part].element(element);
+        let centre = self.state.centre(vertices.clone());
+        triangles.for_each(|t| self.state.remove_triangle(t as u32));
+        for v in vertices {
+            self.state.remove_vertex(v as u32, NONE);
+            self.state.collapsed_to[v] = centre;
         }
-        let mut dead = Dead { heirs: &mut self.heirs, graves: &mut self.graves };
-        for v in first..first + per {
-            dead.lay(&mut self.state, &mut self.log, v, NONE);
-            dead.graves[v as usize] = centre;
-        }
-        self.log.finish_record();
+        self.state.end_step();
         self.error_m = self.error_m.max(cost_m);
     }
 
-    /// Vertices that no triangle uses go first, one by one.
+    /// Removes vertices that no triangle uses, one by one, before anything else.
     fn drop_unused(&mut self, target: usize) {
-        let mut dead = Dead { heirs: &mut self.heirs, graves: &mut self.graves };
         while self.state.vertex_count > target {
             let Some(vertex) = self.unused.pop() else { break };
-            dead.lay(&mut self.state, &mut self.log, vertex, NONE);
-            self.log.finish_record();
+            self.state.remove_vertex(vertex, NONE);
+            self.state.end_step();
         }
     }
 }
@@ -282,17 +255,13 @@ impl Axis {
 }
 
 fn diagonal_m(state: &State) -> f64 {
-    let mut box_m = [[f64::MAX, f64::MIN]; 3];
-    for vertex in &state.vertices {
-        for (side, x) in box_m.iter_mut().zip(vertex.position.map(f64::from)) {
-            *side = [side[0].min(x), side[1].max(x)];
-        }
-    }
-    box_m.iter().map(|[low, high]| (high - low).max(0.0)).map(|side| side * side).sum::<f64>().sqrt()
+    let points = state.vertices.iter().map(|vertex| Vec3::from_array(vertex.position).as_dvec3());
+    let (low, high) = points.fold((DVec3::MAX, DVec3::MIN), |(low, high), p| (low.min(p), high.max(p)));
+    (high - low).max(DVec3::ZERO).length()
 }
 
 /// Pieces and the error in metres of doing without them, the cheapest last. The largest piece stays.
-fn pieces_by_cost(surface: &Surface<QuadricMetric>, weight: f64) -> Vec<(f64, u32)> {
+fn pieces_by_cost(surface: &Surface, weight: f64) -> Vec<(f64, u32)> {
     let pieces = &surface.topology.pieces;
     let largest = (0..pieces.len()).max_by(|&p, &q| pieces[p].extent_m.total_cmp(&pieces[q].extent_m));
     let all = pieces.iter().enumerate().filter(|&(index, _)| Some(index) != largest);

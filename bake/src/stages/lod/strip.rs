@@ -17,6 +17,7 @@ pub fn strip(triangles: &[[u32; 3]], vertices: usize) -> Vec<u32> {
 }
 
 /// The triangles of a strip, without degenerate ones, each starting with its first vertex in the strip's order.
+#[cfg(test)]
 pub fn triangles(strip: &[u32]) -> Vec<[u32; 3]> {
     let orient = |(n, t): (usize, &[u32])| if n % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] };
     let whole = |t: &[u32; 3]| t[0] != t[1] && t[1] != t[2] && t[2] != t[0];

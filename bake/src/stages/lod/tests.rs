@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 
+use super::progressive::reader;
 use super::shapes::{plane, sphere, torus, tree};
-use super::{LodOptions, levels, progressive, strip};
+use super::{LodOptions, levels, strip};
 use crate::model::{Level, LevelledMesh, Mesh, PartKind};
 
 fn shapes() -> Vec<(&'static str, Mesh)> {
@@ -57,7 +58,7 @@ fn the_original_is_the_first_level_and_comes_back_bit_for_bit() {
     for (name, mesh) in shapes() {
         let made = made(&mesh);
         assert_eq!(made.levels[0].mesh, mesh, "{name}");
-        let read = progressive::decode(&made.progressive).unwrap();
+        let read = reader::decode(&made.progressive).unwrap();
         assert_eq!(read.rebuild(usize::MAX), mesh, "{name}");
         assert_eq!(read.vertex_range().1, mesh.positions.len());
     }
@@ -67,7 +68,7 @@ fn the_original_is_the_first_level_and_comes_back_bit_for_bit() {
 fn each_level_is_rebuilt_from_its_number_of_vertices() {
     for (name, mesh) in shapes() {
         let made = made(&mesh);
-        let read = progressive::decode(&made.progressive).unwrap();
+        let read = reader::decode(&made.progressive).unwrap();
         assert_eq!(read.marks().len(), made.levels.len());
         for (level, mark) in made.levels.iter().zip(read.marks()) {
             assert_eq!(mark.vertices as usize, level.mesh.positions.len());
@@ -80,7 +81,7 @@ fn each_level_is_rebuilt_from_its_number_of_vertices() {
 #[test]
 fn any_number_of_vertices_gives_a_sound_mesh() {
     let mesh = tree(14, 6, 700);
-    let read = progressive::decode(&made(&mesh).progressive).unwrap();
+    let read = reader::decode(&made(&mesh).progressive).unwrap();
     let (least, most) = read.vertex_range();
     for wanted in (least..most).step_by(97) {
         let rebuilt = read.rebuild(wanted);
@@ -168,7 +169,7 @@ fn a_plane_stays_flat_and_whole() {
 }
 
 /// Pixels that a part covers from a direction, 128 px a side.
-pub fn covered(mesh: &Mesh, part: usize, azimuth: f32, fill: f32) -> usize {
+fn covered(mesh: &Mesh, part: usize, azimuth: f32, fill: f32) -> usize {
     let bounds = Vec3::new(4.5, 9.0, 4.5);
     let (right, n) = (Vec3::new(libm::cosf(azimuth), 0.0, libm::sinf(azimuth)), 128_usize);
     let mut pixels = vec![false; n * n];
@@ -248,12 +249,12 @@ fn strips_hold_the_same_triangles() {
 fn a_damaged_payload_is_an_error_and_never_a_panic() {
     let bytes = made(&tree(3, 2, 40)).progressive;
     for length in (0..bytes.len()).step_by(13) {
-        assert!(progressive::decode(&bytes[..length]).is_err());
+        assert!(reader::decode(&bytes[..length]).is_err());
     }
     for at in 0..bytes.len().min(6000) {
         let mut broken = bytes.clone();
         broken[at] ^= 1 << (at % 8);
-        if let Ok(read) = progressive::decode(&broken) {
+        if let Ok(read) = reader::decode(&broken) {
             let _ = read.rebuild(read.vertex_range().0 + 100);
         }
     }
@@ -268,58 +269,11 @@ fn odd_meshes_do_no_harm() {
     mesh.positions.push([1.0; 3]);
     assert!(!made(&mesh).levels.is_empty());
     assert_eq!(made(&Mesh::default()).levels.len(), 1);
-    assert_eq!(progressive::decode(&made(&Mesh::default()).progressive).unwrap().rebuild(9), Mesh::default());
+    assert_eq!(reader::decode(&made(&Mesh::default()).progressive).unwrap().rebuild(9), Mesh::default());
     // Three sheets on one edge, and every triangle twice.
     let mut fan = plane(24);
     let doubled: Vec<_> = fan.parts[0].triangles.iter().map(|t| [t[0], t[2], t[1]]).collect();
     fan.parts[0].triangles.extend(doubled);
     let made = made(&fan);
-    assert_eq!(progressive::decode(&made.progressive).unwrap().rebuild(usize::MAX), fan);
-}
-
-#[test]
-#[ignore = "prints figures"]
-#[expect(clippy::print_stdout, reason = "it is what the test is for")]
-fn figures() {
-    let meshes = [("tree", tree(44, 4, 4500)), ("bare", tree(70, 20, 8)), ("torus", torus(400, 200))];
-    for (name, mesh) in meshes {
-        let mut least = f64::MAX;
-        for _ in 0..5 {
-            let start = cpu_seconds();
-            std::hint::black_box(made(&mesh));
-            least = least.min(cpu_seconds() - start);
-        }
-        let made = made(&mesh);
-        println!(
-            "{name}: {} triangles, {:.1} ms, {:.2} Mtri/s, PM {} kB",
-            mesh.triangle_count(),
-            least * 1e3,
-            mesh.triangle_count() as f64 / least * 1e-6,
-            made.progressive.len() / 1000
-        );
-        for level in &made.levels {
-            let parts: Vec<_> = level.mesh.parts.iter().map(|p| p.triangles.len()).collect();
-            let cover = |fill: f32| {
-                if level.mesh.parts.len() < 2 {
-                    return 1.0;
-                }
-                let of = |mesh, k: i32| covered(mesh, 1, k as f32 * 0.4, fill) as f32;
-                (0..8).map(|k| of(&level.mesh, k) / of(&mesh, k).max(1.0)).sum::<f32>() / 8.0
-            };
-            let (cover, sparse) = (cover(1.0), cover(0.5));
-            let strip: usize = level.strips.iter().map(Vec::len).sum();
-            println!(
-                "  {:6} vertices {parts:?} error {:.5} m, coverage {cover:.3} ({sparse:.3} at half fill), strip {:.2}/tri",
-                level.mesh.positions.len(),
-                level.error_m,
-                strip as f32 / level.mesh.triangle_count() as f32
-            );
-        }
-    }
-}
-
-/// CPU time of this thread (Linux).
-fn cpu_seconds() -> f64 {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    text.split(' ').next().and_then(|ns| ns.parse::<f64>().ok()).unwrap_or_default() * 1e-9
+    assert_eq!(reader::decode(&made.progressive).unwrap().rebuild(usize::MAX), fan);
 }

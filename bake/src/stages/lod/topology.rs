@@ -1,9 +1,12 @@
 //! Which points, edges and pieces the surface parts of a mesh have: vertices with bit-identical positions in one
 //! part are one point, and a point's triangles are a chain of corners that two points can join in constant time.
 
-use glam::DVec3;
+use std::collections::HashMap;
+use std::ops::Range;
 
-use super::state::{NONE, State};
+use glam::{DVec3, Vec3};
+
+use super::state::{NONE, PartSpan, State};
 
 /// The surface ends here.
 pub const BOUNDARY: u8 = 1;
@@ -11,12 +14,10 @@ pub const BOUNDARY: u8 = 1;
 pub const LOCKED: u8 = 2;
 
 /// A connected piece of surface.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Piece {
     /// Its triangles at full detail, a range of `Topology::piece_triangles`.
-    pub triangles: std::ops::Range<usize>,
-    /// How many of them live.
-    pub living_triangles: usize,
+    pub triangles: Range<usize>,
     /// Its living vertices.
     pub living_vertices: usize,
     /// Mean width across its longest extent, in metres: a twig's diameter.
@@ -25,7 +26,7 @@ pub struct Piece {
     pub extent_m: f64,
 }
 
-/// Points, corners and pieces; updated by `collapse`.
+/// Points, corners and pieces; updated by `merge`.
 pub struct Topology {
     /// Taken from all positions, so that double precision is used near zero.
     pub origin: DVec3,
@@ -90,7 +91,7 @@ impl Topology {
         [self.point_of[p as usize], self.point_of[q as usize], self.point_of[r as usize]]
     }
 
-    /// The living corners at a point; forgets dead ones.
+    /// The living corners at a point; forgets removed ones.
     pub fn star(&mut self, state: &State, point: u32, corners: &mut Vec<u32>) {
         corners.clear();
         let (mut before, mut corner) = (NONE, self.head[point as usize]);
@@ -113,17 +114,49 @@ impl Topology {
         self.tail[point as usize] = before;
     }
 
-    /// Gives all corners of `gone` to `kept`.
-    pub fn join(&mut self, kept: u32, gone: u32) {
-        let (kept, gone) = (kept as usize, gone as usize);
+    /// Gives all corners of `removed` to `kept`.
+    pub fn join(&mut self, kept: u32, removed: u32) {
+        let (kept, removed) = (kept as usize, removed as usize);
         match self.tail[kept] {
-            NONE => self.head[kept] = self.head[gone],
-            tail => self.next[tail as usize] = self.head[gone],
+            NONE => self.head[kept] = self.head[removed],
+            tail => self.next[tail as usize] = self.head[removed],
         }
-        if self.tail[gone] != NONE {
-            self.tail[kept] = self.tail[gone];
+        if self.tail[removed] != NONE {
+            self.tail[kept] = self.tail[removed];
         }
-        (self.head[gone], self.tail[gone]) = (NONE, NONE);
+        (self.head[removed], self.tail[removed]) = (NONE, NONE);
+    }
+
+    /// The points that share an edge with `point`, whose corners are `star`.
+    pub fn ring(&self, state: &State, point: u32, star: &[u32], seen: &mut PointSet, found: &mut Vec<u32>) {
+        seen.clear();
+        seen.insert(point);
+        let points = star.iter().flat_map(|&corner| self.points_from(state, corner));
+        found.clear();
+        found.extend(points.filter(|&other| seen.insert(other)));
+    }
+
+    /// Whether the triangles around a point hang together by edges; stars of over 64 triangles count as torn.
+    pub fn is_one_fan(&self, state: &State, point: u32, star: &[u32]) -> bool {
+        if star.len() > 64 {
+            return false;
+        }
+        let (all, mut reached) = (u64::MAX >> (64 - star.len().max(1)), 1_u64);
+        let mut front = reached;
+        while front != 0 {
+            let index = front.trailing_zeros() as usize;
+            front &= front - 1;
+            let [_, p, q] = self.points_from(state, star[index]);
+            for (other, &corner) in star.iter().enumerate() {
+                let seen = reached >> other & 1 == 1;
+                let [_, r, s] = self.points_from(state, corner);
+                if !seen && [p, q].iter().any(|&end| end != point && (end == r || end == s)) {
+                    reached |= 1 << other;
+                    front |= 1 << other;
+                }
+            }
+        }
+        reached == all
     }
 
     fn chain_corners(&mut self, state: &State) {
@@ -155,14 +188,7 @@ impl Topology {
             let root = find(&mut union, point as u32) as usize;
             if root == point {
                 self.piece_of[point] = self.pieces.len() as u32;
-                let none = Piece {
-                    triangles: 0..0,
-                    living_triangles: 0,
-                    living_vertices: 0,
-                    thickness_m: 0.0,
-                    extent_m: 0.0,
-                };
-                self.pieces.push(none);
+                self.pieces.push(Piece::default());
             }
             self.piece_of[point] = self.piece_of[root];
             self.pieces[self.piece_of[point] as usize].living_vertices += self.wedges[point] as usize;
@@ -173,17 +199,16 @@ impl Topology {
 
     fn collect_piece_triangles(&mut self, state: &State) {
         let piece = |t: usize| self.piece_of[self.point_of[state.triangles[t][0] as usize] as usize] as usize;
-        let mut count = 0;
         for t in surface_triangles(state) {
-            self.pieces[piece(t)].living_triangles += 1;
-            count += 1;
+            self.pieces[piece(t)].triangles.end += 1;
         }
         let mut start = 0;
         for piece in &mut self.pieces {
+            let count = piece.triangles.len();
             piece.triangles = start..start;
-            start += piece.living_triangles;
+            start += count;
         }
-        self.piece_triangles = vec![0; count];
+        self.piece_triangles = vec![0; start];
         for t in surface_triangles(state) {
             let range = &mut self.pieces[piece(t)].triangles;
             self.piece_triangles[range.end] = t as u32;
@@ -210,10 +235,36 @@ impl Topology {
     }
 }
 
+/// A set of points that is emptied in constant time.
+pub struct PointSet {
+    stamps: Vec<u32>,
+    now: u32,
+}
+
+impl PointSet {
+    pub fn new(points: usize) -> Self {
+        Self { stamps: vec![0; points], now: 0 }
+    }
+
+    pub fn clear(&mut self) {
+        self.now += 1;
+    }
+
+    /// Whether the point is new.
+    #[inline]
+    pub fn insert(&mut self, point: u32) -> bool {
+        std::mem::replace(&mut self.stamps[point as usize], self.now) != self.now
+    }
+
+    #[inline]
+    pub fn contains(&self, point: u32) -> bool {
+        self.stamps[point as usize] == self.now
+    }
+}
+
 /// Triangles of surface parts, by number.
 pub fn surface_triangles(state: &State) -> impl Iterator<Item = usize> {
-    let surfaces = state.parts.iter().filter(|span| span.elements().is_none());
-    surfaces.flat_map(|span| span.first_triangle as usize..(span.first_triangle + span.triangles) as usize)
+    state.parts.iter().filter(|span| span.elements().is_none()).flat_map(PartSpan::range)
 }
 
 fn find(union: &mut [u32], mut point: u32) -> u32 {
@@ -224,45 +275,25 @@ fn find(union: &mut [u32], mut point: u32) -> u32 {
     point
 }
 
+/// Numbers the points in the order in which triangles use them: the point of each vertex, where points lie, and the
+/// origin from which that is measured.
 fn number_points(state: &State) -> (Vec<u32>, Vec<DVec3>, DVec3) {
     let mut point_of = vec![NONE; state.vertices.len()];
-    let mut firsts: Vec<(u32, u32)> = Vec::new();
-    let slots = (2 * state.vertices.len()).next_power_of_two().max(2);
-    let mut table = vec![NONE; slots];
-    for (index, span) in state.parts.iter().enumerate().filter(|(_, span)| span.elements().is_none()) {
-        let range = span.first_triangle as usize..(span.first_triangle + span.triangles) as usize;
-        for &vertex in state.triangles[range].iter().flatten() {
+    let mut known: HashMap<(usize, [u32; 3]), u32> = HashMap::with_capacity(state.vertices.len());
+    let mut places = Vec::new();
+    for (part, span) in state.parts.iter().enumerate().filter(|(_, span)| span.elements().is_none()) {
+        for &vertex in state.triangles[span.range()].iter().flatten() {
             if point_of[vertex as usize] != NONE {
                 continue;
             }
-            let bits = state.vertices[vertex as usize].position.map(f32::to_bits);
-            let mut slot = hash(bits, index as u32) as usize & (slots - 1);
-            let same = |point: u32| {
-                let (other, part) = firsts[point as usize];
-                part == index as u32 && state.vertices[other as usize].position.map(f32::to_bits) == bits
-            };
-            while table[slot] != NONE && !same(table[slot]) {
-                slot = (slot + 1) & (slots - 1);
-            }
-            if table[slot] == NONE {
-                table[slot] = firsts.len() as u32;
-                firsts.push((vertex, index as u32));
-            }
-            point_of[vertex as usize] = table[slot];
+            let position = state.vertices[vertex as usize].position;
+            point_of[vertex as usize] =
+                *known.entry((part, position.map(f32::to_bits))).or_insert_with(|| {
+                    places.push(Vec3::from_array(position).as_dvec3());
+                    places.len() as u32 - 1
+                });
         }
     }
-    let exact =
-        |first: &(u32, u32)| DVec3::from_array(state.vertices[first.0 as usize].position.map(f64::from));
-    let origin = firsts.first().map_or(DVec3::ZERO, exact);
-    let positions = firsts.iter().map(|first| exact(first) - origin).collect();
-    (point_of, positions, origin)
-}
-
-fn hash(bits: [u32; 3], part: u32) -> u32 {
-    let mut h = part.wrapping_mul(0x9E37_79B9);
-    for word in bits {
-        h = (h ^ word).wrapping_mul(0x85EB_CA6B);
-        h ^= h >> 15;
-    }
-    h.wrapping_mul(0xC2B2_AE35) ^ (h >> 13)
+    let origin = places.first().copied().unwrap_or(DVec3::ZERO);
+    (point_of, places.into_iter().map(|place| place - origin).collect(), origin)
 }

@@ -4,21 +4,18 @@
 //! in one valley, and are then weighed where they fall. A tree claims a circle of three quarters of its crown, and
 //! at least so much that trees spread evenly (about 0.7 of the widest spacing that dart throwing reaches).
 
-use rand::Rng;
-use rand_pcg::Pcg64Mcg;
-
 use crate::model::Instance;
-use crate::seed::rng;
+use crate::seed::Dice;
 
 use super::site::Site;
 use super::stand::{self, TRUNK_RESERVE_M};
-use super::{MOST_TREES, PlacementParams, START_CLEARING_M, TreeFootprint, start_point};
+use super::{MAX_TREES, PlacementParams, TreeFootprint};
 
 /// Cells a side of the map of weights.
 const MAP_SIDE: u32 = 128;
 /// A scene with fewer trees has nothing to choose by: on land where few could stand at the asked density, they
 /// stand closer, up to `CROWDED_PER_HA`.
-const FEWEST_TREES: f32 = 150.0;
+const MIN_TREES: f32 = 150.0;
 const CROWDED_PER_HA: f32 = 100.0;
 /// Spacing of saturated dart throwing times √density (covering 0.547 of the plane), and how much of it we ask for.
 const SATURATED: f32 = 0.834;
@@ -28,20 +25,7 @@ const CROWN_CLAIM: f32 = 0.75;
 /// Misses in a row after which the land counts as full.
 const PATIENCE: u32 = 500;
 
-/// Random numbers in [0, 1).
-pub(super) struct Dice(Pcg64Mcg);
-
-impl Dice {
-    pub fn roll(&mut self) -> f32 {
-        (self.0.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0)
-    }
-
-    /// In (-1, 1), most often near 0.
-    pub fn around_zero(&mut self) -> f32 {
-        self.roll() + self.roll() - 1.0
-    }
-}
-
+/// Up to so many instances of `trees` as grow at the asked density, in a fixed order.
 pub(super) fn scatter(params: &PlacementParams, site: &Site, trees: &[TreeFootprint]) -> Vec<Instance> {
     let map = WeightMap::new(site);
     let hectares = map.area_m2 / 10_000.0;
@@ -50,24 +34,21 @@ pub(super) fn scatter(params: &PlacementParams, site: &Site, trees: &[TreeFootpr
         return Vec::new();
     }
     let even_m = 0.5 * EVENNESS * SATURATED * (map.area_m2 / wanted as f32).sqrt();
-    let largest = trees.iter().map(|tree| claim_m(tree, stand::LARGEST)).fold(even_m, f32::max);
-    let mut taken = Taken::new(site.half_m(), 2.0 * largest);
-    let [start_x, _, start_z] = start_point(&site.land.field);
-    let mut dice = Dice(rng(u64::from(params.tree_seed), "placement", 0));
+    let largest = trees.iter().map(|tree| claim_m(tree, stand::MAX_SCALE)).fold(even_m, f32::max);
+    let mut taken = Taken::new(site.half_m, 2.0 * largest);
+    let mut dice = Dice::new(params.tree_seed, "placement", 0);
     let mut instances = Vec::with_capacity(wanted as usize);
     let mut misses = 0;
     while instances.len() < wanted as usize && misses < PATIENCE {
         misses += 1;
         let (x, z, weight) = map.dart(&mut dice);
-        let keep = dice.roll();
+        let keep = dice.unit();
         let Some(spot) = site.at(x, z).filter(|spot| spot.weight > keep * weight) else { continue };
-        let template = ((dice.roll() * trees.len() as f32) as usize).min(trees.len() - 1);
+        let template = ((dice.unit() * trees.len() as f32) as usize).min(trees.len() - 1);
         let tree = &trees[template];
         let scale = stand::scale(params.height_variation, spot.vigour, &mut dice);
         let claim = claim_m(tree, scale).max(even_m);
-        let from_start = (x - start_x) * (x - start_x) + (z - start_z) * (z - start_z);
-        let clearing = START_CLEARING_M + stand::trunk_reach_m(tree, scale);
-        if from_start < clearing * clearing || !taken.is_free(x, z, claim) {
+        if !taken.is_free(x, z, claim) {
             continue;
         }
         let Some(instance) = stand::stand(site.land, tree, template as u32, [x, z], scale, &mut dice) else {
@@ -82,10 +63,10 @@ pub(super) fn scatter(params: &PlacementParams, site: &Site, trees: &[TreeFootpr
 
 /// How many trees to plant on land worth so many hectares.
 fn wanted(density_per_ha: f32, hectares: f32) -> u32 {
-    let few = FEWEST_TREES.min(CROWDED_PER_HA * hectares);
+    let few = MIN_TREES.min(CROWDED_PER_HA * hectares);
     let n = (density_per_ha * hectares).max(few);
-    let most = MOST_TREES as f32;
-    (n * most / (n + most)) as u32
+    let max = MAX_TREES as f32;
+    (n * max / (n + max)) as u32
 }
 
 /// Radius of the circle that no other tree's may enter.
@@ -106,7 +87,7 @@ struct WeightMap {
 
 impl WeightMap {
     fn new(site: &Site) -> Self {
-        let half_m = site.half_m();
+        let half_m = site.half_m;
         let cell_m = 2.0 * half_m / MAP_SIDE as f32;
         let centre = |k: u32| (k as f32 + 0.5) * cell_m - half_m;
         let mut weights = Vec::with_capacity((MAP_SIDE * MAP_SIDE) as usize);
@@ -126,59 +107,48 @@ impl WeightMap {
     /// A point drawn by weight, and its cell's weight.
     fn dart(&self, dice: &mut Dice) -> (f32, f32, f32) {
         let total = self.sums.last().copied().unwrap_or(0.0);
-        let drawn = f64::from(dice.roll()) * total;
+        let drawn = f64::from(dice.unit()) * total;
         let cell = self.sums.partition_point(|&sum| sum <= drawn).min(self.sums.len() - 1);
         let (i, j) = (cell as u32 % MAP_SIDE, cell as u32 / MAP_SIDE);
-        let x = (i as f32 + dice.roll()) * self.cell_m - self.half_m;
-        let z = (j as f32 + dice.roll()) * self.cell_m - self.half_m;
+        let x = (i as f32 + dice.unit()) * self.cell_m - self.half_m;
+        let z = (j as f32 + dice.unit()) * self.cell_m - self.half_m;
         (x, z, self.weights[cell])
     }
 }
 
-/// The circles that trees claim, found by a grid of lists.
+/// The circles that trees claim, by cells of a grid no smaller than any circle.
 struct Taken {
     half_m: f32,
     cell_m: f32,
-    side: i32,
-    heads: Vec<u32>,
-    /// x, z, radius, and the next circle in the same cell.
-    circles: Vec<(f32, f32, f32, u32)>,
+    side: usize,
+    /// x, z and radius.
+    circles: Vec<Vec<[f32; 3]>>,
 }
-
-const NONE: u32 = u32::MAX;
 
 impl Taken {
     /// For circles none of which is wider than `widest_m`.
     fn new(half_m: f32, widest_m: f32) -> Self {
-        let side = ((2.0 * half_m / widest_m.max(1.0)) as i32).clamp(1, 512);
+        let side = ((2.0 * half_m / widest_m.max(1.0)) as usize).clamp(1, 512);
         let cell_m = 2.0 * half_m / side as f32;
-        Self { half_m, cell_m, side, heads: vec![NONE; (side * side) as usize], circles: Vec::new() }
+        Self { half_m, cell_m, side, circles: vec![Vec::new(); side * side] }
     }
 
-    fn cell(&self, along_m: f32) -> i32 {
-        (((along_m + self.half_m) / self.cell_m) as i32).clamp(0, self.side - 1)
+    fn cell(&self, along_m: f32) -> usize {
+        (((along_m + self.half_m) / self.cell_m) as usize).min(self.side - 1)
     }
 
     fn is_free(&self, x: f32, z: f32, radius: f32) -> bool {
-        let (ci, cj) = (self.cell(x), self.cell(z));
-        for j in (cj - 1).max(0)..=(cj + 1).min(self.side - 1) {
-            for i in (ci - 1).max(0)..=(ci + 1).min(self.side - 1) {
-                let mut at = self.heads[(j * self.side + i) as usize];
-                while let Some(&(ox, oz, other, next)) = self.circles.get(at as usize) {
-                    let apart = radius + other;
-                    if (ox - x) * (ox - x) + (oz - z) * (oz - z) < apart * apart {
-                        return false;
-                    }
-                    at = next;
-                }
-            }
-        }
-        true
+        let near = |cell: usize| cell.saturating_sub(1)..=(cell + 1).min(self.side - 1);
+        let (columns, rows) = (near(self.cell(x)), near(self.cell(z)));
+        let cells = rows.flat_map(|j| columns.clone().map(move |i| j * self.side + i));
+        !cells.flat_map(|cell| &self.circles[cell]).any(|&[other_x, other_z, other]| {
+            let apart = radius + other;
+            (other_x - x) * (other_x - x) + (other_z - z) * (other_z - z) < apart * apart
+        })
     }
 
     fn take(&mut self, x: f32, z: f32, radius: f32) {
-        let cell = (self.cell(z) * self.side + self.cell(x)) as usize;
-        let next = std::mem::replace(&mut self.heads[cell], self.circles.len() as u32);
-        self.circles.push((x, z, radius, next));
+        let cell = self.cell(z) * self.side + self.cell(x);
+        self.circles[cell].push([x, z, radius]);
     }
 }

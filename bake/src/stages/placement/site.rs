@@ -3,17 +3,18 @@
 //! Each limit has a soft edge, so that forests thin out rather than end at a line; at the limit itself the weight is
 //! exactly 0, so no tree ever stands beyond it.
 
+use crate::math::smoothstep;
 use crate::model::Landform;
 use crate::noise::gradient2;
 use crate::seed::noise_seed;
 
 use super::{EDGE_MARGIN_M, PlacementParams};
 
-/// Trees keep this many metres above the lake.
+/// Height in metres that trees keep above the lake.
 pub(super) const WATER_MARGIN_M: f32 = 0.3;
 /// Drained area, as `Landform::flow` scales it, above which a bed is too wet, and from which trees get fewer.
-pub(super) const WETTEST_FLOW: f32 = 0.9;
-const WET_FLOW: f32 = 0.75;
+pub(super) const MAX_FLOW: f32 = 0.9;
+const EDGE_FLOW: f32 = 0.75;
 /// Degrees of slope over which trees get fewer towards the limit.
 const SLOPE_EDGE_DEG: f32 = 6.0;
 /// Part of the relief over which trees get fewer and smaller towards the lowest tree line.
@@ -36,7 +37,8 @@ pub(super) struct Spot {
 /// The land as trees see it.
 pub(super) struct Site<'a> {
     pub land: &'a Landform,
-    half_m: f32,
+    /// Metres from the middle to where trees end, along x and z.
+    pub half_m: f32,
     clustering: f32,
     slopes: [f32; 2],
     /// Altitudes where trees begin to get fewer and where they end, in metres.
@@ -47,7 +49,7 @@ pub(super) struct Site<'a> {
 
 impl<'a> Site<'a> {
     pub fn new(params: &PlacementParams, land: &'a Landform) -> Self {
-        let (low, high) = land.field.range_m();
+        let [low, high] = land.field.range_m();
         let shore_m = land.water_level_m.map_or(f32::NEG_INFINITY, |level| level + WATER_MARGIN_M);
         // Of the relief above water: under a deep lake, a low tree line would leave no land at all.
         let base = low.max(shore_m).min(high);
@@ -71,22 +73,17 @@ impl<'a> Site<'a> {
         }
     }
 
-    /// Metres from the middle to where trees end, along x and z.
-    pub fn half_m(&self) -> f32 {
-        self.half_m
-    }
-
     /// How trees grow at (x, z); `None` where they don't.
     pub fn at(&self, x_m: f32, z_m: f32) -> Option<Spot> {
         if x_m.abs().max(z_m.abs()) > self.half_m {
             return None;
         }
         let y = self.land.field.height_m(x_m, z_m);
-        if y < self.shore_m || y > self.tree_line_m[1] {
+        if y < self.shore_m || y >= self.tree_line_m[1] {
             return None;
         }
         let gentle = 1.0 - smoothstep(self.slopes[0], self.slopes[1], self.slope(x_m, z_m));
-        let dry = 1.0 - smoothstep(WET_FLOW, WETTEST_FLOW, self.flow(x_m, z_m));
+        let dry = 1.0 - smoothstep(EDGE_FLOW, MAX_FLOW, self.flow(x_m, z_m));
         let mild = 1.0 - smoothstep(self.tree_line_m[0], self.tree_line_m[1], y);
         let limits = gentle * dry * mild;
         if limits <= 0.0 {
@@ -124,13 +121,4 @@ impl<'a> Site<'a> {
         let small = gradient2(self.seed.wrapping_add(1), x_m / BAY_M, z_m / BAY_M, 0);
         smoothstep(-0.02, 0.16, large + 0.35 * small)
     }
-}
-
-/// 0 up to `from`, 1 from `to`, smooth between.
-fn smoothstep(from: f32, to: f32, x: f32) -> f32 {
-    if x >= to {
-        return 1.0;
-    }
-    let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
 }

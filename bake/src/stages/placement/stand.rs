@@ -6,14 +6,15 @@
 
 use glam::{Mat3, Vec2, Vec3};
 
+use crate::math::quarter_turns;
 use crate::model::{Instance, Landform};
+use crate::seed::Dice;
 
 use super::TreeFootprint;
-use super::scatter::Dice;
 use super::site::WATER_MARGIN_M;
 
 /// The largest size that `scale` gives.
-pub(super) const LARGEST: f32 = 1.5;
+pub(super) const MAX_SCALE: f32 = 1.5;
 /// Greatest stretch across the trunk, and along it.
 const STRETCH: f32 = 0.1;
 const STRETCH_UP: f32 = 0.08;
@@ -34,32 +35,13 @@ pub(super) const TRUNK_RESERVE_M: f32 = 0.25;
 
 /// Sixteen points of the ring around a trunk, in order.
 const RING: [[f32; 2]; 16] = {
-    const C: f32 = 0.923_879_5;
-    const H: f32 = std::f32::consts::FRAC_1_SQRT_2;
-    const S: f32 = 0.382_683_43;
-    [
-        [1.0, 0.0],
-        [C, S],
-        [H, H],
-        [S, C],
-        [0.0, 1.0],
-        [-S, C],
-        [-H, H],
-        [-C, S],
-        [-1.0, 0.0],
-        [-C, -S],
-        [-H, -H],
-        [-S, -C],
-        [0.0, -1.0],
-        [S, -C],
-        [H, -H],
-        [C, -S],
-    ]
+    let [c, h, s] = [0.923_879_5, std::f32::consts::FRAC_1_SQRT_2, 0.382_683_43];
+    quarter_turns([[1.0, 0.0], [c, s], [h, h], [s, c]])
 };
 
 /// The size of a tree of that vigour: within 1 ± `variation` for full vigour.
 pub(super) fn scale(variation: f32, vigour: f32, dice: &mut Dice) -> f32 {
-    ((1.0 + variation * dice.around_zero()) * vigour).clamp(0.2, LARGEST)
+    ((1.0 + variation * dice.around_zero()) * vigour).clamp(0.2, MAX_SCALE)
 }
 
 /// Radius in metres that holds a trunk's cylinder, however it leans, for a tree of that size.
@@ -79,8 +61,10 @@ pub(super) fn stand(
     let (up, across, along) =
         (1.0 + STRETCH_UP * dice.around_zero(), 1.0, 1.0 + STRETCH * dice.around_zero());
     let stretch = Mat3::from_diagonal(scale * Vec3::new(across, up, along));
-    let (phi, theta) = (dice.roll() * std::f32::consts::TAU, dice.roll() * std::f32::consts::TAU);
-    let lean = LEAN * dice.roll() * direction(dice);
+    let (phi, theta) = (dice.unit() * std::f32::consts::TAU, dice.unit() * std::f32::consts::TAU);
+    let lean = LEAN * dice.unit();
+    let (sin, cos) = libm::sincosf(dice.unit() * std::f32::consts::TAU);
+    let lean = lean * Vec2::new(cos, sin);
     let shear = Mat3::from_cols(Vec3::X, Vec3::new(lean.x, 1.0, lean.y), Vec3::Z);
     let linear = shear * turn(phi) * stretch * turn(theta);
 
@@ -134,20 +118,11 @@ fn lowest_sample(land: &Landform, [x, z]: [f32; 2], radius_m: f32) -> f32 {
     samples.fold(f32::INFINITY, f32::min)
 }
 
-fn direction(dice: &mut Dice) -> Vec2 {
-    let (sin, cos) = libm::sincosf(dice.roll() * std::f32::consts::TAU);
-    Vec2::new(cos, sin)
-}
-
 fn turn(angle_rad: f32) -> Mat3 {
     let (sin, cos) = libm::sincosf(angle_rad);
     Mat3::from_cols(Vec3::new(cos, 0.0, -sin), Vec3::Y, Vec3::new(sin, 0.0, cos))
 }
 
 fn rows(linear: Mat3, translation: Vec3) -> [[f32; 4]; 3] {
-    let row = |k: usize| {
-        let r = linear.row(k);
-        [r.x, r.y, r.z, translation[k]]
-    };
-    [row(0), row(1), row(2)]
+    [0, 1, 2].map(|k| linear.row(k).extend(translation[k]).to_array())
 }

@@ -1,17 +1,14 @@
 //! Nobody floats, drowns, clings to a cliff or stands in another's trunk; and the same genes give the same forest.
 
-use std::path::Path;
-
 use glam::{Mat3, Vec2, Vec3};
 use proptest::prelude::*;
 
 use crate::model::{Heightfield, Instance, Landform};
 use crate::noise::fbm2;
+use crate::stages::start::{CLEARING_M, clear_around, start_spot};
 
-use super::site::{Site, WATER_MARGIN_M, WETTEST_FLOW};
-use super::{
-    EDGE_MARGIN_M, MOST_TREES, PlacementParams, START_CLEARING_M, TreeFootprint, place, start_point,
-};
+use super::site::{MAX_FLOW, Site, WATER_MARGIN_M};
+use super::{EDGE_MARGIN_M, MAX_TREES, PlacementParams, TreeFootprint, place};
 
 /// Rolling land 1024 m wide with one river from north to south, and a lake if `water` is above 0.
 fn land(seed: u32, relief_m: f32, water: f32, side: u32) -> Landform {
@@ -27,7 +24,7 @@ fn land(seed: u32, relief_m: f32, water: f32, side: u32) -> Landform {
         }
     }
     let field = Heightfield { side, spacing_m, heights_m };
-    let (low, high) = field.range_m();
+    let [low, high] = field.range_m();
     let water_level_m = (water > 0.0).then_some(low + water * (high - low));
     let deposit = vec![0.0; flow.len()];
     Landform { apron: field.clone(), field, flow, deposit, water_level_m, snow_line_m: high + 1.0 }
@@ -92,7 +89,7 @@ proptest! {
 
     #[test]
     fn nobody_floats_drowns_or_is_buried(params in params(), land in lands(), trees in trees()) {
-        for instance in place(&params, &land, &trees).instances {
+        for instance in place(&params, &land, &trees) {
             let tree = trees[instance.template as usize];
             let (foot, size) = (origin(&instance), linear(&instance).y_axis.y);
             for p in ring(&instance, tree.trunk_radius_m, 0.0) {
@@ -108,29 +105,32 @@ proptest! {
     #[test]
     fn limits_hold(params in params(), land in lands(), trees in trees()) {
         let site = Site::new(&params, &land);
-        let (low, high) = land.field.range_m();
+        let [low, high] = land.field.range_m();
         let base = land.water_level_m.map_or(low, |level| level + WATER_MARGIN_M).min(high);
         let half = 0.5 * land.field.extent_m() - EDGE_MARGIN_M;
-        let start = start_point(&land.field);
-        let instances = place(&params, &land, &trees).instances;
-        prop_assert!(instances.len() < MOST_TREES as usize);
+        let mut instances = place(&params, &land, &trees);
+        prop_assert!(instances.len() < MAX_TREES as usize);
         for instance in &instances {
             let p = origin(instance);
             let slope = libm::atanf(site.slope(p.x, p.z)).to_degrees();
             prop_assert!(slope <= params.steepest_slope_deg + 0.01, "{slope}°");
             let altitude = (land.field.height_m(p.x, p.z) - base) / (high - base);
             prop_assert!(altitude <= params.altitude_limit + 1e-4, "at {altitude} of the relief");
-            prop_assert!(site.flow(p.x, p.z) < WETTEST_FLOW);
+            prop_assert!(site.flow(p.x, p.z) < MAX_FLOW);
             prop_assert!(p.x.abs().max(p.z.abs()) <= half);
+        }
+        let start = start_spot(&land, &instances);
+        clear_around(start, &mut instances);
+        for instance in &instances {
             let [x, z, radius] = instance.trunk_cylinder_m;
-            let free = Vec2::new(x - start[0], z - start[2]).length() - radius;
-            prop_assert!(free >= START_CLEARING_M, "{free} m from the start");
+            let free = Vec2::new(x - start[0], z - start[1]).length() - radius;
+            prop_assert!(free >= CLEARING_M, "{free} m from the start");
         }
     }
 
     #[test]
     fn trunks_never_meet_and_cylinders_hold_them(params in params(), land in lands(), trees in trees()) {
-        let mut instances = place(&params, &land, &trees).instances;
+        let mut instances = place(&params, &land, &trees);
         for instance in &instances {
             let [x, z, radius] = instance.trunk_cylinder_m;
             let foot = origin(instance);
@@ -157,7 +157,7 @@ proptest! {
     fn transforms_are_affine_in_earnest_and_well_conditioned(params in params(), trees in trees()) {
         let land = land(3, 60.0, 0.0, 129);
         let mut skewed = 0;
-        let instances = place(&params, &land, &trees).instances;
+        let instances = place(&params, &land, &trees);
         for instance in &instances {
             let m = linear(instance);
             prop_assert!(m.is_finite() && m.determinant() > 0.0);
@@ -176,7 +176,7 @@ proptest! {
         let first = place(&params, &land, &trees);
         prop_assert_eq!(&first, &place(&params, &land, &trees));
         let other = PlacementParams { tree_seed: params.tree_seed ^ 1, ..params };
-        prop_assert!(first.instances.is_empty() || first != place(&other, &land, &trees));
+        prop_assert!(first.is_empty() || first != place(&other, &land, &trees));
     }
 }
 
@@ -199,8 +199,8 @@ fn hundreds_to_thousands_and_more_where_more_are_asked_for() {
     let land = land(3, 60.0, 0.1, 257);
     let mut before = 0;
     for density_per_ha in [5.0, 10.0, 20.0, 60.0, 200.0, 600.0] {
-        let count = place(&PlacementParams { density_per_ha, ..usual() }, &land, &[OAK]).instances.len();
-        assert!(count > before.max(150) && count < MOST_TREES as usize, "{density_per_ha}/ha: {count}");
+        let count = place(&PlacementParams { density_per_ha, ..usual() }, &land, &[OAK]).len();
+        assert!(count > before.max(150) && count < MAX_TREES as usize, "{density_per_ha}/ha: {count}");
         before = count;
     }
     assert!(before > 2000, "{before}");
@@ -223,7 +223,7 @@ fn clustering_goes_from_even_to_groves() {
     land.flow.fill(0.0);
     let index = |clustering| {
         let params = PlacementParams { clustering, density_per_ha: 8.0, altitude_limit: 1.0, ..usual() };
-        clark_evans(&place(&params, &land, &[OAK]).instances)
+        clark_evans(&place(&params, &land, &[OAK]))
     };
     let (even, half, groves) = (index(0.0), index(0.5), index(1.0));
     // Even groves stay above 1 themselves: the index is of both. What counts is how far it falls.
@@ -234,9 +234,9 @@ fn clustering_goes_from_even_to_groves() {
 fn trees_are_smaller_at_the_tree_line() {
     let land = land(5, 200.0, 0.0, 257);
     let params = PlacementParams { clustering: 0.0, altitude_limit: 0.6, ..usual() };
-    let (low, high) = land.field.range_m();
+    let [low, high] = land.field.range_m();
     let (mut near, mut below) = (Vec::new(), Vec::new());
-    for instance in place(&params, &land, &[OAK]).instances {
+    for instance in place(&params, &land, &[OAK]) {
         let altitude = (origin(&instance).y - low) / (high - low);
         let size = libm::cbrtf(linear(&instance).determinant());
         if altitude > 0.56 {
@@ -252,105 +252,7 @@ fn trees_are_smaller_at_the_tree_line() {
 #[test]
 fn hopeless_land_and_no_templates_give_no_trees() {
     let mut drowned = land(1, 50.0, 0.0, 129);
-    assert!(place(&usual(), &drowned, &[]).instances.is_empty());
+    assert!(place(&usual(), &drowned, &[]).is_empty());
     drowned.water_level_m = Some(1000.0);
-    assert!(place(&usual(), &drowned, &[OAK]).instances.is_empty());
-}
-
-#[test]
-fn the_walker_starts_on_the_highest_sample_near_the_centre() {
-    let mut field = Heightfield { side: 129, spacing_m: 8.0, heights_m: vec![1.0; 129 * 129] };
-    assert_eq!(start_point(&field), [0.0, 1.0, -128.0], "of equals the northernmost");
-    field.heights_m[70 * 129 + 60] = 5.0;
-    field.heights_m[0] = 9.0;
-    assert_eq!(start_point(&field), [(60.0 - 64.0) * 8.0, 5.0, (70.0 - 64.0) * 8.0]);
-}
-
-/// Seen from above, a pixel a metre: land by height and slope, crowns, trunks, the start.
-fn picture(path: &Path, params: &PlacementParams, land: &Landform, trees: &[TreeFootprint]) {
-    let (low, high) = land.field.range_m();
-    let site = Site::new(params, land);
-    let mut pixels = vec![0_u8; 1024 * 1024 * 3];
-    for (k, pixel) in pixels.chunks_exact_mut(3).enumerate() {
-        let (x, z) = ((k % 1024) as f32 - 511.5, (k / 1024) as f32 - 511.5);
-        let y = land.field.height_m(x, z);
-        let shade = (0.75 + 0.9 * (y - land.field.height_m(x + 3.0, z + 3.0)) / 3.0).clamp(0.3, 1.2);
-        let t = (y - low) / (high - low);
-        let steep = site.slope(x, z) > libm::tanf(params.steepest_slope_deg.to_radians());
-        let color = if land.water_level_m.is_some_and(|level| y < level) {
-            [60.0, 100.0, 160.0]
-        } else if steep {
-            [150.0, 140.0, 130.0]
-        } else {
-            [150.0 + 60.0 * t, 170.0 + 40.0 * t, 110.0 + 90.0 * t]
-        };
-        let wet = if site.flow(x, z) > WETTEST_FLOW { 0.7 } else { 1.0 };
-        pixel.iter_mut().zip(color).for_each(|(p, c)| *p = (c * shade * wet).min(255.0) as u8);
-    }
-    let mut disc = |x: f32, z: f32, radius: f32, color: [u8; 3]| {
-        for j in (z - radius) as i32 + 511..=(z + radius) as i32 + 513 {
-            for i in (x - radius) as i32 + 511..=(x + radius) as i32 + 513 {
-                let (dx, dz) = (i as f32 - 511.5 - x, j as f32 - 511.5 - z);
-                if (0..1024).contains(&i) && (0..1024).contains(&j) && dx * dx + dz * dz <= radius * radius {
-                    let at = 3 * (j * 1024 + i) as usize;
-                    pixels[at..at + 3].copy_from_slice(&color);
-                }
-            }
-        }
-    };
-    for instance in &place(params, land, trees).instances {
-        let (p, tree) = (origin(instance), trees[instance.template as usize]);
-        let size = libm::cbrtf(linear(instance).determinant());
-        disc(p.x, p.z, tree.crown_radius_m * size, [30, 60 + 25 * (instance.template as u8 % 5), 35]);
-    }
-    let [x, _, z] = start_point(&land.field);
-    disc(x, z, 3.0, [255, 40, 40]);
-    let mut encoder = png::Encoder::new(std::fs::File::create(path).expect("created"), 1024, 1024);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.write_header().and_then(|mut writer| writer.write_image_data(&pixels)).expect("written");
-}
-
-#[test]
-#[ignore = "draws pictures"]
-fn pictures() {
-    let folder = std::env::temp_dir().join("placement");
-    std::fs::create_dir_all(&folder).expect("made");
-    let small = TreeFootprint { height_m: 8.0, crown_radius_m: 2.5, trunk_radius_m: 0.2, ..OAK };
-    let trees = [OAK, small, OAK, small, OAK];
-    let cases = [
-        ("even", 3, 120.0, 0.0, PlacementParams { clustering: 0.0, ..usual() }),
-        ("groves", 3, 120.0, 0.2, PlacementParams { clustering: 1.0, density_per_ha: 150.0, ..usual() }),
-        (
-            "mountain",
-            8,
-            400.0,
-            0.1,
-            PlacementParams { altitude_limit: 0.45, density_per_ha: 200.0, ..usual() },
-        ),
-        ("sparse", 5, 60.0, 0.3, PlacementParams { density_per_ha: 5.0, clustering: 0.7, ..usual() }),
-    ];
-    for (name, seed, relief_m, water, params) in cases {
-        let land = land(seed, relief_m, water, 513);
-        let count = place(&params, &land, &trees).instances.len();
-        eprintln!("{name}: {count} trees");
-        picture(&folder.join(format!("{name}.png")), &params, &land, &trees);
-    }
-}
-
-#[test]
-#[ignore = "a measurement"]
-fn cost() {
-    let land = land(3, 120.0, 0.1, 513);
-    for density_per_ha in [5.0, 40.0, 600.0] {
-        for clustering in [0.0, 1.0] {
-            let params = PlacementParams { density_per_ha, clustering, ..usual() };
-            let time = || {
-                let start = std::time::Instant::now();
-                let count = place(&params, &land, &[OAK; 5]).instances.len();
-                (start.elapsed(), count)
-            };
-            let best = (0..20).map(|_| time()).min().expect("several");
-            eprintln!("{density_per_ha}/ha, clustering {clustering}: {} trees, {:.2?}", best.1, best.0);
-        }
-    }
+    assert!(place(&usual(), &drowned, &[OAK]).is_empty());
 }

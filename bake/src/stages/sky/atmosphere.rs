@@ -7,6 +7,7 @@
 use glam::Vec3A;
 
 use super::math::{exp, exp3, henyey_greenstein};
+use crate::math::cell;
 
 /// Radius of the Earth in km.
 pub const GROUND_KM: f32 = 6360.0;
@@ -27,8 +28,8 @@ const MULTI_COSINES: usize = 20;
 pub struct Atmosphere {
     mie_scattering: Vec3A,
     mie_extinction: Vec3A,
-    transmittance: Vec<Vec3A>,
-    multiple: Vec<Vec3A>,
+    transmittance: Table,
+    multiple: Table,
 }
 
 /// What a view ray gathers: light whose angular shape is already in it, and Mie light still to be multiplied by
@@ -82,14 +83,44 @@ fn height_to_unit(height_km: f32) -> f32 {
     (height_km / (TOP_KM - GROUND_KM)).clamp(0.0, 1.0).sqrt()
 }
 
-fn bilinear(table: &[Vec3A], columns: usize, rows: usize, u: f32, v: f32) -> Vec3A {
-    let (x, y) = (u * (columns - 1) as f32, v * (rows - 1) as f32);
-    let (i, j) = ((x as usize).min(columns - 2), (y as usize).min(rows - 2));
-    let (fx, fy) = (x - i as f32, y - j as f32);
-    let at = j * columns + i;
-    let low = table[at] + (table[at + 1] - table[at]) * fx;
-    let high = table[at + columns] + (table[at + columns + 1] - table[at + columns]) * fx;
-    low + (high - low) * fy
+/// A table over height and the direction cosine of the sun.
+#[derive(Default)]
+struct Table {
+    columns: usize,
+    rows: usize,
+    values: Vec<Vec3A>,
+}
+
+impl Table {
+    fn new(columns: usize, rows: usize, value: impl Fn(f32, f32) -> Vec3A) -> Self {
+        let entry = |k: usize| {
+            let unit = (k / columns) as f32 / (rows - 1) as f32;
+            let mu = unit_to_cosine((k % columns) as f32 / (columns - 1) as f32);
+            value(unit * unit * (TOP_KM - GROUND_KM), mu)
+        };
+        Self { columns, rows, values: (0..columns * rows).map(entry).collect() }
+    }
+
+    fn at(&self, height_km: f32, mu: f32) -> Vec3A {
+        let (u, v) = (cosine_to_unit(mu), height_to_unit(height_km));
+        let (i, x) = cell(u * (self.columns - 1) as f32, self.columns);
+        let (j, y) = cell(v * (self.rows - 1) as f32, self.rows);
+        let row = |j: usize| {
+            let at = j * self.columns + i;
+            self.values[at] + (self.values[at + 1] - self.values[at]) * x
+        };
+        let (low, high) = (row(j), row(j + 1));
+        low + (high - low) * y
+    }
+}
+
+/// Steps along a ray that grow with the square of their number: the middle and the length of each.
+fn steps(length: f32, count: usize) -> impl Iterator<Item = (f32, f32)> {
+    let end = move |step: usize| {
+        let share = step as f32 / count as f32;
+        length * share * share
+    };
+    (0..count).map(move |step| (0.5 * (end(step) + end(step + 1)), end(step + 1) - end(step)))
 }
 
 impl Atmosphere {
@@ -104,11 +135,13 @@ impl Atmosphere {
         let mut air = Self {
             mie_scattering: mie_extinction * MIE_ALBEDO,
             mie_extinction,
-            transmittance: Vec::new(),
-            multiple: Vec::new(),
+            transmittance: Table::default(),
+            multiple: Table::default(),
         };
-        air.transmittance = air.transmittance_table();
-        air.multiple = air.multiple_table();
+        air.transmittance = Table::new(COSINES, HEIGHTS, |height, mu| air.sun_transmittance(height, mu, 20));
+        air.multiple = Table::new(MULTI_COSINES, MULTI_HEIGHTS, |height, mu| {
+            air.multiple_scattering(height.max(0.02), mu)
+        });
         air
     }
 
@@ -122,58 +155,18 @@ impl Atmosphere {
     }
 
     /// Part of the sun's light that arrives at a height (km) when the sun stands at direction cosine `mu`.
-    pub fn sun_transmittance(&self, height_km: f32, mu: f32, steps: usize) -> Vec3A {
+    pub fn sun_transmittance(&self, height_km: f32, mu: f32, count: usize) -> Vec3A {
         let r = GROUND_KM + height_km.max(0.0);
         if distance_down(r, mu).is_some() {
             return Vec3A::ZERO;
         }
-        let length = distance_up(r, mu, TOP_KM);
         let mut depth = Vec3A::ZERO;
-        let mut before = 0.0;
-        for step in 0..steps {
-            let share = (step + 1) as f32 / steps as f32;
-            let after = length * share * share;
-            let t = 0.5 * (before + after);
+        for (t, dt) in steps(distance_up(r, mu, TOP_KM), count) {
             let h = (r * r + t * t + 2.0 * r * mu * t).sqrt() - GROUND_KM;
             let (air, haze, ozone) = densities(h);
-            depth += self.extinction(air, haze, ozone) * (after - before);
-            before = after;
+            depth += self.extinction(air, haze, ozone) * dt;
         }
         exp3(-depth)
-    }
-
-    fn transmittance_table(&self) -> Vec<Vec3A> {
-        let mut table = Vec::with_capacity(HEIGHTS * COSINES);
-        for row in 0..HEIGHTS {
-            let unit = row as f32 / (HEIGHTS - 1) as f32;
-            let height = unit * unit * (TOP_KM - GROUND_KM);
-            for column in 0..COSINES {
-                let mu = unit_to_cosine(column as f32 / (COSINES - 1) as f32);
-                table.push(self.sun_transmittance(height, mu, 20));
-            }
-        }
-        table
-    }
-
-    fn sun_at(&self, height_km: f32, mu: f32) -> Vec3A {
-        bilinear(&self.transmittance, COSINES, HEIGHTS, cosine_to_unit(mu), height_to_unit(height_km))
-    }
-
-    fn multiple_at(&self, height_km: f32, mu: f32) -> Vec3A {
-        bilinear(&self.multiple, MULTI_COSINES, MULTI_HEIGHTS, cosine_to_unit(mu), height_to_unit(height_km))
-    }
-
-    fn multiple_table(&self) -> Vec<Vec3A> {
-        let mut table = Vec::with_capacity(MULTI_HEIGHTS * MULTI_COSINES);
-        for row in 0..MULTI_HEIGHTS {
-            let unit = row as f32 / (MULTI_HEIGHTS - 1) as f32;
-            let height = (unit * unit * (TOP_KM - GROUND_KM)).max(0.02);
-            for column in 0..MULTI_COSINES {
-                let mu = unit_to_cosine(column as f32 / (MULTI_COSINES - 1) as f32);
-                table.push(self.multiple_scattering(height, mu));
-            }
-        }
-        table
     }
 
     /// Radiance of all orders above the first, per unit of scattering: second order over 1 − its own feedback.
@@ -195,17 +188,11 @@ impl Atmosphere {
     }
 
     fn second_order(&self, height_km: f32, mu: f32, sun_mu: f32, cos_angle: f32) -> (Vec3A, Vec3A) {
-        const STEPS: usize = 12;
         let r = GROUND_KM + height_km;
         let ground = distance_down(r, mu);
         let length = ground.unwrap_or_else(|| distance_up(r, mu, TOP_KM));
         let (mut light, mut feedback, mut through) = (Vec3A::ZERO, Vec3A::ZERO, Vec3A::ONE);
-        let mut before = 0.0;
-        for step in 0..STEPS {
-            let share = (step + 1) as f32 / STEPS as f32;
-            let after = length * share * share;
-            let (t, dt) = (0.5 * (before + after), after - before);
-            before = after;
+        for (t, dt) in steps(length, 12) {
             let radius = (r * r + t * t + 2.0 * r * mu * t).sqrt();
             let (air, haze, ozone) = densities(radius - GROUND_KM);
             let scattering = RAYLEIGH_PER_KM * air + self.mie_scattering * haze;
@@ -213,15 +200,16 @@ impl Atmosphere {
             let passed = exp3(-extinction * dt);
             let gathered = scattering * through * (Vec3A::ONE - passed) / extinction.max(Vec3A::splat(1e-9));
             let mu_here = (r * sun_mu + t * cos_angle) / radius;
-            light +=
-                gathered * self.sun_at(radius - GROUND_KM, mu_here) * (0.25 * std::f32::consts::FRAC_1_PI);
+            light += gathered
+                * self.transmittance.at(radius - GROUND_KM, mu_here)
+                * (0.25 * std::f32::consts::FRAC_1_PI);
             feedback += gathered;
             through *= passed;
         }
         if let Some(t) = ground {
             let mu_ground = (r * sun_mu + t * cos_angle) / GROUND_KM;
             let bounce = GROUND_ALBEDO * std::f32::consts::FRAC_1_PI * mu_ground.max(0.0);
-            light += through * self.sun_at(0.0, mu_ground) * bounce;
+            light += through * self.transmittance.at(0.0, mu_ground) * bounce;
         }
         (light, feedback)
     }
@@ -229,17 +217,12 @@ impl Atmosphere {
     /// Light that reaches an eye at `height_km` along a ray upwards of direction cosine `mu`, at an angle to the sun
     /// of cosine `cos_angle`.
     pub fn gather(&self, height_km: f32, mu: f32, sun_mu: f32, cos_angle: f32) -> Gathered {
-        const STEPS: usize = 26;
         let r = GROUND_KM + height_km;
         let length = distance_up(r, mu, TOP_KM);
         let phase = rayleigh_phase(cos_angle);
         let mut sum = Gathered::default();
-        let (mut through, mut before) = (Vec3A::ONE, 0.0);
-        for step in 0..STEPS {
-            let share = (step + 1) as f32 / STEPS as f32;
-            let after = length * share * share;
-            let (t, dt) = (0.5 * (before + after), after - before);
-            before = after;
+        let mut through = Vec3A::ONE;
+        for (t, dt) in steps(length, 26) {
             let radius = (r * r + t * t + 2.0 * r * mu * t).sqrt();
             let height = radius - GROUND_KM;
             let (air, haze, ozone) = densities(height);
@@ -247,11 +230,11 @@ impl Atmosphere {
             let passed = exp3(-extinction * dt);
             let weight = through * (Vec3A::ONE - passed) / extinction.max(Vec3A::splat(1e-9));
             let mu_here = (r * sun_mu + t * cos_angle) / radius;
-            let sun = self.sun_at(height, mu_here);
+            let sun = self.transmittance.at(height, mu_here);
             let rayleigh = RAYLEIGH_PER_KM * air;
             let mie = self.mie_scattering * haze;
             sum.smooth +=
-                weight * (rayleigh * sun * phase + (rayleigh + mie) * self.multiple_at(height, mu_here));
+                weight * (rayleigh * sun * phase + (rayleigh + mie) * self.multiple.at(height, mu_here));
             sum.mie += weight * mie * sun;
             through *= passed;
         }

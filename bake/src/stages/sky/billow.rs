@@ -4,8 +4,10 @@
 
 use std::sync::LazyLock;
 
-use super::math::split;
+use crate::math::{lerp, split};
 use crate::noise::hash;
+
+use super::math::range;
 
 /// The one volume there is: a constant, but one that is computed rather than stored.
 pub static BILLOWS: LazyLock<Billows> = LazyLock::new(Billows::new);
@@ -25,8 +27,7 @@ impl Billows {
         for (octave, (cells, weight)) in [(4, 0.6), (8, 0.27), (16, 0.13)].into_iter().enumerate() {
             add_cells(&mut sum, 0x51AB + octave as u32, cells, weight);
         }
-        let low = sum.iter().fold(f32::MAX, |a, &b| a.min(b));
-        let high = sum.iter().fold(f32::MIN, |a, &b| a.max(b));
+        let (low, high) = range(&sum);
         let scale = 255.0 / (high - low);
         Self { voxels: sum.iter().map(|v| ((v - low) * scale + 0.5) as u8).collect() }
     }
@@ -40,13 +41,9 @@ impl Billows {
         let (y0, y1) = ((iy & MASK) as usize * SIDE, ((iy + 1) & MASK) as usize * SIDE);
         let (z0, z1) = ((iz & MASK) as usize * SIDE * SIDE, ((iz + 1) & MASK) as usize * SIDE * SIDE);
         let voxels = &self.voxels[..SIDE * SIDE * SIDE];
-        let row = |base: usize| {
-            let (a, b) = (f32::from(voxels[base + x0]), f32::from(voxels[base + x1]));
-            a + (b - a) * dx
-        };
-        let (a, b, c, d) = (row(z0 + y0), row(z0 + y1), row(z1 + y0), row(z1 + y1));
-        let (near, far) = (a + (b - a) * dy, c + (d - c) * dy);
-        (near + (far - near) * dz) * (1.0 / 255.0)
+        let row = |base: usize| lerp(f32::from(voxels[base + x0]), f32::from(voxels[base + x1]), dx);
+        let layer = |z: usize| lerp(row(z + y0), row(z + y1), dy);
+        lerp(layer(z0), layer(z1), dz) * (1.0 / 255.0)
     }
 }
 

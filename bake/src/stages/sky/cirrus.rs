@@ -1,5 +1,5 @@
-//! Genes → a tiling sheet of cirrus: noise drawn out along a curved wind (line integral convolution, Cabral and
-//! Leedom 1993), thinned out to patches. A sheet is so thin that its light is scattered once.
+//! Genes → a tiling layer of cirrus: noise drawn out along a curved wind (line integral convolution, Cabral and
+//! Leedom 1993), thinned out to patches. The layer is so thin that its light is scattered once.
 
 use glam::{Vec3A, Vec4};
 use rayon::prelude::*;
@@ -7,21 +7,23 @@ use rayon::prelude::*;
 use super::SkyParams;
 use super::clear::ClearSky;
 use super::clouds::{Marched, distance_to_height, through_air};
-use super::math::{exp, henyey_greenstein, lerp, smoothstep, split};
+use super::math::{bilinear, dot, exp, henyey_greenstein};
+use crate::math::{lerp, smoothstep};
 use crate::noise;
+use crate::raster::raster;
 use crate::seed::noise_seed;
 
-/// Texels a side of the sheet in pictures; a power of two, as any other side must be.
+/// Texels a side of the layer in images; a power of two, as any other side must be.
 pub const SIDE: usize = 512;
 /// Height above the ground in metres.
 pub const ALTITUDE_M: f32 = 9000.0;
-/// Metres after which the sheet repeats.
+/// Metres after which the layer repeats.
 pub const TILE_M: f32 = 36_000.0;
 
 /// Cells a side in which the wind has one direction; a divisor of every side.
 const WIND: usize = 32;
 
-/// The sheet: optical depth seen vertically, at full and at an eighth of the resolution.
+/// The layer: optical depth seen vertically, at full and at an eighth of the resolution.
 pub struct Cirrus {
     side: usize,
     fine: Vec<f32>,
@@ -32,7 +34,7 @@ pub struct Cirrus {
 }
 
 impl Cirrus {
-    /// The sheet of these genes with `side` texels a side, or `None` when there is none.
+    /// The layer of these genes with `side` texels a side, or `None` when there is none.
     pub fn new(params: &SkyParams, sky: &ClearSky, side: usize) -> Option<Self> {
         let amount = params.cirrus.clamp(0.0, 1.0);
         if amount < 0.01 {
@@ -50,13 +52,13 @@ impl Cirrus {
         self.fine[row * self.side + column]
     }
 
-    /// Light of the sheet where it is dense, seen at an angle to the sun of cosine `cosine`.
+    /// Light of the layer where it is dense, seen at an angle to the sun of cosine `cosine`.
     pub fn source(&self, cosine: f32) -> Vec3A {
         let phase = 0.045 + 0.55 * henyey_greenstein(0.7, cosine).min(1.2);
         self.sun_light * phase + self.sky_light * 0.35
     }
 
-    /// Light and transparency of the sheet, through the air, in a unit direction with y > 0.
+    /// Light and transparency of the layer, through the air, in a unit direction with y > 0.
     pub fn seen(&self, direction: Vec3A, sky: &ClearSky) -> Vec4 {
         let t = distance_to_height(direction.y, ALTITUDE_M);
         let texels = self.side as f32 / TILE_M;
@@ -70,29 +72,18 @@ impl Cirrus {
         if through > 0.9995 {
             return Vec4::new(0.0, 0.0, 0.0, 1.0);
         }
-        let cosine = direction.x * self.sun.x + direction.y * self.sun.y + direction.z * self.sun.z;
-        let marched = Marched { light: self.source(cosine) * (1.0 - through), through, distance_m: t };
+        let light = self.source(dot(direction, self.sun));
+        let marched = Marched { light: light * (1.0 - through), through, distance_m: t };
         through_air(&marched, direction, ALTITUDE_M, sky)
     }
 }
 
-fn bilinear(texels: &[f32], side: usize, u: f32, v: f32) -> f32 {
-    let ((iu, du), (iv, dv)) = (split(u), split(v));
-    let (iu, iv) = (iu as usize, iv as usize);
-    let (x0, x1) = (iu & (side - 1), iu.wrapping_add(1) & (side - 1));
-    let (y0, y1) = ((iv & (side - 1)) * side, (iv.wrapping_add(1) & (side - 1)) * side);
-    lerp(lerp(texels[y0 + x0], texels[y0 + x1], du), lerp(texels[y1 + x0], texels[y1 + x1], du), dv)
-}
-
-/// Every texel of a square, rows in parallel.
+/// Every texel of a square.
 fn fill(side: usize, value: impl Fn(usize, usize) -> f32 + Sync) -> Vec<f32> {
-    let mut texels = vec![0.0; side * side];
-    texels.par_chunks_exact_mut(side).enumerate().for_each(|(row, texels)| {
-        for (column, texel) in texels.iter_mut().enumerate() {
-            *texel = value(column, row);
-        }
-    });
-    texels
+    raster(side, side, |j| {
+        let value = &value;
+        move |i| value(i, j)
+    })
 }
 
 fn optical_depths(seed: u32, amount: f32, side: usize) -> Vec<f32> {

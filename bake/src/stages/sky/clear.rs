@@ -1,12 +1,13 @@
 //! Atmosphere and ground haze → radiance of the cloudless sky in any direction, in the relative units of `SkyLight`,
 //! cheap enough for every pixel: a table over elevation and azimuth from the sun, with the sharp Mie lobe multiplied
-//! in afterwards. Below the horizon the sky goes on as hazy ground, so that no picture has a black half.
+//! in afterwards. Below the horizon the sky goes on as hazy ground, so that no image has a black half.
 
 use glam::{Vec3, Vec3A};
 
 use super::SkyParams;
 use super::atmosphere::{Atmosphere, mie_phase};
-use super::math::{exp, lerp, luminance, smoothstep};
+use super::math::{dot, exp, exp3, luminance};
+use crate::math::{cell, lerp, smoothstep};
 
 /// Height of the eye above the sea in km.
 const EYE_KM: f32 = 0.15;
@@ -116,9 +117,9 @@ impl ClearSky {
 
     /// The haze around the horizon: the air's own light low above it, paler, and more alike all round the denser it is.
     fn fill_horizon(&mut self) {
-        let first_row = row_of(0.012) as usize;
-        let last_row = row_of(0.16) as usize;
+        let (first_row, last_row) = (row_of(0.012) as usize, row_of(0.16) as usize);
         let rows = (last_row - first_row + 1) as f32;
+        let (grey, glow) = (0.25 + 1.1 * (1.0 - self.shade), glow_left(self.shade));
         let mut mean = (Vec3A::ZERO, Vec3A::ZERO);
         for column in 0..COLUMNS {
             let mut sum = (Vec3A::ZERO, Vec3A::ZERO);
@@ -126,8 +127,6 @@ impl ClearSky {
                 let entry = self.table[row * COLUMNS + column];
                 sum = (sum.0 + entry.0, sum.1 + entry.1);
             }
-            let grey = 0.25 + 1.1 * (1.0 - self.shade);
-            let glow = glow_left(self.shade);
             self.horizon[column] = (pale(sum.0 / rows, grey) * self.shade, pale(sum.1 / rows, grey) * glow);
             // Columns are even in cos φ; the measure of an azimuth is dφ.
             let weight = column_weight(column);
@@ -140,8 +139,7 @@ impl ClearSky {
         let mut haze = Vec3A::ZERO;
         for step in 0..64 {
             let azimuth = (step as f32 + 0.5) * std::f32::consts::TAU / 64.0;
-            let direction = Vec3A::new(libm::sinf(azimuth), 0.0, libm::cosf(azimuth));
-            haze += self.haze_towards(direction);
+            haze += self.haze_towards(Vec3A::new(libm::sinf(azimuth), 0.0, libm::cosf(azimuth)));
         }
         self.haze = haze / 64.0;
     }
@@ -164,12 +162,10 @@ impl ClearSky {
             Vec3A::new(1.0, 0.0, 0.0)
         };
         let u = self.column_of(level);
-        let i = (u as usize).min(COLUMNS - 2);
-        let f = u - i as f32;
+        let (i, f) = cell(u, COLUMNS);
         let smooth = self.horizon[i].0.lerp(self.horizon[i + 1].0, f);
         let mie = self.horizon[i].1.lerp(self.horizon[i + 1].1, f);
-        let cosine = direction.x * self.sun.x + direction.y * self.sun.y + direction.z * self.sun.z;
-        smooth + mie * mie_phase(cosine)
+        smooth + mie * mie_phase(dot(direction, self.sun))
     }
 
     /// Radiance without the sun's disc in a unit direction.
@@ -178,16 +174,13 @@ impl ClearSky {
         if direction.y <= 0.0 {
             return self.below(direction);
         }
-        let (u, v) = (self.column_of(direction), row_of(direction.y));
-        let (i, j) = ((u as usize).min(COLUMNS - 2), (v as usize).min(ROWS - 2));
-        let (fu, fv) = (u - i as f32, v - j as f32);
+        let ((i, fu), (j, fv)) = (cell(self.column_of(direction), COLUMNS), cell(row_of(direction.y), ROWS));
         let at = j * COLUMNS + i;
         let (a, b) = (&self.table[at], &self.table[at + 1]);
         let (c, d) = (&self.table[at + COLUMNS], &self.table[at + COLUMNS + 1]);
         let smooth = a.0.lerp(b.0, fu).lerp(c.0.lerp(d.0, fu), fv);
         let mie = a.1.lerp(b.1, fu).lerp(c.1.lerp(d.1, fu), fv);
-        let cosine = direction.x * self.sun.x + direction.y * self.sun.y + direction.z * self.sun.z;
-        let above = smooth + mie * mie_phase(cosine);
+        let above = smooth + mie * mie_phase(dot(direction, self.sun));
         let through = exp(-self.haze_per_km * HAZE_SCALE_KM / (direction.y + 0.0035));
         let haze = self.haze_towards(direction);
         haze + (above - haze) * through
@@ -218,7 +211,7 @@ impl ClearSky {
         let mie_path = distance_km / (1.0 + 0.45 * height_km);
         let haze = self.haze_per_km * HAZE_SCALE_KM / (sine + 0.0035);
         let depth = rayleigh * air + mie * mie_path + Vec3A::splat(haze);
-        super::math::exp3(-depth)
+        exp3(-depth)
     }
 
     /// The sun's irradiance at a height above the ground, haze at the ground not counted.
@@ -235,27 +228,31 @@ impl ClearSky {
         for ring in 0..RINGS {
             // Even steps of sin² of the elevation weigh every sample alike under the cosine.
             let sine = ((ring as f32 + 0.5) / RINGS as f32).sqrt();
-            let flat = (1.0 - sine * sine).sqrt();
-            let mut around = Vec3A::ZERO;
-            for spoke in 0..SPOKES {
-                let azimuth = sun_azimuth + (spoke as f32 + 0.5) * std::f32::consts::TAU / SPOKES as f32;
-                let direction = Vec3A::new(flat * libm::sinf(azimuth), sine, -flat * libm::cosf(azimuth));
-                around += radiance(self, direction);
-            }
-            sum += around;
+            sum += self.sum_around(sine, sun_azimuth, &radiance, SPOKES);
         }
         sum * (std::f32::consts::PI / (RINGS * SPOKES) as f32)
     }
 
     /// Mean over azimuth at a sine of elevation.
     pub fn zonal(&self, sine: f32, radiance: impl Fn(&Self, Vec3A) -> Vec3A, spokes: usize) -> Vec3A {
+        self.sum_around(sine, 0.0, radiance, spokes) / spokes as f32
+    }
+
+    /// Sum over evenly spaced azimuths, counted from `start_rad`, at a sine of elevation.
+    fn sum_around(
+        &self,
+        sine: f32,
+        start_rad: f32,
+        radiance: impl Fn(&Self, Vec3A) -> Vec3A,
+        spokes: usize,
+    ) -> Vec3A {
         let flat = (1.0 - sine * sine).max(0.0).sqrt();
         let mut sum = Vec3A::ZERO;
         for spoke in 0..spokes {
-            let azimuth = (spoke as f32 + 0.5) * std::f32::consts::TAU / spokes as f32;
+            let azimuth = start_rad + (spoke as f32 + 0.5) * std::f32::consts::TAU / spokes as f32;
             sum += radiance(self, Vec3A::new(flat * libm::sinf(azimuth), sine, -flat * libm::cosf(azimuth)));
         }
-        sum / spokes as f32
+        sum
     }
 }
 
@@ -275,7 +272,7 @@ fn column_weight(column: usize) -> f32 {
     (edge(c - 0.5) - edge(c + 0.5)) * std::f32::consts::FRAC_1_PI
 }
 
-/// The sun's disc as the pictures show it. The light of the real sun is `sun_ground`: as scenes also have a lamp for
+/// The sun's disc as the images show it. The light of the real sun is `sun_ground`: as scenes also have a lamp for
 /// it, the disc shines only as bright as a camera would show it (twenty times its aureole) and adds next to nothing.
 pub struct SunDisc {
     sun: Vec3A,
@@ -303,7 +300,7 @@ impl SunDisc {
     /// Radiance of the disc in a direction, its edge as soft as a pixel.
     pub fn radiance(&self, direction: Vec3A, pixel_rad: f32) -> Vec3A {
         let away = direction - self.sun;
-        let angle = (away.x * away.x + away.y * away.y + away.z * away.z).sqrt();
+        let angle = dot(away, away).sqrt();
         let inside = smoothstep(self.radius_rad + 0.5 * pixel_rad, self.radius_rad - 0.5 * pixel_rad, angle);
         let rim = (angle / self.radius_rad).min(1.0);
         let limb = lerp(0.4, 1.0, (1.0 - rim * rim).max(0.0).sqrt());

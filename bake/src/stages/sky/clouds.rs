@@ -8,7 +8,8 @@ use glam::{Vec3A, Vec4};
 use super::SkyParams;
 use super::clear::{ClearSky, pale};
 use super::field::{CloudField, Shape};
-use super::math::{exp, henyey_greenstein, smoothstep};
+use super::math::{dot, exp, henyey_greenstein, normalize};
+use crate::math::smoothstep;
 
 const EARTH_M: f32 = 6_360_000.0;
 /// Extinction inside a cloud per metre: droplets of 10 µm, 0.2 g/m³.
@@ -80,6 +81,8 @@ impl Clouds {
         self.walk(origin, Vec3A::Y, 0.0, field.height_m + 1.3 * reach, |t| t - 0.3 * reach)
     }
 
+    /// Marches along a ray, `height` metres above the base at a distance: long steps in clear air, short ones where a
+    /// cloud may be, and back by one when a short step with all detail finds it.
     fn walk(
         &self,
         origin: Vec3A,
@@ -89,19 +92,15 @@ impl Clouds {
         height: impl Fn(f32) -> f32,
     ) -> Marched {
         let field = &self.field;
-        let reach = field.reach_m();
-        let cosine = direction.x * self.sun.x + direction.y * self.sun.y + direction.z * self.sun.z;
-        let phases = Phases::new(cosine);
-        let mut light = Vec3A::ZERO;
-        let (mut through, mut weight, mut distance) = (1.0, 0.0, 0.0);
+        let phases = Phases::new(dot(direction, self.sun));
+        let mut inside = Inside { through: 1.0, ..Inside::default() };
         let mut t = near;
-        let mut source = Vec3A::ZERO;
-        let (mut steps_inside, mut empty) = (0, 2i32);
-        while t < far {
+        let mut empty = 2i32;
+        while t < far && inside.through > 0.0 {
             let fine_step = (0.17 * field.billow_m).max(0.005 * t).max((far - near) / 128.0);
-            let (x, y, z) = (origin.x + direction.x * t, height(t), origin.z + direction.z * t);
-            let shape = field.shape(x, y, z);
-            let outside = -shape.depth_m - reach;
+            let point = Vec3A::new(origin.x + direction.x * t, height(t), origin.z + direction.z * t);
+            let shape = field.shape(point.x, point.y, point.z);
+            let outside = -shape.depth_m - field.reach_m();
             if outside > 0.0 {
                 t += (outside * 0.8).max(fine_step);
                 empty = 2;
@@ -109,36 +108,26 @@ impl Clouds {
             }
             let soft = 0.003 * t;
             let searching = empty >= 2;
-            let density = field.density(shape, x, y, z, soft, t < FINE_M && !searching);
+            let density = field.density(shape, point.x, point.y, point.z, soft, t < FINE_M && !searching);
             if density <= 0.001 {
                 // Longer steps while nothing is near.
                 empty += 1;
                 t += if searching { 1.6 * fine_step } else { fine_step };
-                continue;
-            }
-            if searching {
+            } else if searching {
                 // Here again with all detail; `empty` now delays the next search.
                 empty = -2;
-                continue;
+            } else {
+                empty = 0;
+                if inside.steps.is_multiple_of(2) {
+                    // Light changes slowly: every other step will do.
+                    inside.source = self.source(shape, point, soft, &phases);
+                }
+                inside.gather(t, exp(-EXTINCTION_PER_M * density * fine_step));
+                t += fine_step;
             }
-            empty = 0;
-            let passed = exp(-EXTINCTION_PER_M * density * fine_step);
-            let gathered = through * (1.0 - passed);
-            if steps_inside % 2 == 0 {
-                source = self.source(shape, Vec3A::new(x, y, z), soft, &phases);
-            }
-            steps_inside += 1;
-            light += source * gathered;
-            distance += t * gathered;
-            weight += gathered;
-            through *= passed;
-            if through < 0.02 {
-                through = 0.0;
-                break;
-            }
-            t += fine_step;
         }
-        Marched { light, through, distance_m: if weight > 0.0 { distance / weight } else { far } }
+        let distance_m = if inside.weight > 0.0 { inside.distance / inside.weight } else { far };
+        Marched { light: inside.light, through: inside.through, distance_m }
     }
 
     /// Optical depth from a point towards the sun.
@@ -193,9 +182,7 @@ impl Clouds {
     /// Mean part of the sun's beam that the clouds let through to the ground.
     pub fn sun_through(&self) -> f32 {
         const SIDE: usize = 12;
-        let (x, y, z) = (self.sun.x, self.sun.y.max(0.1), self.sun.z);
-        // The sum in a fixed order, whatever the width of the machine's vectors.
-        let direction = Vec3A::new(x, y, z) / (x * x + y * y + z * z).sqrt();
+        let direction = normalize(Vec3A::new(self.sun.x, self.sun.y.max(0.1), self.sun.z));
         let slant = 1.0 / direction.y;
         let field = &self.field;
         let mut sum = 0.0;
@@ -212,6 +199,32 @@ impl Clouds {
             sum += exp(-EXTINCTION_PER_M * depth * field.height_m / 8.0 * slant.min(3.0));
         }
         sum / (SIDE * SIDE) as f32
+    }
+}
+
+/// What a ray has gathered inside clouds.
+#[derive(Default)]
+struct Inside {
+    steps: u32,
+    /// Light per unit of optical depth.
+    source: Vec3A,
+    light: Vec3A,
+    through: f32,
+    /// Sums of distances, weighted by what was gathered there, and of the weights.
+    distance: f32,
+    weight: f32,
+}
+
+impl Inside {
+    /// A step at a distance, of which the part `passed` of the light comes through. Next to nothing counts as nothing.
+    fn gather(&mut self, distance: f32, passed: f32) {
+        let gathered = self.through * (1.0 - passed);
+        self.steps += 1;
+        self.light += self.source * gathered;
+        self.distance += distance * gathered;
+        self.weight += gathered;
+        let through = self.through * passed;
+        self.through = if through < 0.02 { 0.0 } else { through };
     }
 }
 

@@ -7,7 +7,9 @@ use rayon::prelude::*;
 use super::cirrus::Cirrus;
 use super::clear::ClearSky;
 use super::clouds::{Clouds, through_air};
-use super::math::{split, turn};
+use super::math::turn;
+use crate::math::{cell, interpolate, split};
+use crate::raster::raster;
 
 /// Elevation grows with this power of the row.
 const CROWDING: f32 = 1.4;
@@ -25,12 +27,11 @@ pub struct Dome {
 pub struct Layers {
     /// Cumulus or stratus.
     pub clouds: Option<Clouds>,
-    /// The high sheet.
+    /// The high layer.
     pub cirrus: Option<Cirrus>,
 }
 
 impl Layers {
-    /// Nothing at all to draw.
     pub fn is_empty(&self) -> bool {
         self.clouds.is_none() && self.cirrus.is_none()
     }
@@ -68,9 +69,9 @@ impl Dome {
                 (libm::sinf(azimuth), -libm::cosf(azimuth))
             })
             .collect();
-        let direction = |row: Row, column: usize| {
+        let seen = |row: Row, column: usize| {
             let (x, z) = around[column];
-            Vec3A::new(row.flat * x, row.sine, row.flat * z)
+            layers.seen(Vec3A::new(row.flat * x, row.sine, row.flat * z), sky)
         };
         // First every other texel of every other row; then the rest, but only where neighbours differ.
         let half = width / 2;
@@ -79,7 +80,7 @@ impl Dome {
             let row = Row::new(2 * row, width, height);
             let stride = row.stride.max(2) / 2;
             for column in (0..half).step_by(stride) {
-                texels[column] = layers.seen(direction(row, 2 * column), sky);
+                texels[column] = seen(row, 2 * column);
             }
             fill_between(texels, stride);
         });
@@ -88,16 +89,14 @@ impl Dome {
             let (low, high) = sparse[row_index / 2 * half..].split_at(half);
             let high = if row_index % 2 == 0 { low } else { high };
             for column in (0..width).step_by(row.stride) {
-                let (i, j) = (column / 2, (column / 2 + 1) % half);
-                let j = if column % 2 == 0 { i } else { j };
-                let corners = [low[i], low[j], high[i], high[j]];
+                let (i, next) = (column / 2, (column / 2 + 1) % half);
                 let known = row_index % 2 == 0 && column % 2 == 0;
-                texels[column] =
-                    if known || alike([low[i], low[(i + 1) % half], high[i], high[(i + 1) % half]]) {
-                        (corners[0] + corners[1] + corners[2] + corners[3]) * 0.25
-                    } else {
-                        layers.seen(direction(row, column), sky)
-                    };
+                texels[column] = if known || alike([low[i], low[next], high[i], high[next]]) {
+                    let j = if column % 2 == 0 { i } else { next };
+                    (low[i] + low[j] + high[i] + high[j]) * 0.25
+                } else {
+                    seen(row, column)
+                };
             }
             fill_between(texels, row.stride);
         });
@@ -108,10 +107,7 @@ impl Dome {
     /// Row coordinate of a sine of elevation.
     #[inline]
     pub fn row(&self, sine: f32) -> f32 {
-        let at = sine.clamp(0.0, 1.0).sqrt() * LOOKUP as f32;
-        let i = (at as usize).min(LOOKUP - 1);
-        let (a, b) = (self.row_of_sine[i], self.row_of_sine[i + 1]);
-        a + (b - a) * (at - i as f32)
+        interpolate(&self.row_of_sine, sine.clamp(0.0, 1.0).sqrt() * LOOKUP as f32)
     }
 
     /// Column coordinate of a flat direction.
@@ -124,9 +120,7 @@ impl Dome {
     #[inline]
     pub fn at(&self, column: f32, row: f32) -> Vec4 {
         let (i, fx) = split(column);
-        let row = row.clamp(0.0, (self.height - 1) as f32);
-        let j = (row as usize).min(self.height - 2);
-        let fy = row - j as f32;
+        let (j, fy) = cell(row.clamp(0.0, (self.height - 1) as f32), self.height);
         let width = self.width as i32;
         let x0 = if i < 0 { i + width } else { i } as usize;
         let x1 = if i + 1 >= width { i + 1 - width } else { i + 1 } as usize;
@@ -165,18 +159,17 @@ fn alike(texels: [Vec4; 4]) -> bool {
 
 /// The map with every texel made anew from itself and its eight neighbours, row by row; columns wrap around.
 fn from_neighbours(texels: &[Vec4], width: usize, make: impl Fn([[Vec4; 3]; 3]) -> Vec4 + Sync) -> Vec<Vec4> {
-    let last = texels.len() / width - 1;
-    let mut made = vec![Vec4::ZERO; texels.len()];
-    made.par_chunks_exact_mut(width).enumerate().for_each(|(row, made)| {
-        let rows =
-            [row.saturating_sub(1), row, (row + 1).min(last)].map(|row| &texels[row * width..][..width]);
-        for (column, made) in made.iter_mut().enumerate() {
+    let height = texels.len() / width;
+    raster(width, height, |row| {
+        let make = &make;
+        let rows = [row.saturating_sub(1), row, (row + 1).min(height - 1)];
+        let rows = rows.map(|row| &texels[row * width..][..width]);
+        move |column| {
             let west = if column == 0 { width - 1 } else { column - 1 };
             let columns = [west, column, if column + 1 == width { 0 } else { column + 1 }];
-            *made = make(rows.map(|row| columns.map(|column| row[column])));
+            make(rows.map(|row| columns.map(|column| row[column])))
         }
-    });
-    made
+    })
 }
 
 /// A ray that grazes a cloud's lit edge gives a texel that outshines its surroundings, and glitters where it is a few

@@ -4,12 +4,12 @@
 
 use super::SkyParams;
 use super::billow::{BILLOWS, Billows};
-use super::math::{lerp, smoothstep, split};
+use super::math::{bilinear, range};
+use crate::math::{lerp, smoothstep};
 use crate::noise;
 use crate::seed::noise_seed;
 
 const MAP: usize = 128;
-const MASK: usize = MAP - 1;
 /// Clouds along one side of the cover map.
 const CELLS: i32 = 8;
 
@@ -101,26 +101,17 @@ impl CloudField {
     }
 
     #[inline]
-    fn map_at(&self, x: f32, z: f32) -> f32 {
-        let ((ix, dx), (iz, dz)) = (split(x), split(z));
-        let (ix, iz) = (ix as usize, iz as usize);
-        let (x0, x1) = (ix & MASK, ix.wrapping_add(1) & MASK);
-        let (z0, z1) = ((iz & MASK) * MAP, (iz.wrapping_add(1) & MASK) * MAP);
-        let map = &self.map[..MAP * MAP];
-        lerp(lerp(map[z0 + x0], map[z0 + x1], dx), lerp(map[z1 + x0], map[z1 + x1], dx), dz)
-    }
-
-    #[inline]
     fn cover_at(&self, x: f32, z: f32) -> f32 {
         let texels = MAP as f32 / self.tile_m;
         let (u, v) = ((x + self.offset[0]) * texels, (z + self.offset[1]) * texels);
-        let fine = self.map_at(u, v);
+        let map = |u: f32, v: f32| bilinear(&self.map, MAP, u, v);
+        let fine = map(u, v);
         if self.macro_weight == 0.0 {
             return fine;
         }
         // Turned by 37° and 3.7 times as large: fields of clouds with gaps between.
         let (s, c) = (0.601_815 / 3.7, 0.798_636 / 3.7);
-        fine + self.macro_weight * (self.map_at(u * c - v * s + 31.0, u * s + v * c + 77.0) - 0.5)
+        fine + self.macro_weight * (map(u * c - v * s + 31.0, u * s + v * c + 77.0) - 0.5)
     }
 
     /// The undisplaced cloud at a point.
@@ -161,17 +152,17 @@ impl CloudField {
         let coarse = self.billows.sample(x * k, y * k, z * k);
         // The base stays nearly flat.
         let rough = 2.0 * reach * (0.3 + 0.7 * smoothstep(0.0, 0.5 * self.billow_m, y));
-        let least = shape.depth_m + rough * (coarse * 0.74 - 0.56);
-        if !fine {
-            return ((least + rough * 0.26 * coarse) / ramp).clamp(0.0, 1.0);
+        let min = shape.depth_m + rough * (coarse * 0.74 - 0.56);
+        let mut small = coarse;
+        if fine {
+            // Small billows matter only where they decide.
+            if min >= ramp || min + 0.26 * rough <= 0.0 {
+                return if min >= ramp { 1.0 } else { 0.0 };
+            }
+            let f = k * self.fine_factor;
+            small = self.billows.sample(z * f + 0.3, x * f, y * f + 0.7);
         }
-        // Small billows matter only where they decide.
-        if least >= ramp || least + 0.26 * rough <= 0.0 {
-            return if least >= ramp { 1.0 } else { 0.0 };
-        }
-        let f = k * self.fine_factor;
-        let small = self.billows.sample(z * f + 0.3, x * f, y * f + 0.7);
-        ((least + rough * 0.26 * small) / ramp).clamp(0.0, 1.0)
+        ((min + rough * 0.26 * small) / ramp).clamp(0.0, 1.0)
     }
 
     /// Density without billows, for shadows: what counts there is the mean.
@@ -196,7 +187,6 @@ fn cover_map(seed: u32) -> Vec<f32> {
             map.push(cells + 0.22 * broad + 0.14 * mid);
         }
     }
-    let low = map.iter().fold(f32::MAX, |a, &b| a.min(b));
-    let high = map.iter().fold(f32::MIN, |a, &b| a.max(b));
+    let (low, high) = range(&map);
     map.iter().map(|v| (v - low) / (high - low)).collect()
 }

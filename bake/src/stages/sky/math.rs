@@ -1,7 +1,9 @@
-//! Small mathematics of the sky: exponential, arc tangent and half floats as plain IEEE arithmetic on `f32`, so that
-//! they are fast enough for every pixel and give the same bits on every machine.
+//! Small mathematics of the sky: exponential and arc tangent as plain IEEE arithmetic on `f32`, so that they are fast
+//! enough for every pixel and give the same bits on every machine.
 
 use glam::Vec3A;
+
+use crate::math::{lerp, split};
 
 /// e^x to a relative error of 1e-7 · (4 + |x|); 0 below −87.
 #[inline]
@@ -42,36 +44,27 @@ pub fn turn(y: f32, x: f32) -> f32 {
                     + s * (0.106_562_64
                         + s * (-0.075_289_64
                             + s * (0.042_909_614 + s * (-0.016_165_737 + s * 0.002_866_226)))))));
-    let mut a = t * series * std::f32::consts::FRAC_1_PI * 0.5;
-    if ay > ax {
-        a = 0.25 - a;
-    }
-    if x < 0.0 {
-        a = 0.5 - a;
-    }
+    let a = t * series * std::f32::consts::FRAC_1_PI * 0.5;
+    let a = if ay > ax { 0.25 - a } else { a };
+    let a = if x < 0.0 { 0.5 - a } else { a };
     let a = if y < 0.0 { 1.0 - a } else { a };
     if a >= 1.0 { 0.0 } else { a }
 }
 
-/// The whole number below and the fraction above it.
+/// A tiling square of `side` texels (a power of two) a side, at a point in texels, interpolated.
 #[inline]
-pub fn split(x: f32) -> (i32, f32) {
-    let cut = x as i32;
-    let whole = cut - i32::from(cut as f32 > x);
-    (whole, x - whole as f32)
+pub fn bilinear(texels: &[f32], side: usize, u: f32, v: f32) -> f32 {
+    let ((iu, du), (iv, dv)) = (split(u), split(v));
+    let (iu, iv) = (iu as usize, iv as usize);
+    let (x0, x1) = (iu & (side - 1), iu.wrapping_add(1) & (side - 1));
+    let (y0, y1) = ((iv & (side - 1)) * side, (iv.wrapping_add(1) & (side - 1)) * side);
+    let texels = &texels[..side * side];
+    lerp(lerp(texels[y0 + x0], texels[y0 + x1], du), lerp(texels[y1 + x0], texels[y1 + x1], du), dv)
 }
 
-/// Hermite's step from 0 at `low` to 1 at `high`.
-#[inline]
-pub fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
-    let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
-}
-
-/// Linear interpolation.
-#[inline]
-pub fn lerp(a: f32, b: f32, t: f32) -> f32 {
-    a + (b - a) * t
+/// The least and the greatest of some values.
+pub fn range(values: &[f32]) -> (f32, f32) {
+    values.iter().fold((f32::MAX, f32::MIN), |(low, high), &v| (low.min(v), high.max(v)))
 }
 
 /// Luminance of linear sRGB (Rec. 709).
@@ -87,15 +80,16 @@ pub fn henyey_greenstein(g: f32, cos_angle: f32) -> f32 {
     (1.0 - g * g) * (0.25 * std::f32::consts::FRAC_1_PI) / (d * d.sqrt())
 }
 
-/// The bits of the half float nearest to a value in [0, 65504]; ties go to even, as IEEE 754 has it.
+/// The scalar product, summed in a fixed order whatever the width of the machine's vectors.
 #[inline]
-pub fn half_bits(value: f32) -> u16 {
-    // Not `clamp`, which would let a NaN through.
-    let bits = if value > 0.0 { value.min(65504.0).to_bits() } else { 0 };
-    // Below 2⁻¹⁴ the half is subnormal: adding ½ puts its ten bits at the end of the significand.
-    let subnormal = (f32::from_bits(bits) + 0.5).to_bits().wrapping_sub(0.5f32.to_bits());
-    let normal = bits.wrapping_sub(112 << 23).wrapping_add(0xFFF + ((bits >> 13) & 1)) >> 13;
-    if bits < (113 << 23) { subnormal as u16 } else { normal as u16 }
+pub fn dot(a: Vec3A, b: Vec3A) -> f32 {
+    a.x * b.x + a.y * b.y + a.z * b.z
+}
+
+/// Unit vector of a direction, by the same rule.
+#[inline]
+pub fn normalize(v: Vec3A) -> Vec3A {
+    v / dot(v, v).sqrt()
 }
 
 #[cfg(test)]
@@ -121,17 +115,5 @@ mod tests {
             let (y, x) = (libm::sinf(angle) * 3.0, libm::cosf(angle) * 3.0);
             assert!((turn(y, x) - angle / std::f32::consts::TAU).abs() < 4e-6, "at {angle}");
         }
-    }
-
-    #[test]
-    fn half_bits_agree_with_the_half_crate() {
-        for i in 0..400_000u32 {
-            let value = f32::from_bits(i * 2801);
-            if value < 65504.0 {
-                assert_eq!(half_bits(value), half::f16::from_f32(value).to_bits(), "{value:e}");
-            }
-        }
-        assert_eq!(half_bits(1e9), half::f16::MAX.to_bits());
-        assert_eq!(half_bits(f32::NAN), 0);
     }
 }

@@ -1,7 +1,7 @@
 //! Parameters → sun, sky and clouds.
 //!
-//! The air is Hillaire's (2020), clouds are ray-marched in a field of billows, cirrus is a thin sheet. `light` gives
-//! the few numbers that other stages need; `images` paints the same sky as pictures. Both are linear sRGB in the
+//! The air is Hillaire's (2020), clouds are ray-marched in a field of billows, cirrus is a thin layer. `light` gives
+//! the few numbers that other stages need; `images` paints the same sky. Both are linear sRGB in the
 //! relative units of [`SkyLight`], for an eye adapted to the scene.
 
 mod atmosphere;
@@ -11,11 +11,10 @@ mod clear;
 mod clouds;
 mod dome;
 mod field;
+mod layers;
 mod math;
 mod paint;
-#[cfg(test)]
-mod pictures;
-mod sheets;
+mod stage;
 #[cfg(test)]
 mod tests;
 
@@ -27,6 +26,7 @@ use clear::{ClearSky, SunDisc};
 use clouds::Clouds;
 use dome::{Dome, Layers};
 use paint::Painter;
+pub use stage::{SkyImagesStage, SkyLightStage};
 
 /// Pixels a side of the cloudless cube faces.
 const CLEAR_FACE_PX: usize = 128;
@@ -35,32 +35,20 @@ const DOME_PX: (usize, usize) = (1088, 184);
 /// Steps of elevation in `zonal_radiance_linear`.
 const ZONES: usize = 32;
 
-/// The genes of the sky; units and ranges as in `configs/space.ron`.
+/// The genes of the sky; names, units, ranges and meanings as in `configs/space.ron`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SkyParams {
-    /// Which clouds of their kind.
     pub sky_seed: u32,
-    /// Sun above the horizon.
     pub sun_elevation_deg: f32,
-    /// Direction of the sun, clockwise from north (−z) as seen from above.
     pub sun_azimuth_deg: f32,
-    /// Haze high in the air.
     pub turbidity: f32,
-    /// Angular diameter of the sun.
     pub sun_size_deg: f32,
-    /// Brightness of the picture.
     pub exposure_ev: f32,
-    /// Part of the sky under cloud.
     pub cloud_cover: f32,
-    /// Height of the clouds' underside.
     pub cloud_base_m: f32,
-    /// Height of the clouds themselves.
     pub cloud_thickness_m: f32,
-    /// Size of one cloud.
     pub cloud_scale_m: f32,
-    /// Thin ice clouds far above.
     pub cirrus: f32,
-    /// Meteorological visibility near the ground.
     pub haze_m: f32,
 }
 
@@ -138,8 +126,8 @@ fn zonal_irradiance(zonal: &[Vec3A]) -> Vec3A {
     sum * std::f32::consts::PI
 }
 
-/// The sky as pictures: cube faces of `face_px` (384 is usual), an equirectangular picture `equirect_width_px` wide
-/// (1536 is usual; even), and cloud sheets. Exposure is not applied.
+/// The sky as images: cube faces of `face_px` (384 is usual), an equirectangular image `equirect_width_px` wide
+/// (1536 is usual; even), and cloud layers. Exposure is not applied.
 pub fn images(params: &SkyParams, light: &SkyLight, face_px: u32, equirect_width_px: u32) -> SkyImages {
     let sky = Sky::new(params, cirrus::SIDE);
     debug_assert!((light.sun_direction - Vec3::from(sky.clear.sun)).length() < 1e-4);
@@ -151,5 +139,5 @@ pub fn images(params: &SkyParams, light: &SkyLight, face_px: u32, equirect_width
     let clear_faces = (0..6).map(|face| empty.face(face, CLEAR_FACE_PX)).collect();
     let equirect = full.equirect((equirect_width_px.max(8) / 2 * 2) as usize);
     let Layers { clouds, cirrus } = sky.layers;
-    SkyImages { faces, clear_faces, equirect, layers: sheets::layers(clouds, cirrus.as_ref()) }
+    SkyImages { faces, clear_faces, equirect, layers: layers::layers(clouds, cirrus.as_ref()) }
 }

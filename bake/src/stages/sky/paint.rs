@@ -1,4 +1,4 @@
-//! Clear sky, sun and clouds → cube faces and an equirectangular picture in half floats. The clear sky is smooth and
+//! Clear sky, sun and clouds → cube faces and an equirectangular image in half floats. The clear sky is smooth and
 //! is evaluated on a coarse grid; clouds and sun come in per pixel.
 
 use glam::{Vec3A, Vec4};
@@ -6,25 +6,25 @@ use rayon::prelude::*;
 
 use super::clear::{ClearSky, SunDisc};
 use super::dome::Dome;
-use super::math::half_bits;
+use super::math::{dot, normalize};
+use crate::math::half_bits;
 use crate::model::ImageF16;
+use crate::raster::raster;
 
 /// Unit direction of a point of a cube face; `s` runs right and `t` down in [−1, 1]. Faces in the order +X, −X, +Y,
 /// −Y, +Z, −Z, oriented as in Vulkan and WebGPU.
 pub fn face_direction(face: usize, s: f32, t: f32) -> Vec3A {
-    let v = match face {
+    normalize(match face {
         0 => Vec3A::new(1.0, -t, -s),
         1 => Vec3A::new(-1.0, -t, s),
         2 => Vec3A::new(s, 1.0, t),
         3 => Vec3A::new(s, -1.0, -t),
         4 => Vec3A::new(s, -t, 1.0),
         _ => Vec3A::new(-s, -t, -1.0),
-    };
-    // Sums in a fixed order, whatever the width of the machine's vectors.
-    v / (v.x * v.x + v.y * v.y + v.z * v.z).sqrt()
+    })
 }
 
-/// Unit direction of a point of the equirectangular picture; `u` and `v` in [0, 1] from its top left corner.
+/// Unit direction of a point of the equirectangular image; `u` and `v` in [0, 1] from its top left corner.
 pub fn equirect_direction(u: f32, v: f32) -> Vec3A {
     let azimuth = (u - 0.5) * std::f32::consts::TAU;
     let polar = v * std::f32::consts::PI;
@@ -32,7 +32,7 @@ pub fn equirect_direction(u: f32, v: f32) -> Vec3A {
     Vec3A::new(flat * libm::sinf(azimuth), libm::cosf(polar), -flat * libm::cosf(azimuth))
 }
 
-/// The things that are painted.
+/// What is painted.
 pub struct Painter<'a> {
     /// The cloudless sky.
     pub sky: &'a ClearSky,
@@ -54,12 +54,9 @@ impl Grid {
     fn new(size: (usize, usize), step: (usize, usize), radiance: impl Fn(f32, f32) -> Vec3A + Sync) -> Self {
         let ((width, height), (across, down)) = (size, step);
         let (columns, rows) = (width.div_ceil(across) + 1, height.div_ceil(down) + 1);
-        let mut nodes = vec![Vec3A::ZERO; columns * rows];
-        nodes.par_chunks_exact_mut(columns).enumerate().for_each(|(row, nodes)| {
-            let v = (row * down) as f32 / height as f32;
-            for (column, node) in nodes.iter_mut().enumerate() {
-                *node = radiance((column * across) as f32 / width as f32, v);
-            }
+        let nodes = raster(columns, rows, |row| {
+            let (radiance, v) = (&radiance, (row * down) as f32 / height as f32);
+            move |column| radiance((column * across) as f32 / width as f32, v)
         });
         Self { columns, across, down, nodes }
     }
@@ -135,19 +132,13 @@ impl Painter<'_> {
 
     #[inline]
     fn pixel(&self, direction: Vec3A, clear: Vec3A, clouds: Option<Vec4>, pixel_rad: f32) -> Vec3A {
-        let mut color = clear;
-        let cosine =
-            direction.x * self.sky.sun.x + direction.y * self.sky.sun.y + direction.z * self.sky.sun.z;
-        let disc = (cosine > 0.998).then(|| self.disc.radiance(direction, pixel_rad));
-        if let Some(seen) = clouds {
-            color = color * seen.w + Vec3A::from(seen.truncate());
+        let color = clouds.map_or(clear, |seen| clear * seen.w + Vec3A::from(seen.truncate()));
+        if dot(direction, self.sky.sun) <= 0.998 {
+            return color;
         }
-        if let Some(disc) = disc {
-            // A disc behind thin cloud is blotted out sooner than the sky around it.
-            let through = clouds.map_or(1.0, |seen| seen.w * seen.w);
-            color += disc * through;
-        }
-        color
+        // A disc behind thin cloud is blotted out sooner than the sky around it.
+        let through = clouds.map_or(1.0, |seen| seen.w * seen.w);
+        color + self.disc.radiance(direction, pixel_rad) * through
     }
 
     fn image(
@@ -164,9 +155,7 @@ impl Painter<'_> {
                 grid.row(j, colors);
                 for (i, out) in data.chunks_exact_mut(3).enumerate() {
                     let color = pixel(i, j, colors[i]);
-                    out[0] = half_bits(color.x);
-                    out[1] = half_bits(color.y);
-                    out[2] = half_bits(color.z);
+                    out.copy_from_slice(&color.to_array().map(half_bits));
                 }
             },
         );

@@ -4,6 +4,7 @@ use glam::Vec3A;
 use half::f16;
 
 use super::clear::ClearSky;
+use super::math::dot;
 use super::paint::{equirect_direction, face_direction};
 use super::{SkyParams, images, light};
 use crate::model::{ImageF16, SkyImages};
@@ -56,10 +57,6 @@ fn at(image: &ImageF16, x: usize, y: usize) -> Vec3A {
 
 fn sum(color: Vec3A) -> f32 {
     color.x + color.y + color.z
-}
-
-fn dot(a: Vec3A, b: Vec3A) -> f32 {
-    a.x * b.x + a.y * b.y + a.z * b.z
 }
 
 /// Irradiance on level ground from the upper half of the cube.
@@ -255,7 +252,7 @@ fn a_clear_sky_has_no_structure() {
 }
 
 #[test]
-fn cloud_sheets_tile() {
+fn cloud_layers_tile() {
     let params = SkyParams { cloud_cover: 0.5, cirrus: 0.7, ..noon() };
     let pictures = images(&params, &light(&params), 8, 16);
     assert_eq!(
@@ -263,7 +260,7 @@ fn cloud_sheets_tile() {
         ["cumulus", "cirrus"]
     );
     for layer in &pictures.layers {
-        let image = &layer.image_srgb;
+        let image = &layer.image;
         let alpha = |x: u32, y: u32| i64::from(image.pixel(x, y)[3]);
         let last = image.width - 1;
         let seam: i64 = (0..=last)

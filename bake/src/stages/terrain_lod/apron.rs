@@ -1,13 +1,17 @@
 //! Landform → the ring of coarse land around the field, joined to it without a crack, and the water, in metres.
 
+use std::collections::BTreeMap;
+
 use glam::Vec3;
 
-use super::bintree::Sample;
-use super::near::vertex;
-use crate::model::{Heightfield, Landform, Material, Mesh, Part, PartKind};
+use genescape_schema::scene::bintree::Sample;
+
+use super::near::{place, vertex};
+use crate::math::{cell, lerp_array};
+use crate::model::{Landform, Material, Mesh, Part, PartKind};
 
 /// Metres of water that one unit of its texture coordinates covers.
-pub const WATER_TILE_M: f32 = 16.0;
+const WATER_TILE_M: f32 = 16.0;
 
 /// The samples on the field's border that coincide with the apron's: vertices there let the apron's colour and
 /// shape continue at its own resolution.
@@ -41,16 +45,12 @@ pub(super) fn ring(land: &Landform, used: impl Fn(Sample) -> bool, colors: &[[u8
             }
         }
     }
-    let outer_side =
-        |at: &dyn Fn(u32) -> Sample| -> Vec<Sample> { (hole.first..=hole.last).map(at).collect() };
-    let outer = [
-        outer_side(&|along| [along, hole.first]),
-        outer_side(&|along| [hole.last, along]),
-        outer_side(&|along| [along, hole.last]),
-        outer_side(&|along| [hole.first, along]),
-    ];
-    for (side, (inner, outer)) in inner.iter().zip(&outer).enumerate() {
-        let outer: Vec<u32> = outer.iter().map(|&sample| ring.outer_vertex(sample)).collect();
+    for (side, inner) in inner.iter().enumerate() {
+        let sample = |along: u32| {
+            [[along, hole.first], [hole.last, along], [along, hole.last], [hole.first, along]][side]
+        };
+        let outer: Vec<u32> =
+            (hole.first..=hole.last).map(|along| ring.outer_vertex(sample(along))).collect();
         ring.zip(inner, &outer, if side % 2 == 0 { 0 } else { 2 });
     }
     ring.cells(&hole);
@@ -93,32 +93,21 @@ impl Hole {
     }
 }
 
-/// World coordinate of a line of samples.
-fn place(field: &Heightfield, line: u32) -> f32 {
-    (line as f32 - 0.5 * (field.side - 1) as f32) * field.spacing_m
-}
-
 /// The ring while it grows.
 struct Ring<'a> {
     land: &'a Landform,
     colors: &'a [[u8; 4]],
     mesh: Mesh,
     numbers: Vec<u32>,
-    inner: std::collections::BTreeMap<Sample, u32>,
+    inner: BTreeMap<Sample, u32>,
     triangles: Vec<[u32; 3]>,
 }
 
 impl<'a> Ring<'a> {
     fn new(land: &'a Landform, colors: &'a [[u8; 4]]) -> Self {
         let numbers = vec![u32::MAX; land.apron.heights_m.len()];
-        Self {
-            land,
-            colors,
-            mesh: Mesh::default(),
-            numbers,
-            inner: Default::default(),
-            triangles: Vec::new(),
-        }
+        let (mesh, inner, triangles) = (Mesh::default(), BTreeMap::new(), Vec::new());
+        Self { land, colors, mesh, numbers, inner, triangles }
     }
 
     fn push(&mut self, position: [f32; 3], normal: [f32; 3], color: [u8; 4]) -> u32 {
@@ -135,9 +124,9 @@ impl<'a> Ring<'a> {
         if let Some(&number) = self.inner.get(&sample) {
             return number;
         }
-        let vertex = vertex(&self.land.field, sample);
-        let color = self.color_between(vertex.position[0], vertex.position[2]);
-        let number = self.push(vertex.position, vertex.normal, color);
+        let (position, normal) = vertex(&self.land.field, sample);
+        let color = self.color_between(position[0], position[2]);
+        let number = self.push(position, normal, color);
         self.inner.insert(sample, number);
         number
     }
@@ -147,8 +136,8 @@ impl<'a> Ring<'a> {
         let index = (j * apron.side + i) as usize;
         if self.numbers[index] == u32::MAX {
             let position = [place(apron, i), apron.at(i, j), place(apron, j)];
-            let color = self.colors.get(index).copied().unwrap_or([255; 4]);
-            self.numbers[index] = self.push(position, apron.normal_at(i, j).to_array(), color);
+            let normal = apron.normal_at(i, j).to_array();
+            self.numbers[index] = self.push(position, normal, self.color(index));
         }
         self.numbers[index]
     }
@@ -158,17 +147,16 @@ impl<'a> Ring<'a> {
         let apron = &self.land.apron;
         let last = (apron.side - 1) as f32;
         let grid = |along: f32| (along / apron.spacing_m + 0.5 * last).clamp(0.0, last);
-        let (gx, gz) = (grid(x_m), grid(z_m));
-        let (i, j) = ((gx as u32).min(apron.side - 2), (gz as u32).min(apron.side - 2));
-        let (u, v) = (gx - i as f32, gz - j as f32);
-        let at = |i: u32, j: u32| {
-            self.colors.get((j * apron.side + i) as usize).copied().unwrap_or([255; 4]).map(f32::from)
-        };
-        let (nw, ne, sw, se) = (at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1));
-        std::array::from_fn(|c| {
-            let (north, south) = (nw[c] + (ne[c] - nw[c]) * u, sw[c] + (se[c] - sw[c]) * u);
-            (north + (south - north) * v + 0.5) as u8
-        })
+        let side = apron.side as usize;
+        let ((i, u), (j, v)) = (cell(grid(x_m), side), cell(grid(z_m), side));
+        let color = |at: usize| self.color(at).map(f32::from);
+        let along = |j: usize| lerp_array(color(j * side + i), color(j * side + i + 1), u);
+        lerp_array(along(j), along(j + 1), v).map(|c| (c + 0.5) as u8)
+    }
+
+    /// The colour of a sample of the apron; white where there is none.
+    fn color(&self, index: usize) -> [u8; 4] {
+        self.colors.get(index).copied().unwrap_or([255; 4])
     }
 
     /// Fills the strip between two rows of vertices that both ascend along `axis` (0 = x, 2 = z).

@@ -1,45 +1,41 @@
-//! Heightfield → wedgies, displacements, level numbers and block height ranges (thesis 3.2.1 and 3.2.2), in metres.
+//! Heightfield → wedgies and block height ranges (thesis 3.2.1 and 3.2.2), in metres.
 //!
 //! Wedgies after Duchaineau et al., "ROAMing terrain" (1997), equation 1; displacements after Vlietinck,
 //! "Trilinear displacement mapping of a flat surface with a v1.1 vertex shader" (2003).
 
-use rayon::prelude::*;
+use std::sync::Arc;
 
-use super::bintree::{Sample, hypotenuse, step};
+use genescape_schema::scene::bintree::parents;
+
 use crate::model::{Heightfield, TerrainLod};
+use crate::raster::raster;
 
-/// What the run-time levels of detail of a heightfield of (2^k+1)² samples, k ≥ 1, need. See [`TerrainLod`].
+/// What the run-time levels of detail of a heightfield of (2^k+1)² samples, k ≥ 1, need.
 pub fn lod(field: &Heightfield) -> TerrainLod {
-    let side = field.side as usize;
-    let mut displacements_m = vec![0.0; side * side];
-    let mut levels = vec![0; side * side];
-    displacements_m.par_chunks_mut(side).zip(levels.par_chunks_mut(side)).enumerate().for_each(
-        |(j, (displacements, levels))| {
-            for (i, (displacement, level)) in displacements.iter_mut().zip(levels).enumerate() {
-                (*displacement, *level) = morph(field, [i as u32, j as u32]);
-            }
-        },
-    );
-    let wedgies_m = wedgies(field.side, &displacements_m);
-    let block_ranges_m = block_ranges(field, &displacements_m);
-    TerrainLod { wedgies_m, displacements_m, levels, block_ranges_m }
-}
-
-/// Way to the middle of the hypotenuse that the sample splits, and the last level that uses it.
-fn morph(field: &Heightfield, sample: Sample) -> (f32, u8) {
-    let last = field.side - 1;
-    let [i, j] = sample;
-    if i % last == 0 && j % last == 0 {
-        return (0.0, last.trailing_zeros() as u8);
+    let displacements_m = displacements_m(field);
+    // A wedgie's half thickness is its triangle's own deviation and the greatest among its halves'.
+    let wedgies_m = nested(field.side, &displacements_m, |deviation, below| deviation + below);
+    TerrainLod {
+        wedgies_m,
+        block_ranges_m: block_ranges(field, &displacements_m),
+        field: Arc::new(field.clone()),
     }
-    let [a, b] = hypotenuse(sample);
-    let middle = 0.5 * (field.at(a[0], a[1]) + field.at(b[0], b[1]));
-    (middle - field.at(i, j), step(sample).trailing_zeros() as u8)
 }
 
-/// Half thicknesses, finest first: a triangle's is its own deviation and the greatest among its children's.
-pub(super) fn wedgies(side: u32, displacements_m: &[f32]) -> Vec<f32> {
-    nested(side, displacements_m, |deviation, below| deviation + below)
+/// ½(h(a) + h(b)) − h in metres for each sample with parents a and b: from the sample to its place in the uniform
+/// triangulation of the next level, diagonals alternating as in the bintree. 0 for the four corners.
+pub(super) fn displacements_m(field: &Heightfield) -> Vec<f32> {
+    let (side, last) = (field.side as usize, field.side - 1);
+    raster(side, side, |j| {
+        move |i| {
+            let (i, j) = (i as u32, j as u32);
+            if i % last == 0 && j % last == 0 {
+                return 0.0;
+            }
+            let [a, b] = parents([i, j]);
+            0.5 * (field.at(a[0], a[1]) + field.at(b[0], b[1])) - field.at(i, j)
+        }
+    })
 }
 
 /// Per splitting sample, `combine(|displacement|, greatest value among the samples that split the halves)`. The
@@ -88,17 +84,12 @@ fn greatest_around(values: &[f32], n: usize, i: usize, j: usize, by: usize, diag
 
 /// Ranges of all blocks, coarsest first; each block counts its border, and its corners also as morphed.
 fn block_ranges(field: &Heightfield, displacements_m: &[f32]) -> Vec<[f32; 2]> {
-    let side = field.side as usize;
-    let levels = (side - 1).trailing_zeros();
-    let mut finest = vec![[0.0; 2]; ((side - 1) / 2) * ((side - 1) / 2)];
-    finest.par_chunks_mut((side - 1) / 2).enumerate().for_each(|(row, blocks)| {
-        for (column, block) in blocks.iter_mut().enumerate() {
-            *block = cells_range(field, displacements_m, 2 * column, 2 * row);
-        }
-    });
+    let across = (field.side as usize - 1) / 2;
+    let finest =
+        raster(across, across, |row| move |column| cells_range(field, displacements_m, 2 * column, 2 * row));
     let mut pyramid = vec![finest];
-    for level in (0..levels.saturating_sub(1)).rev() {
-        let across = 1 << level;
+    let mut across = across / 2;
+    while across > 0 {
         let fine = &pyramid[pyramid.len() - 1];
         let at = |i: usize, j: usize| fine[j * 2 * across + i];
         let coarse = (0..across * across).map(|block| {
@@ -107,6 +98,7 @@ fn block_ranges(field: &Heightfield, displacements_m: &[f32]) -> Vec<[f32; 2]> {
         });
         let coarse = coarse.collect();
         pyramid.push(coarse);
+        across /= 2;
     }
     pyramid.into_iter().rev().flatten().collect()
 }

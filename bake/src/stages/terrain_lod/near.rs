@@ -5,16 +5,17 @@
 //! T-junction arises. The error is the greatest vertical distance over all samples that the triangle covers, not
 //! the deviation of its middle alone (which Martini takes, and so delivers twice the error it claims) nor the
 //! wedgie (a sum that overstates it). As the mesh's edges run along those of the uniform triangulation of all
-//! samples (see [`super::bintree`]), that distance bounds the one between the two surfaces everywhere.
+//! samples (see [`genescape_schema::scene::bintree`]), that distance bounds the one between the two surfaces everywhere.
+
+use genescape_schema::scene::bintree::{Sample, Triangle, requires};
 
 use super::apron;
-use super::bintree::{Sample, Triangle, parents};
-use super::data::nested;
+use super::data::{displacements_m, nested};
 use super::verify::max_error_m;
 use crate::model::{Heightfield, Landform, Material, Mesh, Part, PartKind, TerrainMesh};
 
-/// The least error bound that [`default_error_m`] gives, in metres.
-const FINEST_DEFAULT_M: f32 = 0.15;
+/// The smallest error bound that [`default_error_m`] gives, in metres.
+const MIN_DEFAULT_M: f32 = 0.15;
 /// Triangles per cell along a side that [`default_error_m`] aims at: about 100,000 at 513².
 const TRIANGLES_PER_CELL_OF_A_SIDE: usize = 200;
 
@@ -53,17 +54,16 @@ fn block_corners(field: &Heightfield, block_m: f32) -> impl Iterator<Item = Samp
     (0..=across).flat_map(move |j| (0..=across).map(move |i| [i * cells, j * cells]))
 }
 
-/// An error bound in metres that suits the land: 0.15 m, or on rough land more, namely the least that keeps the
+/// An error bound in metres that suits the land: 0.15 m, or on rough land more, namely the smallest that keeps the
 /// mesh at roughly 200·(side−1) triangles (100,000 at 513²).
 pub fn default_error_m(field: &Heightfield) -> f32 {
-    let displacements_m = super::lod(field).displacements_m;
-    let mut errors = nested(field.side, &displacements_m, f32::max);
+    let mut errors = nested(field.side, &displacements_m(field), f32::max);
     let vertices = TRIANGLES_PER_CELL_OF_A_SIDE * (field.side as usize - 1) / 2;
     if vertices >= errors.len() {
-        return FINEST_DEFAULT_M;
+        return MIN_DEFAULT_M;
     }
     let (_, error, _) = errors.select_nth_unstable_by(vertices, |a, b| b.total_cmp(a));
-    error.max(FINEST_DEFAULT_M)
+    error.max(MIN_DEFAULT_M)
 }
 
 /// Marks on samples while triangles are split.
@@ -82,7 +82,7 @@ impl<'a> Refiner<'a> {
             marks[corner] = USED;
         }
         // Room for the rounding of f32 in `exceeds`, so that the promise holds exactly.
-        let (lowest, highest) = field.range_m();
+        let [lowest, highest] = field.range_m();
         let bound_m = max_error_m.max(0.0) - 5.0e-7 * lowest.abs().max(highest.abs());
         Self { field, bound_m, marks, changed: false }
     }
@@ -99,8 +99,8 @@ impl<'a> Refiner<'a> {
         }
         self.marks[index] |= USED;
         self.changed = true;
-        for parent in parents(sample, self.field.side).into_iter().flatten() {
-            self.use_sample(parent);
+        for required in requires(sample, self.field.side - 1).into_iter().flatten() {
+            self.use_sample(required);
         }
     }
 
@@ -140,11 +140,8 @@ impl<'a> Refiner<'a> {
     /// The finished mesh.
     fn triangles(&self) -> Mesh {
         let used = self.marks.iter().filter(|&&mark| mark & USED != 0).count();
-        let mut walk =
-            Walk { refiner: self, numbers: vec![u32::MAX; self.marks.len()], mesh: Mesh::default() };
-        walk.mesh.positions.reserve(used);
-        walk.mesh.normals.reserve(used);
-        walk.mesh.uvs.reserve(used);
+        let (numbers, mesh) = (vec![u32::MAX; self.marks.len()], Mesh::default());
+        let mut walk = Walk { refiner: self, numbers, mesh };
         let mut triangles = Vec::with_capacity(2 * used);
         for root in Triangle::roots(self.field.side) {
             walk.emit(root, true, &mut triangles);
@@ -225,28 +222,22 @@ impl Walk<'_> {
         let index = self.refiner.index(sample);
         if self.numbers[index] == u32::MAX {
             self.numbers[index] = self.mesh.positions.len() as u32;
-            let vertex = vertex(self.refiner.field, sample);
-            self.mesh.positions.push(vertex.position);
-            self.mesh.normals.push(vertex.normal);
-            self.mesh.uvs.push(vertex.uv);
+            let (position, normal) = vertex(self.refiner.field, sample);
+            let last = (self.refiner.field.side - 1) as f32;
+            self.mesh.positions.push(position);
+            self.mesh.normals.push(normal);
+            self.mesh.uvs.push(sample.map(|n| n as f32 / last));
         }
         self.numbers[index]
     }
 }
 
-/// A sample of the field as a vertex; shared with the apron's inner edge so that both agree to the bit.
-pub(super) struct Vertex {
-    pub position: [f32; 3],
-    pub normal: [f32; 3],
-    pub uv: [f32; 2],
+/// Position and normal of a sample; shared with the apron's inner edge so that both agree to the bit.
+pub(super) fn vertex(field: &Heightfield, [i, j]: Sample) -> ([f32; 3], [f32; 3]) {
+    ([place(field, i), field.at(i, j), place(field, j)], field.normal_at(i, j).to_array())
 }
 
-pub(super) fn vertex(field: &Heightfield, [i, j]: Sample) -> Vertex {
-    let last = (field.side - 1) as f32;
-    let along = |n: u32| (n as f32 - 0.5 * last) * field.spacing_m;
-    Vertex {
-        position: [along(i), field.at(i, j), along(j)],
-        normal: field.normal_at(i, j).to_array(),
-        uv: [i as f32 / last, j as f32 / last],
-    }
+/// World coordinate in metres of a line of samples.
+pub(super) fn place(field: &Heightfield, line: u32) -> f32 {
+    (line as f32 - 0.5 * (field.side - 1) as f32) * field.spacing_m
 }

@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 
 use proptest::prelude::*;
 
-use genescape_schema::gltf::{HeightfieldError as DecodeError, read_heightfield};
+use genescape_schema::scene::{HeightfieldError, bintree};
 
+use super::data::displacements_m;
+use super::verify::max_error_m;
 use super::*;
 use crate::model::{Heightfield, Landform, Mesh, TerrainLod};
 use crate::noise::fbm2;
@@ -95,20 +97,6 @@ fn check_wedgies(field: &Heightfield, wedgies: &[f32], t: bintree::Triangle) -> 
     Some(own)
 }
 
-/// What [`encode`] wrote, as the viewer reads it.
-fn decode(bytes: &[u8]) -> Result<(Heightfield, TerrainLod), DecodeError> {
-    let data = read_heightfield(bytes)?;
-    let field =
-        Heightfield { side: data.side, spacing_m: data.spacing_m, heights_m: data.heights_m.into_owned() };
-    let lod = TerrainLod {
-        wedgies_m: data.wedgies_m.into_owned(),
-        displacements_m: data.displacements_m.into_owned(),
-        levels: data.levels.into_owned(),
-        block_ranges_m: data.block_ranges_m.into_owned(),
-    };
-    Ok((field, lod))
-}
-
 #[test]
 fn wedgies_are_nested_and_hold_the_land() {
     let field = field(33, 2.0, 7, 60.0);
@@ -138,14 +126,13 @@ fn uniform_height(field: &Heightfield, level: u32, i: u32, j: u32) -> f32 {
 #[test]
 fn displaced_samples_lie_on_the_next_coarser_triangulation() {
     let field = field(65, 2.0, 3, 60.0);
-    let lod = lod(&field);
+    let displacements_m = displacements_m(&field);
     for j in 0..65 {
         for i in 0..65 {
-            let k = (j * 65 + i) as usize;
-            let level = u32::from(lod.levels[k]);
-            assert!((i | j) % (1 << level) == 0 && level <= 6);
+            let level = bintree::level([i, j]);
             let target = if level < 6 { uniform_height(&field, level + 1, i, j) } else { field.at(i, j) };
-            assert!((field.heights_m[k] + lod.displacements_m[k] - target).abs() < 1e-4, "{i} {j}");
+            let displaced = field.at(i, j) + displacements_m[(j * 65 + i) as usize];
+            assert!((displaced - target).abs() < 1e-4, "{i} {j}");
         }
     }
 }
@@ -153,7 +140,7 @@ fn displaced_samples_lie_on_the_next_coarser_triangulation() {
 #[test]
 fn block_ranges_hold_samples_and_morphs_at_every_level() {
     let field = field(65, 2.0, 5, 60.0);
-    let lod = lod(&field);
+    let (lod, displacements_m) = (lod(&field), displacements_m(&field));
     let mut first = 0;
     for level in 0..6 {
         let (across, cells) = (1_u32 << level, 64_u32 >> level);
@@ -164,7 +151,7 @@ fn block_ranges_hold_samples_and_morphs_at_every_level() {
             for j in j0..=j0 + cells {
                 for i in i0..=i0 + cells {
                     let k = (j * 65 + i) as usize;
-                    let moved = field.heights_m[k] + lod.displacements_m[k];
+                    let moved = field.heights_m[k] + displacements_m[k];
                     least = least.min(field.heights_m[k]).min(moved);
                     greatest = greatest.max(field.heights_m[k]).max(moved);
                 }
@@ -187,18 +174,18 @@ fn block_ranges_hold_samples_and_morphs_at_every_level() {
 fn the_payload_comes_back_exactly_and_damage_is_told() {
     let field = field(33, 1.5, 11, 80.0);
     let lod = lod(&field);
-    let bytes = encode(&field, &lod);
+    let bytes = lod.to_bytes();
     assert_eq!(bytes.len() % 4, 0);
-    assert_eq!(decode(&bytes).unwrap(), (field, lod));
-    assert_eq!(decode(b"RIFF"), Err(DecodeError::Magic));
-    for length in 0..bytes.len() - 3 {
-        assert!(decode(&bytes[..length]).is_err(), "{length} bytes");
+    assert_eq!(TerrainLod::from_bytes(&bytes), Ok(lod));
+    assert_eq!(TerrainLod::from_bytes(b"RIFF"), Err(HeightfieldError::Magic));
+    for length in 0..bytes.len() {
+        assert!(TerrainLod::from_bytes(&bytes[..length]).is_err(), "{length} bytes");
     }
-    for at in 4..72 {
+    for at in 4..56 {
         for value in [0, 1, 127, 255] {
             let mut damaged = bytes.clone();
             damaged[at] = value;
-            let _ = decode(&damaged);
+            let _ = TerrainLod::from_bytes(&damaged);
         }
     }
 }
@@ -296,7 +283,7 @@ fn martini(field: &Heightfield, claim_m: f32) -> (usize, f32) {
             None => (1, 0.0),
         }
     }
-    let errors = data::nested(field.side, &lod(field).displacements_m, f32::max);
+    let errors = data::nested(field.side, &displacements_m(field), f32::max);
     let [a, b] = bintree::Triangle::roots(field.side).map(|root| walk(field, &errors, claim_m, root));
     (a.0 + b.0, a.1.max(b.1))
 }
@@ -311,37 +298,4 @@ fn fewer_triangles_than_martini_at_the_same_verified_bound() {
     let claims = (1..=16).rev().map(|part| martini(&land.field, bound_m * part as f32 / 16.0));
     let (martini, _) = claims.into_iter().find(|&(_, error_m)| error_m <= bound_m).unwrap();
     assert!(built.error_m <= bound_m && built.near.triangle_count() * 10 < martini * 9, "{martini}");
-}
-
-#[test]
-#[ignore = "prints times"]
-fn measure() {
-    use std::io::Write;
-    for (side, relief) in [(513, 40.0), (513, 150.0), (513, 420.0), (1025, 420.0)] {
-        let land = land(side, 2, relief, Some(0.0));
-        for _ in 0..3 {
-            let start = std::time::Instant::now();
-            let data = lod(&land.field);
-            let lod_time = start.elapsed();
-            let payload = encode(&land.field, &data);
-            let encode_time = start.elapsed() - lod_time;
-            let bound = default_error_m(&land.field);
-            let default_time = start.elapsed() - lod_time - encode_time;
-            let start = std::time::Instant::now();
-            let built = mesh(&land, bound, f32::MAX, &[]);
-            let mesh_time = start.elapsed();
-            let start = std::time::Instant::now();
-            max_error_m(&land.field, &built.near);
-            let verify_time = start.elapsed();
-            let fine = mesh(&land, 0.15, f32::MAX, &[]).near.triangle_count();
-            let line = format!(
-                "{side} {relief}: lod {lod_time:?} encode {encode_time:?} {} default {bound} {default_time:?} mesh {mesh_time:?} \
-                 (verify {verify_time:?}) {} tri, error {}, at 0.15: {fine}",
-                payload.len(),
-                built.near.triangle_count(),
-                built.error_m
-            );
-            writeln!(std::io::stderr(), "{line}").unwrap();
-        }
-    }
 }

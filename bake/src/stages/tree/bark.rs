@@ -8,10 +8,11 @@ use std::f32::consts::TAU;
 
 use glam::Vec3;
 
+use super::budget::Budget;
 use super::params::TreeParams;
-use super::plan::Plan;
 use super::shade::Shade;
 use super::skeleton::{Skeleton, Stem, perpendicular};
+use crate::math::{lerp, unit_to_byte};
 use crate::model::Mesh;
 
 /// Metres of bark that one repeat of the texture covers on the trunk.
@@ -50,6 +51,18 @@ impl Roots {
     }
 }
 
+/// How a ring of vertices lies, and its place in the texture.
+struct Frame {
+    /// Direction of the ring's first vertex.
+    x: Vec3,
+    along: Vec3,
+    /// Change of radius per metre.
+    slope: f32,
+    /// Repeats of the texture around the stem.
+    repeats: f32,
+    v: f32,
+}
+
 /// What is written to while tubes are made.
 struct Skin<'a> {
     mesh: &'a mut Mesh,
@@ -62,7 +75,7 @@ struct Skin<'a> {
 /// Appends the vertices of all stems to `mesh` and returns their triangles.
 pub(super) fn skin(
     params: &TreeParams,
-    plan: &Plan,
+    budget: &Budget,
     skeleton: &Skeleton,
     shade: &Shade,
     mesh: &mut Mesh,
@@ -76,7 +89,7 @@ pub(super) fn skin(
     };
     let stations: Vec<Vec<Station>> =
         skeleton.stems.iter().enumerate().map(|(i, stem)| stations(skeleton, stem, i == 0, &roots)).collect();
-    let sides = budgeted_sides(skeleton, &stations, plan.bark_triangles as usize);
+    let sides = budgeted_sides(skeleton, &stations, budget.max_bark_triangles as usize);
     let circles = (0..=ROOT_SIDES).map(circle).collect();
     let moss = 0.5 * (1.0 - params.bark_tone);
     let count: usize = stations.iter().zip(&sides).map(|(s, &n)| s.len() * (n + 1)).sum();
@@ -102,17 +115,13 @@ fn circle(sides: usize) -> Vec<[f32; 2]> {
 }
 
 /// Sides of each stem's tube, fewer and fewer until the budget is met.
-fn budgeted_sides(skeleton: &Skeleton, stations: &[Vec<Station>], most: usize) -> Vec<usize> {
+fn budgeted_sides(skeleton: &Skeleton, stations: &[Vec<Station>], max: usize) -> Vec<usize> {
     let mut quality = 1.0;
     loop {
-        let sides: Vec<usize> = skeleton
-            .stems
-            .iter()
-            .enumerate()
-            .map(|(i, stem)| if i == 0 { ROOT_SIDES } else { sides(stem, quality) })
-            .collect();
+        let branches = skeleton.stems.iter().skip(1).map(|stem| sides(stem, quality));
+        let sides: Vec<usize> = std::iter::once(ROOT_SIDES).chain(branches).collect();
         let triangles: usize = stations.iter().zip(&sides).map(|(s, &n)| s.len() * n * 2).sum();
-        if triangles <= most || quality < 0.1 {
+        if triangles <= max || quality < 0.1 {
             return sides;
         }
         quality *= 0.85;
@@ -121,8 +130,8 @@ fn budgeted_sides(skeleton: &Skeleton, stations: &[Vec<Station>], most: usize) -
 
 fn sides(stem: &Stem, quality: f32) -> usize {
     let sides = 3.0 + quality * 13.0 * (stem.radius_m - 0.012).max(0.0).sqrt();
-    let least = if stem.level == 0 { 8.0 * quality } else { 3.0 };
-    (sides.max(least) as usize).clamp(3, 14)
+    let min = if stem.level == 0 { 8.0 * quality } else { 3.0 };
+    (sides.max(min) as usize).clamp(3, 14)
 }
 
 /// Rings of one stem: its nodes, with more of them at the roots and at the collar where it leaves its parent.
@@ -132,18 +141,16 @@ fn stations(skeleton: &Skeleton, stem: &Stem, has_roots: bool, roots: &Roots) ->
     let first_m = (b.at - a.at).length();
     let on_first = |s_m: f32| {
         let f = s_m / first_m.max(1e-4);
-        (a.at.lerp(b.at, f), a.radius_m + (b.radius_m - a.radius_m) * f)
+        (a.at.lerp(b.at, f), lerp(a.radius_m, b.radius_m, f))
     };
     let mut rings = Vec::with_capacity(nodes.len() + 7);
     if has_roots {
         let deep_m = 0.3_f32.max(0.7 * a.radius_m);
         rings.push(Station { at: a.at - Vec3::Y * deep_m, radius_m: a.radius_m, root_m: Some(-deep_m) });
-        for part in [0.0, 0.25, 0.6, 1.1, 1.8, 2.8, 4.2] {
-            let s_m = part * roots.reach_m;
-            if s_m < 0.9 * first_m {
-                let (at, radius_m) = on_first(s_m);
-                rings.push(Station { at, radius_m, root_m: Some(s_m) });
-            }
+        let heights_m = [0.0, 0.25, 0.6, 1.1, 1.8, 2.8, 4.2].map(|part| part * roots.reach_m);
+        for s_m in heights_m.into_iter().filter(|&s_m| s_m < 0.9 * first_m) {
+            let (at, radius_m) = on_first(s_m);
+            rings.push(Station { at, radius_m, root_m: Some(s_m) });
         }
     } else {
         rings.push(Station { at: a.at, radius_m: a.radius_m, root_m: None });
@@ -183,8 +190,9 @@ impl Skin<'_> {
                 let mean_m = 0.5 * (round_m + ring_round_m(&rings[i - 1], roots));
                 v += step_m * repeats / (TAU * mean_m).max(1e-4);
             }
-            let slope = slope_at(rings, i);
-            self.ring(stem, ring, (x, along), slope, sides, roots, (repeats, v), i);
+            let light = self.light(stem, ring, i);
+            let frame = Frame { x, along, slope: slope_at(rings, i), repeats, v };
+            self.ring(ring, &frame, light, sides, roots);
         }
         self.tip(rings, sides, (repeats, v));
         self.triangles_of_tube(start, sides as u32, last as u32);
@@ -193,23 +201,9 @@ impl Skin<'_> {
         }
     }
 
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "one ring of a tube needs its frame, shape and texture place"
-    )]
-    fn ring(
-        &mut self,
-        stem: &Stem,
-        ring: &Station,
-        (x, along): (Vec3, Vec3),
-        slope: f32,
-        sides: usize,
-        roots: Option<&Roots>,
-        (repeats, v): (f32, f32),
-        number: usize,
-    ) {
+    fn ring(&mut self, ring: &Station, frame: &Frame, light: f32, sides: usize, roots: Option<&Roots>) {
+        let &Frame { x, along, slope, repeats, v } = frame;
         let z = along.cross(x);
-        let color = self.color(stem, ring, number);
         let first = self.mesh.positions.len();
         for k in 0..=sides {
             let [cos, sin] = self.circles[sides][k];
@@ -228,7 +222,7 @@ impl Skin<'_> {
             self.mesh.positions.push(position);
             self.mesh.normals.push((out - along * slope).normalize_or(out).to_array());
             self.mesh.uvs.push([repeats * k as f32 / sides as f32, v]);
-            self.mesh.colors.push(self.mossy(color, out, ring));
+            self.mesh.colors.push(self.mossy(light, out, ring));
         }
     }
 
@@ -287,7 +281,7 @@ impl Skin<'_> {
     }
 
     /// Light on a ring, darker in a crotch and near the ground.
-    fn color(&self, stem: &Stem, ring: &Station, number: usize) -> f32 {
+    fn light(&self, stem: &Stem, ring: &Station, number: usize) -> f32 {
         let mut light = 0.25 + 0.75 * self.shade.at(ring.at);
         if stem.level > 0 && number < 2 {
             light *= 0.82;
@@ -302,8 +296,8 @@ impl Skin<'_> {
     fn mossy(&self, light: f32, out: Vec3, ring: &Station) -> [u8; 4] {
         let low = (1.0 - ring.at.y / 2.5).clamp(0.0, 1.0);
         let moss = self.moss * (low * (0.35 - 0.65 * out.z).max(0.0) + 0.18 * out.y.max(0.0));
-        let byte = |f: f32| (255.0 * (light * f).clamp(0.0, 1.0) + 0.5) as u8;
-        [byte(1.0 - 0.55 * moss), byte(1.0 - 0.15 * moss), byte(1.0 - 0.7 * moss), 255]
+        let [r, g, b] = [0.55, 0.15, 0.7].map(|part| unit_to_byte(light * (1.0 - part * moss)));
+        [r, g, b, 255]
     }
 }
 

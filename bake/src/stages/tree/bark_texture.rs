@@ -3,12 +3,15 @@
 //! Three barks blend by `bark_tone`: dark with deep furrows (oak), brown plates (pine), pale and smooth with dark
 //! lenticels (birch). u runs around the stem, v along it; noise wraps at the edges.
 
+use bytemuck::Zeroable;
 use glam::Vec3;
 
 use super::mips::Encoder;
 use super::params::TreeTextureParams;
+use crate::math::{hermite as smooth, lerp, split};
 use crate::model::Image8;
 use crate::noise::{cellular2, gradient2, hash};
+use crate::raster::{raster, square_image};
 use crate::seed;
 
 /// Texels a side.
@@ -20,15 +23,16 @@ const COARSE: usize = 256;
 pub(super) fn paint(params: &TreeTextureParams) -> (Image8, Image8) {
     let seed = seed::noise_seed(u64::from(params.tree_seed), "bark", 0);
     let bark = Bark { seed, tone: params.bark_tone.clamp(0.0, 1.0) };
-    let coarse: Vec<Texel> = (0..COARSE * COARSE)
-        .map(|i| bark.texel((i % COARSE) as f32 / COARSE as f32, (i / COARSE) as f32 / COARSE as f32))
-        .collect();
-    let fine = enlarged(&coarse, seed.wrapping_add(40));
-    (colors(&fine), normals(&coarse))
+    let place = |i: usize| i as f32 / COARSE as f32;
+    let coarse = raster(COARSE, COARSE, |y| {
+        let bark = &bark;
+        move |x| bark.texel(place(x), place(y))
+    });
+    (colors(&coarse, seed.wrapping_add(40)), normals(&coarse))
 }
 
 /// Height in texels of `COARSE` and linear colour.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Zeroable)]
 struct Texel {
     height: f32,
     color: Vec3,
@@ -99,10 +103,9 @@ impl Bark {
     fn tiled(&self, layer: u32, u: f32, v: f32, across: i32, along: i32) -> f32 {
         let seed = self.seed.wrapping_add(layer);
         let (x, y) = (u * across as f32, v * along as f32);
-        let (fx, fy) = (x.floor(), y.floor());
-        let (x0, y0) = ((fx as i32).rem_euclid(across), (fy as i32).rem_euclid(along));
+        let ((ix, dx), (iy, dy)) = (split(x), split(y));
+        let (x0, y0) = (ix.rem_euclid(across), iy.rem_euclid(along));
         let (x1, y1) = ((x0 + 1) % across, (y0 + 1) % along);
-        let (dx, dy) = (x - fx, y - fy);
         let corner = |ix: i32, iy: i32, dx: f32, dy: f32| {
             let h = hash(seed, ix, iy, 0);
             let long = if h & 1 == 0 { dx } else { -dx };
@@ -116,15 +119,11 @@ impl Bark {
     }
 }
 
-fn smooth(t: f32) -> f32 {
-    t * t * (3.0 - 2.0 * t)
-}
-
 /// A blend of two barks; where one is missing, the other.
 fn mix(a: Option<Texel>, b: Option<Texel>, part: f32) -> Texel {
     match (a, b) {
         (Some(a), Some(b)) => {
-            Texel { height: a.height + (b.height - a.height) * part, color: a.color.lerp(b.color, part) }
+            Texel { height: lerp(a.height, b.height, part), color: a.color.lerp(b.color, part) }
         }
         (Some(one), None) | (None, Some(one)) => one,
         (None, None) => Texel { height: 0.0, color: Vec3::splat(0.1) },
@@ -132,23 +131,23 @@ fn mix(a: Option<Texel>, b: Option<Texel>, part: f32) -> Texel {
 }
 
 /// Colours at twice the size by wrapped bilinear interpolation, with fine grain added.
-fn enlarged(coarse: &[Texel], seed: u32) -> Vec<Vec3> {
-    let mut fine = Vec::with_capacity(SIZE * SIZE);
-    for y in 0..SIZE {
+fn colors(coarse: &[Texel], seed: u32) -> Image8 {
+    let encode = Encoder::new();
+    square_image(SIZE, |y| {
         let (y0, y1, fy) = halfway(y);
         let (upper, lower) = (&coarse[y0 * COARSE..][..COARSE], &coarse[y1 * COARSE..][..COARSE]);
         let column: Vec<Vec3> =
             upper.iter().zip(lower).map(|(a, b)| a.color + (b.color - a.color) * fy).collect();
-        for x in 0..SIZE {
+        let encode = &encode;
+        move |x| {
             let (x0, x1, fx) = halfway(x);
             // Fibres run along the stem: grain varies faster around it.
             let bits = hash(seed, x as i32, (y / 3) as i32, 7);
             let grain = (bits & 0xFF) as f32 * (1.0 / 255.0) - 0.5;
-            let color = column[x0] + (column[x1] - column[x0]) * fx;
-            fine.push(color * (1.0 + 0.2 * grain));
+            let color = (column[x0] + (column[x1] - column[x0]) * fx) * (1.0 + 0.2 * grain);
+            color.to_array().map(|linear| encode.byte(linear))
         }
-    }
-    fine
+    })
 }
 
 /// The two coarse texels that a fine one lies between, and the fraction.
@@ -157,32 +156,16 @@ fn halfway(i: usize) -> (usize, usize, f32) {
     if i.is_multiple_of(2) { ((i / 2 + last) & last, i / 2, 0.75) } else { (i / 2, (i / 2 + 1) & last, 0.25) }
 }
 
-fn colors(texels: &[Vec3]) -> Image8 {
-    let encode = Encoder::new();
-    let mut image = Image8::new(SIZE as u32, SIZE as u32, 3);
-    for (out, texel) in image.data.chunks_exact_mut(3).zip(texels) {
-        out[0] = encode.byte(texel.x);
-        out[1] = encode.byte(texel.y);
-        out[2] = encode.byte(texel.z);
-    }
-    image
-}
-
-/// Normals by central differences; red towards +u, green towards −v (up in the picture), as glTF has it.
+/// Normals by central differences; red towards +u, green towards −v (up in the image), as glTF has it.
 fn normals(texels: &[Texel]) -> Image8 {
-    let mut image = Image8::new(COARSE as u32, COARSE as u32, 3);
     let height = |x: usize, y: usize| texels[(y % COARSE) * COARSE + x % COARSE].height;
-    for y in 0..COARSE {
-        for x in 0..COARSE {
+    square_image(COARSE, |y| {
+        move |x| {
             let east = height(x + 1, y) - height(x + COARSE - 1, y);
             let south = height(x, y + 1) - height(x, y + COARSE - 1);
             let normal = Vec3::new(-0.5 * east, 0.5 * south, 1.0);
             let normal = normal / normal.length_squared().sqrt();
-            let at = 3 * (y * COARSE + x);
-            for (out, part) in image.data[at..at + 3].iter_mut().zip(normal.to_array()) {
-                *out = (127.5 * (part + 1.0) + 0.5) as u8;
-            }
+            normal.to_array().map(|part| (127.5 * (part + 1.0) + 0.5) as u8)
         }
-    }
-    image
+    })
 }

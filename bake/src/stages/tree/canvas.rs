@@ -1,4 +1,4 @@
-//! Strokes and shapes → a picture in linear light with alpha, anti-aliased by their distance to the pixel.
+//! Strokes and shapes → an image in linear light with alpha, anti-aliased by their distance to the pixel.
 //!
 //! A canvas is `width` units wide (x from −width/2) and 1 unit high (y from 0 at the bottom to 1 at the top); its
 //! pixels are square only in texture space.
@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 
 use super::leaf_outline::Outline;
 
-/// A picture being painted: linear RGB, not multiplied by alpha, and alpha.
+/// An image being painted: linear RGB, not multiplied by alpha, and alpha.
 pub(super) struct Canvas {
     /// Pixels a side.
     pub size: usize,
@@ -50,7 +50,6 @@ fn interval(start: f32, slope: f32, from: f32, to: f32) -> (f32, f32) {
 }
 
 impl Canvas {
-    /// An empty canvas.
     pub fn new(size: usize, width: f32) -> Self {
         Self { size, width, pixels: vec![[0.0; 4]; size * size] }
     }
@@ -61,7 +60,7 @@ impl Canvas {
     }
 
     /// Calls `paint` for every pixel of an oblong with its distances along and across (from `origin`, in units of
-    /// length), and lays what it returns (colour and coverage) over the picture.
+    /// length), and lays what it returns (colour and coverage) over the image.
     fn over(&mut self, oblong: &Oblong, paint: impl Fn(f32, f32) -> Option<(Vec3, f32)>) {
         let size = self.size as f32;
         let (origin, axis) = (oblong.origin, oblong.axis);
@@ -118,13 +117,6 @@ impl Canvas {
             let inside = outline.inside(t, s) * scale + 0.5;
             (inside > 0.0).then(|| (blade(paint, outline, t, s), inside.min(1.0)))
         });
-    }
-
-    /// Part of the pixels that are kept at the cutoff.
-    #[cfg(test)]
-    pub fn coverage(&self, cutoff: f32) -> f32 {
-        let kept = self.pixels.iter().filter(|p| p[3] >= cutoff).count();
-        kept as f32 / self.pixels.len() as f32
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::f32::consts::PI;
 
+use crate::math::{cell, lerp};
+
 const TABLE: usize = 96;
 
 /// The outline of a blade, the same on both sides of its rib.
@@ -45,7 +47,7 @@ impl Outline {
 
     fn blade(half: f32, profile: impl Fn(f32) -> f32) -> Self {
         let values: Vec<f32> = (0..TABLE).map(|i| half * profile(i as f32 / (TABLE - 1) as f32)).collect();
-        let widest = values.iter().fold(0.0_f32, |most, &w| most.max(w));
+        let widest = values.iter().copied().fold(0.0, f32::max);
         let table = with_slopes(&values, |_| 1.0 / (TABLE - 1) as f32);
         Self { table, polar: false, centre: 0.0, widest, back: 0.02 }
     }
@@ -61,9 +63,8 @@ impl Outline {
                 (t * t + s * s).sqrt()
             })
             .collect();
-        let reach = |f: fn(f32) -> f32| {
-            values.iter().enumerate().map(|(i, r)| r * f(angle(i))).fold(0.0_f32, |most, w| most.max(w))
-        };
+        let reach =
+            |f: fn(f32) -> f32| values.iter().enumerate().map(|(i, r)| r * f(angle(i))).fold(0.0, f32::max);
         let (widest, behind) = (reach(libm::sinf), reach(|a| -libm::cosf(a)));
         let table = with_slopes(&values, |r| r * PI / (TABLE - 1) as f32);
         Self { table, polar: true, centre, widest, back: (behind - centre).max(0.0) + 0.02 }
@@ -82,15 +83,13 @@ impl Outline {
             }
             (t, s.abs())
         };
-        let g = place * (TABLE - 1) as f32;
-        let i = (g as usize).min(TABLE - 2);
-        let f = g - i as f32;
+        let (i, f) = cell(place * (TABLE - 1) as f32, TABLE);
         let (a, b) = (self.table[i], self.table[i + 1]);
-        (a.0 + (b.0 - a.0) * f - at) * (a.1 + (b.1 - a.1) * f)
+        (lerp(a.0, b.0, f) - at) * lerp(a.1, b.1, f)
     }
 }
 
-/// Leaves of narrow kinds stay narrow whatever the gene says.
+/// Narrow leaves stay narrow whatever the gene says.
 fn narrow(leaf_aspect: f32) -> f32 {
     leaf_aspect.clamp(0.4, 1.5)
 }
@@ -106,8 +105,7 @@ fn beta(t: f32, a: f32, b: f32) -> f32 {
 #[inline]
 fn angle_part(x: f32, y: f32) -> f32 {
     // Rational arctangent after Hastings: the error of 1e-4 is far below a texel.
-    let (least, most) = (x.abs().min(y), x.abs().max(y));
-    let q = least / most.max(1e-12);
+    let q = x.abs().min(y) / x.abs().max(y).max(1e-12);
     let q2 = q * q;
     let a = ((-0.046_496_475 * q2 + 0.159_314_22) * q2 - 0.327_622_76) * q2 * q + q;
     let a = if y > x.abs() { 0.5 * PI - a } else { a };

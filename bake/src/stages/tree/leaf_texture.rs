@@ -1,40 +1,46 @@
-//! Genes → pictures of a twig with leaves, needles, leaflets or blossom, as mip chains of sRGB with alpha.
+//! Genes → images of a twig with leaves, needles, leaflets or blossom, as mip chains of sRGB with alpha.
 //!
 //! The twig starts at the bottom centre, where a card is joined to its stem, and fills the card.
 
 use glam::{Vec2, Vec3};
 
 use super::canvas::{Canvas, Paint};
-use super::dice::Dice;
 use super::leaf_outline::Outline;
 use super::mips;
 use super::params::{Habit, TreeTextureParams, card_length_m};
+use crate::math::{cell, lerp};
 use crate::model::Image8;
+use crate::seed::Dice;
 
 /// Texels a side.
 const SIZE: usize = 256;
 /// Albedo of young wood, linear.
 const TWIG: Vec3 = Vec3::new(0.10, 0.062, 0.033);
 
-/// The leaf card.
-pub(super) fn paint_leaves(params: &TreeTextureParams) -> Vec<Image8> {
-    mips::chain(&leaves(params))
-}
-
-/// The blossom card; one transparent texel if the species does not blossom.
+/// The blossom card; one transparent texel if the template does not blossom.
 pub(super) fn paint_blossom(params: &TreeTextureParams) -> Vec<Image8> {
     if params.blossom <= 0.0 || Habit::of(params.leaf_shape, params.levels) == Habit::Frond {
         return vec![Image8::new(1, 1, 4)];
     }
-    mips::chain(&blossom(params))
+    let mut brush = Brush {
+        canvas: Canvas::new(SIZE, Habit::of(params.leaf_shape, params.levels).card_aspect()),
+        outline: Outline::petal(),
+        dice: Dice::new(params.tree_seed, "tree texture", 1),
+        hue_deg: 0.0,
+        autumn: 0.0,
+        pairs: 0.0,
+    };
+    brush.flowers();
+    mips::chain(&brush.canvas)
 }
 
-pub(super) fn leaves(params: &TreeTextureParams) -> Canvas {
+/// The leaf card.
+pub(super) fn paint_leaves(params: &TreeTextureParams) -> Vec<Image8> {
     let habit = Habit::of(params.leaf_shape, params.levels);
     let mut brush = Brush {
         canvas: Canvas::new(SIZE, habit.card_aspect()),
         outline: Outline::new(params.leaf_shape, params.leaf_aspect),
-        dice: Dice::for_texture(params.tree_seed, 0),
+        dice: Dice::new(params.tree_seed, "tree texture", 0),
         hue_deg: params.leaf_hue_deg,
         autumn: ((78.0 - params.leaf_hue_deg) / 25.0).clamp(0.0, 1.0),
         pairs: [7.0, 8.0, 9.0, 8.0, 6.0, 6.0, 0.0, 0.0][params.leaf_shape.min(7) as usize],
@@ -47,21 +53,7 @@ pub(super) fn leaves(params: &TreeTextureParams) -> Canvas {
         Habit::Willow => brush.willow(leaf.clamp(0.2, 0.3)),
         Habit::Broad => brush.broad(leaf),
     }
-    brush.canvas
-}
-
-fn blossom(params: &TreeTextureParams) -> Canvas {
-    let habit = Habit::of(params.leaf_shape, params.levels);
-    let mut brush = Brush {
-        canvas: Canvas::new(SIZE, habit.card_aspect()),
-        outline: Outline::petal(),
-        dice: Dice::for_texture(params.tree_seed, 1),
-        hue_deg: 0.0,
-        autumn: 0.0,
-        pairs: 0.0,
-    };
-    brush.flowers();
-    brush.canvas
+    mips::chain(&brush.canvas)
 }
 
 /// Albedo of a leaf by hue: green is dark, yellow is bright, orange and red between. Linear RGB.
@@ -89,6 +81,15 @@ struct Brush {
     hue_deg: f32,
     autumn: f32,
     pairs: f32,
+}
+
+/// The side of the kth leaf of a twig: 1 or −1.
+fn alternating(k: usize) -> f32 {
+    if k.is_multiple_of(2) { 1.0 } else { -1.0 }
+}
+
+fn length(twig: &[(Vec2, f32)]) -> f32 {
+    twig.windows(2).map(|p| (p[1].0 - p[0].0).length()).sum()
 }
 
 /// The unit vector at an angle from straight up, positive to the right.
@@ -143,7 +144,7 @@ impl Brush {
             for k in 0..count {
                 let t = 0.12 + 0.72 * k as f32 / count as f32;
                 let (at, angle) = point(&main, t);
-                let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+                let sign = alternating(k);
                 let turn = sign * (0.85 + 0.15 * self.dice.signed()) + angle;
                 let length = (0.44 - 0.75 * leaf * 0.5) * libm::sinf(0.7 + 1.9 * t).max(0.35);
                 let side = self.twig(at, turn, length, -0.35 * sign, 0.007);
@@ -151,36 +152,39 @@ impl Brush {
             }
         }
         self.spots(&main, leaf, if fine { 0.45 } else { 0.16 }, &mut spots);
-        let count = spots.len() as f32;
-        for (i, (at, angle)) in spots.into_iter().enumerate() {
-            let length = leaf * (0.95 + 0.15 * self.dice.signed());
-            let (at, length) = self.fit(at, angle, length);
-            self.leaf(at, angle, length, 0.72 + 0.36 * i as f32 / count);
+        self.leaves(&spots, leaf, (0.95, 0.15));
+    }
+
+    /// Leaves at these places; those laid on later are lighter.
+    fn leaves(&mut self, spots: &[(Vec2, f32)], leaf: f32, (size, variation): (f32, f32)) {
+        for (i, &(at, angle)) in spots.iter().enumerate() {
+            let length = leaf * (size + variation * self.dice.signed());
+            let length = self.fit(at, angle, length);
+            self.leaf(at, angle, length, 0.72 + 0.36 * i as f32 / spots.len() as f32);
         }
     }
 
     /// Places of leaves along a twig: alternating, the last at its tip.
     fn spots(&mut self, twig: &[(Vec2, f32)], leaf: f32, from: f32, spots: &mut Vec<(Vec2, f32)>) {
-        let length: f32 = twig.windows(2).map(|p| (p[1].0 - p[0].0).length()).sum();
-        let count = ((1.0 - from) * length / (0.30 * leaf)).round().max(2.0) as usize;
+        let count = ((1.0 - from) * length(twig) / (0.30 * leaf)).round().max(2.0) as usize;
         for k in 0..count {
             let t = from + (1.0 - from) * k as f32 / count as f32;
             let (at, angle) = point(twig, t);
-            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = alternating(k);
             spots.push((at, angle + sign * (0.95 - 0.35 * t + 0.2 * self.dice.signed())));
         }
         spots.push(point(twig, 1.0));
     }
 
     /// Shortens a leaf so that it stays on the card.
-    fn fit(&self, at: Vec2, angle: f32, length: f32) -> (Vec2, f32) {
+    fn fit(&self, at: Vec2, angle: f32, length: f32) -> f32 {
         let axis = towards(angle);
         let side = Vec2::new(-axis.y, axis.x).abs() * (self.outline.widest * length);
         let half = 0.5 * self.canvas.width - 0.006;
         let room_x = (half - side.x * 0.9 - at.x.abs()).max(0.02) / axis.x.abs().max(1e-3);
         let room_y = if axis.y > 0.0 { 0.994 - side.y * 0.6 - at.y } else { at.y - 0.006 - side.y * 0.6 };
         let room_y = room_y.max(0.02) / axis.y.abs().max(1e-3);
-        (at, length.min(room_x).min(room_y).max(0.3 * length))
+        length.min(room_x).min(room_y).max(0.3 * length)
     }
 
     /// A hanging willow twig: long leaves at narrow angles.
@@ -190,25 +194,19 @@ impl Brush {
         let mut spots = Vec::new();
         let mut side_twigs = Vec::new();
         for k in 0..4 {
-            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = alternating(k);
             let (at, angle) = point(&main, 0.06 + 0.18 * k as f32);
             side_twigs.push(self.twig(at, angle + 0.42 * sign, 0.34, -0.3 * sign, 0.005));
         }
         for twig in side_twigs.iter().chain([&main]) {
-            let length: f32 = twig.windows(2).map(|p| (p[1].0 - p[0].0).length()).sum();
-            let count = (length / 0.036) as usize;
+            let count = (length(twig) / 0.036) as usize;
             for k in 0..=count {
                 let (at, angle) = point(twig, 0.06 + 0.94 * k as f32 / count as f32);
-                let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+                let sign = alternating(k);
                 spots.push((at, angle + sign * (0.5 + 0.2 * self.dice.signed())));
             }
         }
-        let count = spots.len() as f32;
-        for (i, (at, angle)) in spots.into_iter().enumerate() {
-            let size = leaf * (0.9 + 0.2 * self.dice.signed());
-            let (at, length) = self.fit(at, angle, size);
-            self.leaf(at, angle, length, 0.72 + 0.36 * i as f32 / count);
-        }
+        self.leaves(&spots, leaf, (0.9, 0.2));
     }
 
     /// A flat spray of conifer twigs, needles all along.
@@ -242,7 +240,7 @@ impl Brush {
         }
     }
 
-    /// Leaflets along a rib; leaflets of the species' own shape on a trunk without branches.
+    /// Leaflets along a rib; leaflets of the leaf's own shape on a trunk without branches.
     fn frond(&mut self, params: &TreeTextureParams) {
         let feather = params.leaf_shape >= 6;
         if feather {
@@ -303,8 +301,7 @@ impl Brush {
 
 /// Place and angle at `t` in 0..1 of a twig.
 fn point(twig: &[(Vec2, f32)], t: f32) -> (Vec2, f32) {
-    let g = t.clamp(0.0, 1.0) * (twig.len() - 1) as f32;
-    let i = (g as usize).min(twig.len() - 2);
-    let (a, b, f) = (twig[i], twig[i + 1], g - i as f32);
-    (a.0.lerp(b.0, f), a.1 + (b.1 - a.1) * f)
+    let (i, f) = cell(t.clamp(0.0, 1.0) * (twig.len() - 1) as f32, twig.len());
+    let (a, b) = (twig[i], twig[i + 1]);
+    (a.0.lerp(b.0, f), lerp(a.1, b.1, f))
 }

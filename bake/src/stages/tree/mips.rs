@@ -6,6 +6,7 @@
 
 use super::ALPHA_CUTOFF;
 use super::canvas::Canvas;
+use crate::math::linear_from_srgb;
 use crate::model::Image8;
 
 /// One level while it is made: linear RGB multiplied by alpha, and alpha.
@@ -69,8 +70,8 @@ fn alpha_scale(level: &Level, target: f32) -> f32 {
         return 1.0;
     }
     let mut alphas: Vec<f32> = level.pixels.iter().map(|p| p[3]).collect();
-    let (_, &mut least, _) = alphas.select_nth_unstable_by(wanted - 1, |a, b| b.total_cmp(a));
-    if least < 1e-3 { 1.0 } else { (ALPHA_CUTOFF + 0.4 / 255.0) / least }
+    let (_, &mut lowest, _) = alphas.select_nth_unstable_by(wanted - 1, |a, b| b.total_cmp(a));
+    if lowest < 1e-3 { 1.0 } else { (ALPHA_CUTOFF + 0.4 / 255.0) / lowest }
 }
 
 /// Colour of every texel: its own where it has alpha, else that of the coarser level.
@@ -98,7 +99,7 @@ impl Encoder {
     pub fn new() -> Self {
         let mut table = Vec::with_capacity(Self::STEPS + 1);
         for byte in 0..256_u32 {
-            let upper = decode((byte as f32 + 0.5) / 255.0);
+            let upper = linear_from_srgb((byte as f32 + 0.5) / 255.0);
             while table.len() <= Self::STEPS && (table.len() as f32 / Self::STEPS as f32) < upper {
                 table.push(byte as u8);
             }
@@ -107,7 +108,6 @@ impl Encoder {
         Self(table)
     }
 
-    /// One channel.
     #[inline]
     pub fn byte(&self, linear: f32) -> u8 {
         self.0[(linear.clamp(0.0, 1.0) * Self::STEPS as f32 + 0.5) as usize]
@@ -116,16 +116,9 @@ impl Encoder {
     fn image(&self, level: &Level, colors: &[[f32; 3]], scale: f32) -> Image8 {
         let mut image = Image8::new(level.size as u32, level.size as u32, 4);
         for ((out, color), pixel) in image.data.chunks_exact_mut(4).zip(colors).zip(&level.pixels) {
-            out[0] = self.byte(color[0]);
-            out[1] = self.byte(color[1]);
-            out[2] = self.byte(color[2]);
-            out[3] = alpha_byte(pixel[3], scale);
+            let [r, g, b] = color.map(|linear| self.byte(linear));
+            out.copy_from_slice(&[r, g, b, alpha_byte(pixel[3], scale)]);
         }
         image
     }
-}
-
-/// sRGB to linear.
-pub(super) fn decode(srgb: f32) -> f32 {
-    if srgb <= 0.040_45 { srgb / 12.92 } else { libm::powf((srgb + 0.055) / 1.055, 2.4) }
 }

@@ -7,28 +7,27 @@
 
 mod bark;
 mod bark_texture;
+mod budget;
 mod canvas;
+mod cards;
 mod crease;
-mod dice;
 mod foliage;
 mod leaf_outline;
 mod leaf_texture;
 mod mips;
 mod params;
-mod plan;
 mod shade;
 mod skeleton;
-
-#[cfg(test)]
-mod look;
-#[cfg(test)]
-mod presets;
+mod stage;
 #[cfg(test)]
 mod tests;
 
 use rayon::join;
 
-use crate::model::{Material, Mesh, Part, PartKind, TreeTemplate, TreeTextures};
+use crate::model::{Image8, Material, Mesh, Part, PartKind, TreeTemplate, TreeTextures};
+use crate::seed::Dice;
+use budget::Budget;
+pub use stage::{TreeFiles, TreeStage, TreeTexturesStage};
 
 pub use crease::crease_normals;
 pub use params::{TreeParams, TreeTextureParams};
@@ -36,21 +35,21 @@ pub use params::{TreeParams, TreeTextureParams};
 /// Alpha below this is cut away from leaf and blossom cards.
 pub const ALPHA_CUTOFF: f32 = 0.5;
 
-/// Grows the `index`th individual of a species: a closed `Bark` surface, then `Leaf` and `Blossom` aggregates if it
+/// Grows the `index`th template: a closed `Bark` surface, then `Leaf` and `Blossom` aggregates if it
 /// bears any. Metres; at most about 26,000 triangles.
 ///
 /// The elements of an aggregate are cards with consecutive vertices and triangles: 4 and 2 for broad leaves, 6 and
 /// 4 for willow leaves and needles (bent once), 18 and 20 for fronds (a folded, arching strip). Rows of vertices run
 /// from the root, which lies on a stem, to the tip; texture coordinate v is 1 at the root.
 pub fn template(params: &TreeParams, index: u32) -> TreeTemplate {
-    let mut dice = dice::Dice::new(params.tree_seed, index);
-    let plan = plan::Plan::new(params);
-    let skeleton = skeleton::grow(params, &plan, &mut dice);
-    let cards = foliage::place(params, &plan, &skeleton, &mut dice);
+    let mut dice = Dice::new(params.tree_seed, "tree", index.into());
+    let budget = Budget::new(params);
+    let skeleton = skeleton::grow(params, &budget, &mut dice);
+    let cards = cards::place(params, &budget, &skeleton, &mut dice);
     let shade = shade::Shade::new(&skeleton, &cards);
 
     let mut mesh = Mesh::default();
-    let bark = bark::skin(params, &plan, &skeleton, &shade, &mut mesh);
+    let bark = bark::skin(params, &budget, &skeleton, &shade, &mut mesh);
     mesh.parts.push(Part { material: Material::Bark, kind: PartKind::Surface, triangles: bark });
     for (material, blossom) in [(Material::Leaf, false), (Material::Blossom, true)] {
         let triangles = foliage::build(params, &cards, blossom, &shade, &mut mesh);
@@ -58,21 +57,20 @@ pub fn template(params: &TreeParams, index: u32) -> TreeTemplate {
             mesh.parts.push(Part { material, kind: foliage::kind(params), triangles });
         }
     }
-    let bounds = mesh.bounds();
     TreeTemplate {
-        bounds,
+        bounds: mesh.bounds(),
         trunk_radius_m: skeleton.trunk_radius_m(params.height_m),
-        crown_radius_m: foliage::crown_radius_m(&skeleton, &cards),
+        crown_radius_m: cards::crown_radius_m(&skeleton, &cards),
         mesh,
     }
 }
 
-/// Paints the textures that all templates of a species share: tiling bark with its normals, and cards of leaves
+/// Paints the textures that all templates of a scene share: tiling bark with its normals, and cards of leaves
 /// and of blossom with mip chains that keep their coverage. Square; sRGB where the field's name says so.
-pub fn textures(params: &TreeTextureParams) -> TreeTextures {
-    let ((bark_color_srgb, bark_normal), (leaf_srgb, blossom_srgb)) = join(
+pub fn textures(params: &TreeTextureParams) -> TreeTextures<Image8> {
+    let ((bark_color, bark_normal), (leaf, blossom)) = join(
         || bark_texture::paint(params),
         || join(|| leaf_texture::paint_leaves(params), || leaf_texture::paint_blossom(params)),
     );
-    TreeTextures { bark_color_srgb, bark_normal, leaf_srgb, blossom_srgb, alpha_cutoff: ALPHA_CUTOFF }
+    TreeTextures { bark_color, bark_normal, leaf, blossom, alpha_cutoff: ALPHA_CUTOFF }
 }

@@ -1,96 +1,64 @@
-//! The genes that trees are made of, named and measured as in `configs/space.ron`.
+//! The genes that trees are made of: names, units, ranges and meanings as in `configs/space.ron`.
 
 use serde::{Deserialize, Serialize};
 
-/// Genes of form and foliage, for [`super::template`]. Names in brackets are those of Weber & Penn.
+/// Genes of form and foliage, for [`super::template`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TreeParams {
-    /// Which individual of its species.
     pub tree_seed: u32,
-    /// Envelope of the crown, 0–7 (Shape).
     pub crown_shape: u32,
-    /// Height in metres (Scale).
     pub height_m: f32,
-    /// How much templates differ in height (ScaleV / Scale).
+    /// How much templates differ.
     pub height_variation: f32,
-    /// Part of the trunk without branches (BaseSize).
     pub clear_trunk: f32,
-    /// Levels of branching, 1–4 (Levels).
     pub levels: u32,
-    /// Radius of the trunk over its length (Ratio).
     pub radius_ratio: f32,
-    /// How fast radius falls from parent to child (RatioPower).
     pub radius_power: f32,
-    /// How far the trunk widens into its roots (Flare).
     pub root_flare: f32,
-    /// Times that the trunk forks near its base (BaseSplits).
     pub base_splits: u32,
-    /// Forks per segment (SegSplits).
     pub segment_splits: f32,
-    /// Angle between the arms of a fork in degrees (SplitAngle).
     pub split_angle_deg: f32,
-    /// Branches on the trunk (1Branches).
     pub primary_branches: u32,
-    /// Branches on each primary branch (2Branches).
     pub secondary_branches: u32,
-    /// Length of primary branches over the trunk (1Length).
     pub primary_length: f32,
-    /// Length of secondary branches over their parents (2Length).
     pub secondary_length: f32,
-    /// Angle of a branch away from its parent in degrees (DownAngle).
     pub down_angle_deg: f32,
-    /// Its change: negative from base to tip, positive at random (DownAngleV).
     pub down_angle_variation_deg: f32,
-    /// Turn around the parent from branch to branch in degrees (Rotate).
     pub rotation_deg: f32,
-    /// Bend of a branch over its whole length in degrees, positive away from its parent (Curve).
     pub curve_deg: f32,
-    /// Random bend on top of it (CurveV).
     pub curve_variation_deg: f32,
-    /// Further bend of the outer half, with the same sign (CurveBack).
     pub curve_back_deg: f32,
-    /// Upward (+) or downward (−) pull on branches (AttractionUp).
     pub tropism: f32,
-    /// Taper of trunk and branches: 1 is a cone to a point (Taper).
     pub taper: f32,
-    /// Leaf cards on each outermost branch; 0 is a bare tree (Leaves).
     pub leaves_per_stem: u32,
-    /// Kind of leaf, 0–7 (LeafShape).
     pub leaf_shape: u32,
-    /// Length of one leaf in metres (LeafScale).
     pub leaf_size_m: f32,
-    /// Hue of the leaves in degrees: autumn leaves differ more from twig to twig.
+    /// Autumn leaves differ more from twig to twig.
     pub leaf_hue_deg: f32,
-    /// Part of the leaf cards that are blossom.
     pub blossom: f32,
-    /// 0 dark furrowed bark, 0.5 brown, 1 pale birch: moss grows on dark bark.
+    /// Moss grows on dark bark.
     pub bark_tone: f32,
 }
 
 /// Genes of leaf, blossom and bark textures, for [`super::textures`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TreeTextureParams {
-    /// Which individual of its species.
     pub tree_seed: u32,
-    /// Height in metres: how large a twig a card holds.
+    /// How large a twig a card holds.
     pub height_m: f32,
-    /// Levels of branching; with 1, every leaf shape is set out along a frond.
+    /// With 1, every leaf shape is set out along a frond.
     pub levels: u32,
-    /// Kind of leaf, 0–7.
     pub leaf_shape: u32,
-    /// Length of one leaf in metres: how many fit on a card.
+    /// How many leaves fit on a card.
     pub leaf_size_m: f32,
-    /// Width of a leaf over its length.
     pub leaf_aspect: f32,
-    /// Hue of the leaves in degrees.
     pub leaf_hue_deg: f32,
-    /// Part of the leaf cards that are blossom; 0 paints none (a picture of one texel).
+    /// 0 paints no blossom (an image of one texel).
     pub blossom: f32,
-    /// 0 dark furrowed bark, 0.5 brown, 1 pale birch.
     pub bark_tone: f32,
 }
 
-/// How the foliage of a species is set out on cards.
+/// How foliage is set out on cards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Habit {
     /// Twigs of broad leaves: flat cards.

@@ -2,21 +2,22 @@
 //!
 //! Leaf area is gathered in a coarse grid over the crown; light falls through it from above and from four sides
 //! with Beer–Lambert extinction (Monsi & Saeki 1953). Leaves let light pass, so nothing gets darker than
-//! [`DARKEST`].
+//! [`MIN_LIGHT`].
 
 use glam::Vec3;
 
-use super::foliage::Card;
+use super::cards::Card;
 use super::skeleton::Skeleton;
+use crate::math::lerp;
 
 /// Cells a side.
 const SIDE: usize = 14;
-/// The least factor on colours inside a crown.
-const DARKEST: f32 = 0.62;
+/// The smallest factor on colours inside a crown.
+const MIN_LIGHT: f32 = 0.62;
 
-/// Light in [`DARKEST`]..1 on a grid over the crown, and the crown's own shape.
+/// Light in [`MIN_LIGHT`]..1 on a grid over the crown, and the crown's own shape.
 pub(super) struct Shade {
-    least: Vec3,
+    low: Vec3,
     cell_m: Vec3,
     light: Vec<f32>,
 }
@@ -34,26 +35,26 @@ impl Shade {
             // Half of a card is gaps.
             area[(y * SIDE + z) * SIDE + x] += 0.5 * card.length_m * card.width_m;
         }
-        Self { least: lo, cell_m, light: fall(&area, cell_m) }
+        Self { low: lo, cell_m, light: fall(&area, cell_m) }
     }
 
     /// The factor on colours at a place, trilinear.
     pub fn at(&self, point: Vec3) -> f32 {
-        let g = (point - self.least) / self.cell_m - 0.5;
+        let g = (point - self.low) / self.cell_m - 0.5;
         let g = g.clamp(Vec3::ZERO, Vec3::splat(SIDE as f32 - 1.001));
         let (x, y, z) = (g.x as usize, g.y as usize, g.z as usize);
         let f = Vec3::new(g.x - x as f32, g.y - y as f32, g.z - z as f32);
         let row = |y: usize, z: usize| {
             let i = (y * SIDE + z) * SIDE + x;
-            self.light[i] + (self.light[i + 1] - self.light[i]) * f.x
+            lerp(self.light[i], self.light[i + 1], f.x)
         };
-        let layer = |y: usize| row(y, z) + (row(y, z + 1) - row(y, z)) * f.z;
-        layer(y) + (layer(y + 1) - layer(y)) * f.y
+        let layer = |y: usize| lerp(row(y, z), row(y, z + 1), f.z);
+        lerp(layer(y), layer(y + 1), f.y)
     }
 }
 
-fn cell_of(least: Vec3, cell_m: Vec3, point: Vec3) -> [usize; 3] {
-    let g = (point - least) / cell_m;
+fn cell_of(low: Vec3, cell_m: Vec3, point: Vec3) -> [usize; 3] {
+    let g = (point - low) / cell_m;
     [g.x, g.y, g.z].map(|v| (v.max(0.0) as usize).min(SIDE - 1))
 }
 
@@ -82,5 +83,5 @@ fn fall(area: &[f32], cell_m: Vec3) -> Vec<f32> {
             }
         }
     }
-    light.iter().map(|&l| DARKEST + (1.0 - DARKEST) * (l * 1.45).min(1.0)).collect()
+    light.iter().map(|&l| MIN_LIGHT + (1.0 - MIN_LIGHT) * (l * 1.45).min(1.0)).collect()
 }

@@ -9,9 +9,10 @@ use std::ops::Range;
 
 use glam::Vec3;
 
-use super::dice::Dice;
-use super::params::TreeParams;
-use super::plan::Plan;
+use super::budget::Budget;
+use super::params::{Habit, TreeParams};
+use crate::math::lerp;
+use crate::seed::Dice;
 
 /// Branches keep this far above the ground, in metres.
 const GROUND_CLEARANCE_M: f32 = 0.25;
@@ -19,9 +20,7 @@ const GROUND_CLEARANCE_M: f32 = 0.25;
 /// A point of a stem.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node {
-    /// Place in metres.
     pub at: Vec3,
-    /// Radius in metres.
     pub radius_m: f32,
 }
 
@@ -32,7 +31,6 @@ pub(super) struct Stem {
     pub level: u32,
     /// Radius in metres of the parent where it starts; 0 for the trunk.
     pub parent_radius_m: f32,
-    /// Its nodes.
     pub nodes: Range<usize>,
     /// Where its first node lies along the stem before it forked, 0 to 1; its last lies at 1.
     pub from: f32,
@@ -49,9 +47,7 @@ pub(super) struct Stem {
 /// All stems, parents before children.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Skeleton {
-    /// The nodes of all stems.
     pub nodes: Vec<Node>,
-    /// The stems.
     pub stems: Vec<Stem>,
     /// Number of clumps.
     pub clumps: u32,
@@ -66,21 +62,21 @@ impl Skeleton {
         let i = (t as usize).min(last - 1);
         let (a, b, f) = (nodes[i], nodes[i + 1], t - i as f32);
         let direction = (b.at - a.at).normalize_or(Vec3::Y);
-        (a.at.lerp(b.at, f), direction, a.radius_m + (b.radius_m - a.radius_m) * f)
+        (a.at.lerp(b.at, f), direction, lerp(a.radius_m, b.radius_m, f))
     }
 
     /// Leaves out evenly chosen stems of the last level until tubes of three sides fit the budget.
-    fn prune(&mut self, plan: &Plan) {
+    fn prune(&mut self, budget: &Budget) {
         let cost = |stem: &Stem| 6 * (stem.nodes.len() - 1);
-        let last = plan.levels - 1;
+        let last = budget.levels - 1;
         let (thin, thick): (Vec<&Stem>, Vec<&Stem>) = self.stems.iter().partition(|stem| stem.level == last);
-        let most = plan.bark_triangles as usize;
+        let max = budget.max_bark_triangles as usize;
         let thick: usize = thick.iter().map(|stem| 3 * cost(stem) / 2).sum();
         let thin: usize = thin.iter().map(|stem| cost(stem)).sum();
-        if thick + thin <= most || last == 0 {
+        if thick + thin <= max || last == 0 {
             return;
         }
-        let part = most.saturating_sub(thick) as f32 / thin as f32;
+        let part = max.saturating_sub(thick) as f32 / thin as f32;
         let mut error = 0.5;
         self.stems.retain(|stem| {
             if stem.level < last {
@@ -93,7 +89,7 @@ impl Skeleton {
         });
     }
 
-    /// Radius in metres at breast height of whatever of the trunk passes there.
+    /// Radius in metres that holds the trunk and its arms at breast height.
     pub fn trunk_radius_m(&self, height_m: f32) -> f32 {
         let breast_m = if height_m < 13.0 { 0.1 * height_m } else { 1.3 };
         let mut radius_m = 0.0_f32;
@@ -113,6 +109,7 @@ impl Skeleton {
 }
 
 /// A stem about to grow.
+#[derive(Clone, Copy, Default)]
 struct Sprout {
     level: u32,
     parent_radius_m: f32,
@@ -138,7 +135,7 @@ struct Family {
 
 struct Grower<'a> {
     params: &'a TreeParams,
-    plan: &'a Plan,
+    budget: &'a Budget,
     dice: &'a mut Dice,
     skeleton: Skeleton,
     /// The trunk's length in metres.
@@ -146,14 +143,14 @@ struct Grower<'a> {
 }
 
 /// Grows the stems of one individual.
-pub(super) fn grow(params: &TreeParams, plan: &Plan, dice: &mut Dice) -> Skeleton {
+pub(super) fn grow(params: &TreeParams, budget: &Budget, dice: &mut Dice) -> Skeleton {
     let trunk_m = params.height_m * (1.0 + params.height_variation * 0.7 * dice.signed());
-    let mut grower = Grower { params, plan, dice, skeleton: Skeleton::default(), trunk_m };
+    let mut grower = Grower { params, budget, dice, skeleton: Skeleton::default(), trunk_m };
     grower.trunk();
-    for level in 1..plan.levels {
+    for level in 1..budget.levels {
         grower.branches(level);
     }
-    grower.skeleton.prune(plan);
+    grower.skeleton.prune(budget);
     grower.skeleton
 }
 
@@ -196,7 +193,7 @@ pub(super) fn perpendicular(v: Vec3) -> Vec3 {
 
 impl Grower<'_> {
     fn is_palm(&self) -> bool {
-        self.plan.levels == 1
+        self.budget.levels == 1
     }
 
     fn trunk(&mut self) {
@@ -204,17 +201,12 @@ impl Grower<'_> {
         let (sin, cos) = libm::sincosf(azimuth);
         let radius_m = self.trunk_m * self.params.radius_ratio;
         self.stem(Sprout {
-            level: 0,
-            parent_radius_m: 0.0,
-            at: Vec3::ZERO,
             along: Vec3::Y,
             axis: Vec3::new(cos, 0.0, sin),
-            segment: 0,
             length_m: self.trunk_m,
             radius_m,
             thickness: 1.0,
-            clump: 0,
-            is_arm: false,
+            ..Sprout::default()
         });
     }
 
@@ -222,7 +214,7 @@ impl Grower<'_> {
     fn stem(&mut self, sprout: Sprout) {
         let level = sprout.level;
         let mut family =
-            Family { arms: self.plan.most_arms[level as usize] - 1, fork_error: self.dice.unit() - 0.5 };
+            Family { arms: self.budget.max_arms[level as usize] - 1, fork_error: self.dice.unit() - 0.5 };
         let mut waiting = vec![sprout];
         while let Some(sprout) = waiting.pop() {
             self.run(sprout, &mut family, &mut waiting);
@@ -232,7 +224,7 @@ impl Grower<'_> {
     /// Grows one run to its tip; arms are left in `waiting`.
     fn run(&mut self, sprout: Sprout, family: &mut Family, waiting: &mut Vec<Sprout>) {
         let level = sprout.level as usize;
-        let segments = self.plan.segments[level];
+        let segments = self.budget.segments[level];
         let step_m = sprout.length_m / segments as f32;
         let taper = if self.is_palm() { 0.45 * self.params.taper } else { self.params.taper };
         let first = self.skeleton.nodes.len();
@@ -304,7 +296,7 @@ impl Grower<'_> {
             nodes.iter_mut().for_each(|node| node.at = start + (node.at - start) * scale);
             length_m *= scale;
         }
-        let segments = self.plan.segments[sprout.level as usize];
+        let segments = self.budget.segments[sprout.level as usize];
         self.skeleton.stems.push(Stem {
             level: sprout.level,
             parent_radius_m: sprout.parent_radius_m,
@@ -342,11 +334,11 @@ impl Grower<'_> {
     fn forks(&mut self, sprout: &Sprout, segment: u32, family: &mut Family) -> u32 {
         let level = sprout.level as usize;
         let p = self.params;
-        let z = segment as f32 / self.plan.segments[level] as f32;
+        let z = segment as f32 / self.budget.segments[level] as f32;
         let wish = if level == 0 {
             // A tree without a clear trunk, a bush, forks in the ground.
             let low = u32::from(p.clear_trunk > 0.06);
-            let base = low + (p.clear_trunk * 0.35 * self.plan.segments[0] as f32) as u32;
+            let base = low + (p.clear_trunk * 0.35 * self.budget.segments[0] as f32) as u32;
             if segment == base && !sprout.is_arm && p.base_splits > 0 {
                 let forks = p.base_splits.min(family.arms);
                 family.arms -= forks;
@@ -390,7 +382,7 @@ impl Grower<'_> {
             let parent = self.skeleton.stems[index].clone();
             let length = bearing(&parent);
             let wish = if level == 1 {
-                self.plan.primaries * length / whole.max(1e-3)
+                self.budget.primaries * length / whole.max(1e-3)
             } else {
                 self.wish(level, &parent) * length / 0.83
             };
@@ -408,12 +400,12 @@ impl Grower<'_> {
 
     /// Children of a stem of level 1 or 2 (Weber & Penn, Stems).
     fn wish(&self, level: u32, parent: &Stem) -> f32 {
-        let most = self.plan.children[level as usize - 2];
-        if level == 2 {
-            let longest = self.trunk_m * self.params.primary_length;
-            return most * (0.2 + 0.8 * (parent.length_m / longest.max(0.01)).min(1.2));
+        let max = self.budget.max_children[level as usize - 2];
+        if level != 2 {
+            return max;
         }
-        most
+        let longest = self.trunk_m * self.params.primary_length;
+        max * (0.2 + 0.8 * (parent.length_m / longest.max(0.01)).min(1.2))
     }
 
     fn branch(&mut self, level: u32, parent: &Stem, z: f32, azimuth: f32) {
@@ -428,7 +420,7 @@ impl Grower<'_> {
         let mut side = turned(x, along, azimuth);
         if level > 1 {
             // Twigs spread sideways towards the light rather than straight down or up.
-            let flat = if self.plan.habit == super::params::Habit::Needle { 0.3 } else { 0.6 };
+            let flat = if self.budget.habit == Habit::Needle { 0.3 } else { 0.6 };
             side.y = side.y * flat + 0.12;
             side = (side - along * side.dot(along)).normalize_or(x);
         }
@@ -448,12 +440,11 @@ impl Grower<'_> {
             at,
             along: direction,
             axis: along.cross(side).normalize_or(x),
-            segment: 0,
             length_m,
             radius_m,
             thickness: 1.0,
             clump,
-            is_arm: false,
+            ..Sprout::default()
         });
     }
 
@@ -472,8 +463,8 @@ impl Grower<'_> {
         let radius_m = parent.radius_m * libm::powf(ratio, self.params.radius_power);
         let thin = [0.0, 0.007, 0.0055, 0.005][level as usize];
         // Without leaves, twigs are what there is to see.
-        let least_m = if self.plan.bare { 0.005 + 0.0003 * self.params.height_m } else { 0.0025 };
-        radius_m.clamp(thin * length_m, (0.045 * length_m).max(0.004)).min(0.8 * parent_radius_m).max(least_m)
+        let min_m = if self.budget.bare { 0.005 + 0.0003 * self.params.height_m } else { 0.0025 };
+        radius_m.clamp(thin * length_m, (0.045 * length_m).max(0.004)).min(0.8 * parent_radius_m).max(min_m)
     }
 
     /// Angle between a new branch and its parent; `ratio` is 1 at the crown's base, 0 at its top.

@@ -1,18 +1,57 @@
 //! Properties of every tree, whatever its genes.
 
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 use glam::{Vec2, Vec3};
 
-use super::presets::{all, oak, random, texture_params};
-use super::{ALPHA_CUTOFF, TreeParams, foliage, plan, skeleton, template, textures};
+use genescape_schema::{Category, Genome, Population, Space, TreePreset};
+
+use super::budget::Budget;
+use super::{ALPHA_CUTOFF, TreeParams, TreeTextureParams, cards, skeleton, template, textures};
 use crate::model::{Material, Mesh, Part, PartKind, TreeTemplate};
+use crate::seed::Dice;
 
 const GENOMES: u32 = 50;
 
+static SPACE: LazyLock<Space> = LazyLock::new(Space::builtin);
+
+/// A genome with every gene anywhere in its range.
+fn random(seed: u32) -> Genome {
+    Population::random(&SPACE, seed.into(), 0).individuals[0].genome.clone()
+}
+
+/// The genes that a stage reads from a genome.
+fn read<T: serde::de::DeserializeOwned>(genome: &Genome) -> T {
+    genome.read(&SPACE).expect("the space declares every gene")
+}
+
+/// Genomes with the trees of `configs/presets`, by the names of their files.
+fn presets() -> Vec<(String, Genome)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/presets");
+    let mut files: Vec<PathBuf> = folder.read_dir().unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    let genome = |file: PathBuf| {
+        let text = std::fs::read_to_string(&file).unwrap();
+        let mut genome = random(0);
+        let loaded = TreePreset::load(&SPACE, &file.to_string_lossy(), &text).unwrap();
+        *genome.chromosome_mut(Category::Tree) = loaded.preset.tree;
+        (file.file_stem().unwrap().to_string_lossy().into_owned(), genome)
+    };
+    let presets: Vec<_> = files.into_iter().map(genome).collect();
+    assert!(presets.len() >= 9);
+    presets
+}
+
+fn oak() -> Genome {
+    presets().into_iter().find(|(name, _)| name == "broadleaf").expect("the oak").1
+}
+
 fn trees() -> impl Iterator<Item = (TreeParams, TreeTemplate)> {
-    let presets = all().into_iter().map(|(_, params, _)| params);
-    (0..GENOMES).map(|seed| random(seed).0).chain(presets).map(|params| {
+    let presets = presets().into_iter().map(|(_, genome)| genome);
+    (0..GENOMES).map(random).chain(presets).map(|genome| {
+        let params: TreeParams = read(&genome);
         let tree = template(&params, 1);
         (params, tree)
     })
@@ -58,7 +97,7 @@ fn triangles_stay_within_budget() {
         assert!(count <= 26_000, "{count}: {params:?}");
         assert!(count >= if params.levels == 1 { 600 } else { 1_200 }, "{count}: {params:?}");
     }
-    let count = template(&oak(), 0).mesh.triangle_count();
+    let count = template(&read(&oak()), 0).mesh.triangle_count();
     assert!((15_000..=22_000).contains(&count), "{count}");
 }
 
@@ -102,7 +141,7 @@ fn elements_are_consecutive() {
 
 #[test]
 fn the_same_genes_give_the_same_tree_and_another_index_another() {
-    let params = random(3).0;
+    let params = read(&random(3));
     assert_eq!(template(&params, 2), template(&params, 2));
     assert_ne!(template(&params, 2).mesh, template(&params, 3).mesh);
 }
@@ -166,10 +205,10 @@ fn texture_seams_share_positions_and_repeat_whole_numbers() {
 #[test]
 fn every_card_is_rooted_on_a_stem() {
     for (params, _) in trees().take(30) {
-        let plan = plan::Plan::new(&params);
-        let mut dice = super::dice::Dice::new(params.tree_seed, 0);
-        let skeleton = skeleton::grow(&params, &plan, &mut dice);
-        let cards = foliage::place(&params, &plan, &skeleton, &mut dice);
+        let budget = Budget::new(&params);
+        let mut dice = Dice::new(params.tree_seed, "tree", 0);
+        let skeleton = skeleton::grow(&params, &budget, &mut dice);
+        let cards = cards::place(&params, &budget, &skeleton, &mut dice);
         for card in cards.iter().step_by(41) {
             let near = skeleton.stems.iter().flat_map(|stem| {
                 skeleton.nodes[stem.nodes.clone()].windows(2).map(|pair| {
@@ -186,7 +225,7 @@ fn every_card_is_rooted_on_a_stem() {
 
 #[test]
 fn crowns_are_shaded_but_never_black() {
-    let tree = template(&oak(), 0);
+    let tree = template(&read(&oak()), 0);
     let leaf =
         tree.mesh.parts.iter().find(|part| part.material == Material::Leaf).expect("an oak has leaves");
     let light: Vec<u8> = leaf.triangles.iter().map(|t| tree.mesh.colors[t[0] as usize][1]).collect();
@@ -201,9 +240,9 @@ fn coverage(image: &crate::model::Image8) -> f32 {
 
 #[test]
 fn mips_keep_their_coverage() {
-    for (name, params, leaf_aspect) in all() {
-        let made = textures(&texture_params(&params, leaf_aspect));
-        for chain in [&made.leaf_srgb, &made.blossom_srgb] {
+    for (name, genome) in presets() {
+        let made = textures(&read(&genome));
+        for chain in [&made.leaf, &made.blossom] {
             let whole = coverage(&chain[0]);
             assert_eq!(chain.last().map(|image| image.width), Some(1));
             for level in chain.iter().filter(|level| level.width >= 16) {
@@ -217,13 +256,13 @@ fn mips_keep_their_coverage() {
 #[test]
 fn leaf_cards_are_well_filled_and_bleed_colour() {
     for seed in 0..6 {
-        let (params, leaf_aspect) = random(seed);
+        let params: TreeTextureParams = read(&random(seed));
         for leaf_shape in [0, 3, 4, 5, 6, 7].into_iter().skip(seed as usize % 2).step_by(2) {
-            let params = TreeParams { leaf_shape, ..params.clone() };
-            let made = textures(&texture_params(&params, leaf_aspect));
-            let whole = coverage(&made.leaf_srgb[0]);
-            assert!((0.05..0.9).contains(&whole), "{whole}: shape {leaf_shape}, aspect {leaf_aspect}");
-            let clear = made.leaf_srgb[0].data.chunks_exact(4).filter(|p| p[3] == 0);
+            let params = TreeTextureParams { leaf_shape, ..params.clone() };
+            let made = textures(&params);
+            let whole = coverage(&made.leaf[0]);
+            assert!((0.05..0.9).contains(&whole), "{whole}: {params:?}");
+            let clear = made.leaf[0].data.chunks_exact(4).filter(|p| p[3] == 0);
             assert!(clear.into_iter().all(|p| p[0] > 20 || p[1] > 20), "dark under transparent texels");
         }
     }
@@ -232,8 +271,8 @@ fn leaf_cards_are_well_filled_and_bleed_colour() {
 #[test]
 fn bark_tiles() {
     for bark_tone in [0.0, 0.27, 0.5, 0.8, 1.0] {
-        let params = TreeParams { bark_tone, ..oak() };
-        let image = textures(&texture_params(&params, 0.8)).bark_color_srgb;
+        let params = TreeTextureParams { bark_tone, ..read(&oak()) };
+        let image = textures(&params).bark_color;
         let size = image.width;
         let step = |a: u32, b: u32, along: bool| -> u32 {
             (0..size)

@@ -7,7 +7,9 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use genescape_schema::Category;
 
 use super::*;
-use crate::event::{Ballot, Panel, Phase, Theme};
+use crate::event::{Ballot, Panel};
+use crate::input::Command;
+use crate::settings::Theme;
 use crate::ui::theme::title;
 
 const WINDOW: [f32; 2] = [1280.0, 800.0];
@@ -66,8 +68,8 @@ fn the_next_generation_is_offered_exactly_when_all_is_voted_and_nothing_is_baked
     assert!(harness.query_by_label("Next generation (hub)").is_none());
     harness.state_mut().model = all_voted();
     harness.run();
-    assert_eq!(press(&mut harness, "Next generation"), [Event::NextGeneration]);
-    assert_eq!(press(&mut harness, "Next generation (hub)"), [Event::NextGeneration]);
+    assert_eq!(press(&mut harness, "Next generation"), [Event::Command(Command::NextGeneration)]);
+    assert_eq!(press(&mut harness, "Next generation (hub)"), [Event::Command(Command::NextGeneration)]);
     harness.state_mut().model.baking = baking();
     harness.run();
     assert!(press(&mut harness, "Next generation").is_empty(), "still baking");
@@ -79,13 +81,13 @@ fn the_bar_leads_back_in_time_and_undoes() {
     let mut harness = bench(model(), WINDOW, 1.0);
     assert_eq!(press(&mut harness, "Generation 1"), [Event::GoToGeneration(1)]);
     assert!(press(&mut harness, "Generation 3").is_empty(), "it is shown already");
-    assert_eq!(press(&mut harness, "Undo: vote on trees"), [Event::Undo]);
+    assert_eq!(press(&mut harness, "Undo: vote on trees"), [Event::Command(Command::Undo)]);
     harness.state_mut().model.undo = None;
     harness.run();
     assert!(press(&mut harness, "Nothing to undo").is_empty());
     harness.state_mut().model.redo = Some("vote on sky".to_owned());
     harness.run();
-    assert_eq!(press(&mut harness, "Redo: vote on sky"), [Event::Redo]);
+    assert_eq!(press(&mut harness, "Redo: vote on sky"), [Event::Command(Command::Redo)]);
     let panels = [
         ("Genes", Panel::Genome),
         ("Frame times", Panel::Stats),
@@ -95,7 +97,7 @@ fn the_bar_leads_back_in_time_and_undoes() {
     for (label, panel) in panels {
         assert_eq!(press(&mut harness, label), [Event::Panel { panel, open: true }]);
     }
-    assert_eq!(press(&mut harness, "Save a screenshot"), [Event::Screenshot]);
+    assert_eq!(press(&mut harness, "Save a screenshot"), [Event::Command(Command::Screenshot)]);
 }
 
 #[test]
@@ -173,22 +175,19 @@ fn a_dragged_gene_is_shown_while_it_moves_and_written_when_it_is_let_go() {
     for name in ["height_m", "radius_ratio", "primary_branches"] {
         let mut harness = bench(with_genome(|_| {}), [1280.0, 1600.0], 1.0);
         let rect = slider(&harness, name).rect();
+        let field = format!("Value of {name}");
+        let before = harness.get_by_label(&field).value();
         harness.drag_at(rect.left_center() + vec2(20.0, 0.0));
         harness.run();
         harness.hover_at(rect.left_center() + vec2(150.0, 0.0));
         harness.run();
-        let moving = taken(&mut harness);
-        assert!(!moving.is_empty());
-        for event in &moving {
-            assert!(matches!(event, Event::Gene { individual: 0, phase: Phase::Dragging, .. }), "{event:?}");
-        }
+        assert!(taken(&mut harness).is_empty(), "nothing is written while it moves");
+        assert_ne!(harness.get_by_label(&field).value(), before, "but it is shown");
         harness.drop_at(rect.left_center() + vec2(150.0, 0.0));
         harness.run();
-        let [Event::Gene { individual: 0, name: written, value, phase: Phase::Committed }] =
-            &taken(&mut harness)[..]
-        else {
-            panic!("one final value");
-        };
+        let events = taken(&mut harness);
+        let [Event::Genes { individual: 0, values }] = &events[..] else { panic!("one event: {events:?}") };
+        let [(written, value)] = &values[..] else { panic!("one final value: {values:?}") };
         assert_eq!(written, name);
         let space = Space::builtin();
         let parameter = space.find(name).expect("the space has the gene");
@@ -226,7 +225,7 @@ fn an_arrow_key_changes_a_gene_by_one_code_for_good() {
     harness.run();
     let value = parameter.value(genes.now[0].code(parameter) + 1);
     let name = parameter.name.clone();
-    assert_eq!(taken(&mut harness), [Event::Gene { individual: 0, name, value, phase: Phase::Committed }]);
+    assert_eq!(taken(&mut harness), [Event::Genes { individual: 0, values: vec![(name, value)] }]);
 }
 
 #[test]
@@ -248,7 +247,7 @@ fn a_typed_value_is_snapped_and_nonsense_changes_nothing() {
     let value = parameter.value(parameter.snap(7.4));
     for text in ["7.4", " 7,4 m"] {
         let name = "height_m".to_owned();
-        assert_eq!(typed(text), [Event::Gene { individual: 0, name, value, phase: Phase::Committed }]);
+        assert_eq!(typed(text), [Event::Genes { individual: 0, values: vec![(name, value)] }]);
     }
     for text in ["tall", "-3", "1e9", ""] {
         assert!(typed(text).is_empty(), "{text:?}");
@@ -315,7 +314,7 @@ fn settings_give_the_whole_new_value() {
     let mut harness = bench(model, [1280.0, 1400.0], 1.0);
     let options = Options { wireframe: true, ..Options::default() };
     assert_eq!(press(&mut harness, "Wireframe"), [Event::Options(options)]);
-    let options = Options { tree_scheme: crate::frame::TreeScheme::Quality, ..Options::default() };
+    let options = Options { tree_lod: crate::lod_mode::TreeLodMode::Quality, ..Options::default() };
     assert_eq!(press(&mut harness, "Tree detail: Quality"), [Event::Options(options)]);
     let comfort = Comfort { theme: Theme::Dark, ..Comfort::default() };
     assert_eq!(press(&mut harness, "Theme: Dark"), [Event::Comfort(comfort)]);

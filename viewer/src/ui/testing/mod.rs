@@ -11,13 +11,13 @@ use egui::{Color32, ColorImage, TextureHandle, TextureOptions, Vec2};
 use egui_kittest::{Harness, HarnessBuilder};
 use genescape_schema::{Population, Space};
 
-use super::model::{
-    Baking, FileError, Genes, KeyGroup, Model, Panels, PassTime, Situation, StageEntry, Stats,
-};
+use super::model::{Baking, FileError, Genes, Model, Panels, PassTime, Situation, StageEntry, Stats};
 use super::model::{ViewModel, ViewState};
 use super::{Output, State, theme};
-use crate::event::{Arrangement, Ballots, Comfort, Event};
-use crate::frame::Options;
+use crate::event::{Arrangement, Ballots, Event};
+use crate::input::KeyGroup;
+use crate::options::Options;
+use crate::settings::Comfort;
 
 /// A window's content without a window.
 pub struct Bench {

@@ -1,5 +1,6 @@
-//! Pictures of the whole interface, painted by the same renderer as in the window, for people to look at: set
-//! `GENESCAPE_UI_PICTURES` to a folder and run `cargo test -p genescape-viewer --lib ui::testing::pictures`.
+//! Pictures of the whole interface, painted by the same renderer as in the window: some are compared with what they were;
+//! for people to look at all of them, set `GENESCAPE_UI_PICTURES` to a folder and run
+//! `cargo test -p genescape-viewer --lib ui::testing::pictures`.
 
 use std::cell::RefCell;
 use std::path::Path;
@@ -11,7 +12,10 @@ use egui_wgpu::{RendererOptions, ScreenDescriptor};
 
 use super::*;
 use crate::event::Ballot;
+use crate::gpu::Gpu;
+use crate::picture_file;
 use genescape_schema::Category;
+use image::RgbaImage;
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
@@ -25,20 +29,8 @@ impl TestRenderer for Deltas {
     }
 }
 
-struct Gpu {
-    device: wgpu::Device,
-    queue: wgpu::Queue,
-}
-
-fn gpu() -> Option<Gpu> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    let adapter = pollster::block_on(instance.request_adapter(&Default::default())).ok()?;
-    let (device, queue) = pollster::block_on(adapter.request_device(&Default::default())).ok()?;
-    Some(Gpu { device, queue })
-}
-
-/// The harness's last frame as RGBA, with its size.
-fn paint(gpu: &Gpu, harness: &Harness<'_, Bench>, deltas: &Deltas) -> (Vec<u8>, [u32; 2]) {
+/// The harness's last frame.
+fn paint(gpu: &Gpu, harness: &Harness<'_, Bench>, deltas: &Deltas) -> RgbaImage {
     let scale = harness.ctx.pixels_per_point();
     let size = harness.ctx.content_rect().size() * scale;
     let screen = ScreenDescriptor {
@@ -86,37 +78,7 @@ fn paint(gpu: &Gpu, harness: &Harness<'_, Bench>, deltas: &Deltas) -> (Vec<u8>, 
         renderer.render(&mut pass, &jobs, &screen);
     }
     gpu.queue.submit([encoder.finish()]);
-    (read_back(gpu, &texture), screen.size_in_pixels)
-}
-
-fn read_back(gpu: &Gpu, texture: &wgpu::Texture) -> Vec<u8> {
-    let row = (texture.width() * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size: u64::from(row) * u64::from(texture.height()),
-        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
-    let target = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
-    encoder.copy_texture_to_buffer(texture.as_image_copy(), target, texture.size());
-    gpu.queue.submit([encoder.finish()]);
-    buffer.slice(..).map_async(wgpu::MapMode::Read, |_| {});
-    gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
-    let bytes = buffer.slice(..).get_mapped_range().expect("the buffer is mapped");
-    bytes.chunks(row as usize).flat_map(|line| &line[..texture.width() as usize * 4]).copied().collect()
-}
-
-fn save(path: &Path, pixels: &[u8], [width, height]: [u32; 2]) {
-    let file = std::fs::File::create(path).expect("the folder can be written");
-    let mut encoder = png::Encoder::new(file, width, height);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.set_compression(png::Compression::Fast);
-    encoder
-        .write_header()
-        .and_then(|mut writer| writer.write_image_data(pixels))
-        .expect("the file can be written");
+    picture_file::read(gpu, &texture).expect("the device answers")
 }
 
 type Prepare = fn(&mut Model);
@@ -257,19 +219,64 @@ const SCENES: [Scene; 14] = [
     ),
 ];
 
+/// One of [`SCENES`], with landscapes of that size in its views.
+fn draw(gpu: &Gpu, (_, size, scale, theme, prepare, act): Scene, picture_size: [usize; 2]) -> RgbaImage {
+    let mut model = model();
+    prepare(&mut model);
+    let deltas = Deltas::default();
+    let builder = Harness::builder().renderer(deltas.clone());
+    let mut harness = build(model, size, scale, theme, picture_size, builder);
+    act(&mut harness);
+    harness.run_steps(40);
+    paint(gpu, &harness, &deltas)
+}
+
 #[test]
 fn pictures_for_people() {
     let Some(folder) = std::env::var_os("GENESCAPE_UI_PICTURES") else { return };
-    let gpu = gpu().expect("an adapter; on Debian, mesa-vulkan-drivers has one in software");
-    for (name, size, scale, theme, prepare, act) in SCENES {
-        let mut model = model();
-        prepare(&mut model);
-        let deltas = Deltas::default();
-        let builder = Harness::builder().renderer(deltas.clone());
-        let mut harness = build(model, size, scale, theme, [960, 600], builder);
-        act(&mut harness);
-        harness.run_steps(40);
-        let (pixels, size_px) = paint(&gpu, &harness, &deltas);
-        save(&Path::new(&folder).join(format!("{name}.png")), &pixels, size_px);
+    let gpu = Gpu::headless().expect("an adapter; on Debian, mesa-vulkan-drivers has one in software");
+    for scene in SCENES {
+        let path = Path::new(&folder).join(scene.0).with_extension("png");
+        picture_file::write_png(&path, &draw(&gpu, scene, [960, 600])).expect("the folder can be written");
     }
+}
+
+/// Those of [`SCENES`] that together show every panel but the help, both themes, and views in every state.
+const GOLDEN: [&str; 3] = ["small", "banner", "settings-light"];
+
+/// Compared with pictures that a person has looked at, as `tests/golden.rs` does: `GENESCAPE_BLESS=1` writes them anew.
+#[test]
+fn the_interface_looks_as_it_did() {
+    let gpu = match Gpu::headless() {
+        Ok(gpu) => gpu,
+        Err(error) => {
+            assert!(std::env::var_os("GENESCAPE_NEEDS_GPU").is_none(), "{error}");
+            return genescape_bake::say!("SKIPPED, for nothing can draw here: {error}");
+        }
+    };
+    for scene in SCENES.into_iter().filter(|scene| GOLDEN.contains(&scene.0)) {
+        let name = format!("tests/golden/ui-{}.png", scene.0);
+        let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join(&name);
+        let drawn = draw(&gpu, scene, [8, 5]);
+        if std::env::var_os("GENESCAPE_BLESS").is_some() {
+            picture_file::write_png(&golden, &drawn).expect("written");
+        }
+        let off = difference(
+            &image::open(&golden).expect("a picture; GENESCAPE_BLESS=1 writes it").into_rgba8(),
+            &drawn,
+        );
+        // An accent a shade redder is 0.004.
+        assert!(off < 2e-4, "{name}: FLIP {off}");
+    }
+}
+
+/// The mean of FLIP (Andersson et al. 2020).
+fn difference(a: &RgbaImage, b: &RgbaImage) -> f32 {
+    assert_eq!(a.dimensions(), b.dimensions());
+    let image = |pixels: &RgbaImage| {
+        let rgb: Vec<u8> = pixels.pixels().flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+        nv_flip::FlipImageRgb8::with_data(pixels.width(), pixels.height(), &rgb)
+    };
+    let map = nv_flip::flip(image(a), image(b), nv_flip::DEFAULT_PIXELS_PER_DEGREE);
+    nv_flip::FlipPool::from_image(&map).mean()
 }

@@ -1,0 +1,103 @@
+//! Mathematics that several stages share: plain IEEE arithmetic in a fixed order, so the same bits on every machine.
+
+/// From `a` at t = 0 to `b` at t = 1.
+#[inline]
+pub fn lerp(a: f32, b: f32, t: f32) -> f32 {
+    a + (b - a) * t
+}
+
+/// [`lerp`] of each component.
+#[inline]
+pub fn lerp_array<const N: usize>(a: [f32; N], b: [f32; N], t: f32) -> [f32; N] {
+    std::array::from_fn(|k| lerp(a[k], b[k], t))
+}
+
+/// Hermite's step: 0 up to `low`, 1 from `high`, smooth between; falling if `high` is less. The two must differ.
+#[inline]
+pub fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
+    hermite(((x - low) / (high - low)).clamp(0.0, 1.0))
+}
+
+/// Hermite's curve from 0 at t = 0 to 1 at t = 1, level at both.
+#[inline]
+pub fn hermite(t: f32) -> f32 {
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// The whole number below and the fraction above it, without the call that `floor` is on processors before SSE 4.1.
+#[inline]
+pub fn split(x: f32) -> (i32, f32) {
+    let cut = x as i32;
+    let whole = cut - i32::from(cut as f32 > x);
+    (whole, x - whole as f32)
+}
+
+/// Of `count` samples, the one before a place in [0, count − 1] and the fraction of the way to the next; the last cell
+/// includes its end.
+#[inline]
+pub fn cell(place: f32, count: usize) -> (usize, f32) {
+    let whole = (place as usize).min(count - 2);
+    (whole, place - whole as f32)
+}
+
+/// A table at a place between its samples.
+#[inline]
+pub fn interpolate(table: &[f32], place: f32) -> f32 {
+    let (k, part) = cell(place, table.len());
+    lerp(table[k], table[k + 1], part)
+}
+
+/// The sRGB transfer function (IEC 61966-2-1), both in [0, 1].
+pub fn srgb_from_linear(linear: f32) -> f32 {
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * libm::powf(linear, 1.0 / 2.4) - 0.055 }
+}
+
+/// Its inverse.
+pub fn linear_from_srgb(srgb: f32) -> f32 {
+    if srgb <= 0.040_45 { srgb / 12.92 } else { libm::powf((srgb + 0.055) / 1.055, 2.4) }
+}
+
+/// A value in [0, 1] as a byte; values beyond are clamped.
+#[inline]
+pub fn unit_to_byte(value: f32) -> u8 {
+    (255.0 * value.clamp(0.0, 1.0) + 0.5) as u8
+}
+
+/// The bits of the half float nearest to a value in [0, 65504]; ties go to even, as IEEE 754 has it.
+#[inline]
+pub fn half_bits(value: f32) -> u16 {
+    // Not `clamp`, which would let a NaN through.
+    let bits = if value > 0.0 { value.min(65504.0).to_bits() } else { 0 };
+    // Below 2⁻¹⁴ the half is subnormal: adding ½ puts its ten bits at the end of the significand.
+    let subnormal = (f32::from_bits(bits) + 0.5).to_bits().wrapping_sub(0.5f32.to_bits());
+    let normal = bits.wrapping_sub(112 << 23).wrapping_add(0xFFF + ((bits >> 13) & 1)) >> 13;
+    if bits < (113 << 23) { subnormal as u16 } else { normal as u16 }
+}
+
+/// Four vectors, then the same turned by one, two and three quarters of a turn.
+pub const fn quarter_turns(first: [[f32; 2]; 4]) -> [[f32; 2]; 16] {
+    let mut all = [[0.0; 2]; 16];
+    let mut k = 0;
+    while k < 16 {
+        all[k] = if k < 4 { first[k] } else { [-all[k - 4][1], all[k - 4][0]] };
+        k += 1;
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_bits_agree_with_the_half_crate() {
+        for i in 0..400_000u32 {
+            let value = f32::from_bits(i * 2801);
+            if value < 65504.0 {
+                assert_eq!(half_bits(value), half::f16::from_f32(value).to_bits(), "{value:e}");
+            }
+        }
+        assert_eq!(half_bits(1e9), half::f16::MAX.to_bits());
+        assert_eq!(half_bits(f32::NAN), 0);
+    }
+}

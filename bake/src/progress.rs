@@ -1,0 +1,78 @@
+//! Events → a progress bar for people, or JSON lines for programs.
+
+use std::io::IsTerminal;
+use std::sync::{Mutex, PoisonError};
+
+use indicatif::{ProgressDrawTarget, ProgressStyle};
+
+use crate::events::{Event, Listener};
+use crate::say;
+
+/// One JSON object a line, on standard output.
+pub struct JsonLines;
+
+impl Listener for JsonLines {
+    fn tell(&self, event: &Event) {
+        say!("{}", serde_json::to_string(event).expect("events are plain data"));
+    }
+}
+
+/// A progress bar on standard error.
+pub struct ProgressBar {
+    bar: indicatif::ProgressBar,
+    running: Mutex<Vec<String>>,
+}
+
+impl ProgressBar {
+    /// Stays hidden until there is something to compute, and where standard error is no terminal.
+    pub fn new() -> Self {
+        let style =
+            ProgressStyle::with_template("{bar:32.green/dim} {pos}/{len} {elapsed:.dim}  {wide_msg:.dim}")
+                .expect("a valid template")
+                .progress_chars("━━─");
+        let bar = indicatif::ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
+        Self { bar: bar.with_style(style), running: Mutex::default() }
+    }
+
+    fn update(&self, change: impl FnOnce(&mut Vec<String>)) {
+        let mut running = self.running.lock().unwrap_or_else(PoisonError::into_inner);
+        change(&mut running);
+        self.bar.set_message(running.join(", "));
+    }
+}
+
+impl Listener for ProgressBar {
+    fn tell(&self, event: &Event) {
+        match event {
+            Event::Planned { stages, .. } => self.bar.set_length(*stages as u64),
+            Event::Started { stage, scenes } => {
+                if self.bar.is_hidden() && std::io::stderr().is_terminal() {
+                    self.bar.set_draw_target(ProgressDrawTarget::stderr());
+                }
+                self.update(|running| running.push(label(stage, scenes)));
+            }
+            Event::Finished { stage, scenes, .. } => {
+                let ended = label(stage, scenes);
+                self.update(|running| running.retain(|stage| *stage != ended));
+                self.bar.inc(1);
+            }
+            Event::Notice { message } => self.bar.suspend(|| eprintln!("note: {message}")),
+            Event::Bred { parent, path } => {
+                self.bar.suspend(|| eprintln!("bred {path} from the votes on generation {parent}"));
+            }
+            Event::SceneReady { .. } | Event::Superseded | Event::Done { .. } | Event::Failed { .. } => {}
+        }
+    }
+
+    fn end(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// A stage with its scene, if only one uses it.
+fn label(stage: &str, scenes: &[usize]) -> String {
+    match scenes {
+        [one] => format!("{stage} ({one})"),
+        _ => stage.to_owned(),
+    }
+}

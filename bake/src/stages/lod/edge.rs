@@ -1,0 +1,141 @@
+//! One edge of a surface: the triangles around it, whether it may collapse, and where its new vertex keeps the volume.
+//!
+//! The link condition (Dey et al. 1999) keeps the topology, a fold-over check the orientation. Metres.
+
+use glam::DVec3;
+
+use super::state::State;
+use super::topology::{PointSet, Topology};
+
+/// Cosine of the greatest angle that a collapse may turn a triangle by.
+const MIN_COSINE: f64 = 0.15;
+
+/// The triangles that have an edge.
+#[derive(Clone, Copy, Default)]
+pub struct EdgeTriangles {
+    pub count: usize,
+    /// Vertices at the edge's two ends in the first two triangles.
+    pub vertices: [(u32, u32); 2],
+    /// Corners opposite the edge in the first two triangles.
+    pub opposite: [u32; 2],
+}
+
+impl EdgeTriangles {
+    /// Those of the edge from a point with the corners `star` to point `b`.
+    pub fn new(topology: &Topology, state: &State, b: u32, star: &[u32]) -> Self {
+        let mut found = Self::default();
+        for &corner in star {
+            let (t, k) = (corner as usize / 3, corner as usize % 3);
+            let triangle = state.triangles[t];
+            for (other, opposite) in [((k + 1) % 3, (k + 2) % 3), ((k + 2) % 3, (k + 1) % 3)] {
+                if topology.point_of[triangle[other] as usize] != b {
+                    continue;
+                }
+                if found.count < 2 {
+                    found.vertices[found.count] = (triangle[k], triangle[other]);
+                    found.opposite[found.count] = (3 * t + opposite) as u32;
+                }
+                found.count += 1;
+            }
+        }
+        found
+    }
+
+    /// Whether attributes are discontinuous across the edge.
+    pub fn is_seam(&self) -> bool {
+        self.count == 2 && self.vertices[0] != self.vertices[1]
+    }
+
+    /// How many vertices the triangles have at one end.
+    pub fn vertices_at(&self, end: impl Fn((u32, u32)) -> u32) -> u32 {
+        1 + u32::from(self.count != 1 && end(self.vertices[0]) != end(self.vertices[1]))
+    }
+}
+
+/// An edge about to collapse.
+pub struct Edge {
+    pub points: [u32; 2],
+    /// Where these lie, relative to [`Topology::origin`].
+    pub ends: [DVec3; 2],
+    /// The corners at each point.
+    pub stars: [Vec<u32>; 2],
+    pub triangles: EdgeTriangles,
+}
+
+impl Edge {
+    pub fn length(&self) -> f64 {
+        (self.ends[1] - self.ends[0]).length()
+    }
+
+    /// Corners at the second point of triangles that survive the collapse.
+    fn surviving<'a>(&'a self, topology: &'a Topology, state: &'a State) -> impl Iterator<Item = u32> + 'a {
+        self.stars[1].iter().copied().filter(|&corner| {
+            let [_, p, q] = topology.points_from(state, corner);
+            p != self.points[0] && q != self.points[0]
+        })
+    }
+
+    /// Whether the two ends share no neighbours but those opposite the edge, and something is left of the surface.
+    pub fn link_holds(&self, topology: &Topology, state: &State, neighbours: &mut PointSet) -> bool {
+        neighbours.clear();
+        for &corner in &self.stars[0] {
+            for point in topology.points_from(state, corner) {
+                neighbours.insert(point);
+            }
+        }
+        let opposite = &self.triangles.opposite[..self.triangles.count.min(2)];
+        let is_opposite = |p: u32| opposite.iter().any(|&corner| topology.point_at(state, corner) == p);
+        let mut remains = self.stars[0].len() > self.triangles.count;
+        for corner in self.surviving(topology, state) {
+            remains = true;
+            let [_, p, q] = topology.points_from(state, corner);
+            let shared = [p, q].map(|point| neighbours.contains(point));
+            if (shared[0] && !is_opposite(p)) || (shared[1] && !is_opposite(q)) || (shared[0] && shared[1]) {
+                return false;
+            }
+        }
+        // On a closed piece no triangle may join the first point to both opposite ones: the last tetrahedron.
+        remains
+            && !self.stars[0].iter().any(|&corner| {
+                let [_, p, q] = topology.points_from(state, corner);
+                let b = self.points[1];
+                p != b && q != b && self.triangles.count == 2 && is_opposite(p) && is_opposite(q)
+            })
+    }
+
+    /// A point moved along the mean normal of both stars until their volume is as before, but not far.
+    pub fn keep_volume(&self, topology: &Topology, state: &State, on_edge: DVec3) -> DVec3 {
+        let (mut normal, mut volume) = (DVec3::ZERO, 0.0);
+        for corner in self.stars[0].iter().copied().chain(self.surviving(topology, state)) {
+            let points = topology.points_from(state, corner);
+            // Relative to the edge, for the sake of precision.
+            let [p, q, r] = points.map(|p| topology.positions[p as usize] - on_edge);
+            normal += (q - p).cross(r - p);
+            volume += p.dot(q.cross(r));
+        }
+        let steep = normal.length_squared();
+        if steep == 0.0 {
+            return on_edge;
+        }
+        let offset = normal * (volume / steep);
+        let max = 0.5 * self.length();
+        let at = on_edge + offset * (max / offset.length().max(max).max(f64::MIN_POSITIVE));
+        if at.is_finite() { at } else { on_edge }
+    }
+
+    /// Whether no triangle folds over when both ends move to `at`.
+    pub fn keeps_facing(&self, topology: &Topology, state: &State, at: DVec3) -> bool {
+        let keeps = |corner: u32, partner: u32| {
+            let points = topology.points_from(state, corner);
+            if points[1] == partner || points[2] == partner {
+                return true;
+            }
+            let [p, q, r] = points.map(|p| topology.positions[p as usize]);
+            let (before, after) = ((q - p).cross(r - p), (q - at).cross(r - at));
+            before.dot(after) >= MIN_COSINE * (before.length_squared() * after.length_squared()).sqrt()
+        };
+        let [a, b] = self.points;
+        self.stars[0].iter().all(|&corner| keeps(corner, b))
+            && self.stars[1].iter().all(|&corner| keeps(corner, a))
+    }
+}

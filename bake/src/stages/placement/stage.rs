@@ -1,0 +1,39 @@
+use genescape_schema::scene::write_instances;
+use serde::{Deserialize, Serialize};
+
+use super::{PlacementParams, TreeFootprint, place};
+use crate::graph::{Context, File, Input, Stage, StageError};
+use crate::model::{Landform, Placement};
+use crate::stages::start::{clear_around, start_spot};
+
+/// Placement genes, landform, trees → where trees stand, and where a person may first stand among them.
+#[derive(Serialize)]
+pub struct PlacementStage {
+    pub params: PlacementParams,
+    pub landform: Input<Landform>,
+    pub footprints: Vec<Input<TreeFootprint>>,
+}
+
+#[derive(Serialize, Deserialize)]
+pub struct PlacementFiles {
+    pub placement: Placement,
+    /// The same as the binary data of `GSC_instances`.
+    pub instances: File,
+}
+
+impl Stage for PlacementStage {
+    const NAME: &'static str = "placement";
+    const VERSION: u32 = 2;
+    type Output = PlacementFiles;
+
+    fn run(&self, context: &Context<'_>) -> Result<PlacementFiles, StageError> {
+        let footprints = self.footprints.iter().map(|footprint| Ok(*context.get(footprint)?));
+        let footprints = footprints.collect::<Result<Vec<_>, StageError>>()?;
+        let landform = context.get(&self.landform)?;
+        let mut instances = place(&self.params, &landform, &footprints);
+        let start_m = start_spot(&landform, &instances);
+        clear_around(start_m, &mut instances);
+        let file = context.file("bin", write_instances(&instances));
+        Ok(PlacementFiles { placement: Placement { instances, start_m }, instances: file })
+    }
+}

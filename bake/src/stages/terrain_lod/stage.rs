@@ -1,0 +1,58 @@
+use rayon::join;
+use serde::{Deserialize, Serialize};
+
+use super::{default_error_m, lod, mesh};
+use crate::gltf::{png, terrain_glb};
+use crate::graph::{Context, File, Input, Stage, StageError, Stored};
+use crate::model::{Heightfield, Landform, Mesh};
+use crate::stages::ground::{self, GroundParams};
+
+/// Landform → mesh for any viewer, data for the levels of detail, 16-bit heights.
+#[derive(Serialize)]
+pub struct TerrainStage {
+    /// Genes of the colours of the land beyond the field.
+    pub params: GroundParams,
+    pub landform: Input<Landform>,
+}
+
+#[derive(Serialize, Deserialize)]
+pub struct TerrainFiles {
+    /// The adaptive mesh of the field, for [`ground::ForegroundStage`].
+    pub near: Stored<Mesh>,
+    /// The land as triangles, glTF.
+    pub mesh: File,
+    /// `TerrainLod` as bytes.
+    pub lod: File,
+    /// 16-bit grey PNG: 0 is the lowest sample, 65535 the highest.
+    pub heights: File,
+}
+
+impl Stage for TerrainStage {
+    const NAME: &'static str = "terrain";
+    const VERSION: u32 = 3;
+    type Output = TerrainFiles;
+
+    fn run(&self, context: &Context<'_>) -> Result<TerrainFiles, StageError> {
+        let landform = context.get(&self.landform)?;
+        let field = &landform.field;
+        let colors = ground::apron_colors(&self.params, &landform);
+        let triangles = || -> Result<_, StageError> {
+            let mesh = mesh(&landform, default_error_m(field), ground::BLOCK_M, &colors);
+            let glb = terrain_glb(&mesh)?;
+            Ok((context.store(mesh.near), context.file("glb", glb)))
+        };
+        let ((triangles, lod), heights) = join(
+            || join(triangles, || context.file("bin", lod(field).to_bytes())),
+            || context.file("png", heights_png(field)),
+        );
+        let (near, mesh) = triangles?;
+        Ok(TerrainFiles { near, mesh, lod, heights })
+    }
+}
+
+fn heights_png(field: &Heightfield) -> Vec<u8> {
+    let [low, high] = field.range_m();
+    let scale = if high > low { 65535.0 / (high - low) } else { 0.0 };
+    let heights: Vec<u16> = field.heights_m.iter().map(|h| ((h - low) * scale + 0.5) as u16).collect();
+    png::encode_gray16(field.side, field.side, &heights)
+}

@@ -1,0 +1,99 @@
+//! Genes → how many stems and cards a tree may have, so that its triangles stay within budget.
+//!
+//! A forked, four-level tree of 71 × 31 branches would have hundreds of thousands of triangles. Instead of cutting
+//! afterwards, the numbers of thin stems are scaled down beforehand; the cards then grow to keep the leaf area.
+
+use super::params::{Habit, TreeParams};
+
+/// Triangles that leaves and blossom may use.
+const LEAF_BUDGET: u32 = 10_600;
+/// Triangles of bark to aim for under leaves, and on a bare tree.
+const BARK_BUDGET: f32 = 7_600.0;
+const BARE_BUDGET: f32 = 16_000.0;
+/// Triangles of bark that are never exceeded.
+const MAX_BARK: u32 = 12_500;
+const MAX_BARE_BARK: u32 = 22_500;
+/// What a stem of level 2 and one of level 3 cost, in triangles.
+const SECONDARY_COST: f32 = 16.0;
+const TERTIARY_COST: f32 = 10.0;
+
+/// How many of everything a tree may have.
+#[derive(Clone, Debug)]
+pub(super) struct Budget {
+    pub habit: Habit,
+    /// Levels of stems that are really grown.
+    pub levels: u32,
+    /// Whether the tree bears no leaves.
+    pub bare: bool,
+    /// Segments of a stem by level.
+    pub segments: [u32; 4],
+    /// Arms that one stem may fork into, by level.
+    pub max_arms: [u32; 4],
+    /// Primary branches of the whole tree.
+    pub primaries: f32,
+    /// Greatest numbers of secondary branches on a primary one and of tertiary ones on a secondary one.
+    pub max_children: [f32; 2],
+    pub max_cards: u32,
+    pub max_bark_triangles: u32,
+}
+
+impl Budget {
+    /// Shares out the budget.
+    pub fn new(params: &TreeParams) -> Self {
+        let habit = Habit::of(params.leaf_shape, params.levels);
+        let palm = params.levels <= 1;
+        let bare = params.leaves_per_stem == 0 && !palm;
+        let levels = match (palm, params.secondary_branches, bare) {
+            (true, ..) => 1,
+            (false, 0, false) => 2,
+            (false, _, true) => (params.levels + 1).clamp(3, 4),
+            _ => params.levels.min(4),
+        };
+        let forks = (params.segment_splits * 1.2).min(2.0);
+        let primaries = (params.primary_branches as f32).min(90.0 / (1.0 + 0.5 * forks)).max(1.0);
+        let arms = primaries * (1.0 + 0.5 * forks);
+        let inner = ((300.0 / arms) as u32).clamp(4, 8);
+        let trunk = 1_300.0 + 220.0 * params.base_splits as f32;
+        let budget = if bare { BARE_BUDGET } else { BARK_BUDGET };
+        let left = (budget - trunk - arms * inner as f32 * 11.0).max(1_200.0);
+        Self {
+            habit,
+            levels,
+            bare,
+            segments: [if palm { 14 } else { 12 }, inner, if levels == 4 { 3 } else { 4 }, 3],
+            max_arms: [8, 3, 1, 1],
+            primaries,
+            max_children: max_children(params, levels, bare, habit, arms, left),
+            max_cards: LEAF_BUDGET / habit.triangles(),
+            max_bark_triangles: if bare { MAX_BARE_BARK } else { MAX_BARK },
+        }
+    }
+}
+
+/// Greatest numbers of children of primary and of secondary branches that `left` triangles pay for.
+fn max_children(
+    params: &TreeParams,
+    levels: u32,
+    bare: bool,
+    habit: Habit,
+    arms: f32,
+    left: f32,
+) -> [f32; 2] {
+    if levels < 3 {
+        return [0.0, 0.0];
+    }
+    let wish = (params.secondary_branches as f32).max(if bare { 8.0 } else { 1.0 });
+    // By Weber & Penn's rule a branch bears about two thirds of the greatest number.
+    let borne = 0.66 * arms;
+    if habit == Habit::Frond {
+        return [wish.min(70.0 / borne), if levels == 4 { 1.0 } else { 0.0 }];
+    }
+    if levels == 3 {
+        return [wish.min(left / (borne * SECONDARY_COST)), 0.0];
+    }
+    let share = if bare { 0.36 } else { 0.55 };
+    let secondaries = wish.min(share * left / (borne * SECONDARY_COST));
+    let rest = left - secondaries * borne * SECONDARY_COST;
+    let tertiaries = (0.7 * wish + 2.0).min(rest / (secondaries * borne * 0.75 * TERTIARY_COST));
+    [secondaries, tertiaries]
+}

@@ -1,0 +1,111 @@
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::{TreeParams, TreeTextureParams, template, textures};
+use crate::gltf::{Picture, png, tree_glb};
+use crate::graph::{Context, File, Input, Stage, StageError, Stored};
+use crate::model::{Image8, LevelledMesh, Mesh, TreeTextures};
+use crate::stages::lod;
+use crate::stages::placement::TreeFootprint;
+
+/// Mip levels of a card smaller than this are left to whoever draws it: so far away, a crown is a few pixels.
+const MIN_MIP_PX: u32 = 16;
+
+/// Tree genes → bark, leaf and blossom.
+#[derive(Serialize)]
+pub struct TreeTexturesStage {
+    pub params: TreeTextureParams,
+}
+
+impl Stage for TreeTexturesStage {
+    const NAME: &'static str = "tree textures";
+    const VERSION: u32 = 1;
+    type Output = TreeTextures<File>;
+
+    fn run(&self, context: &Context<'_>) -> Result<TreeTextures<File>, StageError> {
+        let textures = textures(&self.params);
+        let card = |levels: &[Image8]| {
+            let kept = levels.par_iter().filter(|level| level.width >= MIN_MIP_PX);
+            kept.map(|level| context.file("png", png::encode(level))).collect()
+        };
+        let ((bark_color, bark_normal), (leaf, blossom)) = rayon::join(
+            || {
+                rayon::join(
+                    || context.file("png", png::encode(&textures.bark_color)),
+                    || context.file("png", png::encode_linear(&textures.bark_normal)),
+                )
+            },
+            || rayon::join(|| card(&textures.leaf), || card(&textures.blossom)),
+        );
+        Ok(TreeTextures { bark_color, bark_normal, leaf, blossom, alpha_cutoff: textures.alpha_cutoff })
+    }
+}
+
+impl TreeTexturesStage {
+    /// What a template's own file embeds.
+    pub fn without_mip_levels(textures: &TreeTextures<File>) -> TreeTextures<File> {
+        let mut textures = textures.clone();
+        textures.leaf.truncate(1);
+        textures.blossom.truncate(1);
+        textures
+    }
+}
+
+/// Tree genes and textures → one template with all its levels, as a file.
+#[derive(Serialize)]
+pub struct TreeStage {
+    pub params: TreeParams,
+    /// Which of the templates.
+    pub index: u32,
+    /// Without mip levels: the file brings its own copies of the textures.
+    pub textures: Input<TreeTextures<File>>,
+}
+
+#[derive(Serialize, Deserialize)]
+pub struct TreeFiles {
+    /// The template with all its levels, self-contained.
+    pub glb: File,
+    pub footprint: TreeFootprint,
+    /// What casts the template's shadow.
+    pub caster: Stored<Mesh>,
+}
+
+impl Stage for TreeStage {
+    const NAME: &'static str = "tree";
+    const VERSION: u32 = 1;
+    type Output = TreeFiles;
+
+    fn run(&self, context: &Context<'_>) -> Result<TreeFiles, StageError> {
+        let template = template(&self.params, self.index);
+        let levels = lod::levels(&template.mesh, &lod::LodOptions::default());
+        let textures = context.get(&self.textures)?.try_map(|file| context.bytes(file))?;
+        let embedded = textures.map(|bytes| Picture::Embedded { bytes, mime_type: "image/png" });
+        let glb = tree_glb(&format!("tree-{}", self.index), &levels, &embedded)?;
+        let footprint = TreeFootprint {
+            height_m: template.bounds.max.y,
+            trunk_radius_m: template.trunk_radius_m,
+            crown_radius_m: template.crown_radius_m,
+            root_depth_m: -template.bounds.min.y,
+        };
+        Ok(TreeFiles { glb: context.file("glb", glb), footprint, caster: context.store(caster(levels)) })
+    }
+
+    fn label(&self) -> String {
+        format!("tree {}", self.index)
+    }
+}
+
+/// Triangles that are enough to cast a shadow onto a texel of a metre.
+const CASTER_TRIANGLES: usize = 2_000;
+
+/// The finest level that is small enough to be rasterised for every instance.
+fn caster(levels: LevelledMesh) -> Mesh {
+    let mut coarsest = Mesh::default();
+    for level in levels.levels {
+        coarsest = level.mesh;
+        if coarsest.triangle_count() <= CASTER_TRIANGLES {
+            break;
+        }
+    }
+    coarsest
+}

@@ -1,0 +1,59 @@
+//! What the ground looks like: images that cover the field once, and tiling textures for what is near.
+
+use serde::{Deserialize, Serialize};
+
+/// Images over the whole field: row 0 is its north edge (−z), column 0 its west edge (−x).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct GroundSurface<P> {
+    /// Albedo, sRGB.
+    pub color: P,
+    /// How much of `details` 1 to 4 (rock, scree, snow, mud) there is, in RGBA; the rest up to 255 is `details` 0, grass.
+    pub weights: P,
+    /// R: part of the sky's irradiance that arrives, relative to open level ground (glTF reads occlusion from R);
+    /// G: the sun's irradiance relative to a surface that faces it, max(0, n·l) × visibility;
+    /// B: visibility of the sun's disc alone, trees and land included. Linear.
+    pub light: P,
+    /// Grass, rock, scree, snow and mud.
+    pub details: Vec<GroundDetail<P>>,
+}
+
+/// A tiling texture.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct GroundDetail<P> {
+    /// "grass", "rock", "scree", "snow" or "mud".
+    pub name: String,
+    /// sRGB RGB with mean (128, 128, 128), which leaves the ground's colour as it is: it is multiplied by twice this.
+    pub detail: P,
+    /// Tangent-space normals, RGB.
+    pub normal: P,
+    /// Metres that one tile covers.
+    pub tile_m: f32,
+}
+
+impl<P> GroundSurface<P> {
+    /// The same with `f` of each image.
+    ///
+    /// # Errors
+    /// The first that `f` gives.
+    pub fn try_map<Q, E>(&self, mut f: impl FnMut(&P) -> Result<Q, E>) -> Result<GroundSurface<Q>, E> {
+        Ok(GroundSurface {
+            color: f(&self.color)?,
+            weights: f(&self.weights)?,
+            light: f(&self.light)?,
+            details: self.details.iter().map(|detail| detail.try_map(&mut f)).collect::<Result<_, _>>()?,
+        })
+    }
+}
+
+impl<P> GroundDetail<P> {
+    /// The same with `f` of each image.
+    ///
+    /// # Errors
+    /// The first that `f` gives.
+    pub fn try_map<Q, E>(&self, mut f: impl FnMut(&P) -> Result<Q, E>) -> Result<GroundDetail<Q>, E> {
+        let Self { name, detail, normal, tile_m } = self;
+        Ok(GroundDetail { name: name.clone(), detail: f(detail)?, normal: f(normal)?, tile_m: *tile_m })
+    }
+}

@@ -1,0 +1,407 @@
+//! The person's work on a world: the generation on show, votes, genes, and how the bake gets on. Takes events and
+//! changes of files, writes what the person decides, and says what has to be shown.
+
+mod bake_progress;
+mod edits;
+mod model;
+mod votes;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use genescape_schema::{Genome, INDIVIDUALS, Population, Space};
+use genescape_world::{Change, Source, World, names};
+
+use crate::baker;
+use crate::edit_history::History;
+use crate::event::Ballots;
+use crate::settings::WorldSettings;
+use crate::ui::Tone;
+use crate::ui::model::FileError;
+use bake_progress::BakeProgress;
+use edits::Step;
+
+/// What went wrong where; one of each kind at a time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Fault {
+    Space,
+    Population,
+    Folder,
+    Shaders,
+    Settings,
+    Bake,
+    Scene(usize),
+}
+
+/// Something the application has to do.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Task {
+    /// Read a scene for a view.
+    Load { view: usize, generation: u32, path: PathBuf },
+    /// Tell the person.
+    Tell(Tone, String),
+}
+
+pub struct Editor {
+    source: Source,
+    world: World,
+    space: Arc<Space>,
+    /// The generation on show.
+    generation: u32,
+    generations: Vec<u32>,
+    population: Option<Population>,
+    /// Genes as they were when the generation came on show.
+    bred: Option<[Genome; INDIVIDUALS]>,
+    ballots: Ballots,
+    history: History,
+    steps: Vec<Step>,
+    /// A newer generation comes on show by itself.
+    follows: bool,
+    /// Views that show their scene of the generation on show.
+    loaded: [bool; INDIVIDUALS],
+    faults: BTreeMap<Fault, FileError>,
+    bake: BakeProgress,
+    /// Remarks on files that were told and still hold: the same file is read again for many reasons.
+    noticed: BTreeSet<String>,
+    tasks: Vec<Task>,
+}
+
+impl Editor {
+    /// An editor of that source, with what was kept of it.
+    pub fn open(source: Source, kept: &WorldSettings) -> Self {
+        let root = match &source {
+            Source::World(root) => root.clone(),
+            Source::Scenes(_) => PathBuf::new(),
+        };
+        let mut editor = Self {
+            world: World::new(root),
+            space: Arc::new(Space::builtin()),
+            generation: 0,
+            generations: Vec::new(),
+            population: None,
+            bred: None,
+            ballots: Ballots::default(),
+            history: History::default(),
+            steps: Vec::new(),
+            follows: true,
+            loaded: [false; INDIVIDUALS],
+            faults: BTreeMap::new(),
+            bake: BakeProgress::default(),
+            noticed: BTreeSet::new(),
+            tasks: Vec::new(),
+            source,
+        };
+        editor.begin(kept);
+        editor
+    }
+
+    fn begin(&mut self, kept: &WorldSettings) {
+        if let Source::Scenes(scenes) = &self.source {
+            let load =
+                |(view, path): (usize, &PathBuf)| Task::Load { view, generation: 0, path: path.clone() };
+            self.tasks.extend(scenes.iter().take(INDIVIDUALS).enumerate().map(load));
+            return;
+        }
+        self.read_space();
+        self.read_generations();
+        let current = self.world.current().ok().flatten().map(|current| current.generation);
+        let newest = self.generations.last().copied();
+        if let Some(generation) = current.filter(|g| self.generations.contains(g)).or(newest) {
+            self.go_to(generation);
+        }
+        self.resume_votes(kept);
+    }
+
+    /// What has to be done since the last call.
+    pub fn take_tasks(&mut self) -> Vec<Task> {
+        std::mem::take(&mut self.tasks)
+    }
+
+    /// The world's folder, if this is a world.
+    pub fn world(&self) -> Option<&Path> {
+        matches!(self.source, Source::World(_)).then(|| self.world.root())
+    }
+
+    fn tell(&mut self, tone: Tone, text: impl Into<String>) {
+        self.tasks.push(Task::Tell(tone, text.into()));
+    }
+
+    /// Tells a remark on a file unless it was told already, by the bake for instance.
+    fn notice(&mut self, text: String) {
+        if self.noticed.insert(text.clone()) {
+            self.tell(Tone::Info, text);
+        }
+    }
+
+    /// All remarks on the world's file of that name. Those that no longer hold may be told again.
+    fn notices(&mut self, name: &str, notices: Vec<String>) {
+        let file = self.world.root().join(name).display().to_string();
+        self.noticed.retain(|old| !old.starts_with(&file) || notices.contains(old));
+        notices.into_iter().for_each(|text| self.notice(text));
+    }
+
+    fn fault(&mut self, kind: Fault, title: impl Into<String>, report: impl Into<String>) {
+        // The bake says the same of a person's files; with the files it is told better, whichever comes first.
+        if matches!(kind, Fault::Space | Fault::Population) {
+            self.faults.remove(&Fault::Bake);
+        }
+        self.faults.insert(kind, FileError { title: title.into(), report: report.into() });
+    }
+
+    fn read_space(&mut self) {
+        match self.world.space() {
+            Ok((space, notices)) => {
+                self.space = Arc::new(space);
+                self.faults.remove(&Fault::Space);
+                self.notices(names::SPACE, notices);
+            }
+            Err(error) => self.fault(Fault::Space, "space.ron is wrong", error.to_string()),
+        }
+    }
+
+    fn read_generations(&mut self) {
+        match self.world.generations() {
+            Ok(generations) => {
+                self.generations = generations;
+                self.faults.remove(&Fault::Folder);
+            }
+            Err(error) => self.fault(Fault::Folder, "the world cannot be read", error.to_string()),
+        }
+    }
+
+    fn read_population(&mut self) {
+        let name = names::population(self.generation);
+        match self.world.population(&self.space, self.generation) {
+            Ok(file) => {
+                self.notices(&name, file.notices);
+                let genomes = file.population.individuals.each_ref().map(|one| one.genome.clone());
+                self.bred.get_or_insert(genomes);
+                self.population = Some(file.population);
+                self.faults.remove(&Fault::Population);
+            }
+            Err(error) => self.fault(Fault::Population, format!("{name} is wrong"), error.to_string()),
+        }
+    }
+
+    /// Puts a generation on show.
+    fn go_to(&mut self, generation: u32) {
+        self.generation = generation;
+        self.follows = self.generations.last() == Some(&generation);
+        (self.population, self.bred) = (None, None);
+        self.ballots = Ballots::default();
+        self.loaded = [false; INDIVIDUALS];
+        self.bake.forget_scenes();
+        self.faults.retain(|fault, _| !matches!(fault, Fault::Scene(_)));
+        self.read_population();
+        (0..INDIVIDUALS).for_each(|view| self.load(view));
+    }
+
+    fn load(&mut self, view: usize) {
+        let path = self.world.scene_path(self.generation, view);
+        if path.is_file() {
+            self.tasks.push(Task::Load { view, generation: self.generation, path });
+        }
+    }
+
+    /// A view has got a landscape, or has not; `true` if it is the one that is wanted.
+    pub fn loaded(&mut self, view: usize, generation: u32, result: Result<(), &str>) -> bool {
+        if generation != self.generation {
+            return false;
+        }
+        match result {
+            Ok(()) => {
+                self.loaded[view] = true;
+                self.faults.remove(&Fault::Scene(view));
+            }
+            Err(error) => {
+                self.fault(Fault::Scene(view), format!("landscape {} cannot be shown", view + 1), error);
+            }
+        }
+        result.is_ok()
+    }
+
+    /// A file of the world changed.
+    pub fn changed(&mut self, change: Change) {
+        match change {
+            Change::Space => {
+                self.read_space();
+                self.read_population();
+            }
+            Change::Population(generation) => {
+                let before = self.generations.last().copied();
+                self.read_generations();
+                let newest = self.generations.last().copied();
+                if self.population.is_none() && before.is_none() {
+                    self.go_to(generation);
+                } else if let (true, true, Some(newest)) = (newest > before, self.follows, newest) {
+                    // Whichever file's change made us look: the parents' may be told after the child is there.
+                    self.go_to(newest);
+                    self.tell(Tone::Success, format!("Generation {newest} is born"));
+                } else if generation == self.generation {
+                    self.read_population();
+                }
+            }
+            Change::Scene { generation, index } if generation == self.generation => self.load(index),
+            Change::Scene { .. } | Change::Current | Change::Shaders => {}
+        }
+    }
+
+    /// The bake told something.
+    pub fn baked(&mut self, event: baker::Event) {
+        use baker::Event;
+        match &event {
+            Event::Planned { .. } => drop(self.faults.remove(&Fault::Bake)),
+            // What a person's files say wrong is told with the files.
+            Event::Failed { message }
+                if !self.faults.contains_key(&Fault::Population)
+                    && !self.faults.contains_key(&Fault::Space) =>
+            {
+                self.fault(Fault::Bake, "the bake failed", message);
+            }
+            Event::Notice { message } => self.notice(message.clone()),
+            _ => {}
+        }
+        self.bake.take(event, &self.world);
+    }
+
+    /// The shaders are wrong, or right again.
+    pub fn shaders(&mut self, error: Option<String>) {
+        match error {
+            Some(error) => self.fault(Fault::Shaders, "a shader is wrong", error),
+            None => drop(self.faults.remove(&Fault::Shaders)),
+        }
+    }
+
+    /// The settings had to be set aside, or cannot be saved.
+    pub fn settings_fault(&mut self, report: String) {
+        self.fault(Fault::Settings, "settings", report);
+    }
+
+    /// Goes to a generation, and asks for its scenes where they are gone or stale.
+    pub fn visit(&mut self, generation: u32) {
+        if !self.generations.contains(&generation) {
+            return self.tell(Tone::Info, format!("There is no generation {generation}"));
+        }
+        self.go_to(generation);
+        if let Err(error) = self.world.ask_for_bake(generation) {
+            self.tell(Tone::Warning, error.to_string());
+        }
+    }
+
+    /// The generation `by` places later (or earlier) that exists.
+    pub fn neighbour(&self, by: isize) -> Option<u32> {
+        let at = self.generations.iter().position(|generation| *generation == self.generation)?;
+        self.generations.get(at.checked_add_signed(by)?).copied()
+    }
+
+    /// Tries again what failed.
+    pub fn retry(&mut self) {
+        self.faults.remove(&Fault::Bake);
+        if self.world().is_some() && self.generations.contains(&self.generation) {
+            self.visit(self.generation);
+        }
+    }
+
+    /// An error was read.
+    pub fn dismiss(&mut self, index: usize) {
+        if let Some(kind) = self.faults.keys().nth(index).copied() {
+            self.faults.remove(&kind);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A world with the starter landscapes in `root`, an editor of it, and its population file.
+    fn starter(root: &Path) -> (Editor, PathBuf) {
+        let world = World::open_or_create(root).expect("a world");
+        world.begin().expect("its first generation");
+        let editor = Editor::open(Source::World(root.to_owned()), &WorldSettings::default());
+        (editor, world.population_path(0))
+    }
+
+    #[test]
+    fn a_mistake_in_the_first_file_is_told_until_it_is_mended() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let (_, path) = starter(folder.path());
+        let good = std::fs::read_to_string(&path).expect("there");
+        std::fs::write(&path, "Population(").expect("written");
+        let (mut editor, _) = starter(folder.path());
+        assert!(editor.is_hindered() && editor.errors()[0].report.contains("g0000.ron:1:"));
+        std::fs::write(&path, good).expect("written");
+        editor.changed(Change::Population(0));
+        assert!(!editor.is_hindered() && editor.errors().is_empty());
+    }
+
+    #[test]
+    fn a_mistake_is_told_once_whether_bake_or_editor_finds_it_first() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        for bake_first in [true, false] {
+            let (mut editor, path) = starter(folder.path());
+            let good = std::fs::read_to_string(&path).expect("there");
+            std::fs::write(&path, "Population(").expect("written");
+            let failed = baker::Event::Failed { message: "g0000.ron:1: wrong".into() };
+            if bake_first {
+                editor.baked(failed.clone());
+            }
+            editor.changed(Change::Population(0));
+            if !bake_first {
+                editor.baked(failed);
+            }
+            assert_eq!(editor.errors().len(), 1, "{bake_first}");
+            std::fs::write(&path, good).expect("written");
+        }
+    }
+
+    #[test]
+    fn a_new_generation_comes_on_show_whichever_change_is_told_first() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        for (place, told) in [[0, 1], [1, 0]].into_iter().enumerate() {
+            let (mut editor, path) = starter(&folder.path().join(place.to_string()));
+            assert_eq!(editor.generations(), (0, [0].as_slice()));
+            let first = std::fs::read_to_string(path).expect("there");
+            let second = first.replacen("generation: 0", "generation: 1", 1);
+            std::fs::write(editor.world.population_path(1), second).expect("written");
+            told.into_iter().for_each(|generation| editor.changed(Change::Population(generation)));
+            assert_eq!(editor.generations(), (1, [0, 1].as_slice()), "{told:?}");
+        }
+    }
+
+    #[test]
+    fn genes_of_an_older_world_are_filled_in_told_once_and_can_be_edited() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let (_, path) = starter(folder.path());
+        for (file, sign) in [(folder.path().join(names::SPACE), "\"snow_line\""), (path, " snow_line: ")] {
+            let text = std::fs::read_to_string(&file).expect("there");
+            let older: Vec<&str> = text.lines().filter(|line| !line.contains(sign)).collect();
+            std::fs::write(&file, older.join("\n")).expect("written");
+        }
+        let (mut editor, path) = starter(folder.path());
+        let told = |editor: &mut Editor| {
+            editor
+                .take_tasks()
+                .iter()
+                .filter(|task| matches!(task, Task::Tell(_, text) if text.contains("snow_line")))
+                .count()
+        };
+        assert_eq!(told(&mut editor), 1 + INDIVIDUALS);
+        let bake = World::read_population(&editor.space, &path).expect("valid").notices;
+        bake.into_iter().for_each(|message| editor.baked(baker::Event::Notice { message }));
+        editor.changed(Change::Space);
+        assert_eq!(told(&mut editor), 0);
+        editor.set_genes(1, vec![("snow_line".into(), 0.2)]);
+        assert!(std::fs::read_to_string(&path).expect("there").contains("snow_line: 0.2,"));
+        let value = |editor: &Editor| {
+            editor
+                .population
+                .as_ref()
+                .and_then(|all| all.individuals[1].genome.value(&editor.space, "snow_line"))
+        };
+        assert_eq!(value(&editor), Some(0.2));
+        editor.undo();
+        assert_eq!(value(&editor), Some(1.0));
+    }
+}

@@ -1,0 +1,104 @@
+//! Landscapes → pictures without a window.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use anyhow::{Context, Result, anyhow};
+use genescape_world::{Source, World};
+use image::RgbaImage;
+
+use crate::camera::Camera;
+use crate::gpu::Gpu;
+use crate::options::FrameInput;
+use crate::passes::Passes;
+use crate::picture_file;
+use crate::scene::Scene;
+use crate::scene_loader::{Loaded, SceneLoader};
+use crate::shaders::Shaders;
+use crate::upload::SceneBuffers;
+use crate::view::{Drawn, View};
+
+/// A device with everything that draws.
+pub struct Headless {
+    pub gpu: Gpu,
+    pub passes: Arc<Passes>,
+    loader: SceneLoader,
+    profiler: wgpu_profiler::GpuProfiler,
+}
+
+impl Headless {
+    /// Opens the best device. `samples`: 1 or 4 a pixel.
+    pub fn open(shaders: &Shaders, samples: u32) -> Result<Self> {
+        let gpu = Gpu::headless()?;
+        let passes = Arc::new(Passes::new(&gpu, shaders, samples)?);
+        let settings =
+            wgpu_profiler::GpuProfilerSettings { enable_timer_queries: false, ..Default::default() };
+        let profiler = wgpu_profiler::GpuProfiler::new(&gpu.device, settings)?;
+        Ok(Self { loader: SceneLoader::new(&gpu), gpu, passes, profiler })
+    }
+
+    /// Reads a landscape.
+    pub fn read(&self, path: &Path) -> Result<Scene> {
+        self.loader.read(path)
+    }
+
+    /// Brings a landscape to the device, shadows included.
+    pub fn upload(&self, scene: &Scene) -> Result<Arc<SceneBuffers>> {
+        self.loader.upload(scene, &self.passes).with_context(|| format!("cannot show {}", scene.name))
+    }
+
+    /// Both.
+    pub fn load(&self, path: &Path) -> Result<Loaded> {
+        self.loader.load(path, &self.passes)
+    }
+
+    /// A view of a landscape.
+    pub fn view(&self, scene: Arc<SceneBuffers>, size_px: [u32; 2]) -> View {
+        let mut view = View::new(&self.gpu, &self.passes, "headless", size_px);
+        view.show(&self.passes, scene);
+        view
+    }
+
+    /// Records one picture of each view with one encoder, as the window does: as `camera` sees it, with the levels of
+    /// detail that `lod_camera` calls for. What the last of them took.
+    pub fn record(
+        &self,
+        views: &mut [View],
+        frame: &FrameInput,
+        camera: &Camera,
+        lod_camera: &Camera,
+    ) -> (wgpu::CommandBuffer, Drawn) {
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        let mut last = Drawn::default();
+        for view in views {
+            last = view.record(&mut encoder, &self.passes, frame, camera, lod_camera, &self.profiler);
+        }
+        (encoder.finish(), last)
+    }
+
+    /// Draws one picture and fetches it.
+    pub fn shoot(
+        &self,
+        view: &mut View,
+        frame: &FrameInput,
+        camera: &Camera,
+        lod_camera: &Camera,
+    ) -> Result<RgbaImage> {
+        let (commands, _) = self.record(std::slice::from_mut(view), frame, camera, lod_camera);
+        self.gpu.queue.submit([commands]);
+        picture_file::read(&self.gpu, &view.targets().display)
+    }
+}
+
+/// The scene files of a source: of a world, those that were baked last.
+pub fn scene_files(source: &Source) -> Result<Vec<PathBuf>> {
+    let root = match source {
+        Source::Scenes(paths) => return Ok(paths.clone()),
+        Source::World(root) => root,
+    };
+    let current = World::new(root).current()?;
+    let current = current.ok_or_else(|| {
+        anyhow!("{} holds nothing baked; `bake --world {}` bakes it", root.display(), root.display())
+    })?;
+    Ok(current.scenes.iter().map(|scene| root.join(scene)).collect())
+}

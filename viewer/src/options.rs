@@ -1,0 +1,112 @@
+//! What one frame is drawn from, for all views alike: time, choices of the person.
+
+use clap::ArgAction;
+use serde::{Deserialize, Serialize};
+
+use crate::lod_mode::{TerrainLodMode, TreeLodMode};
+
+/// What is drawn, and how: chosen in the settings panel, or on the command line, whose help these comments are.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, clap::Args)]
+#[serde(default)]
+#[command(next_help_heading = "Drawing (with --screenshot)")]
+pub struct Options {
+    /// Levels of detail of trees
+    #[serde(rename = "tree_scheme")]
+    #[arg(long, value_enum, default_value_t)]
+    pub tree_lod: TreeLodMode,
+    /// Levels of detail of the terrain
+    #[serde(rename = "terrain_scheme")]
+    #[arg(long, value_enum, default_value_t)]
+    pub terrain_lod: TerrainLodMode,
+    /// Error that trees may have on the screen, in pixels
+    #[arg(long = "tree-error", value_name = "PIXELS", default_value_t = Self::default().tree_error_px)]
+    pub tree_error_px: f32,
+    /// Error that the terrain may have on the screen, in pixels
+    #[arg(long = "terrain-error", value_name = "PIXELS", default_value_t = Self::default().terrain_error_px)]
+    pub terrain_error_px: f32,
+    /// Edges of triangles only
+    #[arg(long)]
+    pub wireframe: bool,
+    /// Colours that say the level of detail
+    #[arg(long = "tint")]
+    pub tint_levels: bool,
+    /// From above, with what was chosen for the eye
+    // Thesis, figures 12 and 13.
+    #[arg(long)]
+    pub overhead: bool,
+    /// Clouds move
+    #[arg(skip = true)]
+    pub drift_clouds: bool,
+    #[arg(skip = true)]
+    pub draw_trees: bool,
+    /// No blades of grass around the eye
+    #[arg(long = "no-grass", action = ArgAction::SetFalse)]
+    pub grass: bool,
+    #[arg(skip = true)]
+    pub draw_terrain: bool,
+    /// Factor on the landscape's own exposure
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    pub exposure: f32,
+    /// Samples a pixel
+    #[arg(long, default_value_t = 4, value_parser = parse_samples)]
+    pub samples: u32,
+    /// Vertical field of view in degrees
+    #[arg(long = "fov", value_name = "DEGREES", default_value_t = Self::default().fov_y_deg)]
+    pub fov_y_deg: f32,
+}
+
+/// Name, help, and the part of [`Options`] that is on or off: a line of the settings panel.
+pub type Switch = (&'static str, &'static str, fn(&mut Options) -> &mut bool);
+
+/// What makes levels of detail visible.
+pub const LOD_SWITCHES: [Switch; 3] = [
+    ("Colour by level", "Colours say the level of detail", |options| &mut options.tint_levels),
+    ("Wireframe", "Edges of triangles only", |options| &mut options.wireframe),
+    ("From above", "The land from above, with the detail chosen for your place", |options| {
+        &mut options.overhead
+    }),
+];
+
+const GRASS_HELP: &str = "Blades around you; a tenth to a quarter of the time where the processor draws";
+
+/// What is in the picture.
+pub const PICTURE_SWITCHES: [Switch; 4] = [
+    ("Trees", "", |options| &mut options.draw_trees),
+    ("Terrain", "", |options| &mut options.draw_terrain),
+    ("Grass", GRASS_HELP, |options| &mut options.grass),
+    ("Clouds drift", "", |options| &mut options.drift_clouds),
+];
+
+fn parse_samples(text: &str) -> Result<u32, String> {
+    let samples = text.parse().ok().filter(|samples| [1, 4].contains(samples));
+    samples.ok_or_else(|| "1 or 4 samples a pixel".to_owned())
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            tree_lod: TreeLodMode::default(),
+            terrain_lod: TerrainLodMode::default(),
+            tree_error_px: 1.5,
+            terrain_error_px: 2.0,
+            wireframe: false,
+            tint_levels: false,
+            overhead: false,
+            drift_clouds: true,
+            draw_trees: true,
+            grass: true,
+            draw_terrain: true,
+            exposure: 1.0,
+            samples: 1,
+            fov_y_deg: 60.0,
+        }
+    }
+}
+
+/// What one frame is drawn from; the same for all views.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrameInput {
+    pub options: Options,
+    /// Seconds for which clouds have drifted and waves have run.
+    pub time_s: f32,
+}

@@ -1,0 +1,140 @@
+//! A landscape as bound for one view: bind groups, and the buffers that are written for each frame.
+
+use std::sync::Arc;
+
+use super::{Binding, CullUniform, Layouts, bind};
+use crate::gpu::Gpu;
+use crate::upload::{SceneBuffers, TreeSet};
+
+/// What the passes draw for one view.
+#[derive(Debug)]
+pub struct BoundScene {
+    pub scene: Arc<SceneBuffers>,
+    pub view_group: wgpu::BindGroup,
+    pub ground_group: wgpu::BindGroup,
+    trees: Option<BoundTrees>,
+    /// Blocks, or sample numbers of a strip, as the LOD mode has it.
+    pub terrain: Elements,
+    /// Clumps of grass.
+    pub clumps: Elements,
+}
+
+/// A buffer of vertices, instances or indices that is written anew for each frame and grows as needed.
+#[derive(Debug)]
+pub struct Elements {
+    pub buffer: wgpu::Buffer,
+    pub count: u32,
+}
+
+/// The trees of a landscape, with room for what culling finds.
+#[derive(Debug)]
+pub struct BoundTrees {
+    uniform: wgpu::Buffer,
+    pub(super) cull_group: wgpu::BindGroup,
+    pub(super) trees_group: wgpu::BindGroup,
+    pub(super) material_groups: Vec<wgpu::BindGroup>,
+    /// Trees for each level and template: u32 at level · templates + template.
+    pub counts: wgpu::Buffer,
+    /// Number of each visible tree, and its λ.
+    pub visible: wgpu::Buffer,
+    /// A [`crate::upload::DrawCommand`] for each material, level and template.
+    pub commands: wgpu::Buffer,
+    /// Levels × templates.
+    pub buckets: u32,
+    pub(super) instances: u32,
+    pub(super) command_count: u32,
+}
+
+impl BoundScene {
+    /// `uniform` holds the view's [`super::ViewUniform`].
+    pub fn new(gpu: &Gpu, layouts: &Layouts, scene: Arc<SceneBuffers>, uniform: &wgpu::Buffer) -> Self {
+        use Binding::{Buffer, Sampler};
+        let (sky, land) = (&scene.sky_textures, &scene.land);
+        let view = [
+            Buffer(uniform),
+            Sampler(&layouts.repeating),
+            Sampler(&layouts.clamped),
+            Binding::cube(&sky.cube),
+            Binding::cube(&sky.clear_cube),
+            Binding::texture(&sky.cumulus),
+            Binding::texture(&sky.cirrus),
+            Binding::texture(&scene.shadow_map),
+            Sampler(&layouts.comparing),
+            Binding::texture(&land.heights),
+            Binding::texture(&land.light),
+        ];
+        let ground = [&land.color, &land.weights, &land.details, &land.detail_normals];
+        Self {
+            view_group: bind(gpu, "view", &layouts.view, (0..).zip(view)),
+            ground_group: bind(
+                gpu,
+                "ground",
+                &layouts.ground,
+                (0..).zip(ground.map(|texture| Binding::texture(texture))),
+            ),
+            trees: scene.trees.as_ref().map(|set| BoundTrees::new(gpu, layouts, set)),
+            terrain: Elements::new(gpu, "terrain"),
+            clumps: Elements::new(gpu, "clumps of grass"),
+            scene,
+        }
+    }
+
+    pub fn trees(&self) -> Option<(&TreeSet, &BoundTrees)> {
+        self.scene.trees.as_ref().zip(self.trees.as_ref())
+    }
+}
+
+impl Elements {
+    const USAGE: wgpu::BufferUsages =
+        wgpu::BufferUsages::VERTEX.union(wgpu::BufferUsages::INDEX).union(wgpu::BufferUsages::COPY_DST);
+
+    fn new(gpu: &Gpu, label: &str) -> Self {
+        Self { buffer: gpu.empty_buffer(label, 64 * 1024, Self::USAGE), count: 0 }
+    }
+
+    pub fn write<T: bytemuck::NoUninit>(&mut self, gpu: &Gpu, elements: &[T]) {
+        let bytes: &[u8] = bytemuck::cast_slice(elements);
+        if bytes.len() as u64 > self.buffer.size() {
+            self.buffer = gpu.empty_buffer("elements", (bytes.len() as u64).next_power_of_two(), Self::USAGE);
+        }
+        gpu.queue.write_buffer(&self.buffer, 0, bytes);
+        self.count = elements.len() as u32;
+    }
+}
+
+impl BoundTrees {
+    pub fn new(gpu: &Gpu, layouts: &Layouts, set: &TreeSet) -> Self {
+        use wgpu::BufferUsages as Usage;
+        let buckets = set.template_count * set.level_count;
+        let uniform = gpu.buffer("culling", &[CullUniform::default()], Usage::UNIFORM | Usage::COPY_DST);
+        let written = Usage::STORAGE | Usage::COPY_SRC;
+        let counts = gpu.empty_buffer("counts", 4 * u64::from(buckets), written);
+        let room = 8 * u64::from(set.list_capacity);
+        let visible = gpu.empty_buffer("visible trees", room, written | Usage::VERTEX);
+        let commands = gpu.buffer("commands", &set.commands, written | Usage::INDIRECT);
+        let culled = [&uniform, &set.trees, &set.templates, &counts, &visible, &commands];
+        let culled = (0..).zip(culled.map(Binding::Buffer));
+        let material = |material: &crate::upload::TreeMaterial| {
+            let [color, normal] = [&material.color, &material.normal].map(|t| Binding::texture(t));
+            let bound = [Binding::Buffer(&material.uniform), color, normal];
+            bind(gpu, &material.name, &layouts.material, (0..).zip(bound))
+        };
+        Self {
+            cull_group: bind(gpu, "culling", &layouts.cull, culled),
+            trees_group: bind(gpu, "trees", &layouts.trees, [(0, Binding::Buffer(&set.trees))]),
+            material_groups: set.materials.iter().map(material).collect(),
+            uniform,
+            counts,
+            visible,
+            commands,
+            buckets,
+            instances: set.count,
+            command_count: set.commands.len() as u32,
+        }
+    }
+
+    /// Says what to cull by.
+    pub fn set(&self, queue: &wgpu::Queue, uniform: &CullUniform) {
+        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(uniform));
+    }
+}

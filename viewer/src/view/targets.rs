@@ -1,0 +1,84 @@
+//! What one picture is drawn into.
+
+use crate::gpu::Gpu;
+use crate::passes::{Binding, DEPTH, DISPLAY, Passes, RADIANCE, bind};
+
+/// A picture's render targets.
+#[derive(Debug)]
+pub struct Targets {
+    /// Width and height.
+    pub size_px: [u32; 2],
+    /// One sample a pixel.
+    radiance: wgpu::TextureView,
+    /// Several samples a pixel, if the passes draw them.
+    multisampled: Option<wgpu::TextureView>,
+    depth: wgpu::TextureView,
+    /// The finished picture.
+    pub display: wgpu::Texture,
+    display_view: wgpu::TextureView,
+    /// What tone mapping reads.
+    pub(super) radiance_group: wgpu::BindGroup,
+}
+
+const CLEARED: wgpu::Operations<wgpu::Color> =
+    wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store };
+
+impl Targets {
+    pub(super) fn new(gpu: &Gpu, passes: &Passes, label: &str, size_px: [u32; 2]) -> Self {
+        use wgpu::TextureUsages as Usage;
+        let texture = |format: wgpu::TextureFormat, samples: u32, usage: Usage| {
+            gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d { width: size_px[0], height: size_px[1], depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: samples,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: usage | Usage::RENDER_ATTACHMENT,
+                view_formats: &[],
+            })
+        };
+        let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
+        let radiance = view(&texture(RADIANCE, 1, Usage::TEXTURE_BINDING));
+        let display = texture(DISPLAY, 1, Usage::TEXTURE_BINDING | Usage::COPY_SRC);
+        let samples = passes.samples;
+        let bound = [(0, Binding::View(radiance.clone()))];
+        Self {
+            size_px,
+            multisampled: (samples > 1).then(|| view(&texture(RADIANCE, samples, Usage::empty()))),
+            depth: view(&texture(DEPTH, samples, Usage::empty())),
+            display_view: view(&display),
+            display,
+            radiance_group: bind(gpu, "radiance", &passes.layouts.radiance, bound),
+            radiance,
+        }
+    }
+
+    /// Where radiance is drawn to.
+    pub(super) fn radiance(&self) -> [Option<wgpu::RenderPassColorAttachment<'_>>; 1] {
+        let resolved = self.multisampled.as_ref().map(|_| &self.radiance);
+        color(self.multisampled.as_ref().unwrap_or(&self.radiance), resolved)
+    }
+
+    pub(super) fn depth(&self) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+        // Reversed depth: infinitely far is 0.
+        let load = wgpu::LoadOp::Clear(0.0);
+        wgpu::RenderPassDepthStencilAttachment {
+            view: &self.depth,
+            depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Discard }),
+            stencil_ops: None,
+        }
+    }
+
+    /// Where the finished picture is drawn to.
+    pub(super) fn display(&self) -> [Option<wgpu::RenderPassColorAttachment<'_>>; 1] {
+        color(&self.display_view, None)
+    }
+}
+
+fn color<'a>(
+    view: &'a wgpu::TextureView,
+    resolve_target: Option<&'a wgpu::TextureView>,
+) -> [Option<wgpu::RenderPassColorAttachment<'a>>; 1] {
+    [Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target, ops: CLEARED })]
+}
