@@ -165,12 +165,11 @@ impl Viewer {
         self.press(display, place, 1);
     }
 
-    /// Points at a place and presses a button of the mouse.
+    /// Points at a place and presses a button of the mouse: at once, for what takes egui longer than 0.8 s is no click.
     pub fn press(&mut self, display: &Display, place: [i16; 2], button: u8) {
         display.point(place);
         self.frames(2);
         display.button(button, true);
-        self.frames(1);
         display.button(button, false);
     }
 

@@ -123,7 +123,8 @@ fn somebody_walks_and_looks_around(stage: &Stage, viewer: &mut Viewer) {
     display.point(IN_PICTURE);
     viewer.frames(2);
     display.button(1, true);
-    viewer.frames(1);
+    // One frame may be under way; a press and a move that the next one sees together are no drag.
+    viewer.frames(2);
     display.nudge([60, 0]);
     viewer.until("a drag turns", |viewer| turned(viewer, start[2]));
     display.button(1, false);
@@ -215,6 +216,8 @@ fn a_gene_changes_in_the_panel(stage: &Stage, viewer: &mut Viewer) {
     let field = viewer.place_of("Value of height_m");
     let from = viewer.lines.len();
     viewer.press(display, field, 1);
+    // From the next frame on, it takes what is typed.
+    viewer.frames(2);
     display.tap_with_ctrl(keys::A);
     "17".chars().for_each(|digit| display.tap(keys::digit(digit)));
     viewer.frames(2);
