@@ -12,7 +12,7 @@ use std::time::Instant;
 use genescape_cache::{BlobRef, Cache, How};
 
 use crate::events::{Event, Listener};
-use crate::graph::{Context, Done, File, NodeId, StageError};
+use crate::graph::{Context, Done, File, Finished, NodeId, StageError};
 use crate::plan::Plan;
 
 /// What a run needs besides the plan.
@@ -109,7 +109,7 @@ impl Runner<'_> {
         &self,
         plan: &Plan,
         id: NodeId,
-        inputs: Vec<(NodeId, Arc<Done>)>,
+        inputs: Finished,
     ) -> Result<Arc<Done>, RunError> {
         let node = &plan.nodes[id];
         let start = Instant::now();
@@ -189,7 +189,7 @@ impl Board {
     }
 
     /// The next node to do with what its inputs gave; waits for one; `None` when there is nothing left to do.
-    fn take(&self, plan: &Plan) -> Option<(NodeId, Vec<(NodeId, Arc<Done>)>)> {
+    fn take(&self, plan: &Plan) -> Option<(NodeId, Finished)> {
         let mut state = self.lock();
         loop {
             if state.error.is_some() || state.abandoned {

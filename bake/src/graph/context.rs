@@ -9,7 +9,7 @@ use genescape_cache::{ActionKey, ActionRecord, BlobRef, Bytes, Cache, Digest, Ho
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use super::{Input, Node, NodeId, Source, StageError, Value, encode};
+use super::{Finished, Input, Node, NodeId, Source, StageError, Value, encode};
 
 /// A file for other programs, by its name in the cache.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -105,12 +105,12 @@ impl Done {
 pub struct Context<'a> {
     cache: &'a Cache,
     nodes: &'a [Node],
-    inputs: Vec<(NodeId, Arc<Done>)>,
+    inputs: Finished,
     made: Mutex<Vec<(BlobRef, Bytes, Content)>>,
 }
 
 impl<'a> Context<'a> {
-    pub(crate) fn new(cache: &'a Cache, nodes: &'a [Node], inputs: Vec<(NodeId, Arc<Done>)>) -> Self {
+    pub(crate) fn new(cache: &'a Cache, nodes: &'a [Node], inputs: Finished) -> Self {
         Self { cache, nodes, inputs, made: Mutex::default() }
     }
 

@@ -120,6 +120,9 @@ pub struct Source {
     part: Option<usize>,
 }
 
+/// What a node reads: the nodes before it, each with what it gave.
+pub(crate) type Finished = Vec<(NodeId, Arc<Done>)>;
+
 /// A stage's output or a part of it.
 type Value = Arc<dyn Any + Send + Sync>;
 
@@ -159,12 +162,14 @@ pub struct Node {
     parts: Vec<Part>,
 }
 
+/// From an output to a part of it and the digest of the part's bytes.
+type TakePart = dyn Fn(&Value) -> (Value, Digest) + Send + Sync;
+
 /// A part of a node's output that some stage reads instead of all of it.
 struct Part {
     /// Type of the function that takes it out: equal functions, equal parts.
     identity: TypeId,
-    /// The part and the digest of its bytes.
-    take: Box<dyn Fn(&Value) -> (Value, Digest) + Send + Sync>,
+    take: Box<TakePart>,
 }
 
 impl Node {
