@@ -105,12 +105,7 @@ impl Runner<'_> {
         }
     }
 
-    fn perform(
-        &self,
-        plan: &Plan,
-        id: NodeId,
-        inputs: Finished,
-    ) -> Result<Arc<Done>, RunError> {
+    fn perform(&self, plan: &Plan, id: NodeId, inputs: Finished) -> Result<Arc<Done>, RunError> {
         let node = &plan.nodes[id];
         let start = Instant::now();
         let (stage, scenes) = (|| node.label.clone(), || node.scenes.clone());
