@@ -17,7 +17,6 @@ pub struct Store {
     hdr_pictures: Shelf<HdrPicture>,
     fields: Shelf<TerrainLod>,
     templates: Shelf<Template>,
-    reads: Mutex<Vec<String>>,
 }
 
 /// Weak references by name.
@@ -90,13 +89,7 @@ impl Store {
             return Err(LoadError::Damaged { path: path.to_owned() });
         }
         let bytes: Arc<[u8]> = bytes.into();
-        self.reads.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push(name.clone());
         keep(&self.bytes, &name, &bytes);
         Ok(bytes)
-    }
-
-    /// Names of the blobs that were read from disk since the last call.
-    pub fn take_reads(&self) -> Vec<String> {
-        std::mem::take(&mut self.reads.lock().unwrap_or_else(|poisoned| poisoned.into_inner()))
     }
 }
