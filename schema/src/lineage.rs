@@ -30,7 +30,7 @@ impl Lineage {
         read(file, text, |checker, root| read_lineage(checker, root)?.1)
     }
 
-    /// The record that a child bred now would carry; `None` while nobody has voted.
+    /// The record that a child bred now would carry; `None` while there are no votes.
     pub fn wanted(&self) -> Option<Parent> {
         self.votes.map(|votes| Parent { generation: self.generation, votes })
     }
@@ -54,7 +54,7 @@ pub(crate) fn read_lineage<'n, 't>(
     let fields = checker.root(root, "Population", &FIELDS)?;
     let generation = checker.need(&fields, root, "Population", "generation");
     let generation = generation.and_then(|node| checker.whole(node, "generation", u32::MAX));
-    // A file without these lines is one that was not bred, one on which nobody voted.
+    // A file without these lines is one that was not bred, one without votes.
     let parent = optional(&fields, "parent").and_then(|node| read_parent(checker, node));
     let votes = optional(&fields, "votes").and_then(|node| read_votes(checker, node));
     let lineage = generation.map(|generation| Lineage { generation, parent, votes });

@@ -118,7 +118,7 @@ impl Parameter {
         value >= self.range.0 && value <= self.range.1
     }
 
-    /// Whether `value` is written closely enough that nobody is surprised when `code` is used for it.
+    /// Whether `value` is written closely enough that it is no surprise when `code` is used for it.
     pub fn is_written_as(&self, value: f64, code: u32) -> bool {
         self.contains(value) && (self.position(value) - f64::from(code)).abs() <= TOLERANCE_STEPS
     }

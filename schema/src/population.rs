@@ -63,7 +63,7 @@ pub struct Population {
     /// `None` until they are cast.
     pub votes: Option<Votes>,
     /// Names of genes and of whole categories that breeding leaves as they are: every child has those of the
-    /// favourite or, where nobody was voted for, of the individual in its place.
+    /// favourite or, where there is no favourite, of the individual in its place.
     pub locked: BTreeSet<String>,
 }
 

@@ -70,7 +70,7 @@ pub enum Ballot {
     #[default]
     Open,
     /// None of the four pleases.
-    Nobody,
+    NoFavourite,
     /// This one is the best; less than [`INDIVIDUALS`].
     For(usize),
 }
@@ -84,7 +84,7 @@ impl Ballots {
     pub fn from_votes(votes: Votes) -> Self {
         let ballot = |category| match votes.get(category) {
             Some(best) if best < INDIVIDUALS => Ballot::For(best),
-            _ => Ballot::Nobody,
+            _ => Ballot::NoFavourite,
         };
         Self(Category::ALL.map(ballot))
     }
@@ -105,7 +105,7 @@ impl Ballots {
         for category in Category::ALL {
             match self.get(category) {
                 Ballot::Open => return None,
-                Ballot::Nobody => {}
+                Ballot::NoFavourite => {}
                 Ballot::For(best) => votes.set(category, Some(best)),
             }
         }
@@ -149,7 +149,7 @@ mod tests {
 
     #[test]
     fn votes_are_complete_only_when_no_category_is_open_and_survive_the_file() {
-        let choices = [Ballot::Open, Ballot::Nobody, Ballot::For(0), Ballot::For(3)];
+        let choices = [Ballot::Open, Ballot::NoFavourite, Ballot::For(0), Ballot::For(3)];
         for (tree, terrain, sky) in
             (0..64).map(|code: usize| (choices[code % 4], choices[code / 4 % 4], choices[code / 16]))
         {

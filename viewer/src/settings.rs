@@ -207,7 +207,7 @@ impl SettingsFile {
         Opened { file: Self { path, saved: None }, settings: Settings::default(), problems }
     }
 
-    /// Whether nobody has kept any settings here yet, or none that can be read.
+    /// Whether there is no settings file yet, or none that can be read.
     pub fn is_new(&self) -> bool {
         self.saved.is_none()
     }

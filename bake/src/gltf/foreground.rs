@@ -1,5 +1,5 @@
 //! The ground around the start → a .glb that opens alone, and its place in a scene: further primitives of the terrain
-//! mesh, so that whoever draws the terrain from `GSC_heightfield` replaces all of it.
+//! mesh, so that a program that draws the terrain from `GSC_heightfield` replaces all of it.
 
 use serde_json::{Value, json};
 

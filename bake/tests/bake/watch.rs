@@ -105,7 +105,7 @@ fn watch_answers_votes_once_and_on_old_generations_too() {
         before.push((child, text));
         before.retain(|(generation, _)| ballots.get(child as usize).is_none_or(|next| next.0 != *generation));
     }
-    // The same votes again, in other words; and somebody who comes later: no child is missing.
+    // The same votes again, in other words; and a watch that starts later: no child is missing.
     vote(&world, 0, "Some((sky: Some(2), terrain: Some(1), tree: Some(3)))");
     watching.next(&["done"]);
     drop(watching);

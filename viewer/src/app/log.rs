@@ -187,7 +187,7 @@ fn ballots(model: &Model) -> Value {
     let entry = |category: Category| {
         let ballot = match model.ballots.get(category) {
             Ballot::Open => Value::Null,
-            Ballot::Nobody => json!("nobody"),
+            Ballot::NoFavourite => json!("none"),
             Ballot::For(best) => json!(best),
         };
         (category.name().to_owned(), ballot)
@@ -243,11 +243,11 @@ mod tests {
             log.state("bake", json!({ "generation": value }));
             log.state("errors", json!({ "count": 0 }));
         }
-        log.event(&Ballot::Nobody);
+        log.event(&Ballot::NoFavourite);
         let told: Vec<_> = lines(&path).iter().map(|line| line["what"].clone()).collect();
         assert_eq!(told, ["bake", "errors", "bake", "bake", "wish"]);
         assert_eq!(lines(&path)[2]["generation"], 2);
-        assert_eq!(lines(&path)[4]["wish"], "Nobody");
+        assert_eq!(lines(&path)[4]["wish"], "NoFavourite");
     }
 
     #[test]

@@ -15,9 +15,9 @@ pub(super) struct Document<'a> {
     pub gltf: gltf::Document,
     pub store: &'a Store,
     /// The file's own binary part, if it is a single .glb.
-    embedded: Option<Arc<[u8]>>,
+    embedded: Option<Arc<Vec<u8>>>,
     /// Buffers that were asked for so far: most are never needed when a template is known already.
-    buffers: RefCell<Vec<Option<Arc<[u8]>>>>,
+    buffers: RefCell<Vec<Option<Arc<Vec<u8>>>>>,
 }
 
 impl<'a> Document<'a> {
@@ -27,7 +27,7 @@ impl<'a> Document<'a> {
         let parsed = gltf::Gltf::from_slice(&bytes)
             .map_err(|source| LoadError::NoGltf { path: path.to_owned(), source: Box::new(source) })?;
         let buffers = RefCell::new(vec![None; parsed.document.buffers().len()]);
-        let embedded = parsed.blob.map(Arc::from);
+        let embedded = parsed.blob.map(Arc::new);
         Ok(Self { path: path.to_owned(), gltf: parsed.document, store, embedded, buffers })
     }
 
@@ -69,7 +69,7 @@ impl<'a> Document<'a> {
     }
 
     /// What a resource holds.
-    pub fn bytes(&self, resource: &Resource) -> Result<Arc<[u8]>, LoadError> {
+    pub fn bytes(&self, resource: &Resource) -> Result<Arc<Vec<u8>>, LoadError> {
         match (&resource.uri, resource.buffer_view) {
             (Some(uri), _) => self.store.blob(&self.file(uri)),
             (None, Some(view)) => Ok(self.view(view)?.into()),
@@ -87,7 +87,7 @@ impl<'a> Document<'a> {
     }
 
     /// A buffer's bytes.
-    pub fn buffer(&self, index: usize) -> Result<Arc<[u8]>, LoadError> {
+    pub fn buffer(&self, index: usize) -> Result<Arc<Vec<u8>>, LoadError> {
         if let Some(Some(known)) = self.buffers.borrow().get(index) {
             return Ok(known.clone());
         }
@@ -129,7 +129,7 @@ impl<'a> Document<'a> {
             return Err(self.wrong(format!("accessor {index} has another type than expected")));
         }
         let buffers = self.buffers.borrow();
-        let get = |buffer: gltf::Buffer<'_>| buffers[buffer.index()].as_deref();
+        let get = |buffer: gltf::Buffer<'_>| buffers[buffer.index()].as_deref().map(Vec::as_slice);
         let values = gltf::accessor::Iter::<T>::new(accessor, get);
         Ok(values.ok_or_else(|| self.wrong(format!("accessor {index} reaches beyond its buffer")))?.collect())
     }

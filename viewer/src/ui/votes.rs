@@ -168,9 +168,9 @@ fn next_button(ui: &mut Ui, rect: Rect, words: bool, events: &mut Vec<Event>) {
 fn chip(ui: &mut Ui, model: &Model, category: Category, rect: Rect, events: &mut Vec<Event>) {
     let ballot = model.ballots.get(category);
     let title = theme::title(category);
-    let (name, none) = (format!("{title}: none of the four"), ballot == Ballot::Nobody);
+    let (name, none) = (format!("{title}: none of the four"), ballot == Ballot::NoFavourite);
     let (response, lit) = painted_button(ui, rect, ("ballot", category.name()), &name, none);
-    response.asks(events, Event::Vote { category, ballot: if none { Ballot::Open } else { Ballot::Nobody } });
+    response.asks(events, Event::Vote { category, ballot: if none { Ballot::Open } else { Ballot::NoFavourite } });
     let bright = theme::bright(category);
     let painter = ui.painter();
     let icon_rect = Rect::from_center_size(rect.center(), vec2(14.0, 14.0));
@@ -184,7 +184,7 @@ fn chip(ui: &mut Ui, model: &Model, category: Category, rect: Rect, events: &mut
                 painter.circle_stroke(rect.center(), 0.5 * CHIP, line);
             }
         }
-        Ballot::Nobody => {
+        Ballot::NoFavourite => {
             painter.circle_filled(rect.center(), 0.5 * CHIP, Color32::from_white_alpha(28));
             Icon::from(category).paint(painter, icon_rect, Color32::from_white_alpha(110));
             let slash = vec2(8.0, -8.0);
@@ -197,7 +197,7 @@ fn chip(ui: &mut Ui, model: &Model, category: Category, rect: Rect, events: &mut
     }
     response.on_hover_text(match ballot {
         Ballot::Open => format!("{title}: not voted yet. Click if none of the four pleases."),
-        Ballot::Nobody => format!("{title}: none of the four. Click to take that back."),
+        Ballot::NoFavourite => format!("{title}: none of the four. Click to take that back."),
         Ballot::For(best) => {
             format!("{title}: {} “{}”. Click if none of the four pleases.", best + 1, model.views[best].name)
         }

@@ -82,7 +82,7 @@ impl Uploader {
         })
     }
 
-    /// The texture of that name, made if nobody has it.
+    /// The texture of that name, made if none is in use.
     fn shared(&self, name: String, make: impl FnOnce() -> wgpu::Texture) -> Arc<wgpu::Texture> {
         let lock = || self.textures.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         if let Some(known) = lock().get(&name).and_then(Weak::upgrade) {

@@ -110,13 +110,13 @@ fn somebody_walks_and_looks_around(stage: &Stage, viewer: &mut Viewer) {
     let before = display.picture();
     let start = place(viewer);
     display.key(keys::W, true);
-    viewer.until("somebody walks", |viewer| {
+    viewer.until("the walker moves", |viewer| {
         let now = place(viewer);
         libm::hypot(now[0] - start[0], now[1] - start[1]) > 2.0
     });
     display.key(keys::W, false);
     viewer.frames(1);
-    assert_eq!(place(viewer)[2..], start[2..], "walking turns nobody");
+    assert_eq!(place(viewer)[2..], start[2..], "walking does not turn the walker");
 
     // Dragging a picture.
     let turned = |viewer: &Viewer, from: f64| (place(viewer)[2] - from).abs() > 0.02;
@@ -157,7 +157,7 @@ fn somebody_votes_and_breeds(stage: &Stage, viewer: &mut Viewer) {
     display.tap_with_ctrl(keys::Z);
     viewer.until("it is taken back", |viewer| cast(viewer) == [json!(0), json!(1), json!(null)]);
     viewer.click(display, "Sky: none of the four");
-    viewer.until("none pleases", |viewer| cast(viewer) == [json!(0), json!(1), json!("nobody")]);
+    viewer.until("none pleases", |viewer| cast(viewer) == [json!(0), json!(1), json!("none")]);
     viewer.frames(1);
     stage.look("3-votes.png");
 
@@ -185,7 +185,7 @@ fn somebody_goes_back(stage: &Stage, viewer: &mut Viewer) {
     assert_eq!(stage.files.generations().expect("a folder"), [0, 1], "nothing is thrown away");
 }
 
-/// Somebody edits the population's file while a bake is on; first makes a mistake, then mends it.
+/// An editor changes the population's file while a bake is on; first makes a mistake, then mends it.
 fn files_change_by_another_hand(stage: &Stage, viewer: &mut Viewer) {
     let path = stage.files.population_path(0);
     let good = fs::read_to_string(&path).expect("a file");
@@ -282,7 +282,7 @@ fn it_ends_and_remembers(stage: &Stage, mut viewer: Viewer) {
     viewer.until("the second start shows all", |viewer| viewer.shows(0));
     assert_eq!(*viewer.get("screen", "size_px"), json!([600, 440]));
     assert_eq!(*viewer.get("ballots", "tree"), 0);
-    assert_eq!(*viewer.get("ballots", "sky"), "nobody");
+    assert_eq!(*viewer.get("ballots", "sky"), "none");
     viewer.frames(2);
     let found = place(&viewer);
     assert!(left.iter().zip(found).all(|(left, found)| (left - found).abs() < 0.01), "{left:?} {found:?}");

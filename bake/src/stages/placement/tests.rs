@@ -1,4 +1,4 @@
-//! Nobody floats, drowns, clings to a cliff or stands in another's trunk; and the same genes give the same forest.
+//! No tree floats, drowns, clings to a cliff or stands in another; and the same genes give the same forest.
 
 use glam::{Mat3, Vec2, Vec3};
 use proptest::prelude::*;

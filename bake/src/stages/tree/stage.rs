@@ -8,7 +8,7 @@ use crate::model::{Image8, LevelledMesh, Mesh, TreeTextures};
 use crate::stages::lod;
 use crate::stages::placement::TreeFootprint;
 
-/// Mip levels of a card smaller than this are left to whoever draws it: so far away, a crown is a few pixels.
+/// Mip levels of a card smaller than this are left to the program that draws it: so far away, a crown is a few pixels.
 const MIN_MIP_PX: u32 = 16;
 
 /// Tree genes → bark, leaf and blossom.

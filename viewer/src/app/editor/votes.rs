@@ -52,7 +52,7 @@ impl Editor {
     pub fn keep(&self, kept: &mut WorldSettings) {
         let cast = |category: Category| match self.ballots.get(category) {
             Ballot::Open => None,
-            Ballot::Nobody => Some((category.name().to_owned(), None)),
+            Ballot::NoFavourite => Some((category.name().to_owned(), None)),
             Ballot::For(best) => Some((category.name().to_owned(), Some(best))),
         };
         let votes = RunningVotes {
@@ -73,7 +73,7 @@ impl Editor {
             match votes.cast.get(category.name()) {
                 None => {}
                 Some(Some(best)) if *best < INDIVIDUALS => self.ballots.set(category, Ballot::For(*best)),
-                Some(_) => self.ballots.set(category, Ballot::Nobody),
+                Some(_) => self.ballots.set(category, Ballot::NoFavourite),
             }
         }
     }

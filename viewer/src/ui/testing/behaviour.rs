@@ -54,8 +54,8 @@ fn each_vote_button_gives_its_vote_and_takes_it_back_where_it_won() {
             assert_eq!(press(&mut harness, &label), vote(Ballot::Open));
         }
         let none = format!("{}: none of the four", title(category));
-        assert_eq!(press(&mut harness, &none), [Event::Vote { category, ballot: Ballot::Nobody }]);
-        harness.state_mut().model.ballots.set(category, Ballot::Nobody);
+        assert_eq!(press(&mut harness, &none), [Event::Vote { category, ballot: Ballot::NoFavourite }]);
+        harness.state_mut().model.ballots.set(category, Ballot::NoFavourite);
         harness.run();
         assert_eq!(press(&mut harness, &none), [Event::Vote { category, ballot: Ballot::Open }]);
     }

@@ -89,7 +89,7 @@ fn nothing(_: &mut Harness<'static, Bench>) {}
 fn voted(model: &mut Model) {
     model.ballots.set(Category::Tree, Ballot::For(0));
     model.ballots.set(Category::Terrain, Ballot::For(3));
-    model.ballots.set(Category::Sky, Ballot::Nobody);
+    model.ballots.set(Category::Sky, Ballot::NoFavourite);
 }
 
 fn edited(model: &mut Model) {
