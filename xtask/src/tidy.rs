@@ -26,7 +26,8 @@ const RULES: &[Rule] = &[
             "xtask/",
             "bake/src/bench.rs",
             "bake/src/commands.rs",
-            "bake/src/lod_file.rs",
+            "bake/src/lod_command.rs",
+            "bake/src/session.rs",
             "viewer/src/app/",
             "viewer/src/load/",
             "viewer/src/bench/",
@@ -66,8 +67,9 @@ const RULES: &[Rule] = &[
     Rule {
         words: &["HashMap", "HashSet"],
         why: "has an order that changes from run to run",
-        inside: &["bake/", "cache/", "schema/", "world-folder/"],
-        except: &[],
+        inside: &["bake/src/stages/", "bake/src/gltf/", "schema/"],
+        // Asked, never iterated.
+        except: &["bake/src/stages/lod/topology.rs"],
     },
     Rule {
         words: &["LEAST_", "MOST_", "GREATEST_"],
@@ -79,7 +81,7 @@ const RULES: &[Rule] = &[
 
 /// What stages may use of their crate; the files that bind them to the graph may use anything.
 const STAGES: &str = "bake/src/stages/";
-const OF_STAGES: [&str; 4] = ["math", "model", "noise", "seed"];
+const OF_STAGES: [&str; 5] = ["math", "model", "noise", "raster", "seed"];
 const BINDINGS: [&str; 3] = ["/stage.rs", "/scene.rs", "/start.rs"];
 
 #[test]

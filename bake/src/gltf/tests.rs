@@ -327,18 +327,3 @@ fn foreign_materials_pass_through() {
     let primitive = document.meshes().next().unwrap().primitives().next().unwrap();
     assert_eq!(primitive.material().name(), Some("b"));
 }
-
-/// Writes a scene, its blobs and single files to `/tmp/export`, for programs to look at.
-#[test]
-#[ignore = "writes files"]
-fn write_for_other_programs() {
-    let folder = Path::new("/tmp/export");
-    let (synthetic, bytes) = scene(300);
-    std::fs::create_dir_all(folder.join("blobs")).unwrap();
-    for (uri, bytes) in &synthetic.files.0 {
-        std::fs::write(folder.join(uri), bytes).unwrap();
-    }
-    std::fs::write(folder.join("scene.gltf"), &bytes).unwrap();
-    let single = single_glb(&bytes, |uri| synthetic.files.resolve(uri)).unwrap();
-    std::fs::write(folder.join("single.glb"), single).unwrap();
-}

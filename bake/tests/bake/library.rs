@@ -5,12 +5,18 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use anyhow::Result;
-use genescape_bake::events::Silent;
+use genescape_bake::events::{Event, Listener};
 use genescape_bake::graph::{Done, Node};
 use genescape_bake::plan::{Plan, Resolution};
 use genescape_bake::run::Runner;
 use genescape_cache::{ActionKey, Cache, Digest, How};
 use genescape_schema::{Population, Space};
+
+struct Quiet;
+
+impl Listener for Quiet {
+    fn tell(&self, _: &Event) {}
+}
 
 /// What one node of a plan gave.
 pub struct NodeOutputs {
@@ -32,7 +38,7 @@ pub fn run(population: &Population, baked: &Path, threads: usize) -> Result<Vec<
     let runner = Runner {
         cache: &cache,
         pool: &rayon::ThreadPoolBuilder::new().num_threads(threads).build()?,
-        listener: &Silent,
+        listener: &Quiet,
         cancelled: &|| false,
         scene_ready: &|_, _| {
             scenes.fetch_add(1, Ordering::SeqCst);
