@@ -2,10 +2,11 @@
 
 use std::time::Instant;
 
-use genescape_cache::{ActionKey, Cache, Error, How, Output};
+use genescape_cache::{ActionKey, Cache, Error, How, KeyFields, Output};
 
 fn key(n: u32) -> ActionKey {
-    ActionKey::builder("test", 1).parameters(&n).expect("a number has canonical bytes").build()
+    let parameters = n.to_le_bytes().to_vec();
+    ActionKey::new(KeyFields { stage: "test".to_owned(), version: 1, parameters, ..KeyFields::default() })
 }
 
 fn outputs(n: u32) -> Vec<Output> {
