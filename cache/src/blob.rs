@@ -64,7 +64,7 @@ impl Cache {
             return Ok(Some(bytes));
         }
         // In a folder that cannot be written to it stays, and is not served all the same.
-        if let Ok(_nobody_writes) = self.locks.removing() {
+        if let Ok(_nothing_is_published) = self.locks.removing() {
             match self.store.get(&path)? {
                 Some((bytes, _)) if Digest::of(&bytes) != blob.digest => {
                     let _ = self.store.remove(&path);

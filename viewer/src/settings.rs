@@ -25,7 +25,7 @@ const TITLE: &str =
 #[serde(default)]
 pub struct Settings {
     /// What is drawn, and how.
-    pub options: frame::Options,
+    pub options: options::Options,
     pub comfort: Part<Comfort>,
     pub bindings: Part<Bindings>,
     /// The window.

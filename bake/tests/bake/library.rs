@@ -12,9 +12,10 @@ use genescape_bake::run::Runner;
 use genescape_cache::{ActionKey, Cache, Digest, How};
 use genescape_schema::{Population, Space};
 
-struct Quiet;
+/// Tells nothing.
+struct Silent;
 
-impl Listener for Quiet {
+impl Listener for Silent {
     fn tell(&self, _: &Event) {}
 }
 
@@ -38,7 +39,7 @@ pub fn run(population: &Population, baked: &Path, threads: usize) -> Result<Vec<
     let runner = Runner {
         cache: &cache,
         pool: &rayon::ThreadPoolBuilder::new().num_threads(threads).build()?,
-        listener: &Quiet,
+        listener: &Silent,
         cancelled: &|| false,
         scene_ready: &|_, _| {
             scenes.fetch_add(1, Ordering::SeqCst);

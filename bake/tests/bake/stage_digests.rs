@@ -48,7 +48,7 @@ fn digest<'a>(digests: impl Iterator<Item = &'a Digest>) -> String {
 
 fn table(nodes: &[NodeOutputs]) -> Table {
     let mut stages = BTreeMap::<&str, Vec<&NodeOutputs>>::new();
-    nodes.iter().for_each(|node| stages.entry(node.key.fields().stage.as_str()).or_default().push(node));
+    nodes.iter().for_each(|node| stages.entry(&*node.key.fields().stage).or_default().push(node));
     let row = |nodes: Vec<&NodeOutputs>| Row {
         version: nodes[0].key.fields().version,
         keys: digest(nodes.iter().map(|node| node.key.digest()).collect::<Vec<_>>().iter()),

@@ -82,3 +82,26 @@ fn decode_exr(name: &str, bytes: &[u8]) -> Result<HdrPicture, exr::error::Error>
         pixels: bytemuck::cast_slice::<_, u8>(&layer.channel_data.pixels.1).into(),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use exr::prelude::{Image, SpecificChannels, Vec2, WritableImage};
+
+    use super::*;
+
+    #[test]
+    fn an_exr_of_halves_keeps_its_bits_and_is_opaque() {
+        let value = |at: Vec2<usize>, channel: usize| {
+            f16::from_f32((at.y() * 10 + at.x()) as f32 + channel as f32 / 4.0)
+        };
+        let channels = SpecificChannels::rgb(|at| (value(at, 0), value(at, 1), value(at, 2)));
+        let mut bytes = Cursor::new(Vec::new());
+        Image::from_channels((3, 2), channels).write().to_buffered(&mut bytes).expect("written");
+        let picture = decode_exr("sky.exr", &bytes.into_inner()).expect("an EXR picture");
+        let places = [(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1)].map(|(x, y)| Vec2(x, y));
+        let right = places.map(|at| [value(at, 0), value(at, 1), value(at, 2), f16::ONE]);
+        assert_eq!((picture.width_px, picture.height_px), (3, 2));
+        assert_eq!(*picture.pixels, *bytemuck::cast_slice::<_, u8>(&right));
+        assert!(decode_exr("sky.exr", b"no picture").is_err());
+    }
+}
