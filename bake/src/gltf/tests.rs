@@ -1,7 +1,5 @@
 //! What other programs rely on, checked by reading the files back with the `gltf` crate.
 
-use std::path::Path;
-
 use glam::{DMat3, DQuat, Vec3};
 use serde_json::Value;
 
