@@ -11,10 +11,10 @@ use crate::camera::Camera;
 use crate::gpu::Gpu;
 use crate::options::FrameInput;
 use crate::passes::Passes;
+use crate::passes::Shaders;
 use crate::picture_file;
 use crate::scene::Scene;
 use crate::scene_loader::{Loaded, SceneLoader};
-use crate::shaders::Shaders;
 use crate::upload::SceneBuffers;
 use crate::view::{Drawn, View};
 

@@ -26,7 +26,6 @@ pub mod scene;
 pub mod scene_loader;
 pub mod screenshot;
 pub mod settings;
-pub mod shaders;
 pub mod ui;
 pub mod upload;
 pub mod view;

@@ -10,9 +10,9 @@ use crate::camera::Camera;
 use crate::cli::Cli;
 use crate::headless::{Headless, scene_files};
 use crate::options::FrameInput;
+use crate::passes::Shaders;
 use crate::picture_file;
 use crate::say;
-use crate::shaders::Shaders;
 use crate::walk::{Land, Rig, start_pose};
 
 const DEFAULT_SIZE_PX: [u32; 2] = [1280, 800];

@@ -33,7 +33,7 @@ const RULES: &[Rule] = &[
             "viewer/src/bench/",
             "viewer/src/picture_file.rs",
             "viewer/src/settings.rs",
-            "viewer/src/shaders.rs",
+            "viewer/src/passes/shaders.rs",
         ],
     },
     Rule {

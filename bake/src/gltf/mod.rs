@@ -12,6 +12,7 @@ mod materials;
 pub mod png;
 mod scene;
 mod scene_import;
+mod scene_parts;
 mod scene_trees;
 mod single;
 #[cfg(test)]
@@ -27,7 +28,8 @@ pub use foreground::foreground_glb;
 pub(crate) use glb::split_glb;
 pub use levels::levelled_glb;
 pub use materials::{MaterialSet, Picture, tree_glb};
-pub use scene::{Blob, GlbBlob, SceneParts, scene_gltf};
+pub use scene::scene_gltf;
+pub use scene_parts::{Blob, GlbBlob, SceneParts};
 pub use single::single_glb;
 pub use terrain::terrain_glb;
 

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::ExportError;
 use super::document::{Document, push};
 use super::glb::{GlbDocument, read_glb};
-use super::scene::GlbBlob;
+use super::scene_parts::GlbBlob;
 
 /// A .glb that a scene uses.
 pub struct GlbImport {

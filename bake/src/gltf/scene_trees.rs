@@ -11,8 +11,8 @@ use serde_json::json;
 use super::ExportError;
 use super::document::{Document, Node, push};
 use super::materials::tree_materials;
-use super::scene::SceneParts;
 use super::scene_import::{FileMaterial, GlbImport};
+use super::scene_parts::SceneParts;
 use crate::model::Material;
 
 /// Triangles that any viewer opens quickly.

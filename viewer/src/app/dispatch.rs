@@ -101,7 +101,8 @@ impl App {
 
     /// The same key again takes the vote back.
     fn vote_by_key(&mut self, category: Category, landscape: Option<u8>) {
-        let ballot = landscape.map_or(Ballot::NoFavourite, |landscape| Ballot::For(usize::from(landscape) - 1));
+        let ballot =
+            landscape.map_or(Ballot::NoFavourite, |landscape| Ballot::For(usize::from(landscape) - 1));
         let known = self.editor.ballots().get(category);
         self.editor.vote(category, if known == ballot { Ballot::Open } else { ballot });
     }

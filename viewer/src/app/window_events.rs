@@ -18,7 +18,7 @@ use super::viewports::Viewports;
 use super::{App, Live, Wake};
 use crate::event::Event;
 use crate::input::{Command, Input};
-use crate::shaders::Shaders;
+use crate::passes::Shaders;
 
 /// Pixels of a touchpad that count as one line of a wheel.
 const PIXELS_PER_LINE: f32 = 40.0;

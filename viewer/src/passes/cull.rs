@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use glam::Vec3;
 
+use super::shaders::ShaderError;
 use super::{BoundTrees, Compiler, Shader, ViewUniform};
 use crate::camera::Frustum;
 use crate::lod::tree::MIN_DISTANCE_M;
 use crate::lod_mode::TreeLodMode;
 use crate::options::Options;
-use crate::shaders::ShaderError;
 use crate::upload::TreeSet;
 
 /// Threads of a workgroup.

@@ -4,11 +4,11 @@
 
 use glam::{Vec2, Vec3};
 
+use super::shaders::ShaderError;
 use super::{BoundScene, Compiler, DrawPass, PipelineDesc, Shader, buffer_layout};
 use crate::camera::Frustum;
 use crate::options::Options;
 use crate::scene::{Ground, Picture};
-use crate::shaders::ShaderError;
 
 pub const SHADER: Shader = Shader {
     name: "grass",

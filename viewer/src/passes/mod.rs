@@ -9,6 +9,7 @@ mod cull;
 pub mod grass;
 mod layouts;
 mod pipeline;
+mod shaders;
 mod shadow;
 mod sky;
 pub mod terrain;
@@ -21,6 +22,7 @@ pub use bound::{BoundScene, BoundTrees};
 pub use cull::{Cull, CullUniform};
 pub use layouts::{Binding, Layouts, bind};
 pub use pipeline::Shader;
+pub use shaders::{ShaderError, Shaders};
 pub use shadow::Shadow;
 pub use tone::Tone;
 pub use view_uniform::ViewUniform;
@@ -29,7 +31,6 @@ use pipeline::{Compiler, FilledOrWire, PipelineDesc, Target, buffer_layout};
 
 use crate::gpu::Gpu;
 use crate::options::Options;
-use crate::shaders::{ShaderError, Shaders};
 
 /// Format of radiance.
 pub const RADIANCE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;

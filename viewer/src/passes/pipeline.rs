@@ -1,8 +1,8 @@
 //! Shaders and what pipelines differ in → pipelines.
 
+use super::shaders::{ShaderError, Shaders};
 use super::{DEPTH, DISPLAY, Layouts, RADIANCE, SHADOW};
 use crate::gpu::Gpu;
-use crate::shaders::{ShaderError, Shaders};
 
 /// A pass's WGSL, and the numbers that it has in common with Rust.
 #[derive(Debug)]

@@ -2,13 +2,13 @@
 
 use super::bind;
 use super::layouts::SUN_VIEW;
+use super::shaders::ShaderError;
 use super::trees::{TreePipelines, buffers};
 use super::view_uniform::shadow_from_world;
 use super::{
     Binding, BoundTrees, Compiler, Cull, CullUniform, Layouts, PipelineDesc, Shader, Target, ViewUniform,
 };
 use crate::gpu::Gpu;
-use crate::shaders::ShaderError;
 use crate::upload::SceneBuffers;
 
 pub const SHADER: Shader = Shader {

@@ -1,8 +1,8 @@
 //! Draws the sky behind everything (thesis 5).
 
+use super::shaders::ShaderError;
 use super::{BoundScene, Compiler, DrawPass, PipelineDesc, Shader};
 use crate::options::Options;
-use crate::shaders::ShaderError;
 
 pub const SHADER: Shader = Shader { name: "sky", source: include_str!("sky.wgsl"), constants: &[] };
 

@@ -1,10 +1,10 @@
 //! Draws the terrain in one draw, whatever the LOD mode, and the coarse ring around it in another.
 
+use super::shaders::ShaderError;
 use super::{BoundScene, Compiler, DrawPass, FilledOrWire, PipelineDesc, Shader, buffer_layout};
 use crate::lod::{morph, quadtree};
 use crate::lod_mode::TerrainLodMode;
 use crate::options::Options;
-use crate::shaders::ShaderError;
 use crate::upload::RingVertex;
 
 pub const SHADER: Shader = Shader {

@@ -1,7 +1,7 @@
 //! Tone mapping: radiance → finished picture.
 
+use super::shaders::ShaderError;
 use super::{Compiler, PipelineDesc, Shader, Target};
-use crate::shaders::ShaderError;
 
 pub const SHADER: Shader = Shader { name: "tone", source: include_str!("tone.wgsl"), constants: &[] };
 

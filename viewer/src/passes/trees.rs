@@ -1,9 +1,9 @@
 //! Draws the trees that culling left: one draw for each material.
 
+use super::shaders::ShaderError;
 use super::{BoundScene, BoundTrees, Compiler, DrawPass, FilledOrWire, PipelineDesc, Shader, buffer_layout};
 use crate::options::Options;
 use crate::scene::TreeVertex;
-use crate::shaders::ShaderError;
 use crate::upload::{DrawCommand, TreeSet};
 
 pub const SHADER: Shader = Shader { name: "trees", source: include_str!("trees.wgsl"), constants: &[] };

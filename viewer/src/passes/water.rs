@@ -1,8 +1,8 @@
 //! Draws the lake over everything else.
 
+use super::shaders::ShaderError;
 use super::{BoundScene, Compiler, DrawPass, PipelineDesc, Shader};
 use crate::options::Options;
-use crate::shaders::ShaderError;
 
 pub const SHADER: Shader = Shader { name: "water", source: include_str!("water.wgsl"), constants: &[] };
 

@@ -137,7 +137,7 @@ pub struct Genes {
     pub bred: [Genome; INDIVIDUALS],
     /// Names of genes that are kept.
     pub locked: BTreeSet<String>,
-    /// Categories that are kept as a whole, as in [`Category::ALL`].
+    /// Categories that are kept as a whole, as in [`genescape_schema::Category::ALL`].
     pub locked_categories: [bool; 3],
 }
 

@@ -170,7 +170,10 @@ fn chip(ui: &mut Ui, model: &Model, category: Category, rect: Rect, events: &mut
     let title = theme::title(category);
     let (name, none) = (format!("{title}: none of the four"), ballot == Ballot::NoFavourite);
     let (response, lit) = painted_button(ui, rect, ("ballot", category.name()), &name, none);
-    response.asks(events, Event::Vote { category, ballot: if none { Ballot::Open } else { Ballot::NoFavourite } });
+    response.asks(
+        events,
+        Event::Vote { category, ballot: if none { Ballot::Open } else { Ballot::NoFavourite } },
+    );
     let bright = theme::bright(category);
     let painter = ui.painter();
     let icon_rect = Rect::from_center_size(rect.center(), vec2(14.0, 14.0));

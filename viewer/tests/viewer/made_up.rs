@@ -5,11 +5,11 @@ use std::sync::Arc;
 use genescape_bake::stages::terrain_lod;
 use genescape_schema::scene::{Heightfield, SkyImages, SkyLight};
 use genescape_viewer::headless::Headless;
+use genescape_viewer::passes::Shaders;
 use genescape_viewer::scene::{
     Apron, Ground, GroundDetail, GroundSurface, HdrPicture, Instance, Level, Material, Picture, Range, Scene,
     Sky, StartView, Template, TerrainLod, TreeVertex, Trees,
 };
-use genescape_viewer::shaders::Shaders;
 use genescape_viewer::upload::{SceneBuffers, Uploader};
 use glam::Vec3;
 

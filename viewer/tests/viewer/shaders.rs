@@ -4,9 +4,9 @@
 use std::mem::{offset_of, size_of};
 
 use genescape_viewer::lod::quadtree::Block;
+use genescape_viewer::passes::Shaders;
 use genescape_viewer::passes::{CullUniform, SHADERS, ViewUniform, grass, terrain, trees};
 use genescape_viewer::scene::TreeVertex;
-use genescape_viewer::shaders::Shaders;
 use genescape_viewer::upload::{DrawCommand, MaterialUniform, RingVertex, TemplateData, TreeData};
 use naga::{ScalarKind, TypeInner};
 

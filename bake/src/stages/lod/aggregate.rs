@@ -9,7 +9,8 @@
 use glam::Vec3;
 
 use super::coverage::{Element, Silhouettes};
-use super::state::{PartSpan, State, Vertex};
+use super::log::Vertex;
+use super::state::{PartSpan, State};
 
 /// No part keeps fewer elements than this.
 const MIN_ELEMENTS: usize = 6;

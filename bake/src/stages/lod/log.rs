@@ -1,6 +1,16 @@
 //! The log of a simplification: for each step, what undoes it.
 
-use super::state::Vertex;
+use bytemuck::NoUninit;
+
+/// All that a vertex carries; attributes that the mesh lacks are zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq, NoUninit)]
+#[repr(C)]
+pub struct Vertex {
+    pub position: [f32; 3],
+    pub normal: [f32; 3],
+    pub uv: [f32; 2],
+    pub color: [u8; 4],
+}
 
 /// What undoes one step: a vertex split, or a piece that appears whole.
 #[derive(Clone, Copy, Debug)]

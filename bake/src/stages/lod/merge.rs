@@ -6,7 +6,8 @@
 use glam::DVec3;
 
 use super::edge::Edge;
-use super::state::{NONE, State, Vertex};
+use super::log::Vertex;
+use super::state::{NONE, State};
 use super::topology::Topology;
 
 /// Collapses `edge` into its first point. The new vertex lies at `at`, and has the attributes found `along` the edge

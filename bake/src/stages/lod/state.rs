@@ -5,23 +5,13 @@
 
 use std::ops::Range;
 
-use bytemuck::{NoUninit, bytes_of};
+use bytemuck::bytes_of;
 
-use super::log::Log;
+use super::log::{Log, Vertex};
 use crate::model::{Material, Mesh, Part, PartKind};
 
 /// No vertex.
 pub const NONE: u32 = u32::MAX;
-
-/// All that a vertex carries; attributes that the mesh lacks are zero.
-#[derive(Clone, Copy, Debug, Default, PartialEq, NoUninit)]
-#[repr(C)]
-pub struct Vertex {
-    pub position: [f32; 3],
-    pub normal: [f32; 3],
-    pub uv: [f32; 2],
-    pub color: [u8; 4],
-}
 
 /// Which optional attributes a mesh has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

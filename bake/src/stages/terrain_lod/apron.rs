@@ -6,9 +6,8 @@ use glam::Vec3;
 
 use genescape_schema::scene::bintree::Sample;
 
-use super::near::{place, vertex};
 use crate::math::{cell, lerp_array};
-use crate::model::{Landform, Material, Mesh, Part, PartKind};
+use crate::model::{Heightfield, Landform, Material, Mesh, Part, PartKind};
 
 /// Metres of water that one unit of its texture coordinates covers.
 const WATER_TILE_M: f32 = 16.0;
@@ -21,7 +20,7 @@ pub(super) fn border_samples(land: &Landform) -> Vec<Sample> {
     let Some(hole) = Hole::of(land) else { return Vec::new() };
     let mut samples = Vec::new();
     for column in hole.first + 1..hole.last {
-        let along = (place(&land.apron, column) / field.spacing_m + 0.5 * last as f32 + 0.5).floor();
+        let along = (land.apron.place_m(column) / field.spacing_m + 0.5 * last as f32 + 0.5).floor();
         if along > 0.0 && along < last as f32 {
             let along = along as u32;
             samples.extend([[along, 0], [along, last], [0, along], [last, along]]);
@@ -87,8 +86,8 @@ impl Hole {
         let side = land.apron.side;
         // A line that differs from the border by rounding only counts as on it.
         let outside = half + 1.0e-3 * land.apron.spacing_m;
-        let first = (0..side).rev().find(|&line| place(&land.apron, line) < -outside)?;
-        let last = (0..side).find(|&line| place(&land.apron, line) > outside)?;
+        let first = (0..side).rev().find(|&line| land.apron.place_m(line) < -outside)?;
+        let last = (0..side).find(|&line| land.apron.place_m(line) > outside)?;
         Some(Self { first, last })
     }
 }
@@ -135,7 +134,7 @@ impl<'a> Ring<'a> {
         let apron = &self.land.apron;
         let index = (j * apron.side + i) as usize;
         if self.numbers[index] == u32::MAX {
-            let position = [place(apron, i), apron.at(i, j), place(apron, j)];
+            let position = [apron.place_m(i), apron.at(i, j), apron.place_m(j)];
             let normal = apron.normal_at(i, j).to_array();
             self.numbers[index] = self.push(position, normal, self.color(index));
         }
@@ -209,4 +208,9 @@ impl<'a> Ring<'a> {
         self.mesh.parts = vec![Part { material: Material::Ground, kind: PartKind::Surface, triangles }];
         self.mesh
     }
+}
+
+/// Position and normal of a sample; shared with the near mesh so that both agree to the bit.
+pub(super) fn vertex(field: &Heightfield, [i, j]: Sample) -> ([f32; 3], [f32; 3]) {
+    ([field.place_m(i), field.at(i, j), field.place_m(j)], field.normal_at(i, j).to_array())
 }

@@ -222,7 +222,7 @@ impl Walk<'_> {
         let index = self.refiner.index(sample);
         if self.numbers[index] == u32::MAX {
             self.numbers[index] = self.mesh.positions.len() as u32;
-            let (position, normal) = vertex(self.refiner.field, sample);
+            let (position, normal) = apron::vertex(self.refiner.field, sample);
             let last = (self.refiner.field.side - 1) as f32;
             self.mesh.positions.push(position);
             self.mesh.normals.push(normal);
@@ -230,14 +230,4 @@ impl Walk<'_> {
         }
         self.numbers[index]
     }
-}
-
-/// Position and normal of a sample; shared with the apron's inner edge so that both agree to the bit.
-pub(super) fn vertex(field: &Heightfield, [i, j]: Sample) -> ([f32; 3], [f32; 3]) {
-    ([place(field, i), field.at(i, j), place(field, j)], field.normal_at(i, j).to_array())
-}
-
-/// World coordinate in metres of a line of samples.
-pub(super) fn place(field: &Heightfield, line: u32) -> f32 {
-    (line as f32 - 0.5 * (field.side - 1) as f32) * field.spacing_m
 }

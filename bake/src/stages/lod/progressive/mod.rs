@@ -8,8 +8,9 @@
 pub mod reader;
 
 use super::log::Record;
+use super::log::Vertex;
 use super::sequence::Sequence;
-use super::state::{Attributes, NONE, PartSpan, State, Vertex};
+use super::state::{Attributes, NONE, PartSpan, State};
 use crate::model::{Material, PartKind};
 
 const MAGIC: [u8; 8] = *b"GSCPMESH";

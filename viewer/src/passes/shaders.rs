@@ -5,10 +5,10 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use crate::passes::SHADERS;
+use super::SHADERS;
 
 /// What every pass's shader starts with.
-const COMMON: &str = include_str!("passes/common.wgsl");
+const COMMON: &str = include_str!("common.wgsl");
 
 /// Where sources come from.
 #[derive(Clone, Debug, Default)]
