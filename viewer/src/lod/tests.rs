@@ -139,7 +139,7 @@ proptest! {
         let detail = detail_at(&lod, eye * field.extent_m(), unit);
         let mut blocks = Vec::new();
         quadtree::select(&lod, &detail, None, &mut blocks);
-        check_closed(&field, &drawn(&field, &detail, &blocks))?;
+        check_closed(field, &drawn(field, &detail, &blocks))?;
     }
 
     #[test]
@@ -209,8 +209,8 @@ proptest! {
             let detail = detail_at(&lod, start + Vec3::new(0.6, 0.0, 0.8) * (step_m * step as f32), 1.0);
             let mut blocks = Vec::new();
             quadtree::select(&lod, &detail, None, &mut blocks);
-            let mesh = drawn(&field, &detail, &blocks);
-            let vertices: Vec<Vec3> = (0..65 * 65).map(|n| drawn_m(&detail, &field, [n % 65, n / 65])).collect();
+            let mesh = drawn(field, &detail, &blocks);
+            let vertices: Vec<Vec3> = (0..65 * 65).map(|n| drawn_m(&detail, field, [n % 65, n / 65])).collect();
             let heights: Vec<f32> =
                 places.iter().map(|&at| height_in(&mesh, at).expect("the mesh covers the square")).collect();
             if let Some((vertices_before, heights_before)) = &before {
@@ -232,12 +232,12 @@ proptest! {
         let lod = land(129, 1.0, relief, seed);
         let field = &*lod.field;
         let eye_m = eye * field.extent_m();
-        let detail = quadtree::detail(&lod, &Errors::of(&field), eye_m, 300.0, error_px, f32::MAX);
+        let detail = quadtree::detail(&lod, &Errors::of(field), eye_m, 300.0, error_px, f32::MAX);
         let mut blocks = Vec::new();
         quadtree::select(&lod, &detail, None, &mut blocks);
-        let mesh = drawn(&field, &detail, &blocks);
+        let mesh = drawn(field, &detail, &blocks);
         let squares_px2 = (0..400u32).map(|n| {
-            let land_m = sample_m(&field, [n * 37 % 129, n * 53 % 128]);
+            let land_m = sample_m(field, [n * 37 % 129, n * 53 % 128]);
             let at = Vec2::new(land_m.x, land_m.z);
             let height = height_in(&mesh, at).expect("the mesh covers the square");
             let distance_m2 = detail.distance_squared_m2(at);
@@ -284,13 +284,13 @@ proptest! {
         camera.position_m *= field.extent_m();
         let mut strip = Vec::new();
         let triangles = triangulate(&lod, &camera, PICTURE, error_px, &mut strip);
-        let mesh = strip_triangles(&field, &strip);
-        check_closed(&field, &mesh)?;
+        let mesh = strip_triangles(field, &strip);
+        check_closed(field, &mesh)?;
         prop_assert_eq!(triangles as usize, mesh.len());
 
         let frustum = camera.frustum(PICTURE.0);
         for entry in 0..field.side * field.side {
-            let land_m = sample_m(&field, [entry % field.side, entry / field.side]);
+            let land_m = sample_m(field, [entry % field.side, entry / field.side]);
             let height = height_in(&mesh, Vec2::new(land_m.x, land_m.z)).expect("the mesh covers the square");
             let drawn_m = Vec3::new(land_m.x, height, land_m.z);
             if frustum.sees_sphere(land_m, 0.0) && let Some(seen) = project_px(&camera, land_m) {
@@ -314,7 +314,7 @@ proptest! {
             let height_m = |[i, j]: [u32; 2]| field.at(i, j);
             let middle_m = || parents(sample).map(height_m).iter().sum::<f32>() / 2.0;
             let flat = corner || middle_m() == height_m(sample);
-            let seen = frustum.sees_sphere(sample_m(&field, sample), 0.0);
+            let seen = frustum.sees_sphere(sample_m(field, sample), 0.0);
             prop_assert!(flat || !seen || strip.contains(&entry), "sample {entry}");
         }
     }
@@ -338,7 +338,7 @@ fn more_error_and_less_sight_mean_fewer_triangles() {
     };
     let (all, seen) = (count(None), count(Some(&camera.frustum(1.5))));
     assert!(seen < all && seen > 0, "{seen} of {all}");
-    let exact = quadtree::detail(&lod, &Errors::of(&field), camera.position_m, 500.0, 0.0, f32::MAX);
+    let exact = quadtree::detail(&lod, &Errors::of(field), camera.position_m, 500.0, 0.0, f32::MAX);
     quadtree::select(&lod, &exact, None, &mut blocks);
-    assert_eq!(quadtree::triangles(&field, &blocks), 128 * 128 * 2);
+    assert_eq!(quadtree::triangles(field, &blocks), 128 * 128 * 2);
 }
