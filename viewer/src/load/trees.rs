@@ -132,46 +132,17 @@ fn vertices(
     let positions: Vec<[f32; 3]> =
         document.values(positions.ok_or_else(|| document.wrong("a tree has no positions"))?)?;
     let count = positions.len();
-    let fitting = |found: usize, what: &str| {
-        if found == count { Ok(()) } else { Err(document.wrong(format!("a tree's {what} do not match"))) }
-    };
-    let or = |semantic: Semantic| primitive.get(&semantic);
-    let normals: Vec<[f32; 3]> = match or(Semantic::Normals) {
-        Some(accessor) => document.values(accessor)?,
-        None => vec![[0.0, 1.0, 0.0]; count],
-    };
-    let uvs: Vec<[f32; 2]> = match or(Semantic::TexCoords(0)) {
-        Some(accessor) => document.values(accessor)?,
-        None => vec![[0.0; 2]; count],
-    };
-    let colors: Vec<[u8; 4]> = match or(Semantic::Colors(0)) {
-        Some(accessor) => document.values(accessor)?,
-        None => vec![[255; 4]; count],
-    };
-    let tangents: Vec<[f32; 4]> = match or(Semantic::Tangents) {
-        Some(accessor) => document.values(accessor)?,
-        None => vec![[1.0, 0.0, 0.0, 1.0]; count],
-    };
+    let get = |semantic: Semantic| primitive.get(&semantic);
+    let normals = values_or(document, get(Semantic::Normals), [0.0, 1.0, 0.0], count, "normals")?;
+    let uvs = values_or(document, get(Semantic::TexCoords(0)), [0.0; 2], count, "texture coordinates")?;
+    let colors = values_or(document, get(Semantic::Colors(0)), [255; 4], count, "colours")?;
+    let tangents = values_or(document, get(Semantic::Tangents), [1.0, 0.0, 0.0, 1.0], count, "tangents")?;
     let target = primitive.morph_targets().next();
-    let moves: Vec<[f32; 3]> = match target.as_ref().and_then(|target| target.positions()) {
-        Some(accessor) => document.values(accessor)?,
-        None => vec![[0.0; 3]; count],
-    };
-    let turns: Vec<[f32; 3]> = match target.as_ref().and_then(|target| target.normals()) {
-        Some(accessor) => document.values(accessor)?,
-        None => vec![[0.0; 3]; count],
-    };
-    let slides: Vec<[f32; 2]> = match texcoord_deltas {
-        Some(index) => document.values(document.accessor(index)?)?,
-        None => vec![[0.0; 2]; count],
-    };
-    fitting(normals.len(), "normals")?;
-    fitting(uvs.len(), "texture coordinates")?;
-    fitting(colors.len(), "colours")?;
-    fitting(tangents.len(), "tangents")?;
-    fitting(moves.len(), "geomorphs")?;
-    fitting(turns.len(), "geomorphs of normals")?;
-    fitting(slides.len(), "geomorphs of texture coordinates")?;
+    let (moves, turns) = target.map_or((None, None), |target| (target.positions(), target.normals()));
+    let moves = values_or(document, moves, [0.0; 3], count, "geomorphs")?;
+    let turns = values_or(document, turns, [0.0; 3], count, "geomorphs of normals")?;
+    let slides = texcoord_deltas.map(|index| document.accessor(index)).transpose()?;
+    let slides = values_or(document, slides, [0.0; 2], count, "geomorphs of texture coordinates")?;
     let vertex = |v: usize| {
         let normal = Vec3::from(normals[v]);
         let [x, y, z, sign] = tangents[v];
@@ -188,6 +159,23 @@ fn vertices(
         }
     };
     Ok((0..count).map(vertex).collect())
+}
+
+/// An attribute's `count` values, or as often `default` if the file has none.
+fn values_or<T: gltf::accessor::Item + Copy>(
+    document: &Document,
+    accessor: Option<gltf::Accessor<'_>>,
+    default: T,
+    count: usize,
+    what: &str,
+) -> Result<Vec<T>, LoadError> {
+    let Some(accessor) = accessor else { return Ok(vec![default; count]) };
+    let values = document.values(accessor)?;
+    if values.len() == count {
+        Ok(values)
+    } else {
+        Err(document.wrong(format!("a tree's {what} do not match")))
+    }
 }
 
 /// Writes into each leaf's alpha how open its surroundings are: little in the middle of the crown, much at its surface
