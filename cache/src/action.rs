@@ -37,11 +37,13 @@ pub struct Output {
     /// File extension.
     pub ext: String,
     pub bytes: Bytes,
+    /// Of `bytes`, if it is known already: hashing takes time.
+    pub digest: Option<Digest>,
 }
 
 impl Output {
     pub fn new(name: impl Into<String>, ext: impl Into<String>, bytes: impl Into<Bytes>) -> Self {
-        Self { name: name.into(), ext: ext.into(), bytes: bytes.into() }
+        Self { name: name.into(), ext: ext.into(), bytes: bytes.into(), digest: None }
     }
 }
 
@@ -138,11 +140,12 @@ impl Cache {
             created_unix_s: SystemTime::UNIX_EPOCH.elapsed().map_or(0, |age| age.as_secs()),
         };
         let _gc_waits = self.locks.publishing()?;
-        for Output { name, ext, bytes } in outputs {
+        for output in outputs {
+            let name = &output.name;
             if record.output(name).is_some() {
                 return Err(Error::TwiceNamed { stage: record.fields.stage, output: name.clone() });
             }
-            record.outputs.push((name.clone(), self.put_blob(bytes, ext)?));
+            record.outputs.push((name.clone(), self.put_blob(output)?));
         }
         self.put_sealed(&record_path(key.digest()), &record)?;
         Ok(record)

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Bytes, Cache, Digest, Error, Fault, Result};
+use crate::{Bytes, Cache, Digest, Error, Fault, Output, Result};
 
 /// Where some bytes are: `blobs/ab/ab12….EXT`.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -20,10 +20,14 @@ impl BlobRef {
     /// # Errors
     /// If `ext` is not one to eight lower-case letters and digits.
     pub fn of(bytes: &[u8], ext: &str) -> Result<Self> {
+        Self::named(Digest::of(bytes), ext, bytes.len())
+    }
+
+    fn named(digest: Digest, ext: &str, len: usize) -> Result<Self> {
         if !is_plain(ext) {
             return Err(Error::Extension(ext.to_owned()));
         }
-        Ok(Self { digest: Digest::of(bytes), ext: ext.to_owned(), len: bytes.len() as u64 })
+        Ok(Self { digest, ext: ext.to_owned(), len: len as u64 })
     }
 
     /// The file's path relative to the cache folder, separated by `/`.
@@ -84,8 +88,8 @@ impl Cache {
 
     /// Stores bytes under their digest, while the caller keeps `gc` waiting. What stood there is replaced: it may be
     /// damaged.
-    pub(crate) fn put_blob(&self, bytes: &[u8], ext: &str) -> Result<BlobRef> {
-        let blob = BlobRef::of(bytes, ext)?;
+    pub(crate) fn put_blob(&self, Output { ext, bytes, digest, .. }: &Output) -> Result<BlobRef> {
+        let blob = BlobRef::named(digest.unwrap_or_else(|| Digest::of(bytes)), ext, bytes.len())?;
         self.publish_file(&blob.path(), bytes)?;
         Ok(blob)
     }

@@ -243,7 +243,8 @@ impl<'a> Context<'a> {
         let mut outputs = vec![Output::new("output", "bin", bytes)];
         let mut memory = Memory { output: Some(output), blobs: HashMap::new() };
         for (index, (blob, bytes, content)) in made.into_iter().enumerate() {
-            outputs.push(Output::new(index.to_string(), blob.ext, bytes));
+            let digest = Some(blob.digest);
+            outputs.push(Output { name: index.to_string(), ext: blob.ext, bytes, digest });
             memory.blobs.insert(blob.digest, content);
         }
         Ok((outputs, memory))
