@@ -191,9 +191,11 @@ mod tests {
         fn a_pocket_that_was_walked_into_is_walked_out_of(
             arms in (1u32..12, 1u32..12), slant in 0f32..1.2, angle in 0f32..7., stride_m in 0.02f32..0.3
         ) {
-            // A funnel of trunks with no gap: arms to both sides of the way that lean towards the walker.
+            // A funnel of trunks: arms to both sides of the way that lean towards the walker. The trunks of an arm stand
+            // 0.6 m apart however it leans, too close for a body to pass between them.
             let (toward, right) = (direction(angle), direction(angle).perp());
-            let at = |i: i32| trunk(0.6 * (right * i as f32 - toward * slant * i.abs() as f32), 0.15);
+            let spacing_m = 0.6 / Vec2::new(1.0, slant).length();
+            let at = |i: i32| trunk(spacing_m * (right * i as f32 - toward * slant * i.abs() as f32), 0.15);
             let land = land_with((-(arms.0 as i32)..=arms.1 as i32).map(at));
             let steps = (20.0 / stride_m) as u32;
             let start = -toward * 15.0;
