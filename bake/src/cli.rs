@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use bytesize::ByteSize;
 use clap::{Args, Parser, Subcommand};
 
 const EXAMPLES: &str = "\
@@ -187,31 +188,12 @@ pub enum CacheCommand {
     /// A scene of an older generation that loses parts goes with them; baking its population brings it back.
     Gc {
         /// Size to shrink to, for example 500MB or 2GiB.
-        #[arg(long, value_name = "SIZE", value_parser = parse_size)]
-        max_size: u64,
+        #[arg(long, value_name = "SIZE")]
+        max_size: ByteSize,
         /// The world folder.
         #[command(flatten)]
         world: WorldArgs,
     },
-}
-
-/// "500MB", "2GiB", "1000000" → bytes.
-fn parse_size(text: &str) -> Result<u64, String> {
-    let number = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
-    let unit = text[number.len()..].to_ascii_lowercase();
-    let factor: u64 = match unit.as_str() {
-        "" | "b" => 1,
-        "k" | "kb" => 1_000,
-        "kib" => 1 << 10,
-        "m" | "mb" => 1_000_000,
-        "mib" => 1 << 20,
-        "g" | "gb" => 1_000_000_000,
-        "gib" => 1 << 30,
-        _ => return Err(format!("`{unit}` is no unit of size: use B, kB, MB, GB, KiB, MiB or GiB")),
-    };
-    let size = number.trim().parse::<f64>().ok().filter(|size| size.is_finite() && *size >= 0.0);
-    let size = size.ok_or_else(|| format!("`{}` is not a size", number.trim()))?;
-    Ok((size * factor as f64) as u64)
 }
 
 #[cfg(test)]
@@ -226,10 +208,11 @@ mod tests {
 
     #[test]
     fn sizes() {
-        assert_eq!(parse_size("500MB"), Ok(500_000_000));
-        assert_eq!(parse_size("1.5 GiB"), Ok(3 << 29));
-        assert_eq!(parse_size("12"), Ok(12));
-        assert!(parse_size("12 parsecs").is_err());
-        assert!(parse_size("-1MB").is_err());
+        let size = |text: &str| text.parse().map(|ByteSize(bytes)| bytes);
+        assert_eq!(size("500MB"), Ok(500_000_000));
+        assert_eq!(size("1.5 GiB"), Ok(3 << 29));
+        assert_eq!(size("12"), Ok(12));
+        assert!(size("12 parsecs").is_err());
+        assert!(size("-1MB").is_err());
     }
 }

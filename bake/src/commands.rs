@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result, bail};
+use bytesize::ByteSize;
 use genescape_cache::{Cache, GcOptions};
 use genescape_schema::{Current, INDIVIDUALS, Population, Space};
 use genescape_world::{World, WorldError, atomic_write, names};
@@ -14,6 +15,7 @@ use serde_json::Value;
 use crate::breed::NoVotes;
 use crate::cli::{BadInput, BakeArgs, CacheCommand, Cli, Command, RunArgs, WorldArgs};
 use crate::events::{Event, Listener};
+use crate::gltf::for_each_object;
 use crate::plan::Resolution;
 use crate::progress::{JsonLines, ProgressBar};
 use crate::run::RunError;
@@ -237,7 +239,7 @@ fn export(args: &WorldArgs, scene: &str, out: &Path) -> Result<()> {
         format!("{}: cannot be made one file; bake again if blobs are missing", path.display())
     })?;
     atomic_write::replace(out, &glb).with_context(|| format!("cannot write {}", out.display()))?;
-    say!("wrote {} ({:.1} MB)", out.display(), glb.len() as f64 / 1e6);
+    say!("wrote {} ({})", out.display(), size(glb.len() as u64));
     Ok(())
 }
 
@@ -273,29 +275,29 @@ fn look_after_cache(action: &CacheCommand) -> Result<()> {
         CacheCommand::Verify { world } => verify(&open_cache(world)?.1),
         CacheCommand::Gc { max_size, world } => {
             let (world, cache) = open_cache(world)?;
-            gc(&world, &cache, *max_size)
+            gc(&world, &cache, max_size.0)
         }
     }
 }
 
-fn megabytes(bytes: u64) -> String {
-    format!("{:.1} MB", bytes as f64 / 1e6)
+fn size(bytes: u64) -> bytesize::Display {
+    ByteSize(bytes).display().si()
 }
 
 fn stats(cache: &Cache) -> Result<()> {
     let stats = cache.stats()?;
-    say!("{} blobs, {}; {} actions", stats.blobs, megabytes(stats.blob_bytes), stats.actions);
+    say!("{} blobs, {}; {} actions", stats.blobs, size(stats.blob_bytes), stats.actions);
     say!("{:<18} {:>8} {:>12} {:>12}", "stage", "actions", "size", "cost");
     for (name, stage) in &stats.stages {
         let cost = format!("{:.0} ms", stage.cost_ms);
-        say!("{name:<18} {:>8} {:>12} {cost:>12}", stage.actions, megabytes(stage.bytes));
+        say!("{name:<18} {:>8} {:>12} {cost:>12}", stage.actions, size(stage.bytes));
     }
     Ok(())
 }
 
 fn verify(cache: &Cache) -> Result<()> {
     let report = cache.verify()?;
-    say!("read {} blobs ({}) and {} actions", report.blobs, megabytes(report.bytes), report.actions);
+    say!("read {} blobs ({}) and {} actions", report.blobs, size(report.bytes), report.actions);
     for fault in &report.faults {
         say!("  {fault}");
     }
@@ -326,9 +328,9 @@ fn gc(world: &World, cache: &Cache, max_size: u64) -> Result<()> {
         "removed {} blobs and {} actions; {} → {} ({} of it in use by the current scenes)",
         report.blobs_removed,
         report.actions_removed,
-        megabytes(report.bytes_before),
-        megabytes(report.bytes_left),
-        megabytes(report.bytes_of_roots),
+        size(report.bytes_before),
+        size(report.bytes_left),
+        size(report.bytes_of_roots),
     );
     if report.bytes_left > max_size {
         say!(
@@ -348,18 +350,12 @@ fn gc(world: &World, cache: &Cache, max_size: u64) -> Result<()> {
 
 /// Whether all files that a scene names exist.
 fn is_whole(scene: &Path) -> Result<bool> {
-    fn all_uris(json: &Value, exists: &dyn Fn(&str) -> bool) -> bool {
-        match json {
-            Value::Object(fields) => fields.iter().all(|(name, value)| match value {
-                Value::String(uri) if name == "uri" => exists(uri),
-                other => all_uris(other, exists),
-            }),
-            Value::Array(items) => items.iter().all(|item| all_uris(item, exists)),
-            _ => true,
-        }
-    }
     let text = fs::read_to_string(scene).with_context(|| format!("cannot read {}", scene.display()))?;
     let folder = scene.parent().unwrap_or(Path::new("."));
-    let json = serde_json::from_str(&text);
-    Ok(json.is_ok_and(|json| all_uris(&json, &|uri| folder.join(uri).is_file())))
+    let Ok(mut json) = serde_json::from_str(&text) else { return Ok(false) };
+    let found = for_each_object(&mut json, &mut |object| match object.get("uri").and_then(Value::as_str) {
+        Some(uri) if !folder.join(uri).is_file() => Err(()),
+        _ => Ok(()),
+    });
+    Ok(found.is_ok())
 }

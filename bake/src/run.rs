@@ -6,6 +6,7 @@
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
@@ -86,7 +87,7 @@ impl Runner<'_> {
             let executors: Vec<_> = (0..=self.pool.current_num_threads()).map(executor).collect();
             for executor in executors {
                 // With its own message, where the scope would only say that there was one.
-                executor.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+                executor.join().unwrap_or_else(|panic| resume_unwind(panic));
             }
         });
         let state = board.state.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -98,10 +99,18 @@ impl Runner<'_> {
 
     fn executor(&self, plan: &Plan, board: &Board) {
         while let Some((id, inputs)) = board.take(plan) {
-            let _turn = Turn(board);
-            let result =
-                if (self.cancelled)() { Err(RunError::Cancelled) } else { self.perform(plan, id, inputs) };
-            board.put(plan, id, result);
+            let perform = || match (self.cancelled)() {
+                true => Err(RunError::Cancelled),
+                false => self.perform(plan, id, inputs),
+            };
+            // Were this executor to end by a panic, the others would wait for its node for ever.
+            match catch_unwind(AssertUnwindSafe(perform)) {
+                Ok(result) => board.put(plan, id, result),
+                Err(panic) => {
+                    board.put(plan, id, Err(RunError::Cancelled));
+                    resume_unwind(panic);
+                }
+            }
         }
     }
 
@@ -134,16 +143,12 @@ struct Board {
 
 struct State {
     done: Vec<Option<Arc<Done>>>,
-    /// Inputs that a node still waits for.
-    waiting: Vec<usize>,
     /// Nodes that have not yet read a node's outputs.
     readers: Vec<usize>,
     /// Nodes whose inputs are all there, first in the plan first: the plan puts what others wait for first.
     ready: BinaryHeap<Reverse<NodeId>>,
     running: usize,
     error: Option<RunError>,
-    /// An executor panicked.
-    abandoned: bool,
 }
 
 impl State {
@@ -154,28 +159,15 @@ impl State {
     }
 }
 
-/// An executor at work on a node: were it to panic, the others must not wait for it for ever.
-struct Turn<'a>(&'a Board);
-
-impl Drop for Turn<'_> {
-    fn drop(&mut self) {
-        if std::thread::panicking() {
-            self.0.lock().abandoned = true;
-            self.0.changed.notify_all();
-        }
-    }
-}
-
 impl Board {
     fn new(plan: &Plan) -> Self {
         let mut readers = vec![0; plan.nodes.len()];
         for (_, input) in plan.nodes.iter().flat_map(|node| &node.inputs) {
             readers[input.node] += 1;
         }
-        let waiting: Vec<usize> = plan.nodes.iter().map(|node| node.inputs.len()).collect();
-        let ready = (0..plan.nodes.len()).filter(|&id| waiting[id] == 0).map(Reverse).collect();
-        let done = vec![None; plan.nodes.len()];
-        let state = State { done, waiting, readers, ready, running: 0, error: None, abandoned: false };
+        let ready =
+            (0..plan.nodes.len()).filter(|&id| plan.nodes[id].inputs.is_empty()).map(Reverse).collect();
+        let state = State { done: vec![None; plan.nodes.len()], readers, ready, running: 0, error: None };
         Self { state: Mutex::new(state), changed: Condvar::new() }
     }
 
@@ -187,7 +179,7 @@ impl Board {
     fn take(&self, plan: &Plan) -> Option<(NodeId, Finished)> {
         let mut state = self.lock();
         loop {
-            if state.error.is_some() || state.abandoned {
+            if state.error.is_some() {
                 return None;
             }
             if let Some(Reverse(id)) = state.ready.pop() {
@@ -222,12 +214,11 @@ impl Board {
                     }
                 }
                 for (reader, node) in plan.nodes.iter().enumerate() {
-                    let times = node.inputs.iter().filter(|(_, input)| input.node == id).count();
-                    if times > 0 {
-                        state.waiting[reader] -= times;
-                        if state.waiting[reader] == 0 {
-                            state.ready.push(Reverse(reader));
-                        }
+                    let mut inputs = node.inputs.iter().map(|(_, input)| input.node);
+                    if inputs.clone().any(|input| input == id)
+                        && inputs.all(|input| state.done[input].is_some())
+                    {
+                        state.ready.push(Reverse(reader));
                     }
                 }
             }
@@ -242,7 +233,6 @@ impl Board {
 
 #[cfg(test)]
 mod tests {
-    use std::panic::{AssertUnwindSafe, catch_unwind};
     use std::sync::atomic::{AtomicBool, Ordering};
 
     use genescape_schema::{Population, Space};

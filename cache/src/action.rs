@@ -59,8 +59,6 @@ pub enum How {
 pub struct Outcome {
     pub record: ActionRecord,
     pub how: How,
-    /// The bytes of the outputs in the record's order, if this call built them.
-    pub bytes: Option<Vec<Bytes>>,
 }
 
 pub(crate) fn record_path(key: Digest) -> String {
@@ -101,7 +99,7 @@ impl Cache {
         key: &ActionKey,
         build: impl FnOnce() -> Result<Vec<Output>, E>,
     ) -> Result<Outcome, E> {
-        let reused = |record| Outcome { record, how: How::Reused, bytes: None };
+        let reused = |record| Outcome { record, how: How::Reused };
         if let Some(record) = self.lookup(key)? {
             return Ok(reused(record));
         }
@@ -113,8 +111,7 @@ impl Cache {
         let start = Instant::now();
         let outputs = build()?;
         let record = self.publish(key, &outputs, start.elapsed())?;
-        let bytes = outputs.into_iter().map(|output| output.bytes).collect();
-        Ok(Outcome { record, how: How::Built, bytes: Some(bytes) })
+        Ok(Outcome { record, how: How::Built })
     }
 
     /// Removes the record of an action whose results are whole but cannot be decoded, with a notice that names its

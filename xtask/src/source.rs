@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
-use crate::tools::root;
+use crate::tools::{files, root};
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -32,9 +32,11 @@ impl Source {
 
 /// All files, sorted by path. Test is what lies in folders `tests` and `examples`, and what is behind `cfg(test)`.
 pub fn sources() -> Result<Vec<Source>> {
-    let mut files = Vec::new();
-    collect(&root(), &mut files).context("cannot read the workspace")?;
-    files.sort();
+    let read = |path: PathBuf| -> Result<_> {
+        let text = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+        Ok((path.strip_prefix(root())?.to_owned(), text))
+    };
+    let files = files(&root(), &[".rs"])?.into_iter().map(read).collect::<Result<Vec<_>>>()?;
     let tests: BTreeSet<PathBuf> = files.iter().flat_map(|(path, text)| test_modules(path, text)).collect();
     let source = |(path, text): (PathBuf, String)| {
         let folders = path.parent().into_iter().flat_map(Path::iter);
@@ -45,20 +47,6 @@ pub fn sources() -> Result<Vec<Source>> {
         Source { path: path.to_string_lossy().replace('\\', "/"), lines }
     };
     Ok(files.into_iter().map(source).collect())
-}
-
-fn collect(folder: &Path, files: &mut Vec<(PathBuf, String)>) -> std::io::Result<()> {
-    for entry in fs::read_dir(folder)? {
-        let (path, name) = entry.map(|entry| (entry.path(), entry.file_name()))?;
-        let is_ours = name != "target" && !name.as_encoded_bytes().starts_with(b".");
-        if path.is_dir() && is_ours {
-            collect(&path, files)?;
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            let inside = path.strip_prefix(root()).unwrap_or(&path).to_owned();
-            files.push((inside, fs::read_to_string(&path)?));
-        }
-    }
-    Ok(())
 }
 
 fn is_test_attribute(line: &str) -> bool {

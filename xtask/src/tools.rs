@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, ensure};
 
 /// The workspace's folder.
 pub fn root() -> PathBuf {
@@ -68,26 +68,24 @@ pub fn fresh(folder: PathBuf) -> Result<PathBuf> {
     Ok(folder)
 }
 
-/// Files below a folder whose names end in one of `endings`, sorted.
+/// Files below a folder whose names end in one of `endings`, sorted; an error if there are none. Hidden folders and
+/// cargo's `target` are left out.
 pub fn files(folder: &Path, endings: &[&str]) -> Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     let mut todo = vec![folder.to_owned()];
     while let Some(folder) = todo.pop() {
-        for entry in
-            std::fs::read_dir(&folder).with_context(|| format!("cannot read {}", folder.display()))?
-        {
+        let entries = std::fs::read_dir(&folder);
+        for entry in entries.with_context(|| format!("cannot read {}", folder.display()))? {
             let path = entry?.path();
             let name = path.file_name().unwrap_or_default().to_string_lossy();
-            if path.is_dir() {
+            if !path.is_dir() {
+                found.extend(endings.iter().any(|ending| name.ends_with(ending)).then(|| path.clone()));
+            } else if name != "target" && !name.starts_with('.') {
                 todo.push(path);
-            } else if endings.iter().any(|ending| name.ends_with(ending)) {
-                found.push(path);
             }
         }
     }
     found.sort();
-    if found.is_empty() {
-        bail!("no {} below {}", endings.join(" or "), folder.display());
-    }
+    ensure!(!found.is_empty(), "no {} below {}", endings.join(" or "), folder.display());
     Ok(found)
 }

@@ -97,48 +97,84 @@ impl Document {
         push(&mut self.accessors, accessor)
     }
 
+    /// Adds an accessor of `count` elements that are 0 but for the elements `at`, whose bytes are `values`.
+    pub fn sparse_accessor(&mut self, count: usize, kind: &str, at: &[u32], values: &[u8]) -> usize {
+        let (indices, component) = self.index_view(at, count <= 65536, None);
+        let values = self.view(values, None, None);
+        // `byteOffset` is optional, but F3D fails without it.
+        let accessor = json!({ "componentType": FLOAT, "count": count, "type": kind,
+            "sparse": { "count": at.len(),
+                "indices": { "bufferView": indices, "byteOffset": 0, "componentType": component },
+                "values": { "bufferView": values, "byteOffset": 0 } } });
+        push(&mut self.accessors, accessor)
+    }
+
     /// Indices as the smallest type that glTF viewers draw without conversion.
     pub fn indices(&mut self, indices: &[u32], vertices: usize, target: Option<u32>) -> usize {
         // 65535 itself restarts primitives, so it is no index.
-        let (view, component) = if vertices <= 65535 {
-            let short: Vec<u16> = indices.iter().map(|&i| i as u16).collect();
-            (self.view(bytemuck::cast_slice(&short), target, None), UNSIGNED_SHORT)
-        } else {
-            (self.view(bytemuck::cast_slice(indices), target, None), UNSIGNED_INT)
-        };
+        let (view, component) = self.index_view(indices, vertices <= 65535, target);
         self.accessor(view, 0, component, indices.len(), "SCALAR")
     }
 
-    /// The JSON text. The BIN chunk, if any, becomes buffer 0: its length is filled in.
+    /// A view of indices, and their component type.
+    fn index_view(&mut self, indices: &[u32], short: bool, target: Option<u32>) -> (usize, u32) {
+        if !short {
+            return (self.view(bytemuck::cast_slice(indices), target, None), UNSIGNED_INT);
+        }
+        let short: Vec<u16> = indices.iter().map(|&i| i as u16).collect();
+        (self.view(bytemuck::cast_slice(&short), target, None), UNSIGNED_SHORT)
+    }
+
+    /// The JSON text: an entry or a list element a line. The BIN chunk, if any, becomes buffer 0: its length is filled
+    /// in.
     pub fn json(&self) -> Vec<u8> {
-        let mut out = Vec::new();
-        let mut top = Lines { out: &mut out, first: true };
-        top.entry("asset", &json!({ "version": "2.0", "generator": GENERATOR }));
-        top.entry_unless_empty("extensionsUsed", &self.extensions_used.iter().collect::<Vec<_>>());
-        if !self.scenes.is_empty() {
-            top.entry("scene", &0);
+        let own = (!self.bin.is_empty()).then(|| json!({ "byteLength": self.bin.len() }));
+        let buffers: Vec<&Value> = own.iter().chain(&self.buffers).collect();
+        let entries = [
+            Some(entry("asset", &json!({ "version": "2.0", "generator": GENERATOR }))),
+            (!self.extensions_used.is_empty()).then(|| entry("extensionsUsed", &self.extensions_used)),
+            (!self.scenes.is_empty()).then(|| entry("scene", &0)),
+            list("scenes", &self.scenes),
+            list("nodes", &self.nodes),
+            list("cameras", &self.cameras),
+            list("meshes", &self.meshes),
+            list("materials", &self.materials),
+            list("textures", &self.textures),
+            list("samplers", &self.samplers),
+            list("images", &self.images),
+            list("accessors", &self.accessors),
+            list("bufferViews", &self.buffer_views),
+            list("buffers", &buffers),
+            (!self.extensions.is_empty()).then(|| entry("extensions", &self.extensions)),
+        ];
+        let entries: Vec<_> = entries.into_iter().flatten().collect();
+        [b"{\n", &entries.join(&b",\n"[..])[..], b"\n}\n"].concat()
+    }
+}
+
+fn entry(key: &str, value: &impl Serialize) -> Vec<u8> {
+    [format!("\"{key}\": ").into_bytes(), compact(value)].concat()
+}
+
+/// Nothing for an empty list.
+fn list<T: Serialize>(key: &str, values: &[T]) -> Option<Vec<u8>> {
+    let lines: Vec<_> = values.iter().map(|value| [b"\n  ", &compact(value)[..]].concat()).collect();
+    let head = format!("\"{key}\": [").into_bytes();
+    (!values.is_empty()).then(|| [head, lines.join(&b','), b"\n]".to_vec()].concat())
+}
+
+/// Calls `f` with every object in a JSON value, outer ones first.
+pub fn for_each_object<E>(
+    value: &mut Value,
+    f: &mut impl FnMut(&mut Map<String, Value>) -> Result<(), E>,
+) -> Result<(), E> {
+    match value {
+        Value::Object(object) => {
+            f(object)?;
+            object.values_mut().try_for_each(|child| for_each_object(child, f))
         }
-        top.list("scenes", &self.scenes);
-        top.list("nodes", &self.nodes);
-        top.list("cameras", &self.cameras);
-        top.list("meshes", &self.meshes);
-        top.list("materials", &self.materials);
-        top.list("textures", &self.textures);
-        top.list("samplers", &self.samplers);
-        top.list("images", &self.images);
-        top.list("accessors", &self.accessors);
-        top.list("bufferViews", &self.buffer_views);
-        if self.bin.is_empty() {
-            top.list("buffers", &self.buffers);
-        } else {
-            let own = json!({ "byteLength": self.bin.len() });
-            top.list("buffers", &std::iter::once(&own).chain(&self.buffers).collect::<Vec<_>>());
-        }
-        if !self.extensions.is_empty() {
-            top.entry("extensions", &self.extensions);
-        }
-        out.extend_from_slice(b"\n}\n");
-        out
+        Value::Array(list) => list.iter_mut().try_for_each(|child| for_each_object(child, f)),
+        _ => Ok(()),
     }
 }
 
@@ -154,9 +190,11 @@ pub fn pad(bytes: &mut Vec<u8>, with: u8) {
 }
 
 /// JSON without spaces in which a number that is an f32 prints as one: 0.1 rather than 0.10000000149011612.
-pub fn compact(value: &impl Serialize, out: &mut Vec<u8>) {
-    let mut serializer = serde_json::Serializer::with_formatter(out, ShortNumbers);
+pub fn compact(value: &impl Serialize) -> Vec<u8> {
+    let mut out = Vec::new();
+    let mut serializer = serde_json::Serializer::with_formatter(&mut out, ShortNumbers);
     value.serialize(&mut serializer).expect("plain data always has a JSON form");
+    out
 }
 
 struct ShortNumbers;
@@ -178,43 +216,5 @@ impl Formatter for ShortNumbers {
         } else {
             serde_json::ser::CompactFormatter.write_f32(writer, value)
         }
-    }
-}
-
-/// The top level of a document, an entry or a list element a line.
-struct Lines<'a> {
-    out: &'a mut Vec<u8>,
-    first: bool,
-}
-
-impl Lines<'_> {
-    fn key(&mut self, key: &str) {
-        self.out.extend_from_slice(if self.first { b"{\n\"" } else { b",\n\"" });
-        self.out.extend_from_slice(key.as_bytes());
-        self.out.extend_from_slice(b"\": ");
-        self.first = false;
-    }
-
-    fn entry(&mut self, key: &str, value: &impl Serialize) {
-        self.key(key);
-        compact(value, self.out);
-    }
-
-    fn entry_unless_empty<T: Serialize>(&mut self, key: &str, values: &[T]) {
-        if !values.is_empty() {
-            self.entry(key, &values);
-        }
-    }
-
-    fn list<T: Serialize>(&mut self, key: &str, values: &[T]) {
-        if values.is_empty() {
-            return;
-        }
-        self.key(key);
-        for (i, value) in values.iter().enumerate() {
-            self.out.extend_from_slice(if i == 0 { b"[\n  " } else { b",\n  " });
-            compact(value, self.out);
-        }
-        self.out.extend_from_slice(b"\n]");
     }
 }

@@ -4,14 +4,11 @@
 use genescape_schema::scene::{GSC_PROGRESSIVE_MESH, ProgressiveLevel, ProgressiveMeshExtension};
 use serde_json::{Value, json};
 
-use super::document::{
-    ARRAY_BUFFER, Document, ELEMENT_ARRAY_BUFFER, FLOAT, Node, UNSIGNED_BYTE, UNSIGNED_SHORT,
-};
-use super::document::{UNSIGNED_INT, push};
+use super::document::{ARRAY_BUFFER, Document, ELEMENT_ARRAY_BUFFER, FLOAT, Node, UNSIGNED_BYTE};
 use super::glb::write_glb;
 use super::tangents::tangents;
 use super::{ExportError, MaterialSet};
-use crate::model::{LevelledMesh, Material, Mesh};
+use crate::model::{Bounds, LevelledMesh, Material, Mesh};
 
 /// One .glb with all levels of `mesh`, named after `name`.
 ///
@@ -83,14 +80,8 @@ pub fn levelled_glb(
         document.meshes[0]["extensions"] = json!({ GSC_PROGRESSIVE_MESH: extension });
         document.extensions_used.insert(GSC_PROGRESSIVE_MESH.into());
     }
-    let widths: Vec<f32> = levels
-        .iter()
-        .map(|level| {
-            let bounds = level.mesh.bounds();
-            bounds.max.x - bounds.min.x
-        })
-        .collect();
-    add_scenes(&mut document, name, &widths);
+    let bounds = levels.iter().map(|level| level.mesh.bounds());
+    add_scenes(&mut document, name, &bounds.map(|b| b.max.x - b.min.x).collect::<Vec<_>>());
     materials.add_images_to(&mut document);
     let json = document.json();
     Ok(write_glb(json, document.bin))
@@ -268,15 +259,9 @@ fn unit(n: [f32; 3]) -> [f32; 3] {
 }
 
 fn set_bounds(accessor: &mut Value, values: &[[f32; 3]]) {
-    let (mut lo, mut hi) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-    for value in values {
-        for axis in 0..3 {
-            lo[axis] = lo[axis].min(value[axis]);
-            hi[axis] = hi[axis].max(value[axis]);
-        }
-    }
-    accessor["min"] = json!(lo);
-    accessor["max"] = json!(hi);
+    let bounds = Bounds::of(values);
+    accessor["min"] = json!(bounds.min.to_array());
+    accessor["max"] = json!(bounds.max.to_array());
 }
 
 /// Morph deltas, sparse where that is smaller.
@@ -285,23 +270,10 @@ fn add_deltas(document: &mut Document, deltas: &[[f32; 3]], bounds: bool) -> usi
     if moved.is_empty() {
         moved.push(0); // a sparse accessor has at least one entry
     }
-    let short = deltas.len() <= 65536;
-    let sparse_bytes = moved.len() * if short { 14 } else { 16 };
+    let sparse_bytes = moved.len() * if deltas.len() <= 65536 { 14 } else { 16 };
     let accessor = if sparse_bytes < deltas.len() * 12 {
         let values: Vec<[f32; 3]> = moved.iter().map(|&i| deltas[i as usize]).collect();
-        let (indices, component) = if short {
-            let moved: Vec<u16> = moved.iter().map(|&i| i as u16).collect();
-            (document.view(bytemuck::cast_slice(&moved), None, None), UNSIGNED_SHORT)
-        } else {
-            (document.view(bytemuck::cast_slice(&moved), None, None), UNSIGNED_INT)
-        };
-        let values = document.view(bytemuck::cast_slice(&values), None, None);
-        // `byteOffset` is optional, but F3D fails without it.
-        let accessor = json!({ "componentType": FLOAT, "count": deltas.len(), "type": "VEC3",
-            "sparse": { "count": moved.len(),
-                "indices": { "bufferView": indices, "byteOffset": 0, "componentType": component },
-                "values": { "bufferView": values, "byteOffset": 0 } } });
-        push(&mut document.accessors, accessor)
+        document.sparse_accessor(deltas.len(), "VEC3", &moved, bytemuck::cast_slice(&values))
     } else {
         let view = document.view(bytemuck::cast_slice(deltas), Some(ARRAY_BUFFER), None);
         document.accessor(view, 0, FLOAT, deltas.len(), "VEC3")
@@ -319,13 +291,7 @@ fn add_uv_deltas(document: &mut Document, deltas: Option<&[[f32; 2]]>, count: us
         let view = document.view(bytemuck::cast_slice(deltas), None, None);
         return document.accessor(view, 0, FLOAT, deltas.len(), "VEC2");
     }
-    let indices = document.view(&[0; 2], None, None);
-    let values = document.view(&[0; 8], None, None);
-    let accessor = json!({ "componentType": FLOAT, "count": count, "type": "VEC2",
-        "sparse": { "count": 1,
-            "indices": { "bufferView": indices, "byteOffset": 0, "componentType": UNSIGNED_SHORT },
-            "values": { "bufferView": values, "byteOffset": 0 } } });
-    push(&mut document.accessors, accessor)
+    document.sparse_accessor(count, "VEC2", &[0], &[0; 8])
 }
 
 fn add_strip(

@@ -1,11 +1,11 @@
 //! Materials with their textures, for trees and for anyone's meshes.
 
-use std::collections::BTreeSet;
+use std::convert::Infallible;
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::ExportError;
-use super::document::{Document, push};
+use super::document::{Document, for_each_object, push};
 use super::levels::{Surface, levelled_glb};
 use crate::model::{LevelledMesh, Material, TreeTextures};
 
@@ -61,20 +61,27 @@ impl MaterialSet<'_> {
         let first = document.materials.len();
         let (textures, samplers, images) =
             (document.textures.len(), document.samplers.len(), document.images.len());
-        for material in &self.materials {
-            let mut material = material.clone();
-            shift(&mut material, "index", textures);
-            document.materials.push(material);
-        }
-        for texture in &self.textures {
-            let mut texture = texture.clone();
-            shift(&mut texture, "sampler", samplers);
-            shift(&mut texture, "source", images);
-            document.textures.push(texture);
-        }
+        document.materials.extend_from_slice(&self.materials);
+        document.textures.extend_from_slice(&self.textures);
         document.samplers.extend_from_slice(&self.samplers);
-        for object in self.materials.iter().chain(&self.textures).chain(&self.samplers) {
-            collect_extensions(object, &mut document.extensions_used);
+        // Numbers with these names are indices, at whatever depth.
+        let added = [
+            (&mut document.materials[first..], &[("index", textures)][..]),
+            (&mut document.textures[textures..], &[("sampler", samplers), ("source", images)]),
+            (&mut document.samplers[samplers..], &[]),
+        ];
+        for (objects, indices) in added {
+            let mut shift = |object: &mut Map<String, Value>| -> Result<(), Infallible> {
+                for &(name, by) in indices {
+                    if let Some(index) = object.get(name).and_then(Value::as_u64) {
+                        object.insert(name.into(), (index + by as u64).into());
+                    }
+                }
+                let extensions = object.get("extensions").and_then(Value::as_object);
+                document.extensions_used.extend(extensions.into_iter().flat_map(Map::keys).cloned());
+                Ok(())
+            };
+            let Ok(()) = objects.iter_mut().try_for_each(|object| for_each_object(object, &mut shift));
         }
         first
     }
@@ -101,36 +108,6 @@ impl MaterialSet<'_> {
 /// The other place where a material may have a normal map.
 const CLEARCOAT: &str = "/extensions/KHR_materials_clearcoat/clearcoatNormalTexture";
 
-/// Adds `by` to every number called `key`, at any depth.
-fn shift(value: &mut Value, key: &str, by: usize) {
-    match value {
-        Value::Object(object) => {
-            for (name, child) in object {
-                match child.as_u64().filter(|_| name == key) {
-                    Some(index) => *child = (index + by as u64).into(),
-                    None => shift(child, key, by),
-                }
-            }
-        }
-        Value::Array(list) => list.iter_mut().for_each(|child| shift(child, key, by)),
-        _ => {}
-    }
-}
-
-/// Names of all extensions in an object, at any depth.
-fn collect_extensions(value: &Value, names: &mut BTreeSet<String>) {
-    match value {
-        Value::Object(object) => {
-            if let Some(Value::Object(extensions)) = object.get("extensions") {
-                names.extend(extensions.keys().cloned());
-            }
-            object.values().for_each(|child| collect_extensions(child, names));
-        }
-        Value::Array(list) => list.iter().for_each(|child| collect_extensions(child, names)),
-        _ => {}
-    }
-}
-
 /// A PNG of one white pixel: what glTF takes for an absent texture.
 const WHITE_PIXEL: [u8; 67] =
     *b"\x89\x50\x4e\x47\x0d\x0a\x1a\x0a\x00\x00\x00\x0d\x49\x48\x44\x52\x00\x00\x00\x01\x00\x00\x00\x01\
@@ -150,13 +127,13 @@ fn picture_json(document: &mut Document, picture: &Picture<'_>) -> Value {
             let view = document.view(bytes, None, None);
             json!({ "bufferView": view, "mimeType": mime_type })
         }
-        Picture::File { uri, mipmaps } if mipmaps.is_empty() => {
-            json!({ "uri": uri, "mimeType": "image/png" })
-        }
         Picture::File { uri, mipmaps } => {
-            let mipmaps: Vec<Value> =
-                mipmaps.iter().map(|uri| json!({ "uri": uri, "mimeType": "image/png" })).collect();
-            json!({ "uri": uri, "mimeType": "image/png", "extras": { "mipmaps": mipmaps } })
+            let file = |uri: &String| json!({ "uri": uri, "mimeType": "image/png" });
+            let mut image = file(uri);
+            if !mipmaps.is_empty() {
+                image["extras"] = json!({ "mipmaps": mipmaps.iter().map(file).collect::<Vec<_>>() });
+            }
+            image
         }
     }
 }

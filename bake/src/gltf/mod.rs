@@ -24,6 +24,7 @@ mod tests;
 
 use thiserror::Error;
 
+pub(crate) use document::for_each_object;
 pub use foreground::foreground_glb;
 pub(crate) use glb::split_glb;
 pub use levels::levelled_glb;

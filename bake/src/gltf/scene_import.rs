@@ -97,18 +97,17 @@ impl GlbImport {
         if let Some(material) = material {
             primitive["material"] = material.into();
         }
-        let targets = primitive.get("targets").cloned();
-        for attribute in primitive["attributes"].as_object_mut().into_iter().flat_map(|o| o.values_mut()) {
-            *attribute = self.import_accessor(document, attribute)?.into();
-        }
+        self.import_attributes(document, &mut primitive["attributes"])?;
         primitive["indices"] = self.import_accessor(document, &primitive["indices"])?.into();
-        if let Some(mut targets) = targets {
-            for target in targets.as_array_mut().into_iter().flatten() {
-                for attribute in target.as_object_mut().into_iter().flat_map(|o| o.values_mut()) {
-                    *attribute = self.import_accessor(document, attribute)?.into();
-                }
-            }
-            primitive["targets"] = targets;
+        for target in primitive.get_mut("targets").and_then(Value::as_array_mut).into_iter().flatten() {
+            self.import_attributes(document, target)?;
+        }
+        Ok(())
+    }
+
+    fn import_attributes(&self, document: &mut Document, attributes: &mut Value) -> Result<(), ExportError> {
+        for accessor in attributes.as_object_mut().into_iter().flat_map(|object| object.values_mut()) {
+            *accessor = self.import_accessor(document, accessor)?.into();
         }
         Ok(())
     }

@@ -2,9 +2,11 @@
 
 use std::collections::BTreeSet;
 
+use data_url::DataUrl;
 use glam::{Mat3, Mat4, Vec3};
 use gltf::accessor::Dimensions;
 use gltf::mesh::{Mode, Semantic};
+use percent_encoding::percent_decode_str;
 use serde_json::{Value, json};
 
 use super::{ImportError, Imported, ImportedImage, Primitive, Raw, Repair, Resolve, accessor, color_byte};
@@ -94,54 +96,20 @@ fn read_buffers(
     document.buffers().map(read).collect()
 }
 
-/// Bytes and, for data URIs, the MIME type.
+/// Bytes and, for the data URI of an image, its MIME type.
 fn fetch(uri: &str, resolve: &Resolve<'_>) -> Result<(Vec<u8>, String), ImportError> {
-    if let Some(data) = uri.strip_prefix("data:") {
-        let (head, body) = data.split_once(',').ok_or_else(|| malformed("glTF", "a data URI is cut off"))?;
-        let mime_type = head.split(';').next().unwrap_or_default().to_owned();
-        let bytes = match head.ends_with(";base64") {
-            true => base64(body).ok_or_else(|| malformed("glTF", "a data URI isn't base64"))?,
-            false => percent_decoded(body),
-        };
-        return Ok((bytes, mime_type));
+    if uri.starts_with("data:") {
+        let data = DataUrl::process(uri).map_err(|_| malformed("glTF", "a data URI is cut off"))?;
+        let (bytes, _) = data.decode_to_vec().map_err(|_| malformed("glTF", "a data URI isn't base64"))?;
+        let mime_type = data.mime_type();
+        let is_image = mime_type.type_ == "image";
+        return Ok((bytes, if is_image { mime_type.to_string() } else { String::new() }));
     }
-    let name = String::from_utf8_lossy(&percent_decoded(uri)).into_owned();
+    let name = percent_decode_str(uri).decode_utf8_lossy().into_owned();
     match resolve(&name) {
         Ok(bytes) => Ok((bytes, String::new())),
         Err(source) => Err(ImportError::Missing { name, source }),
     }
-}
-
-fn percent_decoded(text: &str) -> Vec<u8> {
-    let mut pieces = text.split('%');
-    let mut out = pieces.next().unwrap_or_default().as_bytes().to_vec();
-    for piece in pieces {
-        let code = piece.get(..2).and_then(|hex| u8::from_str_radix(hex, 16).ok());
-        out.push(code.unwrap_or(b'%'));
-        out.extend_from_slice(&piece.as_bytes()[if code.is_some() { 2 } else { 0 }..]);
-    }
-    out
-}
-
-fn base64(text: &str) -> Option<Vec<u8>> {
-    let digit = |byte: u8| match byte {
-        b'A'..=b'Z' => Some(byte - b'A'),
-        b'a'..=b'z' => Some(byte - b'a' + 26),
-        b'0'..=b'9' => Some(byte - b'0' + 52),
-        b'+' | b'-' => Some(62),
-        b'/' | b'_' => Some(63),
-        _ => None,
-    };
-    let (mut out, mut held, mut bits) = (Vec::with_capacity(text.len() * 3 / 4), 0_u32, 0);
-    for byte in text.trim_end_matches('=').bytes().filter(|byte| !byte.is_ascii_whitespace()) {
-        held = held << 6 | u32::from(digit(byte)?);
-        bits += 6;
-        if bits >= 8 {
-            bits -= 8;
-            out.push((held >> bits) as u8);
-        }
-    }
-    Some(out)
 }
 
 /// Materials, textures, samplers and images.

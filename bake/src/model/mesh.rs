@@ -12,6 +12,16 @@ pub struct Bounds {
     pub max: Vec3,
 }
 
+impl Bounds {
+    /// The box around all points; all zeros if there are none.
+    pub fn of(points: &[[f32; 3]]) -> Self {
+        let mut points = points.iter().map(|&p| Vec3::from_array(p));
+        let Some(first) = points.next() else { return Self { min: Vec3::ZERO, max: Vec3::ZERO } };
+        let (min, max) = points.fold((first, first), |(lo, hi), p| (lo.min(p), hi.max(p)));
+        Self { min, max }
+    }
+}
+
 /// What a part's surface is made of; which textures that means is decided where files are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Material {
@@ -81,9 +91,6 @@ impl Mesh {
 
     /// The box around all vertices; all zeros for an empty mesh.
     pub fn bounds(&self) -> Bounds {
-        let mut points = self.positions.iter().map(|&p| Vec3::from_array(p));
-        let Some(first) = points.next() else { return Bounds { min: Vec3::ZERO, max: Vec3::ZERO } };
-        let (min, max) = points.fold((first, first), |(lo, hi), p| (lo.min(p), hi.max(p)));
-        Bounds { min, max }
+        Bounds::of(&self.positions)
     }
 }

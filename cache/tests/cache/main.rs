@@ -9,7 +9,9 @@ mod processes;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use genescape_cache::{ActionKey, BlobRef, Bytes, Cache, Digest, Error, KeyFields, Outcome, Output};
+use genescape_cache::{
+    ActionKey, ActionRecord, BlobRef, Bytes, Cache, Digest, Error, How, KeyFields, Outcome, Output,
+};
 
 /// The key of an action of that stage without parameters and inputs but one.
 fn key_with_input(stage: &str, name: &str, input: &[u8]) -> ActionKey {
@@ -34,8 +36,16 @@ fn outputs(n: u32, len: usize) -> Vec<Output> {
     vec![Output::new("mesh", "glb", bytes(0)), Output::new("picture", "png", bytes(1 << 31))]
 }
 
-/// Builds the action `n`, or reuses it with verified bytes; counts builds.
-fn build(cache: &Cache, n: u32, len: usize, builds: &AtomicUsize) -> Result<Outcome, Error> {
+/// An outcome with the bytes of its outputs, verified.
+#[derive(Debug)]
+struct Found {
+    how: How,
+    record: ActionRecord,
+    bytes: Vec<Bytes>,
+}
+
+/// Builds the action `n`, or reuses it; counts builds.
+fn build(cache: &Cache, n: u32, len: usize, builds: &AtomicUsize) -> Result<Found, Error> {
     build_by(cache, n, || {
         builds.fetch_add(1, Ordering::SeqCst);
         Ok(outputs(n, len))
@@ -43,23 +53,19 @@ fn build(cache: &Cache, n: u32, len: usize, builds: &AtomicUsize) -> Result<Outc
 }
 
 /// The same by a builder of one's own: what turns out damaged is built again, as the bake's runner does it.
-fn build_by(cache: &Cache, n: u32, build: impl Fn() -> Result<Vec<Output>, Error>) -> Result<Outcome, Error> {
+fn build_by(cache: &Cache, n: u32, build: impl Fn() -> Result<Vec<Output>, Error>) -> Result<Found, Error> {
     loop {
-        let mut outcome = cache.get_or_build(&key(n), &build)?;
-        if outcome.bytes.is_none() {
-            let blobs = outcome.record.outputs.iter();
-            outcome.bytes = blobs.map(|(_, blob)| cache.get_blob(blob)).collect::<Result<_, _>>()?;
-        }
-        if outcome.bytes.is_some() {
-            return Ok(outcome);
+        let Outcome { how, record } = cache.get_or_build(&key(n), &build)?;
+        let blobs = record.outputs.iter().map(|(_, blob)| cache.get_blob(blob));
+        if let Some(bytes) = blobs.collect::<Result<_, _>>()? {
+            return Ok(Found { how, record, bytes });
         }
     }
 }
 
-/// Whether an outcome has exactly the bytes that action `n` produces.
-fn is_right(outcome: &Outcome, n: u32, len: usize) -> bool {
-    let right: Vec<Bytes> = outputs(n, len).into_iter().map(|output| output.bytes).collect();
-    outcome.bytes.as_ref() == Some(&right)
+/// Whether the bytes are exactly those that action `n` produces.
+fn is_right(found: &Found, n: u32, len: usize) -> bool {
+    found.bytes == outputs(n, len).into_iter().map(|output| output.bytes).collect::<Vec<_>>()
 }
 
 /// Stores bytes as the only output of an action.

@@ -7,9 +7,7 @@ use serde::de::{Error, Visitor};
 use serde::{Deserializer, Serializer};
 
 pub fn serialize<S: Serializer>(values: &[f32], serializer: S) -> Result<S::Ok, S::Error> {
-    let mut bytes = Vec::with_capacity(values.len() * 4);
-    values.iter().for_each(|value| bytes.extend_from_slice(&value.to_le_bytes()));
-    serializer.serialize_bytes(&bytes)
+    serializer.serialize_bytes(bytemuck::cast_slice(values))
 }
 
 pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<f32>, D::Error> {
@@ -26,11 +24,10 @@ impl Visitor<'_> for Floats {
     }
 
     fn visit_bytes<E: Error>(self, bytes: &[u8]) -> Result<Vec<f32>, E> {
-        let (quads, rest) = bytes.as_chunks();
-        if !rest.is_empty() {
-            return Err(E::invalid_length(bytes.len(), &self));
+        match bytes.len() % 4 {
+            0 => Ok(bytemuck::pod_collect_to_vec(bytes)),
+            _ => Err(E::invalid_length(bytes.len(), &self)),
         }
-        Ok(quads.iter().map(|quad| f32::from_le_bytes(*quad)).collect())
     }
 }
 

@@ -1,6 +1,7 @@
 //! `GSC_instances`, on the node that holds all trees: their exact affine transforms, templates and trunks. The
 //! nodes below it say the same in core glTF, but an affine transform takes two of them.
 
+use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -9,9 +10,9 @@ use super::svd;
 /// The extension's name.
 pub const GSC_INSTANCES: &str = "GSC_instances";
 /// Bytes before the first record.
-pub const INSTANCES_HEADER_BYTES: usize = 16;
+const INSTANCES_HEADER_BYTES: usize = 16;
 /// Bytes of a record.
-pub const INSTANCE_BYTES: usize = 64;
+const INSTANCE_BYTES: usize = size_of::<Instance>();
 
 const MAGIC: &[u8; 4] = b"GSCI";
 const VERSION: u32 = 1;
@@ -38,8 +39,9 @@ pub struct InstancesTemplate {
     pub mesh: usize,
 }
 
-/// A tree that stands in the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// A tree that stands in the scene. Its bytes are a record of the binary data.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Pod, Zeroable)]
+#[repr(C)]
 pub struct Instance {
     /// The transform from the template's space to the node's: 3 rows of 4, row-major, metres, determinant above 0.
     pub world_from_tree: [[f32; 4]; 3],
@@ -91,15 +93,7 @@ pub fn write_instances(records: &[Instance]) -> Vec<u8> {
     for word in [VERSION, records.len() as u32, INSTANCE_BYTES as u32] {
         out.extend_from_slice(&word.to_le_bytes());
     }
-    for record in records {
-        for value in record.world_from_tree.as_flattened() {
-            out.extend_from_slice(&value.to_le_bytes());
-        }
-        out.extend_from_slice(&record.template.to_le_bytes());
-        for value in record.trunk_cylinder_m {
-            out.extend_from_slice(&value.to_le_bytes());
-        }
-    }
+    out.extend_from_slice(bytemuck::cast_slice(records));
     out
 }
 
@@ -116,17 +110,7 @@ pub fn read_instances(bytes: &[u8]) -> Result<Vec<Instance>, InstancesError> {
     if bytes.len() != expected {
         return Err(InstancesError::Length { count, expected, found: bytes.len() });
     }
-    Ok(bytes[INSTANCES_HEADER_BYTES..].chunks_exact(INSTANCE_BYTES).map(read_record).collect())
-}
-
-fn read_record(bytes: &[u8]) -> Instance {
-    let word = |i: usize| [bytes[4 * i], bytes[4 * i + 1], bytes[4 * i + 2], bytes[4 * i + 3]];
-    let float = |i: usize| f32::from_le_bytes(word(i));
-    Instance {
-        world_from_tree: [0, 4, 8].map(|row| [0, 1, 2, 3].map(|column| float(row + column))),
-        template: u32::from_le_bytes(word(12)),
-        trunk_cylinder_m: [13, 14, 15].map(float),
-    }
+    Ok(bytemuck::pod_collect_to_vec(&bytes[INSTANCES_HEADER_BYTES..]))
 }
 
 #[cfg(test)]

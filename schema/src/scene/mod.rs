@@ -27,8 +27,8 @@ pub use ground::{GroundDetail, GroundSurface};
 pub use heightfield::{GSC_HEIGHTFIELD, Heightfield, HeightfieldExtension, TerrainLod};
 pub use heightfield_bytes::HeightfieldError;
 pub use instances::{
-    GSC_INSTANCES, INSTANCE_BYTES, INSTANCES_HEADER_BYTES, Instance, InstancesError, InstancesExtension,
-    InstancesTemplate, read_instances, write_instances,
+    GSC_INSTANCES, Instance, InstancesError, InstancesExtension, InstancesTemplate, read_instances,
+    write_instances,
 };
 pub use progressive_mesh::{GSC_PROGRESSIVE_MESH, ProgressiveLevel, ProgressiveMeshExtension};
 pub use resource::Resource;
