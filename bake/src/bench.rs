@@ -1,4 +1,4 @@
-//! `bake bench`: how long the parts of a bake take on this machine.
+//! `bake bench`: times the parts of a bake on this machine.
 
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
@@ -177,7 +177,7 @@ impl Samples {
     }
 }
 
-/// The most memory this process has held, where the system tells.
+/// Peak memory of this process, where the system reports it.
 fn peak_memory_kib() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?.split_whitespace().next()?.parse().ok()

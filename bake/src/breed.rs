@@ -116,7 +116,7 @@ impl Breeder<'_> {
         child
     }
 
-    /// Mutated until it is none of the parents, whom the person has seen; a space of few codes may allow nothing else.
+    /// Mutated until it differs from all parents, which the person has seen; a space of few codes may not allow that.
     fn fresh(&mut self, mut chromosome: Chromosome, chance: f32) -> Chromosome {
         for _ in 0..8 {
             chromosome = self.mutated(chromosome, chance);

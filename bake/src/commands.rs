@@ -1,4 +1,4 @@
-//! What each command of the command line does, and how it tells the outcome.
+//! Carries out each command of the command line and reports the outcome.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -31,7 +31,7 @@ const FAILED: u8 = 1;
 const BAD_INPUT: u8 = 2;
 const INTERRUPTED_CODE: u8 = 130;
 
-/// Does what the command line says; the process's exit code.
+/// Carries out the command line; returns the process's exit code.
 pub fn run(cli: Cli) -> u8 {
     let listen = ctrlc::set_handler(|| {
         // The second time, the person means it.
@@ -104,7 +104,7 @@ fn session(args: &RunArgs) -> Result<Session> {
     Session::new(World::open_or_create(&args.world.world)?, pool(args.threads)?, resolution)
 }
 
-/// Tells a person, or a program, how bakes go.
+/// Reports bakes to a person or to a program.
 struct Console {
     json: bool,
     root: PathBuf,
@@ -123,7 +123,7 @@ impl Console {
         self.bake(session, path)
     }
 
-    /// Bakes one population file and tells the outcome.
+    /// Bakes one population file and reports the outcome.
     fn bake(&self, session: &Session, path: &Path) -> Result<()> {
         self.baked(&session.bake_file(path, Publish::AsCurrent, &*self.listener(), &|| self.stopped())?);
         Ok(())

@@ -1,11 +1,11 @@
-//! What a bake tells while it runs. As JSON (`bake --json`), an event is an object whose field `event` is its name.
+//! What a bake reports while it runs. As JSON (`bake --json`), an event is an object whose field `event` is its name.
 
 use serde::Serialize;
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
 pub enum Event {
-    /// A bake of a population begins that takes so many stages.
+    /// The bake of a population begins; it has `stages` stages.
     Planned {
         generation: u32,
         stages: usize,
@@ -22,7 +22,7 @@ pub enum Event {
         reused: bool,
         ms: f64,
     },
-    /// Something was wrong and has been put right.
+    /// Something was wrong and has been mended.
     Notice {
         message: String,
     },
@@ -55,6 +55,6 @@ pub trait Listener: Sync {
     /// Takes one event. Called from several threads.
     fn tell(&self, event: &Event);
 
-    /// No more will be told of this run.
+    /// The last event of a run has been told.
     fn end(&self) {}
 }

@@ -22,18 +22,18 @@ pub struct Runner<'a> {
     pub cache: &'a Cache,
     /// The threads that compute.
     pub pool: &'a rayon::ThreadPool,
-    /// Who hears how it goes.
+    /// Receives the events of the run.
     pub listener: &'a dyn Listener,
-    /// Asked before each stage: stop?
+    /// Whether to stop; asked before each stage.
     pub cancelled: &'a (dyn Fn() -> bool + Sync),
-    /// Called once for each scene as soon as all of it is there.
+    /// Called once for each scene, as soon as all of it is complete.
     pub scene_ready: &'a (dyn Fn(usize, &BlobRef) -> anyhow::Result<()> + Sync),
 }
 
 /// Why a run ended early.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
-    /// The person asked for it.
+    /// On request.
     #[error("interrupted; what was finished is kept, and the next bake goes on from there")]
     Cancelled,
     /// A stage could not do its work.
@@ -135,7 +135,7 @@ impl Runner<'_> {
     }
 }
 
-/// Who has done what, shared by the executors.
+/// The progress of a run, shared by the executors.
 struct Board {
     state: Mutex<State>,
     changed: Condvar,
@@ -145,7 +145,7 @@ struct State {
     done: Vec<Option<Arc<Done>>>,
     /// Nodes that have not yet read a node's outputs.
     readers: Vec<usize>,
-    /// Nodes whose inputs are all there, first in the plan first: the plan puts what others wait for first.
+    /// Nodes whose inputs are complete; those that come first in the plan, which others wait for, are taken first.
     ready: BinaryHeap<Reverse<NodeId>>,
     running: usize,
     error: Option<RunError>,
@@ -175,7 +175,7 @@ impl Board {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The next node to do with what its inputs gave; waits for one; `None` when there is nothing left to do.
+    /// The next node to run, with its inputs' results; waits for one. `None` when nothing is left to do.
     fn take(&self, plan: &Plan) -> Option<(NodeId, Finished)> {
         let mut state = self.lock();
         loop {

@@ -6,7 +6,7 @@
 //! - Votes ask for a generation bred from them. As long as no population file says that it was bred from that
 //!   generation by these votes (see [`genescape_schema::unanswered`]), a new file is, with the next free number. So an
 //!   old generation can be voted on again, nothing is overwritten, and a second watch breeds nothing twice.
-//! - A mistake in a file is told and ends nothing.
+//! - A mistake in a file is reported; the loop goes on.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -70,7 +70,7 @@ pub fn run(session: &mut Session, options: &Options, host: &dyn Host) -> Result<
     let mut state =
         State { session, host, scope, known: None, space_is_good: true, due: BTreeSet::new(), shown: None };
     loop {
-        // From before the look on, lest a save after it be missed. What changed, the snapshot says.
+        // Read before the look, so that no save after it is missed; the snapshot says what changed.
         let seen = signals.load(Ordering::SeqCst);
         watch.changes().for_each(drop);
         match state.look().map(|()| state.next()) {

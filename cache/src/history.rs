@@ -1,6 +1,7 @@
 //! The keys of a scope's last run, against which "what changed?" is answered.
 //!
-//! A scope is one unit of work of the caller ("g0003-scene-0"); an item is one action in it ("tree 2"). The history of a scope is one small sealed file, written once a run, and only if it changed.
+//! A scope is one unit of work of the caller ("g0003-scene-0"); an item is one action in it ("tree 2"). The history of
+//! a scope is one small sealed file, written once a run, and only if it changed.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -177,7 +178,7 @@ fn path(scope: &str) -> String {
 }
 
 impl Cache {
-    /// The history of a scope; empty if it never ran, or if its file was damaged (which is told).
+    /// The history of a scope; empty if it never ran, or if its file was damaged (with a notice).
     ///
     /// # Errors
     /// If the file exists and cannot be read.

@@ -21,7 +21,7 @@
 //! What it promises:
 //!
 //! - *Nothing damaged is served.* A blob is hashed when read; records and histories carry a seal. What fails is
-//!   removed, rebuilt, and told once ([`Cache::take_notices`]).
+//!   removed, rebuilt, and reported once ([`Cache::take_notices`]).
 //! - *Nothing half-written is seen.* All files are published by rename. None is synced to disk: a power cut may
 //!   damage them, which is the case above.
 //! - *Work is done once.* Threads and processes that want the same action wait for the one that builds it
@@ -87,7 +87,7 @@ impl Cache {
         self
     }
 
-    /// What was found missing or damaged since the last call: for the caller to print. Each is told once.
+    /// What was found missing or damaged since the last call: for the caller to print. Each is reported once.
     pub fn take_notices(&self) -> Vec<Notice> {
         self.notices.take()
     }

@@ -1,4 +1,4 @@
-//! Which generation comes from which: the fields of a population file that say so, readable even when its genes are
+//! Lineage: the fields of a population file that say which generation it comes from, readable even when its genes are
 //! not, and the generations that votes ask for.
 
 use crate::check::{Checker, given, optional, read};
@@ -46,7 +46,7 @@ pub fn unanswered(lineages: &[Lineage]) -> Vec<Parent> {
     wanted
 }
 
-/// The fields of a population file, and of these who descends from whom.
+/// The fields of a population file, and the lineage that they give.
 pub(crate) fn read_lineage<'n, 't>(
     checker: &mut Checker<'_>,
     root: &'n Node<'t>,

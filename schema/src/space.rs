@@ -29,7 +29,7 @@ impl Space {
     }
 
     /// Reads the `space.ron` of a world, which may have been made before some of the genes were known: those that it
-    /// lacks are declared as in the built-in space. Tells each of them.
+    /// lacks are declared as in the built-in space, with a notice for each.
     ///
     /// # Errors
     /// Everything that is wrong with it.

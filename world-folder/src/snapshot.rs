@@ -1,5 +1,5 @@
-//! What can be seen in a world folder at one moment: two such moments compared say what was saved in between, however
-//! few or many events told of it.
+//! The state of a world folder at one moment: two snapshots compared say what was saved in between, however few or many
+//! events reported it.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -50,7 +50,7 @@ pub struct Snapshot {
     pub(crate) folders: BTreeSet<PathBuf>,
 }
 
-/// By what a file that was saved differs from what it was.
+/// Identifies one saved state of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Stamp {
     /// By the file system's clock. Saving a file as it was counts, too: it asks for its bake.
@@ -116,7 +116,7 @@ impl Snapshot {
         let Some((stamp, bytes)) = read(&path) else { return };
         let lineage = match before.populations.get(&path) {
             Some((known, lineage)) if known.digest == stamp.digest => *lineage,
-            // Half saved, or with a mistake: still the child that it was, lest it be bred again.
+            // Half saved, or with a mistake: it is still that child, so that it is not bred again.
             known => lineage(&bytes)
                 .or_else(|| known.and_then(|(_, known)| known.map(|known| Lineage { votes: None, ..known }))),
         };
@@ -166,7 +166,7 @@ impl Snapshot {
         before.populations().any(|path| !self.populations.contains_key(path))
     }
 
-    /// Who descends from whom: what the files say; of one that is illegible, what it last said, but without votes.
+    /// The lineage of each file; of an illegible one the last that it stated, but without votes.
     pub fn lineages(&self) -> impl Iterator<Item = (&PathBuf, Lineage)> {
         self.populations.iter().filter_map(|(path, (_, lineage))| Some((path, (*lineage)?)))
     }
@@ -190,7 +190,7 @@ fn lineage(bytes: &[u8]) -> Option<Lineage> {
     Lineage::read("", std::str::from_utf8(bytes).ok()?).ok()
 }
 
-/// By what the system tells a file from others; `None` if it is not there. Of a link: of what it leads to.
+/// What the system knows of a file; `None` if it is not there. Links are followed.
 fn stamp(path: &Path) -> Option<Stamp> {
     let data = fs::metadata(path).ok().filter(|data| data.is_file())?;
     #[cfg(unix)]

@@ -1,4 +1,4 @@
-//! Watches a world, and tells what changed.
+//! Watches a world and reports what changed.
 //!
 //! Folders are watched, never files: an atomic save replaces the file, and a watch on it would end there. Events may
 //! be lost, or come before their folder is watched; so an event is only the occasion to take another snapshot, and what
@@ -38,7 +38,7 @@ enum Hint {
 }
 
 impl Watch {
-    /// Watches a world, whose folder is made if it is not there. What is there already is not told. `wake` is called
+    /// Watches a world, whose folder is made if it is not there. What is there already is not reported. `wake` is called
     /// when there is something new in [`Watch::changes`]. With `poll`, or where the system has no watches left, folders
     /// are looked at several times a second.
     ///
@@ -82,7 +82,7 @@ impl Drop for Watch {
     }
 }
 
-/// Sends a hint whenever the system tells of a change.
+/// Sends a hint whenever the system reports a change.
 fn events(hints: Sender<Hint>) -> Option<Debouncer<RecommendedWatcher, NoCache>> {
     let heard = move |result: DebounceEventResult| {
         // An error, an overflowing queue for instance, means lost events. Reading is no change.

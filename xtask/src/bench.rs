@@ -53,7 +53,7 @@ pub fn bench(runs: u32) -> Result<()> {
 }
 
 /// The viewer's figures on the world that was just baked, then each of its scenes beside three.js where Chromium is
-/// installed. An aim that is missed is told, and no error.
+/// installed. An aim that is missed is reported; it is no error.
 fn pictures(world: &Path) -> Result<()> {
     let viewer = release("genescape-viewer", "viewer")?;
     println!();

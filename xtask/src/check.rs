@@ -109,7 +109,7 @@ fn dependencies() -> Result<()> {
     let tree = String::from_utf8_lossy(&tree.stdout).into_owned();
     let crates: std::collections::BTreeSet<&str> =
         tree.lines().map(|line| line.trim_end_matches(" (*)")).filter(|line| !line.is_empty()).collect();
-    ensure!(crates.len() > 1, "cargo tree tells nothing of the bake");
+    ensure!(crates.len() > 1, "cargo tree lists no dependencies of the bake");
     let of_window = ["wgpu", "egui", "winit", "naga"];
     let found: Vec<_> =
         crates.iter().filter(|name| of_window.iter().any(|one| name.starts_with(one))).collect();

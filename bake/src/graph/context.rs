@@ -36,7 +36,7 @@ impl<T> Clone for Stored<T> {
     }
 }
 
-/// What one node gave.
+/// The result of one node.
 #[derive(Debug)]
 pub struct Done {
     pub key: ActionKey,
@@ -54,7 +54,7 @@ struct Memory {
     blobs: HashMap<Digest, Content>,
 }
 
-/// What a blob holds.
+/// The content of a blob.
 #[derive(Clone, Debug)]
 enum Content {
     Bytes(Bytes),
@@ -95,7 +95,7 @@ impl Done {
         Ok(self.memory().output.get_or_insert(decoded).clone())
     }
 
-    /// The bytes are what they were, but not what this program writes: they are to be made again.
+    /// For bytes that are intact but that this version of the program does not write: they will be made again.
     fn forget(&self, cache: &Cache) -> StageError {
         cache.forget(&self.key).map_or_else(StageError::Cache, |()| StageError::InputLost)
     }

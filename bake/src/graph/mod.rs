@@ -1,4 +1,4 @@
-//! Stages, and the graph that says which stage reads what of which other.
+//! Stages, and the graph that says which stage reads which results of which other.
 //!
 //! A stage is a value: its fields are the parameters it reads and the results of earlier stages that it reads, as
 //! [`Input`]s. So what is in a stage *is* its action key: the parameters by their bytes, the inputs by the digests of
@@ -29,16 +29,15 @@ pub trait Stage: Serialize + Send + Sync + 'static {
     const NAME: &'static str;
     /// To be raised whenever the same input gives another output: cached results of other versions are not used.
     const VERSION: u32;
-    /// What it makes.
     type Output: Serialize + DeserializeOwned + Send + Sync + 'static;
 
-    /// Makes it.
+    /// Computes the output.
     ///
     /// # Errors
     /// A file that cannot be made, or an input that turns out damaged.
     fn run(&self, context: &Context<'_>) -> Result<Self::Output, StageError>;
 
-    /// What tells it from other nodes of the same stage: "tree 3".
+    /// Distinguishes it from other nodes of the same stage: "tree 3".
     fn label(&self) -> String {
         Self::NAME.to_owned()
     }
@@ -120,13 +119,13 @@ pub struct Source {
     part: Option<usize>,
 }
 
-/// What a node reads: the nodes before it, each with what it gave.
+/// The nodes that a node reads, each with its result.
 pub(crate) type Finished = Vec<(NodeId, Arc<Done>)>;
 
 /// A stage's output or a part of it.
 type Value = Arc<dyn Any + Send + Sync>;
 
-/// A stage whose types are forgotten.
+/// A stage with its types erased.
 trait AnyStage: Send + Sync {
     fn run(&self, context: &Context<'_>) -> Result<(Value, Vec<u8>), StageError>;
     fn decode(&self, bytes: &[u8]) -> postcard::Result<Value>;
