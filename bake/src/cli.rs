@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use bytesize::ByteSize;
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory, Parser, Subcommand};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -25,50 +25,40 @@ pub struct BadInput(pub String);
 
 /// Bakes landscapes from genomes: glTF, PNG and EXR files that open in Blender and in any glTF viewer.
 #[derive(Debug, Parser)]
-#[command(name = "bake", version, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
+#[command(name = "bake", version, after_help = EXAMPLES)]
 pub struct Cli {
     /// What to do other than bake a population.
     #[command(subcommand)]
     pub command: Option<Command>,
-    /// Bake options.
+    #[command(flatten)]
+    pub run: RunArgs,
     #[command(flatten)]
     pub bake: BakeArgs,
 }
 
-/// Where the person's work lives.
-#[derive(Debug, Clone, Args)]
-pub struct WorldArgs {
-    /// Folder that holds populations and everything baked; made from the starter landscapes if absent.
-    #[arg(long, value_name = "DIR", default_value = "world")]
-    pub world: PathBuf,
-}
-
-/// How to bake.
+/// Where and how to bake: options of all commands.
 #[derive(Debug, Clone, Args)]
 pub struct RunArgs {
-    /// The world folder.
-    #[command(flatten)]
-    pub world: WorldArgs,
+    /// Folder that holds populations and everything baked; made from the starter landscapes if absent.
+    #[arg(long, value_name = "DIR", default_value = "world", global = true)]
+    pub world: PathBuf,
     /// Threads to compute on [default: one a core]. The result does not depend on it.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", global = true)]
     pub threads: Option<usize>,
     /// Samples a side of the heightfield: 65, 129, 257, 513, 1025 or 2049.
-    #[arg(long, value_name = "N", default_value_t = 513)]
+    #[arg(long, value_name = "N", default_value_t = 513, global = true)]
     pub size: u32,
     /// Print events as JSON, one a line, instead of a progress bar.
-    #[arg(long)]
+    #[arg(long, global = true)]
     pub json: bool,
 }
 
-/// `bake` without a subcommand.
+/// `bake` without a command.
 #[derive(Debug, Clone, Args)]
 pub struct BakeArgs {
     /// The population file [default: the world's newest].
     #[arg(value_name = "POPULATION.ron")]
     pub population: Option<PathBuf>,
-    /// How to bake.
-    #[command(flatten)]
-    pub run: RunArgs,
     /// Stay, and bake again whenever a population file or space.ron changes, even in the midst of a bake.
     ///
     /// Votes written into any of the world's population files are answered with a new generation bred from them, as
@@ -89,35 +79,23 @@ pub enum Command {
         /// The same seed makes the same population.
         #[arg(long, value_name = "N")]
         seed: u64,
-        /// How to bake.
-        #[command(flatten)]
-        run: RunArgs,
     },
     /// Breed the next population from votes and bake it.
     Next {
         /// The generation that was voted on [default: the newest]. The child gets the next free number.
         #[arg(long, value_name = "N")]
         from: Option<u32>,
-        /// How to bake.
-        #[command(flatten)]
-        run: RunArgs,
     },
-    /// Print the parameter space as a table.
+    /// Print the parameter space as a table: the world's own, if there is a world.
     Params {
         /// Markdown instead of aligned text.
         #[arg(long)]
         markdown: bool,
-        /// The world folder, for its own space.ron.
-        #[command(flatten)]
-        world: WorldArgs,
     },
     /// Say for each stage whether it was reused and, if not, which field of its key changed.
     Explain {
         /// Scene 0 to 3 [default: all].
         scene: Option<usize>,
-        /// The world folder.
-        #[command(flatten)]
-        world: WorldArgs,
     },
     /// Write a scene as one self-contained file.
     #[command(
@@ -129,13 +107,10 @@ pub enum Command {
         /// The file to write.
         #[arg(value_name = "FILE.glb")]
         out: PathBuf,
-        /// The world folder.
-        #[command(flatten)]
-        world: WorldArgs,
     },
     /// Make a progressive mesh with distinguished meshes and geomorphs of any glTF or OBJ file.
     #[command(
-        after_help = "Example:\n  bake lod stanford-bunny.obj bunny.glb\n\nRepairs that the input needed are said, line by line."
+        after_help = "Example:\n  bake lod stanford-bunny.obj bunny.glb\n\nRepairs that the input needed are listed, line by line."
     )]
     Lod {
         /// A .glb, .gltf or .obj file.
@@ -150,7 +125,6 @@ pub enum Command {
     },
     /// Look after the cache.
     Cache {
-        /// What to do with it.
         #[command(subcommand)]
         action: CacheCommand,
     },
@@ -159,12 +133,6 @@ pub enum Command {
         /// Times the whole is repeated.
         #[arg(long, default_value_t = 3)]
         runs: u32,
-        /// Threads to compute on [default: one a core].
-        #[arg(long, value_name = "N")]
-        threads: Option<usize>,
-        /// Samples a side of the heightfield.
-        #[arg(long, value_name = "N", default_value_t = 513)]
-        size: u32,
     },
 }
 
@@ -172,17 +140,9 @@ pub enum Command {
 #[derive(Debug, Subcommand)]
 pub enum CacheCommand {
     /// Blobs, bytes and what each stage's results cost to make.
-    Stats {
-        /// The world folder.
-        #[command(flatten)]
-        world: WorldArgs,
-    },
+    Stats,
     /// Read everything, check every digest, and set damaged blobs aside so that the next bake makes them anew.
-    Verify {
-        /// The world folder.
-        #[command(flatten)]
-        world: WorldArgs,
-    },
+    Verify,
     /// Remove what was used least recently, never what the current scenes use nor what was used in the last ten minutes.
     ///
     /// A scene of an older generation that loses parts goes with them; baking its population brings it back.
@@ -190,20 +150,42 @@ pub enum CacheCommand {
         /// Size to shrink to, for example 500MB or 2GiB.
         #[arg(long, value_name = "SIZE")]
         max_size: ByteSize,
-        /// The world folder.
-        #[command(flatten)]
-        world: WorldArgs,
     },
+}
+
+/// The command that a word which is no population file was meant to be, if one is near.
+pub fn meant_command(word: &str) -> Option<String> {
+    let cli = Cli::command();
+    let near = cli.get_subcommands().map(|command| (strsim::osa_distance(word, command.get_name()), command));
+    let (distance, command) = near.min_by_key(|(distance, _)| *distance)?;
+    (distance <= 2).then(|| command.get_name().to_owned())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
     #[test]
     fn the_command_line_is_consistent() {
         Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn options_stand_before_or_behind_the_command() {
+        for words in
+            [["--world", "here", "--threads", "2", "next"], ["next", "--world", "here", "--threads", "2"]]
+        {
+            let cli = Cli::try_parse_from([&["bake"], &words[..]].concat()).expect("valid");
+            assert!(matches!(cli.command, Some(Command::Next { from: None })), "{cli:?}");
+            assert_eq!((cli.run.world, cli.run.threads), ("here".into(), Some(2)));
+        }
+    }
+
+    #[test]
+    fn a_misspelt_command_is_recognised() {
+        for (word, meant) in [("nxt", Some("next")), ("exprot", Some("export")), ("world/g0000.ron", None)] {
+            assert_eq!(meant_command(word).as_deref(), meant);
+        }
     }
 
     #[test]

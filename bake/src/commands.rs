@@ -13,7 +13,7 @@ use genescape_world::{World, WorldError, atomic_write, names};
 use serde_json::Value;
 
 use crate::breed::NoVotes;
-use crate::cli::{BadInput, BakeArgs, CacheCommand, Cli, Command, RunArgs, WorldArgs};
+use crate::cli::{BadInput, BakeArgs, CacheCommand, Cli, Command, RunArgs, meant_command};
 use crate::events::{Event, Listener};
 use crate::gltf::for_each_object;
 use crate::plan::Resolution;
@@ -42,24 +42,15 @@ pub fn run(cli: Cli) -> u8 {
     if let Err(error) = listen {
         eprintln!("note: Ctrl-C will end the bake at once: {error}");
     }
-    let json = is_json(&cli);
-    match dispatch(cli) {
+    match dispatch(&cli) {
         Ok(()) => 0,
         Err(error) => {
-            if json {
+            if cli.run.json {
                 JsonLines.tell(&Event::Failed { message: format!("{error:#}") });
             }
             eprintln!("error: {error:#}");
             exit_code(&error)
         }
-    }
-}
-
-fn is_json(cli: &Cli) -> bool {
-    match &cli.command {
-        None => cli.bake.run.json,
-        Some(Command::Random { run, .. } | Command::Next { run, .. }) => run.json,
-        Some(_) => false,
     }
 }
 
@@ -71,19 +62,21 @@ fn exit_code(error: &anyhow::Error) -> u8 {
     if world || error.is::<NoVotes>() || error.is::<BadInput>() { BAD_INPUT } else { FAILED }
 }
 
-fn dispatch(cli: Cli) -> Result<()> {
-    match cli.command {
-        None => bake(&cli.bake),
-        Some(Command::Random { seed, run }) => random(seed, &run),
-        Some(Command::Next { from, run }) => next(from, &run),
-        Some(Command::Params { markdown, world }) => params(&world, markdown),
-        Some(Command::Explain { scene, world }) => explain(&world, scene),
-        Some(Command::Export { scene, out, world }) => export(&world, &scene, &out),
-        Some(Command::Lod { input, out, crease_deg }) => lod_command::convert(&input, &out, crease_deg),
-        Some(Command::Cache { action }) => look_after_cache(&action),
-        Some(Command::Bench { runs, threads, size }) => {
-            bench::bench(runs, &pool(threads)?, resolution(size)?)
-        }
+fn dispatch(Cli { command, run, bake: args }: &Cli) -> Result<()> {
+    let Some(command) = command else { return bake(args, run) };
+    if args.population.is_some() || args.watch {
+        let text = "POPULATION.ron and --watch belong to `bake` without a command; see `bake --help`";
+        return Err(BadInput(text.into()).into());
+    }
+    match command {
+        Command::Random { seed } => random(*seed, run),
+        Command::Next { from } => next(*from, run),
+        Command::Params { markdown } => params(&run.world, *markdown),
+        Command::Explain { scene } => explain(&run.world, *scene),
+        Command::Export { scene, out } => export(&run.world, scene, out),
+        Command::Lod { input, out, crease_deg } => lod_command::convert(input, out, *crease_deg),
+        Command::Cache { action } => look_after_cache(&run.world, action),
+        Command::Bench { runs } => bench::bench(*runs, &pool(run.threads)?, resolution(run.size)?),
     }
 }
 
@@ -101,7 +94,7 @@ fn resolution(size: u32) -> Result<Resolution> {
 
 fn session(args: &RunArgs) -> Result<Session> {
     let resolution = resolution(args.size)?;
-    Session::new(World::open_or_create(&args.world.world)?, pool(args.threads)?, resolution)
+    Session::new(World::open_or_create(&args.world)?, pool(args.threads)?, resolution)
 }
 
 /// Reports bakes to a person or to a program.
@@ -112,7 +105,7 @@ struct Console {
 
 impl Console {
     fn new(args: &RunArgs) -> Self {
-        Self { json: args.json, root: args.world.world.clone() }
+        Self { json: args.json, root: args.world.clone() }
     }
 
     /// Bakes a population file that was just made.
@@ -179,9 +172,18 @@ fn summary(baked: &Baked) {
     );
 }
 
-fn bake(args: &BakeArgs) -> Result<()> {
-    let (mut session, console) = (session(&args.run)?, Console::new(&args.run));
-    if args.population.is_none() && session.world().begin()? && !args.run.json {
+fn bake(args: &BakeArgs, run: &RunArgs) -> Result<()> {
+    if let Some(path) = args.population.as_ref().filter(|path| !path.exists())
+        && let Some(meant) = path.to_str().and_then(meant_command)
+    {
+        let word = path.display();
+        return Err(BadInput(format!(
+            "{word} is neither a population file nor a command; did you mean {meant}?"
+        ))
+        .into());
+    }
+    let (mut session, console) = (session(run)?, Console::new(run));
+    if args.population.is_none() && session.world().begin()? && !run.json {
         say!("made {} from the starter landscapes", session.world().root().display());
     }
     if args.watch {
@@ -210,9 +212,9 @@ fn next(from: Option<u32>, args: &RunArgs) -> Result<()> {
     console.bake_new(&session, &path)
 }
 
-fn params(args: &WorldArgs, markdown: bool) -> Result<()> {
-    let (space, notices) = match args.world.exists() {
-        true => World::open(&args.world)?.space()?,
+fn params(world: &Path, markdown: bool) -> Result<()> {
+    let (space, notices) = match world.exists() {
+        true => World::open(world)?.space()?,
         // Without a world there is still the space that one would begin with.
         false => (Space::builtin(), Vec::new()),
     };
@@ -221,10 +223,10 @@ fn params(args: &WorldArgs, markdown: bool) -> Result<()> {
     Ok(())
 }
 
-fn export(args: &WorldArgs, scene: &str, out: &Path) -> Result<()> {
+fn export(world: &Path, scene: &str, out: &Path) -> Result<()> {
     let path = match scene.parse::<usize>() {
         Ok(index) => {
-            let world = World::open(&args.world)?;
+            let world = World::open(world)?;
             let current = current(&world)?;
             let file = current.scenes.get(index);
             let file = file.ok_or_else(|| BadInput(format!("scene {index}: there are scenes 0 to 3")))?;
@@ -243,8 +245,8 @@ fn export(args: &WorldArgs, scene: &str, out: &Path) -> Result<()> {
     Ok(())
 }
 
-fn open_cache(args: &WorldArgs) -> Result<(World, Cache)> {
-    let world = World::open(&args.world)?;
+fn open_cache(world: &Path) -> Result<(World, Cache)> {
+    let world = World::open(world)?;
     let cache = Cache::open(world.baked())?;
     Ok((world, cache))
 }
@@ -253,8 +255,8 @@ fn current(world: &World) -> Result<Current> {
     world.current()?.with_context(|| format!("nothing has been baked in {} yet", world.root().display()))
 }
 
-fn explain(args: &WorldArgs, scene: Option<usize>) -> Result<()> {
-    let (world, cache) = open_cache(args)?;
+fn explain(world: &Path, scene: Option<usize>) -> Result<()> {
+    let (world, cache) = open_cache(world)?;
     let current = current(&world)?;
     if scene.is_some_and(|scene| scene >= INDIVIDUALS) {
         return Err(BadInput("there are scenes 0 to 3".into()).into());
@@ -269,14 +271,12 @@ fn explain(args: &WorldArgs, scene: Option<usize>) -> Result<()> {
     Ok(())
 }
 
-fn look_after_cache(action: &CacheCommand) -> Result<()> {
+fn look_after_cache(world: &Path, action: &CacheCommand) -> Result<()> {
+    let (world, cache) = open_cache(world)?;
     match action {
-        CacheCommand::Stats { world } => stats(&open_cache(world)?.1),
-        CacheCommand::Verify { world } => verify(&open_cache(world)?.1),
-        CacheCommand::Gc { max_size, world } => {
-            let (world, cache) = open_cache(world)?;
-            gc(&world, &cache, max_size.0)
-        }
+        CacheCommand::Stats => stats(&cache),
+        CacheCommand::Verify => verify(&cache),
+        CacheCommand::Gc { max_size } => gc(&world, &cache, max_size.0),
     }
 }
 
