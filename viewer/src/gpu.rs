@@ -92,7 +92,9 @@ impl Gpu {
         usage: wgpu::BufferUsages,
     ) -> wgpu::Buffer {
         use wgpu::util::DeviceExt;
-        let contents = bytemuck::cast_slice(contents);
+        let contents: &[u8] = bytemuck::cast_slice(contents);
+        // Empty buffers cannot be bound.
+        let contents = if contents.is_empty() { &[0; 16] } else { contents };
         let descriptor = wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage };
         self.device.create_buffer_init(&descriptor)
     }
@@ -108,10 +110,35 @@ impl Gpu {
         })
     }
 
+    /// A texture with these texels: layer by layer, in each mip level by mip level.
+    pub fn texture(&self, descriptor: &wgpu::TextureDescriptor<'_>, texels: &[u8]) -> wgpu::Texture {
+        use wgpu::util::{DeviceExt, TextureDataOrder::LayerMajor};
+        self.device.create_texture_with_data(&self.queue, descriptor, LayerMajor, texels)
+    }
+
     /// Waits until all that was submitted is done.
     pub fn wait(&self) {
         // An error here means a lost device, which the next call reports.
         let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
+    }
+}
+
+/// A texture of one layer with one mip level and one sample a texel.
+pub fn flat(
+    label: &str,
+    [width, height]: [u32; 2],
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+) -> wgpu::TextureDescriptor<'_> {
+    wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
     }
 }
 

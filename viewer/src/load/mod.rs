@@ -15,42 +15,21 @@ use thiserror::Error;
 
 pub use store::Store;
 
-use crate::scene::{Ground, Scene, Sky};
+use crate::scene::{Ground, HdrPicture, Scene, Sky};
 use document::Document;
 
 /// Why a landscape cannot be shown.
 #[derive(Debug, Error)]
 pub enum LoadError {
-    /// A file cannot be read.
     #[error("cannot read {path}: {source}; `bake` makes it again")]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// A blob's bytes are not those that its name promises.
+    Unreadable { path: PathBuf, source: std::io::Error },
     #[error("{path} is damaged: its bytes are not those that its name promises; `bake` makes it again")]
-    Damaged {
-        /// The file.
-        path: PathBuf,
-    },
-    /// The scene is no glTF.
+    Damaged { path: PathBuf },
     #[error("{path} is no glTF file: {source}")]
-    NoGltf {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: Box<gltf::Error>,
-    },
+    NoGltf { path: PathBuf, source: Box<gltf::Error> },
     /// The scene is glTF, but none of ours.
     #[error("{path} is no landscape of Genescape: {what}")]
-    Foreign {
-        /// The file.
-        path: PathBuf,
-        /// What is missing or wrong.
-        what: String,
-    },
+    Foreign { path: PathBuf, what: String },
 }
 
 impl LoadError {
@@ -87,8 +66,12 @@ fn sky(document: &Document) -> Result<Sky, LoadError> {
     if images.clear_faces.is_empty() {
         images.clear_faces = images.faces.clone();
     }
-    if images.faces.len() != 6 || images.clear_faces.len() != 6 {
-        return Err(document.wrong("GSC_sky has not six faces"));
+    let side_px = images.faces.first().map_or(0, |face| face.width_px);
+    let is_square = |face: &HdrPicture| (face.width_px, face.height_px) == (side_px, side_px);
+    for faces in [&images.faces, &images.clear_faces] {
+        if faces.len() != 6 || !faces.iter().all(is_square) {
+            return Err(document.wrong("GSC_sky does not have six square faces of one size"));
+        }
     }
     Ok(Sky { images, light })
 }

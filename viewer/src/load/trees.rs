@@ -59,16 +59,7 @@ fn build(
     blob: &str,
     extension: &ProgressiveMeshExtension,
 ) -> Result<Template, LoadError> {
-    let mut template = Template {
-        name: name.to_owned(),
-        blob: blob.to_owned(),
-        vertices: Vec::new(),
-        indices: Vec::new(),
-        levels: Vec::new(),
-        materials: Vec::new(),
-        center_m: [0.0; 3],
-        radius_m: 0.0,
-    };
+    let mut template = Template { name: name.to_owned(), blob: blob.to_owned(), ..Default::default() };
     // Numbers of the materials in the file, in the order of the finest level.
     let mut materials: Vec<usize> = Vec::new();
     for (number, level) in extension.levels.iter().enumerate() {
@@ -109,17 +100,14 @@ fn build(
 
 fn check(document: &Document, template: &Template) -> Result<(), LoadError> {
     let errors = || template.levels.iter().map(|level| level.error_m);
-    if template.levels.is_empty() || !errors().all(|error| error.is_finite() && error > 0.0) {
-        return Err(
-            document.wrong(format!("{} has no levels of detail, or levels without error", template.name))
-        );
-    }
-    if !errors().is_sorted() {
-        return Err(
-            document.wrong(format!("the levels of {} are not in order of their errors", template.name))
-        );
-    }
-    Ok(())
+    let what = if template.levels.is_empty() || !errors().all(|error| error.is_finite() && error > 0.0) {
+        "no levels of detail, or levels without error"
+    } else if !errors().is_sorted() {
+        "levels of detail that are not in order of their errors"
+    } else {
+        return Ok(());
+    };
+    Err(document.wrong(format!("{} has {what}", template.name)))
 }
 
 /// One primitive's vertices with where they go at the end of the morph.

@@ -60,6 +60,7 @@ impl Layouts {
             layout(gpu, label, visibility, (0..).zip(types.iter().copied()))
         };
         let (both, fragment) = (ShaderStages::VERTEX_FRAGMENT, ShaderStages::FRAGMENT);
+        let (clamp, repeat) = (wgpu::AddressMode::ClampToEdge, wgpu::AddressMode::Repeat);
         let view =
             [UNIFORM, FILTERING, FILTERING, CUBE, CUBE, IMAGE, IMAGE, DEPTH_MAP, COMPARISON, DATA, IMAGE];
         let sun_view = SUN_VIEW.map(|binding| (binding, view[binding as usize]));
@@ -71,14 +72,9 @@ impl Layouts {
             material: all("material", fragment, &[UNIFORM, IMAGE, IMAGE]),
             cull: all("culling", ShaderStages::COMPUTE, &[UNIFORM, READ, READ, WRITE, WRITE, WRITE]),
             radiance: all("radiance", fragment, &[DATA]),
-            repeating: sampler(gpu, wgpu::AddressMode::Repeat, anisotropy, None),
-            clamped: sampler(gpu, wgpu::AddressMode::ClampToEdge, 1, None),
-            comparing: sampler(
-                gpu,
-                wgpu::AddressMode::ClampToEdge,
-                1,
-                Some(wgpu::CompareFunction::LessEqual),
-            ),
+            repeating: sampler(gpu, repeat, anisotropy, None),
+            clamped: sampler(gpu, clamp, 1, None),
+            comparing: sampler(gpu, clamp, 1, Some(wgpu::CompareFunction::LessEqual)),
         }
     }
 }

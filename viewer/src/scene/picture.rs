@@ -16,6 +16,14 @@ pub struct Picture {
     pub levels: Vec<Arc<[u8]>>,
 }
 
+impl Picture {
+    /// What stands in for a picture that a file doesn't bring.
+    pub fn of_one_pixel(rgba: [u8; 4]) -> Self {
+        let levels = vec![Arc::from(rgba.as_slice())];
+        Self { name: format!("one pixel {rgba:?}"), width_px: 1, height_px: 1, levels }
+    }
+}
+
 /// A picture of radiance: four half floats a pixel, row 0 on top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HdrPicture {

@@ -16,7 +16,7 @@ pub struct Trees {
 }
 
 /// A kind of tree with all its levels of detail.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Template {
     /// "tree-0".
     pub name: String,

@@ -61,10 +61,8 @@ impl Uploader {
             return Err(format!("the ground has {} tiling textures instead of 5", surface.details.len()));
         }
         if ground.field.side <= 1 << quadtree::BLOCK_BITS {
-            return Err(format!(
-                "a heightfield of {} samples a side is too small to be drawn",
-                ground.field.side
-            ));
+            let side = ground.field.side;
+            return Err(format!("a heightfield of {side} samples a side is too small to be drawn"));
         }
         Ok(GroundBuffers {
             errors: quadtree::Errors::of(&ground.field),
@@ -75,12 +73,8 @@ impl Uploader {
             details: self.layers(&pick(|detail| &detail.detail), PictureUse::Data)?,
             detail_normals: self.layers(&pick(|detail| &detail.normal), PictureUse::Data)?,
             tiles_m: std::array::from_fn(|layer| surface.details[layer].tile_m),
-            ring_vertices: self.buffer("ring", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX),
-            ring_indices: self.buffer(
-                "ring triangles",
-                bytemuck::cast_slice(&indices),
-                wgpu::BufferUsages::INDEX,
-            ),
+            ring_vertices: self.gpu.buffer("ring", &vertices, wgpu::BufferUsages::VERTEX),
+            ring_indices: self.gpu.buffer("ring triangles", &indices, wgpu::BufferUsages::INDEX),
             ring_index_count: indices.len() as u32,
         })
     }

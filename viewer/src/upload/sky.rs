@@ -23,16 +23,9 @@ pub struct SkyTextures {
 impl Uploader {
     pub(super) fn sky(&self, sky: &Sky) -> SkyTextures {
         let layer = |name: &str| sky.images.layers.iter().find(|layer| layer.name == name);
-        let nothing = Picture {
-            name: "nothing".into(),
-            width_px: 1,
-            height_px: 1,
-            levels: vec![Arc::from([0u8; 4].as_slice())],
-        };
-        let texture = |name: &str| {
-            let image = layer(name).map_or(&nothing, |layer| &layer.image);
-            self.picture(image, PictureUse::Color)
-        };
+        let none = Picture::of_one_pixel([0; 4]);
+        let texture =
+            |name: &str| self.picture(layer(name).map_or(&none, |layer| &layer.image), PictureUse::Color);
         let measure = |name: &str| layer(name).map_or([0.0; 2], |layer| [layer.altitude_m, layer.extent_m]);
         let ([a, b], [c, d]) = (measure("cumulus"), measure("cirrus"));
         SkyTextures {

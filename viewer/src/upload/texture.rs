@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::Uploader;
+use crate::gpu::flat;
 use crate::scene::{HdrPicture, Picture};
 
 /// What a picture's numbers mean.
@@ -36,7 +37,7 @@ impl Uploader {
         pictures: &[&Picture],
         kind: PictureUse,
     ) -> Result<Arc<wgpu::Texture>, String> {
-        let Some(first) = pictures.first() else { return Err("there are no tiling textures".to_owned()) };
+        let first = pictures.first().ok_or("there are no tiling textures")?;
         let odd = pictures.iter().find(|p| (p.width_px, p.height_px) != (first.width_px, first.height_px));
         if let Some(odd) = odd {
             return Err(format!(
@@ -50,92 +51,33 @@ impl Uploader {
 
     fn array(&self, pictures: &[&Picture], kind: PictureUse) -> wgpu::Texture {
         let chains: Vec<Vec<Arc<[u8]>>> = pictures.iter().map(|picture| chain(picture, kind)).collect();
-        let (width, height) = (pictures[0].width_px, pictures[0].height_px);
-        let levels = chains.iter().map(Vec::len).min().unwrap_or(1) as u32;
-        let texture = self.gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some(&pictures[0].name),
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: pictures.len() as u32 },
-            mip_level_count: levels,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: kind.format(),
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        });
-        for (layer, chain) in chains.iter().enumerate() {
-            for (level, pixels) in chain.iter().take(levels as usize).enumerate() {
-                let (width, height) = ((width >> level).max(1), (height >> level).max(1));
-                self.write(&texture, layer as u32, level as u32, [width, height], pixels, 4);
-            }
-        }
-        texture
+        let levels = chains.iter().map(Vec::len).min().unwrap_or(1);
+        let (first, usage) = (pictures[0], wgpu::TextureUsages::TEXTURE_BINDING);
+        let mut texture = flat(&first.name, [first.width_px, first.height_px], kind.format(), usage);
+        texture.size.depth_or_array_layers = pictures.len() as u32;
+        texture.mip_level_count = levels as u32;
+        let texels: Vec<&[u8]> = chains.iter().flat_map(|chain| &chain[..levels]).map(Arc::as_ref).collect();
+        self.gpu.texture(&texture, &texels.concat())
     }
 
-    fn write(
-        &self,
-        texture: &wgpu::Texture,
-        layer: u32,
-        level: u32,
-        [width, height]: [u32; 2],
-        pixels: &[u8],
-        bytes_per_pixel: u32,
-    ) {
-        self.gpu.queue.write_texture(
-            wgpu::TexelCopyTextureInfo {
-                texture,
-                mip_level: level,
-                origin: wgpu::Origin3d { x: 0, y: 0, z: layer },
-                aspect: wgpu::TextureAspect::All,
-            },
-            pixels,
-            wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(width * bytes_per_pixel),
-                rows_per_image: Some(height),
-            },
-            wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        );
-    }
-
-    /// Six faces of half floats as a cube.
+    /// Six faces of half floats, all squares of one size, as a cube.
     pub(super) fn cube(&self, faces: &[HdrPicture]) -> Arc<wgpu::Texture> {
         let names: Vec<&str> = faces.iter().map(|face| face.name.as_str()).collect();
         self.shared(names.join(" "), || {
-            let side = faces[0].width_px;
-            let texture = self.gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("sky"),
-                size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 6 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: wgpu::TextureFormat::Rgba16Float,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-                view_formats: &[],
-            });
-            for (layer, face) in faces.iter().enumerate() {
-                if (face.width_px, face.height_px) == (side, side) {
-                    self.write(&texture, layer as u32, 0, [side, side], &face.pixels, 8);
-                }
-            }
-            texture
+            let (format, usage) = (wgpu::TextureFormat::Rgba16Float, wgpu::TextureUsages::TEXTURE_BINDING);
+            let mut texture = flat("sky", [faces[0].width_px, faces[0].height_px], format, usage);
+            texture.size.depth_or_array_layers = faces.len() as u32;
+            let texels: Vec<&[u8]> = faces.iter().map(|face| &*face.pixels).collect();
+            self.gpu.texture(&texture, &texels.concat())
         })
     }
 
     /// A square of heights, one float a texel, for `textureLoad`.
     pub(super) fn heights(&self, name: &str, side: u32, heights_m: &[f32]) -> Arc<wgpu::Texture> {
         self.shared(format!("heights {name}"), || {
-            let texture = self.gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("heights"),
-                size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: wgpu::TextureFormat::R32Float,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-                view_formats: &[],
-            });
-            self.write(&texture, 0, 0, [side, side], bytemuck::cast_slice(heights_m), 4);
-            texture
+            let (format, usage) = (wgpu::TextureFormat::R32Float, wgpu::TextureUsages::TEXTURE_BINDING);
+            let texture = flat("heights", [side, side], format, usage);
+            self.gpu.texture(&texture, bytemuck::cast_slice(heights_m))
         })
     }
 }

@@ -1,6 +1,6 @@
 //! What one picture is drawn into.
 
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, flat};
 use crate::passes::{Binding, DEPTH, DISPLAY, Passes, RADIANCE, bind};
 
 /// A picture's render targets.
@@ -27,16 +27,8 @@ impl Targets {
     pub(super) fn new(gpu: &Gpu, passes: &Passes, label: &str, size_px: [u32; 2]) -> Self {
         use wgpu::TextureUsages as Usage;
         let texture = |format: wgpu::TextureFormat, samples: u32, usage: Usage| {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d { width: size_px[0], height: size_px[1], depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: samples,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: usage | Usage::RENDER_ATTACHMENT,
-                view_formats: &[],
-            })
+            let flat = flat(label, size_px, format, usage | Usage::RENDER_ATTACHMENT);
+            gpu.device.create_texture(&wgpu::TextureDescriptor { sample_count: samples, ..flat })
         };
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
         let radiance = view(&texture(RADIANCE, 1, Usage::TEXTURE_BINDING));
