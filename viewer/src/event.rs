@@ -131,7 +131,9 @@ mod tests {
             let ballots = Ballots([tree, terrain, sky]);
             let open = [tree, terrain, sky].contains(&Ballot::Open);
             assert_eq!(ballots.votes().is_none(), open);
-            for (category, vote) in ballots.votes().into_iter().flat_map(|votes| Category::ALL.map(|c| (c, votes.get(c)))) {
+            for (category, vote) in
+                ballots.votes().into_iter().flat_map(|votes| Category::ALL.map(|c| (c, votes.get(c))))
+            {
                 assert_eq!(vote.map_or(Ballot::NoFavourite, Ballot::For), ballots.get(category));
             }
         }

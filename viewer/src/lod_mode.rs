@@ -6,8 +6,21 @@ use serde::{Deserialize, Serialize};
 use strum::{EnumMessage, VariantArray};
 
 /// LOD modes of trees (thesis 4.3.2 and 4.3.3).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[derive(clap::ValueEnum, strum::EnumMessage, strum::IntoStaticStr, strum::VariantArray)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    Hash,
+    Serialize,
+    Deserialize,
+    clap::ValueEnum,
+    strum::EnumMessage,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
 #[repr(u32)]
 pub enum TreeLodMode {
     /// Continuous, by the error of each mesh on the screen
@@ -24,8 +37,21 @@ pub enum TreeLodMode {
 }
 
 /// LOD modes of the terrain (thesis 3.2).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[derive(clap::ValueEnum, strum::EnumMessage, strum::IntoStaticStr, strum::VariantArray)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    Hash,
+    Serialize,
+    Deserialize,
+    clap::ValueEnum,
+    strum::EnumMessage,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
 #[repr(u32)]
 pub enum TerrainLodMode {
     /// Blocks of a quadtree that morph in the vertex shader

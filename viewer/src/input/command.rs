@@ -12,8 +12,20 @@ use strum::{EnumMessage, EnumProperty, IntoEnumIterator};
 const BOOKMARKS: u8 = 9;
 
 /// What a chord is bound to. Landscapes and bookmarks count from 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[derive(strum::Display, strum::EnumIter, strum::EnumMessage, strum::EnumProperty)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Hash,
+    strum::Display,
+    strum::EnumIter,
+    strum::EnumMessage,
+    strum::EnumProperty,
+)]
 #[strum(serialize_all = "snake_case")]
 pub enum Command {
     /// walk forward

@@ -8,7 +8,7 @@ use egui::{Align2, Area, Id, Margin, Rect, RichText, Slider, Ui, vec2};
 use super::icon::Icon;
 use super::model::Model;
 use super::theme::{self, Palette};
-use super::widgets::{Asks, close_button, icon_button, scrolled, section, segmented, switch};
+use super::widgets::{Asks, ask, close_button, icon_button, scrolled, section, segmented, switch};
 use crate::event::{Event, Panel};
 use crate::lod_mode::LodMode;
 use crate::options::{LOD_SWITCHES, Options, PICTURE_SWITCHES, Switch};
@@ -18,7 +18,7 @@ use crate::settings::{Comfort, Theme};
 const WIDTH: f32 = 330.0;
 
 /// Draws the card at the upper right of `area`.
-pub fn show(ui: &mut Ui, model: &Model, area: Rect, events: &mut Vec<Event>) {
+pub fn show(ui: &mut Ui, model: &Model, area: Rect) {
     let width = WIDTH.min(area.width() - 24.0);
     Area::new(Id::unique("settings"))
         .pivot(Align2::RIGHT_TOP)
@@ -29,21 +29,21 @@ pub fn show(ui: &mut Ui, model: &Model, area: Rect, events: &mut Vec<Event>) {
             let margin = Margin { left: 14, right: 8, top: 8, bottom: 10 };
             theme::card(Palette::of(ui.visuals())).inner_margin(margin).show(ui, |ui| {
                 ui.set_width(width - 22.0);
-                ui.horizontal(|ui| header(ui, events));
+                ui.horizontal(|ui| header(ui));
                 scrolled(ui, area.height() - 80.0, |ui| {
                     ui.set_width(ui.available_width() - 10.0);
-                    options(ui, &model.options, events);
-                    comfort(ui, &model.comfort, events);
+                    options(ui, &model.options);
+                    comfort(ui, &model.comfort);
                 });
             });
         });
 }
 
-fn header(ui: &mut Ui, events: &mut Vec<Event>) {
+fn header(ui: &mut Ui) {
     ui.label(RichText::new("Settings").heading());
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-        close_button(ui, "Close the settings", Panel::Settings, events);
-        icon_button(ui, Icon::Reset, "Reset all settings", false).asks(events, Event::ResetSettings);
+        close_button(ui, "Close the settings", Panel::Settings);
+        icon_button(ui, Icon::Reset, "Reset all settings", false).asks(Event::ResetSettings);
     });
 }
 
@@ -58,7 +58,7 @@ fn switches(ui: &mut Ui, all: &[Switch], options: &mut Options) {
     }
 }
 
-fn options(ui: &mut Ui, current: &Options, events: &mut Vec<Event>) {
+fn options(ui: &mut Ui, current: &Options) {
     let mut options = *current;
     section(ui, "LEVELS OF DETAIL");
     ui.label("Trees");
@@ -76,11 +76,11 @@ fn options(ui: &mut Ui, current: &Options, events: &mut Vec<Event>) {
     let samples = [(1, "1", "Fastest"), (4, "4", "Smooth edges")];
     segmented(ui, "Samples a pixel", &samples, &mut options.samples);
     if options != *current {
-        events.push(Event::Options(options));
+        ask(ui, Event::Options(options));
     }
 }
 
-fn comfort(ui: &mut Ui, current: &Comfort, events: &mut Vec<Event>) {
+fn comfort(ui: &mut Ui, current: &Comfort) {
     let mut comfort = *current;
     section(ui, "HANDLING");
     number(ui, &mut comfort.mouse_sensitivity, 0.1..=5.0, "Mouse sensitivity", " ×", true);
@@ -93,7 +93,7 @@ fn comfort(ui: &mut Ui, current: &Comfort, events: &mut Vec<Event>) {
         [(0.8, "80 %", ""), (1.0, "100 %", ""), (1.25, "125 %", ""), (1.5, "150 %", ""), (2.0, "200 %", "")];
     segmented(ui, "Scale", &scales, &mut comfort.ui_scale);
     if comfort != *current {
-        events.push(Event::Comfort(comfort));
+        ask(ui, Event::Comfort(comfort));
     }
 }
 
