@@ -16,9 +16,9 @@ pub mod gpu;
 pub mod headless;
 pub mod input;
 pub mod load;
+pub mod loader;
 pub mod lod;
 pub mod lod_mode;
-
 pub mod options;
 pub mod passes;
 pub mod picture_file;

@@ -2,14 +2,13 @@
 
 use winit::window::{CursorGrabMode, Window};
 
-use crate::camera::Camera;
 use crate::input::{Command, Held};
 use crate::settings::{Bookmark, Comfort};
 use crate::walk::{Feel, Land, Mode, Pose, Rig, start_pose};
 
 /// What moves the camera.
 pub struct CameraControl {
-    rig: Rig,
+    pub rig: Rig,
     /// Keys and buttons that are down.
     pub held: Held,
     /// The pointer steers the view.
@@ -81,16 +80,6 @@ impl CameraControl {
         };
         self.rig.step(dt_s, &controls, &feel, lands);
         commands
-    }
-
-    /// The camera of a view with that land.
-    pub fn camera(&self, land: &Land, fov_y_rad: f32) -> Camera {
-        self.rig.camera(land, fov_y_rad)
-    }
-
-    /// Where all cameras are.
-    pub fn pose(&self) -> Pose {
-        self.rig.pose()
     }
 
     /// Walk, fly, orbit; the mode from now on.

@@ -145,7 +145,7 @@ impl Viewports {
                 let picture = view.targets().display.create_view(&Default::default());
                 register(&self.gpu, painter, &mut self.pictures[index], &picture);
             }
-            let walker = control.camera(land, fov_y_rad);
+            let walker = control.rig.camera(land, fov_y_rad);
             let camera = if frame.options.overhead { land.overhead(fov_y_rad) } else { walker };
             let drawn = view.record(encoder, &self.passes, frame, &camera, &walker, &self.profiler);
             self.stats.draws[index] = drawn.draws;

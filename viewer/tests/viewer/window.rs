@@ -274,8 +274,8 @@ fn it_ends_and_remembers(stage: &Stage, mut viewer: Viewer) {
     viewer.until("another size", |viewer| *viewer.get("screen", "size_px") == json!([600, 440]));
     let left = place(&viewer);
     assert_eq!(viewer.quit(&stage.display).code(), Some(0));
-    let kept = SettingsFile::open(stage.path("settings.ron"));
-    assert_eq!(kept.problems, [""; 0]);
+    let (kept, problems) = SettingsFile::open(Some(stage.path("settings.ron")));
+    assert_eq!(problems, [""; 0]);
     assert_eq!(kept.settings.options.tree_lod, genescape_viewer::lod_mode::TreeLodMode::Discrete);
 
     let mut viewer = stage.viewer(&["--no-bake"]);

@@ -8,7 +8,7 @@ use crate::baker::Event;
 use crate::ui::model::{Baking, StageEntry};
 
 #[derive(Default)]
-pub(super) struct BakeProgress {
+pub struct BakeProgress {
     pub baking: Option<Baking>,
     /// For each scene the stages that are finished, and the one that was started last.
     pub scenes: [(usize, String); INDIVIDUALS],

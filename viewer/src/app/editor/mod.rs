@@ -53,7 +53,7 @@ pub struct Editor {
     population: Option<Population>,
     /// Genes as they were when the generation came on show.
     bred: Option<[Genome; INDIVIDUALS]>,
-    ballots: Ballots,
+    pub(super) ballots: Ballots,
     history: History,
     steps: Vec<Step>,
     /// A newer generation comes on show by itself.
@@ -61,7 +61,7 @@ pub struct Editor {
     /// Views that show their scene of the generation on show.
     loaded: [bool; INDIVIDUALS],
     faults: BTreeMap<Fault, FileError>,
-    bake: BakeProgress,
+    pub(super) bake: BakeProgress,
     /// Remarks on files that were told and still hold: the same file is read again for many reasons.
     noticed: BTreeSet<String>,
     tasks: Vec<Task>,
