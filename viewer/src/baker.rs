@@ -1,8 +1,8 @@
 //! Starts the bake in the background: a thread that watches the world folder as `bake --watch` does, at a lower priority
-//! than what draws. The only file of the viewer that knows the bake; what comes of it is in the world's files, and what
-//! it tells on the way comes as [`Event`]s.
+//! than what draws. The only file of the viewer that knows the bake; its results are in the world's files, and its
+//! progress comes as [`Event`]s.
 //!
-//! Nothing that happens in here ends the viewer: a mistake in a file, a full disk, even a panic is told as
+//! Nothing that happens in here ends the viewer: a mistake in a file, a full disk, even a panic is reported as
 //! [`Event::Failed`], and the watch begins again.
 
 use std::any::Any;
@@ -133,7 +133,7 @@ pub fn lower_priority() {
     }
 }
 
-/// Sends what the bake tells to the owner of the [`Baker`].
+/// Sends the bake's events to the owner of the [`Baker`].
 struct Reporter {
     sender: Sender<Event>,
     wake: Box<dyn Fn() + Send + Sync>,
@@ -142,7 +142,7 @@ struct Reporter {
 
 impl Listener for &Reporter {
     fn tell(&self, event: &Event) {
-        // The baker is gone only when this thread is to end.
+        // The receiver is gone only when this thread is to end.
         if self.sender.send(event.clone()).is_ok() {
             (self.wake)();
         }
@@ -164,7 +164,7 @@ impl Host for Reporter {
 }
 
 /// Runs `attempt` again and again until it ends by itself or `stopped` says so, with growing pauses. The same failure
-/// is told once.
+/// is reported once.
 fn supervise(mut attempt: impl FnMut() -> Result<()>, tell: impl Fn(String), stopped: &dyn Fn() -> bool) {
     let (mut told, mut pause) = (None, MIN_PAUSE);
     while !stopped() {

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 
 use crate::baker::BakerOptions;
+use crate::image_file::parse_size;
 use crate::options::Options;
-use crate::picture_file::parse_size;
 
 /// Shows four landscapes at once: walk through all of them, say which has the best trees, terrain and sky, and breed
 /// four new ones

@@ -64,6 +64,17 @@ pub enum Ballot {
     For(usize),
 }
 
+impl Ballot {
+    /// The best landscape, or `Some(None)` for none of them; `None` while this is open.
+    pub fn cast(self) -> Option<Option<usize>> {
+        match self {
+            Self::Open => None,
+            Self::NoFavourite => Some(None),
+            Self::For(best) => Some(Some(best)),
+        }
+    }
+}
+
 /// The ballots of all three categories.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Ballots([Ballot; 3]);
@@ -83,11 +94,7 @@ impl Ballots {
     pub fn votes(&self) -> Option<Votes> {
         let mut votes = Votes::default();
         for category in Category::ALL {
-            match self.get(category) {
-                Ballot::Open => return None,
-                Ballot::NoFavourite => {}
-                Ballot::For(best) => votes.set(category, Some(best)),
-            }
+            votes.set(category, self.get(category).cast()?);
         }
         Some(votes)
     }

@@ -34,7 +34,7 @@ pub struct Settings {
     pub worlds: BTreeMap<String, WorldSettings>,
 }
 
-/// How the program feels in the hand.
+/// How the program handles.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Comfort {
@@ -223,7 +223,7 @@ impl SettingsFile {
     /// may have changed, but not every frame.
     ///
     /// # Errors
-    /// A file that cannot be written; the old one is then untouched. It is told once, for the person may have a reason to
+    /// A file that cannot be written; the old one is then untouched. It is reported once, for the person may have a reason to
     /// keep that file as it is.
     pub fn save(&mut self) -> Result<()> {
         let Some(path) = self.path.take_if(|_| self.saved.as_ref() != Some(&self.settings)) else {

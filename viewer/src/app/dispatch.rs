@@ -7,10 +7,10 @@ use winit::window::Fullscreen;
 
 use super::{App, lands};
 use crate::event::{Arrangement, Ballot, Event, Panel};
+use crate::image_file;
 use crate::input::{Best, Command};
 use crate::lod_mode::LodMode;
 use crate::options::Options;
-use crate::picture_file;
 use crate::ui::Tone;
 
 impl App {
@@ -138,9 +138,9 @@ impl App {
     fn save_screenshot(&mut self) {
         let Some(live) = &self.live else { return };
         let saved = live.viewports.pixels(&self.layout.shown()).and_then(|pictures| {
-            let sheet = picture_file::contact_sheet(&pictures, 2.min(pictures.len().max(1)));
+            let sheet = image_file::contact_sheet(&pictures, 2.min(pictures.len().max(1)));
             let sheet = sheet.ok_or_else(|| anyhow::anyhow!("there is no picture yet"))?;
-            picture_file::write_numbered(&self.cli.pictures, &sheet)
+            image_file::write_numbered(&self.cli.pictures, &sheet)
         });
         match saved {
             Ok(path) => self.tell(Tone::Success, format!("Saved {}", path.display())),

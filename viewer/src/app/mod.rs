@@ -214,7 +214,7 @@ impl App {
         }
     }
 
-    /// Puts landscapes into the viewports that were read meanwhile.
+    /// Puts landscapes that were read meanwhile into the viewports.
     fn show_loaded(&mut self) {
         let Some(live) = &mut self.live else { return };
         let mut changed = false;
@@ -304,8 +304,8 @@ impl App {
         }
     }
 
-    /// When the next frame comes: at once, for clouds drift and waves run; but not while there is nothing to look at, and
-    /// where the processor draws while it bakes or reads, it does the one half of the time and the other half the other.
+    /// When the next frame comes: at once, for clouds drift and waves run, but not while there is nothing to look at. Where
+    /// the processor draws while it also bakes or reads, each gets half of the time.
     fn pace(&self, events: &ActiveEventLoop, frame: Duration) {
         let Some(live) = &self.live else { return };
         let idle = live.viewports.lands().is_empty();

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use anyhow::{Result, anyhow};
 use winit::window::Window;
 
-use crate::gpu::{Gpu, GpuError};
+use crate::gpu::{Gpu, GpuError, cleared};
 use crate::settings;
 
 /// A window with its surface and what paints the user interface.
@@ -86,19 +86,10 @@ impl Screen {
         let frame = self.frame();
         if let Some(frame) = &frame {
             let view = frame.texture.create_view(&Default::default());
-            let attachment = wgpu::RenderPassColorAttachment {
-                view: &view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                    store: wgpu::StoreOp::Store,
-                },
-            };
             let mut pass = encoder
                 .begin_render_pass(&wgpu::RenderPassDescriptor {
                     label: Some("user interface"),
-                    color_attachments: &[Some(attachment)],
+                    color_attachments: &[cleared(&view, None)],
                     ..Default::default()
                 })
                 .forget_lifetime();

@@ -3,7 +3,7 @@
 
 mod document;
 mod ground;
-mod pictures;
+mod images;
 mod store;
 mod trees;
 
@@ -15,7 +15,7 @@ use thiserror::Error;
 
 pub use store::Store;
 
-use crate::scene::{Ground, HdrPicture, Scene, Sky};
+use crate::scene::{Ground, HdrImage, Scene, Sky};
 use document::Document;
 
 /// Why a landscape cannot be shown.
@@ -32,6 +32,8 @@ pub enum LoadError {
     Foreign { path: PathBuf, what: String },
 }
 
+type Result<T> = std::result::Result<T, LoadError>;
+
 impl LoadError {
     fn foreign(path: &Path, what: impl Into<String>) -> Self {
         Self::Foreign { path: path.to_owned(), what: what.into() }
@@ -39,7 +41,7 @@ impl LoadError {
 }
 
 /// Reads a landscape from its `scene.gltf`.
-pub fn load(path: &Path, store: &Store) -> Result<Scene, LoadError> {
+pub fn load(path: &Path, store: &Store) -> Result<Scene> {
     let document = Document::open(path, store)?;
     let scene = document.scene()?;
     let ground = ground::read(&document)?;
@@ -58,16 +60,16 @@ fn start(document: &Document, ground: &Ground) -> StartView {
     StartView { position_m, direction: Vec3::NEG_Z }
 }
 
-fn sky(document: &Document) -> Result<Sky, LoadError> {
+fn sky(document: &Document) -> Result<Sky> {
     let scene = document.scene()?;
     let SkyExtension { images, light } = document.extension(scene.extension_value(GSC_SKY), GSC_SKY)?;
     let mut images =
-        images.try_map(|face| pictures::exr(document, face), |layer| pictures::png(document, layer))?;
+        images.try_map(|face| images::exr(document, face), |layer| images::png(document, layer))?;
     if images.clear_faces.is_empty() {
         images.clear_faces = images.faces.clone();
     }
     let side_px = images.faces.first().map_or(0, |face| face.width_px);
-    let is_square = |face: &HdrPicture| (face.width_px, face.height_px) == (side_px, side_px);
+    let is_square = |face: &HdrImage| (face.width_px, face.height_px) == (side_px, side_px);
     for faces in [&images.faces, &images.clear_faces] {
         if faces.len() != 6 || !faces.iter().all(is_square) {
             return Err(document.wrong("GSC_sky does not have six square faces of one size"));

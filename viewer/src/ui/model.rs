@@ -47,7 +47,7 @@ pub struct Model {
     pub keys: Vec<KeyGroup>,
     /// What is drawn, and how.
     pub options: Options,
-    /// How the program feels in the hand.
+    /// How the program handles.
     pub comfort: Comfort,
     /// The panels that are shown.
     pub panels: Panels,

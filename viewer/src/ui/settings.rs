@@ -1,4 +1,4 @@
-//! The settings: what is drawn and how, and how the program feels in the hand. Each change is one event with the whole
+//! The settings: what is drawn and how, and how the program handles. Each change is one event with the whole
 //! new value.
 
 use std::ops::RangeInclusive;
@@ -29,7 +29,7 @@ pub fn show(ui: &mut Ui, model: &Model, area: Rect) {
             let margin = Margin { left: 14, right: 8, top: 8, bottom: 10 };
             theme::card(Palette::of(ui.visuals())).inner_margin(margin).show(ui, |ui| {
                 ui.set_width(width - 22.0);
-                ui.horizontal(|ui| header(ui));
+                ui.horizontal(header);
                 scrolled(ui, area.height() - 80.0, |ui| {
                     ui.set_width(ui.available_width() - 10.0);
                     options(ui, &model.options);
@@ -63,15 +63,15 @@ fn options(ui: &mut Ui, current: &Options) {
     section(ui, "LEVELS OF DETAIL");
     ui.label("Trees");
     segmented(ui, "Tree detail", &modes(), &mut options.tree_lod);
-    number(ui, &mut options.tree_error_px, 0.1..=16.0, "Error allowed on trees", " px", true);
+    number(ui, &mut options.tree_error_px, 0.1..=16.0, "Error allowed on trees", " px");
     ui.label("Terrain");
     segmented(ui, "Terrain detail", &modes(), &mut options.terrain_lod);
-    number(ui, &mut options.terrain_error_px, 0.1..=16.0, "Error allowed on terrain", " px", true);
+    number(ui, &mut options.terrain_error_px, 0.1..=16.0, "Error allowed on terrain", " px");
     switches(ui, &LOD_SWITCHES, &mut options);
     section(ui, "PICTURE");
     switches(ui, &PICTURE_SWITCHES, &mut options);
-    number(ui, &mut options.exposure, 0.125..=8.0, "Exposure", " ×", true);
-    number(ui, &mut options.fov_y_deg, 20.0..=110.0, "Field of view", "°", false);
+    number(ui, &mut options.exposure, 0.125..=8.0, "Exposure", " ×");
+    number(ui, &mut options.fov_y_deg, 20.0..=110.0, "Field of view", "°");
     ui.label("Samples a pixel");
     let samples = [(1, "1", "Fastest"), (4, "4", "Smooth edges")];
     segmented(ui, "Samples a pixel", &samples, &mut options.samples);
@@ -83,7 +83,7 @@ fn options(ui: &mut Ui, current: &Options) {
 fn comfort(ui: &mut Ui, current: &Comfort) {
     let mut comfort = *current;
     section(ui, "HANDLING");
-    number(ui, &mut comfort.mouse_sensitivity, 0.1..=5.0, "Mouse sensitivity", " ×", true);
+    number(ui, &mut comfort.mouse_sensitivity, 0.1..=5.0, "Mouse sensitivity", " ×");
     switch(ui, &mut comfort.invert_y, "Invert up and down", "Mouse up looks down");
     section(ui, "APPEARANCE");
     let themes = [(Theme::System, "System", ""), (Theme::Light, "Light", ""), (Theme::Dark, "Dark", "")];
@@ -97,17 +97,11 @@ fn comfort(ui: &mut Ui, current: &Comfort) {
     }
 }
 
-/// A slider with its name above and its value behind.
-fn number(
-    ui: &mut Ui,
-    value: &mut f32,
-    range: RangeInclusive<f32>,
-    name: &str,
-    unit: &str,
-    logarithmic: bool,
-) {
+/// A slider with its name above and its value behind; logarithmic if it spans more than a power of ten.
+fn number(ui: &mut Ui, value: &mut f32, range: RangeInclusive<f32>, name: &str, unit: &str) {
     ui.label(RichText::new(name).small());
     ui.spacing_mut().slider_width = ui.available_width() - 84.0;
+    let logarithmic = range.end() / range.start() > 10.0;
     let slider = Slider::new(value, range).logarithmic(logarithmic).suffix(unit.to_owned()).max_decimals(2);
     let _ = ui.add(slider).accessible_name(name);
 }

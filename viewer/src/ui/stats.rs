@@ -1,5 +1,5 @@
 //! Frame times and counts, beside the pictures or, in a small window, over them: a graph of the last frames, where the
-//! GPU's time goes pass by pass and view by view, what was drawn, and how many trees stand at each level of detail.
+//! GPU's time goes pass by pass and view by view, what was drawn, and how many trees have each level of detail.
 
 use egui::{Align2, Color32, FontId, Frame, Margin, Rect, RichText, Sense, Shape, Stroke};
 use egui::{Ui, pos2, vec2};

@@ -1,5 +1,5 @@
-//! The slim bar on top: the line of generations, undo and the way on at the left; progress in the middle; arrangement,
-//! screenshot and panels at the right.
+//! The slim bar on top: the line of generations, undo and the next generation at the left; progress in the middle;
+//! arrangement, screenshot and panels at the right.
 
 use egui::{Align, Frame, Layout, Margin, Rect, Sense, Stroke, TextStyle, Ui, vec2};
 

@@ -94,7 +94,8 @@ pub fn hindrance(model: &Model) -> Option<String> {
     (!names.is_empty()).then(|| format!("Still to vote on: {}", names.join(", ")))
 }
 
-/// The hub between the pictures: three ballots, and the way on. `anchor` is the middle of its lower edge.
+/// The hub between the pictures: three ballots, and the button for the next generation. `anchor` is the middle of its
+/// lower edge.
 pub fn hub(ui: &mut Ui, model: &Model, anchor: Pos2, picture_width: f32) {
     let hindrance = hindrance(model);
     // Whatever leaves the vote buttons beside it free: a row with words, a row, or a column where pictures are narrow.

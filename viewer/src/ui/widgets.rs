@@ -94,7 +94,7 @@ pub fn ends<T>(ui: &mut Ui, left: impl FnOnce(&mut Ui) -> T, right: impl FnOnce(
     });
 }
 
-/// Text that is read when looked for.
+/// Text that matters less.
 pub fn small(ui: &mut Ui, text: impl Into<String>) {
     ui.label(RichText::new(text).small().color(Palette::of(ui.visuals()).weak));
 }
@@ -106,7 +106,7 @@ pub fn scrolled(ui: &mut Ui, room: f32, list: impl FnOnce(&mut Ui)) {
     area.auto_shrink([false, true]).show(ui, list);
 }
 
-/// The one button that leads on: filled with the accent. `icon` stands after the text.
+/// The button for the next step: filled with the accent. `icon` stands after the text.
 pub fn primary_button(ui: &mut Ui, text: &str, icon: Icon) -> Response {
     let palette = Palette::of(ui.visuals());
     let font = TextStyle::Button.resolve(ui.style());

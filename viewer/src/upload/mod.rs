@@ -13,7 +13,7 @@ use genescape_schema::scene::SkyLight;
 
 pub use ground::{GroundBuffers, RingVertex};
 pub use sky::SkyTextures;
-pub use texture::PictureUse;
+pub use texture::ImageUse;
 pub use trees::{
     DrawCommand, MATERIALS_PER_TREE_SET, MAX_LEVELS, MaterialUniform, TemplateData, TreeData, TreeMaterial,
     TreeSet,
@@ -33,7 +33,7 @@ pub struct SceneBuffers {
     pub sky: SkyLight,
     /// The land.
     pub land: GroundBuffers,
-    /// Sky pictures.
+    /// Sky images.
     pub sky_textures: SkyTextures,
     /// Trees; none if the land is bare.
     pub trees: Option<TreeSet>,

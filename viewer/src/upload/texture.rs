@@ -1,21 +1,21 @@
-//! Pictures → textures with all their mip levels.
+//! Images → textures with all their mip levels.
 
 use std::sync::Arc;
 
 use super::Uploader;
 use crate::gpu::flat;
-use crate::scene::{HdrPicture, Picture};
+use crate::scene::{HdrImage, Image};
 
-/// What a picture's numbers mean.
+/// What an image's numbers mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PictureUse {
+pub enum ImageUse {
     /// Colour in sRGB.
     Color,
     /// Numbers: normals, weights, light.
     Data,
 }
 
-impl PictureUse {
+impl ImageUse {
     fn format(self) -> wgpu::TextureFormat {
         match self {
             Self::Color => wgpu::TextureFormat::Rgba8UnormSrgb,
@@ -25,43 +25,39 @@ impl PictureUse {
 }
 
 impl Uploader {
-    /// A picture as a texture. Mip levels that its file brings are used as they are (leaves keep their coverage by
-    /// them); a picture without gets averages.
-    pub(super) fn picture(&self, picture: &Picture, kind: PictureUse) -> Arc<wgpu::Texture> {
-        self.shared(format!("{kind:?} {}", picture.name), || self.array(&[picture], kind))
+    /// An image as a texture. Mip levels that its file brings are used as they are (leaves keep their coverage by
+    /// them); an image without gets averages.
+    pub(super) fn image(&self, image: &Image, kind: ImageUse) -> Arc<wgpu::Texture> {
+        self.shared(format!("{kind:?} {}", image.name), || self.array(&[image], kind))
     }
 
-    /// Several pictures of one size as the layers of one texture.
-    pub(super) fn layers(
-        &self,
-        pictures: &[&Picture],
-        kind: PictureUse,
-    ) -> Result<Arc<wgpu::Texture>, String> {
-        let first = pictures.first().ok_or("there are no tiling textures")?;
-        let odd = pictures.iter().find(|p| (p.width_px, p.height_px) != (first.width_px, first.height_px));
+    /// Several images of one size as the layers of one texture.
+    pub(super) fn layers(&self, images: &[&Image], kind: ImageUse) -> Result<Arc<wgpu::Texture>, String> {
+        let first = images.first().ok_or("there are no tiling textures")?;
+        let odd = images.iter().find(|p| (p.width_px, p.height_px) != (first.width_px, first.height_px));
         if let Some(odd) = odd {
             return Err(format!(
                 "tiling textures differ in size: {} is {} × {}, {} is {} × {}",
                 first.name, first.width_px, first.height_px, odd.name, odd.width_px, odd.height_px
             ));
         }
-        let names: Vec<&str> = pictures.iter().map(|picture| picture.name.as_str()).collect();
-        Ok(self.shared(format!("{kind:?} {}", names.join(" ")), || self.array(pictures, kind)))
+        let names: Vec<&str> = images.iter().map(|image| image.name.as_str()).collect();
+        Ok(self.shared(format!("{kind:?} {}", names.join(" ")), || self.array(images, kind)))
     }
 
-    fn array(&self, pictures: &[&Picture], kind: PictureUse) -> wgpu::Texture {
-        let chains: Vec<Vec<Arc<[u8]>>> = pictures.iter().map(|picture| chain(picture, kind)).collect();
+    fn array(&self, images: &[&Image], kind: ImageUse) -> wgpu::Texture {
+        let chains: Vec<Vec<Arc<[u8]>>> = images.iter().map(|image| chain(image, kind)).collect();
         let levels = chains.iter().map(Vec::len).min().unwrap_or(1);
-        let (first, usage) = (pictures[0], wgpu::TextureUsages::TEXTURE_BINDING);
+        let (first, usage) = (images[0], wgpu::TextureUsages::TEXTURE_BINDING);
         let mut texture = flat(&first.name, [first.width_px, first.height_px], kind.format(), usage);
-        texture.size.depth_or_array_layers = pictures.len() as u32;
+        texture.size.depth_or_array_layers = images.len() as u32;
         texture.mip_level_count = levels as u32;
         let texels: Vec<&[u8]> = chains.iter().flat_map(|chain| &chain[..levels]).map(Arc::as_ref).collect();
         self.gpu.texture(&texture, &texels.concat())
     }
 
     /// Six faces of half floats, all squares of one size, as a cube.
-    pub(super) fn cube(&self, faces: &[HdrPicture]) -> Arc<wgpu::Texture> {
+    pub(super) fn cube(&self, faces: &[HdrImage]) -> Arc<wgpu::Texture> {
         let names: Vec<&str> = faces.iter().map(|face| face.name.as_str()).collect();
         self.shared(names.join(" "), || {
             let (format, usage) = (wgpu::TextureFormat::Rgba16Float, wgpu::TextureUsages::TEXTURE_BINDING);
@@ -82,13 +78,13 @@ impl Uploader {
     }
 }
 
-/// A picture's mip levels: its own, or averages down to one pixel.
-fn chain(picture: &Picture, kind: PictureUse) -> Vec<Arc<[u8]>> {
-    if picture.levels.len() > 1 {
-        return picture.levels.clone();
+/// An image's mip levels: its own, or averages down to one pixel.
+fn chain(image: &Image, kind: ImageUse) -> Vec<Arc<[u8]>> {
+    if image.levels.len() > 1 {
+        return image.levels.clone();
     }
-    let mut levels = picture.levels.clone();
-    let (mut width, mut height) = (picture.width_px, picture.height_px);
+    let mut levels = image.levels.clone();
+    let (mut width, mut height) = (image.width_px, image.height_px);
     while let Some(finer) = levels.last().filter(|_| width > 1 || height > 1) {
         let coarser = halve(finer, width, height, kind);
         (width, height) = ((width / 2).max(1), (height / 2).max(1));
@@ -98,7 +94,7 @@ fn chain(picture: &Picture, kind: PictureUse) -> Vec<Arc<[u8]>> {
 }
 
 /// Averages of 2 × 2 pixels; colour is averaged as light.
-fn halve(pixels: &[u8], width: u32, height: u32, kind: PictureUse) -> Vec<u8> {
+fn halve(pixels: &[u8], width: u32, height: u32, kind: ImageUse) -> Vec<u8> {
     let (half_width, half_height) = ((width / 2).max(1), (height / 2).max(1));
     let mut halved = Vec::with_capacity((half_width * half_height * 4) as usize);
     let table = linear_table();
@@ -111,7 +107,7 @@ fn halve(pixels: &[u8], width: u32, height: u32, kind: PictureUse) -> Vec<u8> {
             let four = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
             for channel in 0..4 {
                 let plain = || (four.iter().map(|&p| u32::from(pixels[p + channel])).sum::<u32>() + 2) / 4;
-                let value = if kind == PictureUse::Color && channel < 3 {
+                let value = if kind == ImageUse::Color && channel < 3 {
                     let light: f32 = four.iter().map(|&p| table[usize::from(pixels[p + channel])]).sum();
                     encode(0.25 * light)
                 } else {
@@ -146,25 +142,25 @@ fn encode(light: f32) -> u8 {
 mod tests {
     use super::*;
 
-    fn checkered(a: u8, b: u8) -> Picture {
+    fn checkered(a: u8, b: u8) -> Image {
         let pixels: Vec<u8> = (0..16).flat_map(|p| [if (p + p / 4) % 2 == 0 { a } else { b }; 4]).collect();
-        Picture { name: "checkers".into(), width_px: 4, height_px: 4, levels: vec![pixels.into()] }
+        Image { name: "checkers".into(), width_px: 4, height_px: 4, levels: vec![pixels.into()] }
     }
 
     #[test]
     fn mips_go_down_to_one_pixel_and_keep_the_mean_of_light() {
-        let levels = chain(&checkered(0, 255), PictureUse::Color);
+        let levels = chain(&checkered(0, 255), ImageUse::Color);
         assert_eq!(levels.iter().map(|level| level.len()).collect::<Vec<_>>(), [64, 16, 4]);
         // Half the light of white is sRGB 188, not 128; alpha is no light.
         assert_eq!(levels[2][..], [188, 188, 188, 128]);
-        assert_eq!(chain(&checkered(0, 255), PictureUse::Data)[2][..], [128; 4]);
+        assert_eq!(chain(&checkered(0, 255), ImageUse::Data)[2][..], [128; 4]);
     }
 
     #[test]
     fn a_file_s_own_mips_are_left_as_they_are() {
-        let mut picture = checkered(10, 20);
-        picture.levels.push(vec![7; 16].into());
-        assert_eq!(chain(&picture, PictureUse::Color), picture.levels);
+        let mut image = checkered(10, 20);
+        image.levels.push(vec![7; 16].into());
+        assert_eq!(chain(&image, ImageUse::Color), image.levels);
     }
 
     #[test]

@@ -1,9 +1,9 @@
-//! Trees: one vertex buffer and one index buffer for all kinds and levels, instances, and the commands that draw them.
+//! Trees: one vertex buffer and one index buffer for all templates and levels, instances, and the commands that draw them.
 
 use std::sync::Arc;
 
-use super::{PictureUse, Uploader};
-use crate::scene::{Instance, Material, Picture, Template, TreeVertex, Trees};
+use super::{ImageUse, Uploader};
+use crate::scene::{Image, Instance, Material, Template, TreeVertex, Trees};
 
 pub use crate::lod::tree::MAX_LEVELS;
 /// The most materials that all trees of a landscape may have: each is one draw.
@@ -15,7 +15,7 @@ pub const MATERIALS_PER_TREE_SET: usize = 4;
 pub struct TreeData {
     /// World from the template's space, by rows.
     pub rows: [[f32; 4]; 3],
-    /// Which kind.
+    /// Number of its template.
     pub template_index: u32,
     /// Greatest singular value of the linear part.
     pub scale: f32,
@@ -23,7 +23,7 @@ pub struct TreeData {
     pub pad: [f32; 2],
 }
 
-/// A kind of tree, as the shaders read it.
+/// A template, as the shaders read it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct TemplateData {
@@ -33,11 +33,11 @@ pub struct TemplateData {
     pub radius: f32,
     /// Error of each level in metres.
     pub errors: [f32; MAX_LEVELS],
-    /// How many levels.
+    /// Number of levels.
     pub levels: u32,
     /// Where its first list of visible trees starts.
     pub first: u32,
-    /// How many entries each of its lists has room for.
+    /// Entries that each of its lists has room for.
     pub capacity: u32,
     /// Error of the simple mode, [`crate::lod::tree::simple_error_m`].
     pub simple_error: f32,
@@ -49,7 +49,7 @@ pub struct TemplateData {
 pub struct DrawCommand {
     /// Indices of the mesh.
     pub indices: u32,
-    /// How many trees; written by the device.
+    /// Number of trees; written by the device.
     pub instances: u32,
     /// Where the mesh's indices start.
     pub first_index: u32,
@@ -78,23 +78,23 @@ pub struct MaterialUniform {
 /// All trees of a landscape on the device.
 #[derive(Debug)]
 pub struct TreeSet {
-    /// [`TreeVertex`] of all kinds and levels.
+    /// [`TreeVertex`] of all templates and levels.
     pub vertices: wgpu::Buffer,
     /// 32-bit.
     pub indices: wgpu::Buffer,
     /// [`TreeData`] of each tree.
     pub trees: wgpu::Buffer,
-    /// How many trees.
+    /// Number of trees.
     pub count: u32,
-    /// [`TemplateData`] of each kind.
+    /// [`TemplateData`] of each template.
     pub templates: wgpu::Buffer,
-    /// How many kinds.
+    /// Number of templates.
     pub template_count: u32,
-    /// The most levels that a kind has.
+    /// Levels of the template that has most.
     pub level_count: u32,
-    /// One for each material, level and kind, in this order of significance, nearest levels first, with no trees yet.
+    /// One for each material, level and template, in this order of significance, nearest levels first, with no trees yet.
     pub commands: Vec<DrawCommand>,
-    /// Triangles of one tree for each level and kind, all materials together: index level · kinds + kind.
+    /// Triangles of one tree for each level and template, all materials together: index level · templates + template.
     pub triangles: Vec<u32>,
     /// What the trees are made of.
     pub materials: Vec<TreeMaterial>,
@@ -127,8 +127,9 @@ impl Uploader {
         let (gpu, materials) = (&self.gpu, common_materials(trees));
         let lists = arrange(trees, &materials);
         let all_trees: Vec<TreeData> = trees.instances.iter().map(tree_data).collect();
-        let vertices: Vec<&[TreeVertex]> = trees.templates.iter().map(|kind| &kind.vertices[..]).collect();
-        let indices: Vec<&[u32]> = trees.templates.iter().map(|kind| &kind.indices[..]).collect();
+        let vertices: Vec<&[TreeVertex]> =
+            trees.templates.iter().map(|template| &template.vertices[..]).collect();
+        let indices: Vec<&[u32]> = trees.templates.iter().map(|template| &template.indices[..]).collect();
         Some(TreeSet {
             vertices: gpu.buffer("tree vertices", &vertices.concat(), Usage::VERTEX),
             indices: gpu.buffer("tree indices", &indices.concat(), Usage::INDEX),
@@ -153,16 +154,16 @@ impl Uploader {
             has_color: flag(material.color.is_some()),
             has_normal: flag(material.normal.is_some()),
         };
-        let picture = |picture: &Option<Picture>, otherwise: [u8; 4], kind: PictureUse| match picture {
-            Some(picture) => self.picture(picture, kind),
-            None => self.picture(&Picture::of_one_pixel(otherwise), kind),
+        let image = |image: &Option<Image>, otherwise: [u8; 4], kind: ImageUse| match image {
+            Some(image) => self.image(image, kind),
+            None => self.image(&Image::of_one_pixel(otherwise), kind),
         };
         TreeMaterial {
             name: material.name.clone(),
             masked: material.alpha_cutoff.is_some(),
             uniform: self.gpu.buffer("material", &[uniform], wgpu::BufferUsages::UNIFORM),
-            color: picture(&material.color, [255; 4], PictureUse::Color),
-            normal: picture(&material.normal, [128, 128, 255, 255], PictureUse::Data),
+            color: image(&material.color, [255; 4], ImageUse::Color),
+            normal: image(&material.normal, [128, 128, 255, 255], ImageUse::Data),
         }
     }
 }
@@ -176,15 +177,15 @@ struct Lists {
 }
 
 fn arrange(trees: &Trees, materials: &[Material]) -> Lists {
-    let kinds = trees.templates.len();
-    let buckets = level_count(trees) * kinds;
+    let templates = trees.templates.len();
+    let buckets = level_count(trees) * templates;
     let commands = vec![DrawCommand::default(); buckets * materials.len()];
     let mut lists = Lists { templates: Vec::new(), commands, triangles: vec![0; buckets], capacity: 0 };
     let (mut base_vertex, mut base_index) = (0, 0);
-    for (kind, template) in trees.templates.iter().enumerate() {
-        let capacity = trees.instances.iter().filter(|tree| tree.template as usize == kind).count() as u32;
+    for (index, template) in trees.templates.iter().enumerate() {
+        let capacity = trees.instances.iter().filter(|tree| tree.template as usize == index).count() as u32;
         for (number, level) in template.levels.iter().take(MAX_LEVELS).enumerate() {
-            let bucket = number * kinds + kind;
+            let bucket = number * templates + index;
             for (range, material) in level.ranges.iter().zip(&template.materials) {
                 let slot = materials.iter().position(|known| same(known, material)).unwrap_or(0);
                 lists.commands[slot * buckets + bucket] = DrawCommand {
@@ -205,7 +206,7 @@ fn arrange(trees: &Trees, materials: &[Material]) -> Lists {
     lists
 }
 
-/// Levels of a kind that are drawn.
+/// Levels of a template that are drawn.
 fn depth(template: &Template) -> usize {
     template.levels.len().min(MAX_LEVELS)
 }
@@ -240,7 +241,7 @@ fn tree_data(instance: &Instance) -> TreeData {
     }
 }
 
-/// Materials of all kinds, equal ones once; beyond the greatest number the first stands in.
+/// Materials of all templates, equal ones once; beyond [`MATERIALS_PER_TREE_SET`] the first is used instead.
 fn common_materials(trees: &Trees) -> Vec<Material> {
     let mut materials: Vec<Material> = Vec::new();
     for material in trees.templates.iter().flat_map(|template| &template.materials) {
@@ -255,7 +256,7 @@ fn common_materials(trees: &Trees) -> Vec<Material> {
 }
 
 fn same(a: &Material, b: &Material) -> bool {
-    let name = |picture: &Option<Picture>| picture.as_ref().map(|picture| picture.name.clone());
+    let name = |image: &Option<Image>| image.as_ref().map(|image| image.name.clone());
     (name(&a.color), name(&a.normal), a.color_factor, a.alpha_cutoff)
         == (name(&b.color), name(&b.normal), b.color_factor, b.alpha_cutoff)
 }

@@ -4,11 +4,11 @@
 use genescape_viewer::camera::{Camera, Frustum};
 use genescape_viewer::gpu::Gpu;
 use genescape_viewer::headless::Headless;
+use genescape_viewer::image_file;
 use genescape_viewer::lod::tree::{MAX_LEVELS, MIN_DISTANCE_M, simple_error_m};
 use genescape_viewer::lod_mode::TreeLodMode;
 use genescape_viewer::options::Options;
 use genescape_viewer::passes::{BoundTrees, CullUniform};
-use genescape_viewer::picture_file;
 use genescape_viewer::scene::Trees;
 use genescape_viewer::upload::{DrawCommand, SceneBuffers};
 use glam::Vec3;
@@ -75,7 +75,7 @@ fn eye(rng: &mut Pcg32, trees: &Trees) -> Camera {
 }
 
 fn fetch(gpu: &Gpu, from: &wgpu::Buffer) -> Vec<u8> {
-    picture_file::read_buffer(gpu, from).expect("readable")
+    image_file::read_buffer(gpu, from).expect("readable")
 }
 
 /// λ of each tree as the device chose it, `None` where it is not seen. Checks lists, counts and commands on the way.

@@ -1,4 +1,4 @@
-//! What the bake tells → how it gets on, for each scene, and what became of each stage.
+//! Events of the bake → its progress, for each scene, and what became of each stage.
 
 use genescape_cache::Cache;
 use genescape_schema::INDIVIDUALS;

@@ -7,7 +7,7 @@ use super::{Editor, Fault};
 use crate::ui::model::{FileError, Genes, ViewState};
 
 impl Editor {
-    /// The generation on show, and all that exist.
+    /// The generation that is shown, and all that exist.
     pub fn generations(&self) -> (u32, &[u32]) {
         (self.generation, &self.generations)
     }
