@@ -68,12 +68,12 @@ fn sky(document: &Document) -> Result<Sky> {
     if images.clear_faces.is_empty() {
         images.clear_faces = images.faces.clone();
     }
-    let side_px = images.faces.first().map_or(0, |face| face.width_px);
-    let is_square = |face: &HdrImage| (face.width_px, face.height_px) == (side_px, side_px);
-    for faces in [&images.faces, &images.clear_faces] {
-        if faces.len() != 6 || !faces.iter().all(is_square) {
-            return Err(document.wrong("GSC_sky does not have six square faces of one size"));
-        }
+    let is_cube = |faces: &[HdrImage]| {
+        let same = |face: &HdrImage| [face.width_px, face.height_px] == [faces[0].width_px; 2];
+        faces.len() == 6 && faces.iter().all(same)
+    };
+    if !is_cube(&images.faces) || !is_cube(&images.clear_faces) {
+        return Err(document.wrong("GSC_sky does not have six square faces of one size"));
     }
     Ok(Sky { images, light })
 }
