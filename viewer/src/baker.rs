@@ -1,8 +1,8 @@
 //! Starts the bake in the background: a thread that watches the world folder as `bake --watch` does, at a lower priority
-//! than what draws. The only file of the viewer that knows the bake; what comes of it is in the world's files, and what
-//! it tells on the way comes as [`Event`]s.
+//! than what draws. The only file of the viewer that knows the bake; its results are in the world's files, and its
+//! progress comes as [`Event`]s.
 //!
-//! Nothing that happens in here ends the viewer: a mistake in a file, a full disk, even a panic is told as
+//! Nothing that happens in here ends the viewer: a mistake in a file, a full disk, even a panic is reported as
 //! [`Event::Failed`], and the watch begins again.
 
 use std::any::Any;
@@ -14,7 +14,7 @@ use std::sync::mpsc::{Receiver, Sender, TryIter, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Error, Result};
 use genescape_bake::events::Listener;
 use genescape_bake::plan::Resolution;
 use genescape_bake::session::Session;
@@ -24,8 +24,8 @@ use thread_priority::{ThreadPriority, set_current_thread_priority};
 
 pub use genescape_bake::events::Event;
 
-/// Priority of the bake's threads from 0 to 99: half way down. At the very bottom it would never get on where the
-/// pictures are drawn by the processor, too.
+/// Priority of threads in the background, from 0 to 99: half way down. At the very bottom a bake would never get on where
+/// the pictures are drawn by the processor, too.
 const PRIORITY: u8 = 25;
 /// Until the first new attempt after a failure; each further pause is twice as long.
 const MIN_PAUSE: Duration = Duration::from_millis(250);
@@ -35,20 +35,26 @@ const MAX_PAUSE: Duration = Duration::from_secs(8);
 /// the process, and the cache doesn't mind.
 const END_TIMEOUT: Duration = Duration::from_millis(500);
 
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// How to bake: a part of the command line, whose help these comments are.
+#[derive(Clone, Debug, clap::Args)]
 pub struct BakerOptions {
-    /// Threads that compute; `None` leaves one core to the viewer.
+    /// Threads that bake [default: all cores but one]
+    #[arg(long, value_name = "N")]
     pub threads: Option<usize>,
-    /// Samples a side of the heightfield: 65, 129, 257, 513, 1025 or 2049.
-    pub side: u32,
-    /// Look several times a second, for network folders that send no events.
+
+    /// Samples a side of the heightfields that are baked, as in `bake --size`: 65, 129, 257, 513, 1025 or 2049
+    #[arg(long, value_name = "N", default_value_t = Resolution::DEFAULT_SIDE, value_parser = heightfield)]
+    pub heightfield: u32,
+
+    /// Look several times a second instead of waiting for events, for network folders that send none
+    #[arg(long)]
     pub poll: bool,
 }
 
-impl Default for BakerOptions {
-    fn default() -> Self {
-        Self { threads: None, side: Resolution::DEFAULT_SIDE, poll: false }
-    }
+fn heightfield(text: &str) -> Result<u32, String> {
+    let side = text.parse().ok();
+    side.filter(|side| Resolution::of_side(*side).is_ok())
+        .ok_or_else(|| "a heightfield has 65, 129, 257, 513, 1025 or 2049 samples a side".to_owned())
 }
 
 /// A bake in the background. Dropped, it ends.
@@ -77,8 +83,7 @@ impl Baker {
         let root = root.to_owned();
         thread::Builder::new().name("baker".into()).spawn(move || {
             let _alive: Sender<()> = alive;
-            // Without this right it is merely less polite.
-            let _ = lower_priority();
+            lower_priority();
             let attempt = || bake(&root, &options, &reporter);
             supervise(attempt, |message| (&reporter).tell(&Event::Failed { message }), &|| {
                 reporter.stopped()
@@ -102,7 +107,7 @@ impl Drop for Baker {
 
 /// Watches and bakes until told to stop, or until it can't go on.
 fn bake(root: &Path, options: &BakerOptions, reporter: &Reporter) -> Result<()> {
-    let resolution = Resolution::of_side(options.side).map_err(|text| anyhow!(text))?;
+    let resolution = Resolution::of_side(options.heightfield).map_err(Error::msg)?;
     let world = World::open_or_create(root)?;
     world.begin()?;
     let mut session = Session::new(world, pool(options.threads)?, resolution)?;
@@ -116,19 +121,19 @@ fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .thread_name(|index| format!("baker {index}"))
-        .start_handler(|_| {
-            let _ = lower_priority();
-        })
+        .start_handler(|_| lower_priority())
         .build()
         .context("cannot start threads")
 }
 
-fn lower_priority() -> Result<()> {
-    let priority = PRIORITY.try_into().map_err(|error| anyhow!("{error}"))?;
-    set_current_thread_priority(ThreadPriority::Crossplatform(priority)).map_err(|error| anyhow!("{error:?}"))
+/// Puts the calling thread behind the one that draws. Without the right to do so it is merely less polite.
+pub fn lower_priority() {
+    if let Ok(priority) = PRIORITY.try_into() {
+        let _ = set_current_thread_priority(ThreadPriority::Crossplatform(priority));
+    }
 }
 
-/// Sends what the bake tells to the owner of the [`Baker`].
+/// Sends the bake's events to the owner of the [`Baker`].
 struct Reporter {
     sender: Sender<Event>,
     wake: Box<dyn Fn() + Send + Sync>,
@@ -137,7 +142,7 @@ struct Reporter {
 
 impl Listener for &Reporter {
     fn tell(&self, event: &Event) {
-        // The baker is gone only when this thread is to end.
+        // The receiver is gone only when this thread is to end.
         if self.sender.send(event.clone()).is_ok() {
             (self.wake)();
         }
@@ -159,7 +164,7 @@ impl Host for Reporter {
 }
 
 /// Runs `attempt` again and again until it ends by itself or `stopped` says so, with growing pauses. The same failure
-/// is told once.
+/// is reported once.
 fn supervise(mut attempt: impl FnMut() -> Result<()>, tell: impl Fn(String), stopped: &dyn Fn() -> bool) {
     let (mut told, mut pause) = (None, MIN_PAUSE);
     while !stopped() {
@@ -225,7 +230,8 @@ mod tests {
 
     #[test]
     fn the_same_failure_is_told_once_and_another_again() {
-        let told = supervised(4, |attempt| Err(anyhow!(if attempt < 3 { "no disk" } else { "no folder" })));
+        let told =
+            supervised(4, |attempt| Err(Error::msg(if attempt < 3 { "no disk" } else { "no folder" })));
         assert_eq!(told, ["no disk", "no folder"]);
     }
 
@@ -256,7 +262,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let space = folder.path().join("space.ron");
         std::fs::write(&space, "Space(").expect("written");
-        let options = BakerOptions { threads: Some(1), side: 65, poll: false };
+        let options = BakerOptions { threads: Some(1), heightfield: 65, poll: false };
         let baker = Baker::start(folder.path(), options, || {}).expect("a thread");
         let failed = wait_for(&baker, |event| matches!(event, Event::Failed { .. }));
         assert!(matches!(failed, Event::Failed { message } if message.contains("space.ron:1:")));

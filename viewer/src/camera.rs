@@ -1,6 +1,7 @@
 //! A camera's place and view → the matrices and planes that drawing needs. Right-handed, y up, metres, radians;
 //! reversed depth with the far plane at infinity (thesis 5.2).
 
+use glam::camera::rh::{proj::directx, view};
 use glam::{Mat4, Vec3, Vec4};
 
 /// Distance of the near plane in metres: half of what keeps an eye from a trunk that it touches.
@@ -40,21 +41,13 @@ impl Camera {
 
     /// View space (looking along −z) from the world.
     pub fn view_from_world(&self) -> Mat4 {
-        let (right, forward) = (self.right(), self.forward());
-        let up = right.cross(forward);
-        let rotation = Mat4::from_cols(right.extend(0.0), up.extend(0.0), (-forward).extend(0.0), Vec4::W);
-        rotation.transpose() * Mat4::from_translation(-self.position_m)
+        let forward = self.forward();
+        view::look_to_mat4(self.position_m, forward, self.right().cross(forward))
     }
 
     /// Clip space from view space: depth 1 at the near plane, 0 at infinity. `aspect`: width over height.
     pub fn clip_from_view(&self, aspect: f32) -> Mat4 {
-        let y = 1.0 / libm::tanf(0.5 * self.fov_y_rad);
-        Mat4::from_cols(
-            Vec4::new(y / aspect, 0.0, 0.0, 0.0),
-            Vec4::new(0.0, y, 0.0, 0.0),
-            Vec4::new(0.0, 0.0, 0.0, -1.0),
-            Vec4::new(0.0, 0.0, NEAR_M, 0.0),
-        )
+        directx::perspective_infinite_reverse(self.fov_y_rad, aspect, NEAR_M)
     }
 
     /// Clip space from the world.

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 
 use crate::baker::BakerOptions;
+use crate::image_file::parse_size;
 use crate::options::Options;
-use crate::picture_file::parse_size;
 
 /// Shows four landscapes at once: walk through all of them, say which has the best trees, terrain and sky, and breed
 /// four new ones
@@ -24,17 +24,8 @@ pub struct Cli {
     #[arg(long)]
     pub no_bake: bool,
 
-    /// Threads that bake [default: all cores but one]
-    #[arg(long, value_name = "N")]
-    pub threads: Option<usize>,
-
-    /// Samples a side of the heightfields that are baked, as in `bake --size`: 65, 129, 257, 513, 1025 or 2049
-    #[arg(long, value_name = "N", default_value_t = BakerOptions::default().side, value_parser = heightfield)]
-    pub heightfield: u32,
-
-    /// Look several times a second instead of waiting for events, for network folders that send none
-    #[arg(long)]
-    pub poll: bool,
+    #[command(flatten)]
+    pub bake: BakerOptions,
 
     /// Keep settings in this file instead of the platform's folder for settings
     #[arg(long, value_name = "FILE")]
@@ -113,20 +104,14 @@ pub struct Place {
 }
 
 fn place(text: &str) -> Result<Place, String> {
-    let numbers: Vec<f32> = text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
-    let parts = text.split(',').count();
-    match numbers[..] {
-        [x_m, z_m, height_m, yaw_deg, pitch_deg] if parts == 5 && numbers.iter().all(|n| n.is_finite()) => {
+    let number = |part: &str| part.trim().parse().ok().filter(|number: &f32| number.is_finite());
+    let numbers: Option<Vec<f32>> = text.split(',').map(number).collect();
+    match numbers.as_deref() {
+        Some(&[x_m, z_m, height_m, yaw_deg, pitch_deg]) => {
             Ok(Place { x_m, z_m, height_m, yaw_deg, pitch_deg })
         }
         _ => Err("five numbers are needed: X,Z,HEIGHT,YAW,PITCH, as in 0,20,1.6,45,-5".to_owned()),
     }
-}
-
-fn heightfield(text: &str) -> Result<u32, String> {
-    let side = text.parse().ok();
-    side.filter(|side| [65, 129, 257, 513, 1025, 2049].contains(side))
-        .ok_or_else(|| "a heightfield has 65, 129, 257, 513, 1025 or 2049 samples a side".to_owned())
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use genescape_schema::{Category, INDIVIDUALS, Votes};
+use genescape_schema::{Category, Votes};
 use serde::{Deserialize, Serialize};
 
 use crate::input::Command;
@@ -14,39 +14,28 @@ use crate::settings::Comfort;
 pub enum Event {
     /// What keys can ask for, too.
     Command(Command),
-    Vote {
-        category: Category,
-        ballot: Ballot,
-    },
+    /// The person's opinion on a category is another one.
+    Vote { category: Category, ballot: Ballot },
     /// Show an earlier generation again, or a later one that exists already.
     GoToGeneration(u32),
+    /// The landscapes share the window in another way.
     Arrange(Arrangement),
-    /// The landscape that the genome panel is about; less than [`INDIVIDUALS`].
+    /// The landscape that the genome panel is about: 0 to 3.
     Choose(usize),
     /// Genes of one landscape change for good: names in `space.ron`, and values in the gene's unit, snapped to a code.
-    Genes {
-        individual: usize,
-        values: Vec<(String, f64)>,
-    },
+    Genes { individual: usize, values: Vec<(String, f64)> },
     /// A gene, by its name in `space.ron`, is kept from breeding and from its slider, or set free.
-    LockGene {
-        name: String,
-        locked: bool,
-    },
+    LockGene { name: String, locked: bool },
     /// The same for a whole category.
-    LockCategory {
-        category: Category,
-        locked: bool,
-    },
+    LockCategory { category: Category, locked: bool },
+    /// The new options, all of them.
     Options(Options),
+    /// The new comfort, all of it.
     Comfort(Comfort),
     /// Options and comfort as they were at the first start.
     ResetSettings,
     /// Show or hide a panel.
-    Panel {
-        panel: Panel,
-        open: bool,
-    },
+    Panel { panel: Panel, open: bool },
     /// Show another world or a baked folder: what was dropped on the window.
     OpenFolder(PathBuf),
     /// Try again what failed: baking a scene, finding an adapter.
@@ -71,8 +60,19 @@ pub enum Ballot {
     Open,
     /// None of the four pleases.
     NoFavourite,
-    /// This one is the best; less than [`INDIVIDUALS`].
+    /// This one is the best: 0 to 3.
     For(usize),
+}
+
+impl Ballot {
+    /// The best landscape, or `Some(None)` for none of them; `None` while this is open.
+    pub fn cast(self) -> Option<Option<usize>> {
+        match self {
+            Self::Open => None,
+            Self::NoFavourite => Some(None),
+            Self::For(best) => Some(Some(best)),
+        }
+    }
 }
 
 /// The ballots of all three categories.
@@ -80,15 +80,6 @@ pub enum Ballot {
 pub struct Ballots([Ballot; 3]);
 
 impl Ballots {
-    /// Votes that were cast in an earlier session.
-    pub fn from_votes(votes: Votes) -> Self {
-        let ballot = |category| match votes.get(category) {
-            Some(best) if best < INDIVIDUALS => Ballot::For(best),
-            _ => Ballot::NoFavourite,
-        };
-        Self(Category::ALL.map(ballot))
-    }
-
     /// One category's ballot.
     pub fn get(&self, category: Category) -> Ballot {
         self.0[category as usize]
@@ -103,11 +94,7 @@ impl Ballots {
     pub fn votes(&self) -> Option<Votes> {
         let mut votes = Votes::default();
         for category in Category::ALL {
-            match self.get(category) {
-                Ballot::Open => return None,
-                Ballot::NoFavourite => {}
-                Ballot::For(best) => votes.set(category, Some(best)),
-            }
+            votes.set(category, self.get(category).cast()?);
         }
         Some(votes)
     }
@@ -122,12 +109,7 @@ pub enum Arrangement {
     /// One alone.
     One(usize),
     /// Two over each other with a splitter between.
-    Compare {
-        /// Seen left of the splitter.
-        left: usize,
-        /// Seen right of it.
-        right: usize,
-    },
+    Compare { left: usize, right: usize },
 }
 
 /// What can be shown and hidden.
@@ -148,7 +130,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn votes_are_complete_only_when_no_category_is_open_and_survive_the_file() {
+    fn votes_are_complete_only_when_no_category_is_open_and_name_the_best_of_each() {
         let choices = [Ballot::Open, Ballot::NoFavourite, Ballot::For(0), Ballot::For(3)];
         for (tree, terrain, sky) in
             (0..64).map(|code: usize| (choices[code % 4], choices[code / 4 % 4], choices[code / 16]))
@@ -156,8 +138,10 @@ mod tests {
             let ballots = Ballots([tree, terrain, sky]);
             let open = [tree, terrain, sky].contains(&Ballot::Open);
             assert_eq!(ballots.votes().is_none(), open);
-            if let Some(votes) = ballots.votes() {
-                assert_eq!(Ballots::from_votes(votes), ballots);
+            for (category, vote) in
+                ballots.votes().into_iter().flat_map(|votes| Category::ALL.map(|c| (c, votes.get(c))))
+            {
+                assert_eq!(vote.map_or(Ballot::NoFavourite, Ballot::For), ballots.get(category));
             }
         }
     }

@@ -1,6 +1,8 @@
 //! The device that draws, and what it can do.
 
+use bytemuck::NoUninit;
 use thiserror::Error;
+use wgpu::{Adapter, Buffer, BufferUsages, Instance, Surface, TextureView};
 
 /// The device with its queue; cheap to clone.
 #[derive(Clone, Debug)]
@@ -44,10 +46,7 @@ const OPTIONAL: wgpu::Features = wgpu::Features::POLYGON_MODE_LINE
 
 impl Gpu {
     /// Opens the best device that can also draw to `surface`, if one is given.
-    pub fn open(
-        instance: &wgpu::Instance,
-        surface: Option<&wgpu::Surface<'_>>,
-    ) -> Result<(Self, wgpu::Adapter), GpuError> {
+    pub fn open(instance: &Instance, surface: Option<&Surface<'_>>) -> Result<(Self, Adapter), GpuError> {
         let options = wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,
             compatible_surface: surface,
@@ -85,20 +84,17 @@ impl Gpu {
     }
 
     /// A buffer with these contents.
-    pub fn buffer<T: bytemuck::NoUninit>(
-        &self,
-        label: &str,
-        contents: &[T],
-        usage: wgpu::BufferUsages,
-    ) -> wgpu::Buffer {
+    pub fn buffer<T: NoUninit>(&self, label: &str, contents: &[T], usage: BufferUsages) -> Buffer {
         use wgpu::util::DeviceExt;
-        let contents = bytemuck::cast_slice(contents);
+        let contents: &[u8] = bytemuck::cast_slice(contents);
+        // Empty buffers cannot be bound.
+        let contents = if contents.is_empty() { &[0; 16] } else { contents };
         let descriptor = wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage };
         self.device.create_buffer_init(&descriptor)
     }
 
     /// A buffer of at least that many bytes.
-    pub fn empty_buffer(&self, label: &str, bytes: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    pub fn empty_buffer(&self, label: &str, bytes: u64, usage: BufferUsages) -> Buffer {
         self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
             // Empty buffers cannot be bound.
@@ -108,10 +104,44 @@ impl Gpu {
         })
     }
 
-    /// Waits until all that was submitted is done.
+    /// A texture with these texels: layer by layer, in each mip level by mip level.
+    pub fn texture(&self, descriptor: &wgpu::TextureDescriptor<'_>, texels: &[u8]) -> wgpu::Texture {
+        use wgpu::util::{DeviceExt, TextureDataOrder::LayerMajor};
+        self.device.create_texture_with_data(&self.queue, descriptor, LayerMajor, texels)
+    }
+
+    /// Waits until everything that was submitted is done.
     pub fn wait(&self) {
         // An error here means a lost device, which the next call reports.
         let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
+    }
+}
+
+/// A picture to draw into, black at first.
+pub fn cleared<'a>(
+    view: &'a TextureView,
+    resolve_target: Option<&'a TextureView>,
+) -> Option<wgpu::RenderPassColorAttachment<'a>> {
+    let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store };
+    Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target, ops })
+}
+
+/// A texture of one layer with one mip level and one sample a texel.
+pub fn flat(
+    label: &str,
+    [width, height]: [u32; 2],
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+) -> wgpu::TextureDescriptor<'_> {
+    wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
     }
 }
 

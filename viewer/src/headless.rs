@@ -9,10 +9,9 @@ use image::RgbaImage;
 
 use crate::camera::Camera;
 use crate::gpu::Gpu;
+use crate::image_file;
 use crate::options::FrameInput;
-use crate::passes::Passes;
-use crate::passes::Shaders;
-use crate::picture_file;
+use crate::passes::{Passes, Shaders};
 use crate::scene::Scene;
 use crate::scene_loader::{Loaded, SceneLoader};
 use crate::upload::SceneBuffers;
@@ -86,7 +85,7 @@ impl Headless {
     ) -> Result<RgbaImage> {
         let (commands, _) = self.record(std::slice::from_mut(view), frame, camera, lod_camera);
         self.gpu.queue.submit([commands]);
-        picture_file::read(&self.gpu, &view.targets().display)
+        image_file::read(&self.gpu, &view.targets().display)
     }
 }
 

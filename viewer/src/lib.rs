@@ -14,14 +14,14 @@ pub mod event;
 pub mod gamepad;
 pub mod gpu;
 pub mod headless;
+pub mod image_file;
 pub mod input;
 pub mod load;
+pub mod loader;
 pub mod lod;
 pub mod lod_mode;
-
 pub mod options;
 pub mod passes;
-pub mod picture_file;
 pub mod scene;
 pub mod scene_loader;
 pub mod screenshot;

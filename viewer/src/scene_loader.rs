@@ -1,4 +1,4 @@
-//! `scene.gltf` → a landscape on the device, with its shadows drawn, and underfoot. What two landscapes have in common is
+//! `scene.gltf` → a landscape on the device, with its shadows drawn, and the land to walk on. What two landscapes have in common is
 //! read and uploaded once.
 
 use std::path::Path;

@@ -9,9 +9,9 @@ use glam::{Vec2, Vec3};
 use crate::camera::Camera;
 use crate::cli::Cli;
 use crate::headless::{Headless, scene_files};
+use crate::image_file;
 use crate::options::FrameInput;
 use crate::passes::Shaders;
-use crate::picture_file;
 use crate::say;
 use crate::walk::{Land, Rig, start_pose};
 
@@ -38,9 +38,9 @@ pub fn take(cli: &Cli, source: &Source, out: &Path) -> Result<()> {
         let camera = if options.overhead { one.land.overhead(walker.fov_y_rad) } else { walker };
         pictures.push(headless.shoot(&mut view, &frame, &camera, &walker)?);
     }
-    let sheet = picture_file::contact_sheet(&pictures, columns);
+    let sheet = image_file::contact_sheet(&pictures, columns);
     let sheet = sheet.ok_or_else(|| anyhow!("there is nothing to draw"))?;
-    picture_file::write_png(out, &sheet)?;
+    image_file::write_png(out, &sheet)?;
     let (width, height) = sheet.dimensions();
     say!("wrote {} ({width} × {height}), drawn by {}", out.display(), headless.gpu.name);
     Ok(())

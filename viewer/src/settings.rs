@@ -1,5 +1,5 @@
-//! What is kept between runs, as one RON file for people in the platform's folder for settings: options, comfort, keys,
-//! window, bookmarks, votes that were not yet written down.
+//! What is kept between runs (options, comfort, keys, window, bookmarks, votes that were not yet written down) ⇄ one RON
+//! file for people, in the platform's folder for settings.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow};
 use etcetera::{AppStrategy, AppStrategyArgs};
-use genescape_world::atomic_write;
+use genescape_world::{Source, atomic_write};
 use ron::value::RawValue;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -34,7 +34,7 @@ pub struct Settings {
     pub worlds: BTreeMap<String, WorldSettings>,
 }
 
-/// How the program feels in the hand.
+/// How the program handles.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Comfort {
@@ -71,6 +71,24 @@ impl Settings {
             .filter_map(|(part, fault)| Some((part, fault.as_ref()?)))
             .map(|(part, fault)| format!("{part} in the settings: {fault}; defaults are used"))
             .collect()
+    }
+
+    /// What was kept of a world.
+    pub fn world(&self, source: &Source) -> WorldSettings {
+        self.worlds.get(&key(source)).cloned().unwrap_or_default()
+    }
+
+    /// Keeps something of a world.
+    pub fn world_mut(&mut self, source: &Source) -> &mut WorldSettings {
+        self.worlds.entry(key(source)).or_default()
+    }
+}
+
+/// What a world's settings are kept under.
+fn key(source: &Source) -> String {
+    match source {
+        Source::World(root) => fs::canonicalize(root).unwrap_or_else(|_| root.clone()).display().to_string(),
+        Source::Scenes(_) => "scenes".to_owned(),
     }
 }
 
@@ -150,21 +168,14 @@ impl<'de, T: DeserializeOwned + Default> Deserialize<'de> for Part<T> {
     }
 }
 
-/// Where settings are kept, and what was last known to be there.
-#[derive(Clone, Debug)]
+/// The settings in use, and the file in which they are kept.
+#[derive(Clone, Debug, Default)]
 pub struct SettingsFile {
-    path: PathBuf,
-    saved: Option<Settings>,
-}
-
-/// What was found, and what the person should know about it.
-#[derive(Debug)]
-pub struct Opened {
-    pub file: SettingsFile,
-    /// The settings; defaults if there are none, or none that can be read.
     pub settings: Settings,
-    /// What was wrong, with file and line, and what became of the file.
-    pub problems: Vec<String>,
+    /// `None`: nowhere, or no longer after an error.
+    path: Option<PathBuf>,
+    /// What the file says, as far as is known; `None` if there is none, or none that can be read.
+    saved: Option<Settings>,
 }
 
 impl SettingsFile {
@@ -179,32 +190,28 @@ impl SettingsFile {
         Some(strategy.config_dir().join("viewer.ron"))
     }
 
-    /// Reads the settings in `path`. Never fails: a file that cannot be understood is renamed and kept, so that the
-    /// person can mend it, and defaults are used.
-    pub fn open(path: impl Into<PathBuf>) -> Opened {
-        let path = path.into();
-        match fs::read_to_string(&path) {
-            Ok(text) => match parse(&text) {
-                Ok(settings) => {
-                    let file = Self { path, saved: Some(settings.clone()) };
-                    Opened { file, problems: settings.faults(), settings }
+    /// Reads the settings in `path`; without one they are kept nowhere. Never fails: a file that cannot be understood is
+    /// renamed and kept, so that the person can mend it, and defaults are used. The texts say what was wrong, with file
+    /// and line, and what became of the file.
+    pub fn open(path: Option<PathBuf>) -> (Self, Vec<String>) {
+        let mut file = Self { path, ..Self::default() };
+        let problems = match &file.path {
+            None => Vec::new(),
+            Some(path) => match fs::read_to_string(path).map(|text| parse(&text)) {
+                Ok(Ok(settings)) => {
+                    file.saved = Some(settings.clone());
+                    file.settings = settings;
+                    file.settings.faults()
                 }
-                Err(fault) => {
-                    let problem = format!("{}:{fault}\n{}", path.display(), set_aside(&path));
-                    Self::defaults(path, vec![problem])
+                Ok(Err(fault)) => vec![format!("{}:{fault}\n{}", path.display(), set_aside(path))],
+                Err(error) if error.kind() == io::ErrorKind::NotFound => Vec::new(),
+                Err(error) => {
+                    let path = path.display();
+                    vec![format!("cannot read the settings in {path}: {error}; defaults are used")]
                 }
             },
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Self::defaults(path, Vec::new()),
-            Err(error) => {
-                let told = path.display();
-                let problem = format!("cannot read the settings in {told}: {error}; defaults are used");
-                Self::defaults(path, vec![problem])
-            }
-        }
-    }
-
-    fn defaults(path: PathBuf, problems: Vec<String>) -> Opened {
-        Opened { file: Self { path, saved: None }, settings: Settings::default(), problems }
+        };
+        (file, problems)
     }
 
     /// Whether there is no settings file yet, or none that can be read.
@@ -212,26 +219,23 @@ impl SettingsFile {
         self.saved.is_none()
     }
 
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
     /// Saves the settings if they are not what the file says already: cheap enough to be called whenever something
     /// may have changed, but not every frame.
     ///
     /// # Errors
-    /// A file that cannot be written; the old one is then untouched.
-    pub fn save(&mut self, settings: &Settings) -> Result<()> {
-        if self.saved.as_ref() == Some(settings) {
+    /// A file that cannot be written; the old one is then untouched. It is reported once, for the person may have a reason to
+    /// keep that file as it is.
+    pub fn save(&mut self) -> Result<()> {
+        let Some(path) = self.path.take_if(|_| self.saved.as_ref() != Some(&self.settings)) else {
             return Ok(());
-        }
+        };
         let style = ron::ser::PrettyConfig::new().indentor("    ").struct_names(true);
-        let text = format!("{TITLE}{}\n", ron::ser::to_string_pretty(settings, style)?);
-        atomic_write::replace(&self.path, &text).map_err(|error| {
-            let told = self.path.display();
-            anyhow!("cannot save the settings in {told}: {error}; --settings FILE keeps them elsewhere")
+        let text = format!("{TITLE}{}\n", ron::ser::to_string_pretty(&self.settings, style)?);
+        atomic_write::replace(&path, &text).map_err(|error| {
+            let path = path.display();
+            anyhow!("cannot save the settings in {path}: {error}; --settings FILE keeps them elsewhere")
         })?;
-        self.saved = Some(settings.clone());
+        (self.path, self.saved) = (Some(path), Some(self.settings.clone()));
         Ok(())
     }
 }
@@ -303,14 +307,16 @@ mod tests {
         fn settings_survive_the_file(settings in settings()) {
             let folder = tempfile::tempdir().expect("a temporary folder");
             let path = folder.path().join("genescape/viewer.ron");
-            SettingsFile::open(&path).file.save(&settings).expect("saved");
-            let Opened { settings: found, problems, mut file } = SettingsFile::open(&path);
+            let (mut file, _) = SettingsFile::open(Some(path.clone()));
+            file.settings = settings.clone();
+            file.save().expect("saved");
+            let (mut file, problems) = SettingsFile::open(Some(path.clone()));
             prop_assert_eq!(problems, Vec::<String>::new());
-            prop_assert_eq!(&found, &settings);
+            prop_assert_eq!(&file.settings, &settings);
             // Saved again, the text is the same, however often.
             let text = fs::read_to_string(&path).expect("there");
             file.saved = None;
-            file.save(&found).expect("saved");
+            file.save().expect("saved");
             prop_assert_eq!(fs::read_to_string(&path).expect("there"), text);
         }
     }
@@ -318,8 +324,8 @@ mod tests {
     #[test]
     fn without_a_file_there_are_defaults_and_nothing_to_tell() {
         let folder = tempfile::tempdir().expect("a temporary folder");
-        let opened = SettingsFile::open(folder.path().join("none.ron"));
-        assert_eq!((opened.settings, opened.problems), (Settings::default(), Vec::new()));
+        let (file, problems) = SettingsFile::open(Some(folder.path().join("none.ron")));
+        assert_eq!((file.settings, problems), (Settings::default(), Vec::new()));
         assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 0);
     }
 
@@ -373,11 +379,11 @@ mod tests {
         for count in 1..=2 {
             let broken = format!("(\n  window: (width: wide{count}),\n)");
             fs::write(&path, &broken).expect("written");
-            let Opened { mut file, settings, problems } = SettingsFile::open(&path);
+            let (mut file, problems) = SettingsFile::open(Some(path.clone()));
             let problem = problems.first().expect("told");
             assert!(problem.contains("viewer.ron:2:") && problem.contains("rename it back"), "{problem}");
-            assert_eq!(settings, Settings::default());
-            file.save(&settings).expect("saved");
+            assert_eq!(file.settings, Settings::default());
+            file.save().expect("saved");
             let aside = folder.path().join(format!("viewer.broken-{count}.ron"));
             assert_eq!(fs::read_to_string(aside).expect("kept"), broken);
         }
@@ -386,10 +392,20 @@ mod tests {
     #[test]
     fn what_is_saved_already_is_not_written_again() {
         let folder = tempfile::tempdir().expect("a temporary folder");
-        let mut file = SettingsFile::open(folder.path().join("viewer.ron")).file;
-        file.save(&Settings::default()).expect("saved");
-        fs::remove_file(file.path()).expect("removed");
-        file.save(&Settings::default()).expect("nothing to do");
-        assert!(!file.path().exists());
+        let path = folder.path().join("viewer.ron");
+        let (mut file, _) = SettingsFile::open(Some(path.clone()));
+        file.save().expect("saved");
+        fs::remove_file(&path).expect("removed");
+        file.save().expect("nothing to do");
+        assert!(!path.exists());
+    }
+
+    #[test]
+    fn what_cannot_be_saved_is_told_once() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        fs::write(folder.path().join("file"), "").expect("written");
+        let (mut file, _) = SettingsFile::open(Some(folder.path().join("file/viewer.ron")));
+        assert!(file.save().is_err_and(|error| error.to_string().contains("--settings FILE")));
+        file.save().expect("kept nowhere from now on");
     }
 }

@@ -31,7 +31,7 @@ const RULES: &[Rule] = &[
             "viewer/src/app/",
             "viewer/src/load/",
             "viewer/src/bench/",
-            "viewer/src/picture_file.rs",
+            "viewer/src/image_file.rs",
             "viewer/src/settings.rs",
             "viewer/src/passes/shaders.rs",
         ],

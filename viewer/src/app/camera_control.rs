@@ -2,19 +2,18 @@
 
 use winit::window::{CursorGrabMode, Window};
 
-use crate::camera::Camera;
 use crate::input::{Command, Held};
 use crate::settings::{Bookmark, Comfort};
 use crate::walk::{Feel, Land, Mode, Pose, Rig, start_pose};
 
 /// What moves the camera.
 pub struct CameraControl {
-    rig: Rig,
+    pub rig: Rig,
     /// Keys and buttons that are down.
     pub held: Held,
     /// The pointer steers the view.
     captured: bool,
-    /// A walk has begun: the place is the person's, no longer ours to choose.
+    /// A walk has begun: the person has chosen the place, and it is kept.
     begun: bool,
     /// Nothing was held at the last step.
     resting: bool,
@@ -23,7 +22,7 @@ pub struct CameraControl {
 }
 
 impl CameraControl {
-    /// At rest in the middle. The text says why no gamepad is heard, where that is so.
+    /// At rest in the middle. The text says why gamepads cannot be read, if so.
     pub fn new() -> (Self, Option<String>) {
         #[cfg(feature = "gamepad")]
         let (gamepads, problem) = crate::gamepad::Gamepads::open();
@@ -46,8 +45,7 @@ impl CameraControl {
         self.captured
     }
 
-    /// The landscapes are other ones: a camera that has not moved yet goes to their best place, any other steps out of
-    /// trunks.
+    /// The landscapes have changed: a camera that has not moved yet goes to their start, any other steps out of trunks.
     pub fn lands_changed(&mut self, lands: &[&Land]) {
         if self.begun {
             self.rig.settle(lands);
@@ -61,7 +59,7 @@ impl CameraControl {
         self.rig.go(start_pose(lands), lands);
     }
 
-    /// Moves for a frame of that many seconds; what a gamepad asked for on the way.
+    /// Moves for a frame of `dt_s` seconds. Returns what a gamepad asked for meanwhile.
     pub fn step(&mut self, dt_s: f32, comfort: &Comfort, lands: &[&Land]) -> Vec<Command> {
         let controls = self.held.controls();
         #[cfg(feature = "gamepad")]
@@ -83,17 +81,7 @@ impl CameraControl {
         commands
     }
 
-    /// The camera of a view with that land.
-    pub fn camera(&self, land: &Land, fov_y_rad: f32) -> Camera {
-        self.rig.camera(land, fov_y_rad)
-    }
-
-    /// Where all cameras are.
-    pub fn pose(&self) -> Pose {
-        self.rig.pose()
-    }
-
-    /// Walk, fly, orbit; the mode from now on.
+    /// Goes on to the next of walk, fly and orbit, and returns it.
     pub fn next_mode(&mut self, lands: &[&Land]) -> Mode {
         self.begun = true;
         self.rig.cycle_mode(lands);
@@ -132,7 +120,7 @@ impl CameraControl {
         self.rig.go(pose, lands);
     }
 
-    /// Before landscapes are there: goes to where the last session ended; without such a place it is ours to choose.
+    /// Before landscapes are loaded: goes to where the last session ended. Without such a place the landscapes decide.
     pub fn return_to(&mut self, place: Option<&Bookmark>) {
         self.begun = false;
         if let Some(place) = place {

@@ -7,10 +7,10 @@ use winit::window::Fullscreen;
 
 use super::{App, lands};
 use crate::event::{Arrangement, Ballot, Event, Panel};
+use crate::image_file;
 use crate::input::{Best, Command};
 use crate::lod_mode::LodMode;
 use crate::options::Options;
-use crate::picture_file;
 use crate::ui::Tone;
 
 impl App {
@@ -19,7 +19,7 @@ impl App {
             return self.command(command, events);
         }
         self.log.event(&event);
-        let settings = &mut self.preferences.settings;
+        let settings = &mut self.file.settings;
         match event {
             Event::Command(_) => {}
             Event::Vote { category, ballot } => self.editor.vote(category, ballot),
@@ -48,7 +48,7 @@ impl App {
 
     fn command(&mut self, command: Command, events: &ActiveEventLoop) {
         self.log.event(&command);
-        let options = &mut self.preferences.settings.options;
+        let options = &mut self.file.settings.options;
         match command {
             // Held: the camera asks for them at each frame.
             Command::Forward | Command::Back | Command::Left | Command::Right => {}
@@ -79,13 +79,13 @@ impl App {
             Command::Quit => events.exit(),
             Command::NextTreeLod => {
                 options.tree_lod = options.tree_lod.next();
-                let text = format!("Trees' levels of detail: {}", options.tree_lod.label());
-                self.tell(Tone::Info, text);
+                let mode = options.tree_lod.label();
+                self.tell(Tone::Info, format!("Trees' levels of detail: {mode}"));
             }
             Command::NextTerrainLod => {
                 options.terrain_lod = options.terrain_lod.next();
-                let text = format!("Terrain's levels of detail: {}", options.terrain_lod.label());
-                self.tell(Tone::Info, text);
+                let mode = options.terrain_lod.label();
+                self.tell(Tone::Info, format!("Terrain's levels of detail: {mode}"));
             }
             Command::Wireframe => options.wireframe ^= true,
             Command::Tint => options.tint_levels ^= true,
@@ -103,7 +103,7 @@ impl App {
     fn vote_by_key(&mut self, category: Category, landscape: Option<u8>) {
         let ballot =
             landscape.map_or(Ballot::NoFavourite, |landscape| Ballot::For(usize::from(landscape) - 1));
-        let known = self.editor.ballots().get(category);
+        let known = self.editor.ballots.get(category);
         self.editor.vote(category, if known == ballot { Ballot::Open } else { ballot });
     }
 
@@ -122,13 +122,13 @@ impl App {
     }
 
     fn set_bookmark(&mut self, number: u8) {
-        let world = self.preferences.world_mut(&self.start.source);
+        let world = self.file.settings.world_mut(&self.source);
         world.bookmarks.insert(number, self.camera.bookmark());
         self.tell(Tone::Success, format!("This place is bookmark {number}"));
     }
 
     fn go_to_bookmark(&mut self, number: u8) {
-        match self.preferences.world(&self.start.source).bookmarks.get(&number) {
+        match self.file.settings.world(&self.source).bookmarks.get(&number) {
             Some(mark) => self.camera.go_to(mark, &lands(&self.live)),
             None => self.tell(Tone::Info, format!("Bookmark {number} is not set")),
         }
@@ -138,9 +138,9 @@ impl App {
     fn save_screenshot(&mut self) {
         let Some(live) = &self.live else { return };
         let saved = live.viewports.pixels(&self.layout.shown()).and_then(|pictures| {
-            let sheet = picture_file::contact_sheet(&pictures, 2.min(pictures.len().max(1)));
+            let sheet = image_file::contact_sheet(&pictures, 2.min(pictures.len().max(1)));
             let sheet = sheet.ok_or_else(|| anyhow::anyhow!("there is no picture yet"))?;
-            picture_file::write_numbered(&self.start.pictures, &sheet)
+            image_file::write_numbered(&self.cli.pictures, &sheet)
         });
         match saved {
             Ok(path) => self.tell(Tone::Success, format!("Saved {}", path.display())),

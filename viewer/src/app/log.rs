@@ -17,7 +17,6 @@ use egui::accesskit::{Node, Role, TreeUpdate};
 use genescape_schema::{Category, INDIVIDUALS};
 use serde_json::{Value, json};
 
-use crate::event::Ballot;
 use crate::ui::model::Model;
 use crate::upload::SceneBuffers;
 use crate::walk::Pose;
@@ -185,14 +184,10 @@ impl Log {
 
 fn ballots(model: &Model) -> Value {
     let entry = |category: Category| {
-        let ballot = match model.ballots.get(category) {
-            Ballot::Open => Value::Null,
-            Ballot::NoFavourite => json!("none"),
-            Ballot::For(best) => json!(best),
-        };
-        (category.name().to_owned(), ballot)
+        let ballot = model.ballots.get(category).cast();
+        (category.name(), ballot.map(|best| best.map_or(json!("none"), |best| json!(best))))
     };
-    Value::Object(Category::ALL.map(entry).into_iter().collect())
+    json!(BTreeMap::from(Category::ALL.map(entry)))
 }
 
 fn screen(model: &Model, size_px: [u32; 2]) -> Value {
@@ -243,7 +238,7 @@ mod tests {
             log.state("bake", json!({ "generation": value }));
             log.state("errors", json!({ "count": 0 }));
         }
-        log.event(&Ballot::NoFavourite);
+        log.event(&crate::event::Ballot::NoFavourite);
         let told: Vec<_> = lines(&path).iter().map(|line| line["what"].clone()).collect();
         assert_eq!(told, ["bake", "errors", "bake", "bake", "wish"]);
         assert_eq!(lines(&path)[2]["generation"], 2);

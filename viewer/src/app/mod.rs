@@ -1,21 +1,18 @@
 //! The application: a window, and a loop that hands each event to its owner. What each does is in its own file: [`editor`]
-//! (the person's work), [`viewports`] (the pictures), [`camera_control`], [`screen`] (the window), [`loader`] (files to
-//! device), [`log`] (what happened).
+//! (the person's work), [`viewports`] (the pictures), [`camera_control`], [`screen`] (the window), [`log`] (what
+//! happened).
 
 mod camera_control;
 mod dispatch;
-pub mod editor;
+mod editor;
 mod layout;
-pub mod loader;
 mod lod_readback;
 mod log;
 mod model;
-mod preferences;
 mod screen;
 mod viewports;
 mod window_events;
 
-use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
@@ -23,63 +20,48 @@ use genescape_world::{Change, Scope, Source, Watch, World};
 use serde_json::json;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 
-use crate::baker::{Baker, BakerOptions};
+use crate::baker::Baker;
+use crate::cli::Cli;
 use crate::gpu::Gpu;
+use crate::loader::{Loader, Request};
 use crate::options::FrameInput;
+use crate::settings::SettingsFile;
 use crate::ui::model::Model;
 use crate::ui::{self, Tone};
 use crate::walk::Land;
 use camera_control::CameraControl;
 use editor::{Editor, Task};
 use layout::Layout;
-use loader::{Loader, Request};
 use log::{Log, Moment};
-use preferences::Preferences;
-use screen::{Presented, Screen};
+use screen::Screen;
 use viewports::Viewports;
 
-/// What to show, and how.
-#[derive(Clone, Debug)]
-pub struct Start {
-    /// Where landscapes come from.
-    pub source: Source,
-    /// Where settings are kept; `None`: nowhere.
-    pub settings: Option<PathBuf>,
-    /// How to bake; `None`: another program does.
-    pub bake: Option<BakerOptions>,
-    /// A folder with WGSL files that are read again when they change.
-    pub shaders: Option<PathBuf>,
-    /// Look several times a second, for folders that send no events.
-    pub poll: bool,
-    /// Where screenshots go.
-    pub pictures: PathBuf,
-    /// Size of the window in logical pixels, if not the last one.
-    pub size: Option<[f32; 2]>,
-    /// Where to write what happens.
-    pub log: Option<PathBuf>,
-}
+/// Between two looks at whether settings have to be saved.
+const SAVE_EVERY: Duration = Duration::from_secs(2);
 
 /// Wakes the loop: something is new somewhere.
 #[derive(Clone, Copy, Debug)]
 struct Wake;
 
-/// Opens the window and stays until it is closed.
-pub fn run(start: Start) -> Result<()> {
+/// Opens the window with the landscapes of `source` and stays until it is closed.
+pub fn run(cli: Cli, source: Source) -> Result<()> {
     let events = EventLoop::<Wake>::with_user_event().build().context(
         "no window can be opened; without a display `viewer --screenshot OUT.png` draws to a file",
     )?;
-    let log = Log::create(start.log.as_deref())?;
-    let mut app = App::new(start, log, events.create_proxy());
+    let log = Log::create(cli.log.as_deref())?;
+    let mut app = App::new(cli, source, log, events.create_proxy());
     events.run_app(&mut app)?;
     app.failure.map_or(Ok(()), Err)
 }
 
 /// All parts of the application; each has one owner, and none owns the others.
 struct App {
-    start: Start,
+    cli: Cli,
+    /// Where landscapes come from.
+    source: Source,
     proxy: EventLoopProxy<Wake>,
     log: Log,
-    preferences: Preferences,
+    file: SettingsFile,
     layout: Layout,
     editor: Editor,
     camera: CameraControl,
@@ -120,29 +102,32 @@ struct Clock {
     start: Instant,
     /// When the camera moved last.
     last_step: Instant,
+    /// When settings were saved last, if they had changed.
+    last_save: Instant,
 }
 
 impl App {
-    fn new(start: Start, log: Log, proxy: EventLoopProxy<Wake>) -> Self {
-        let (preferences, problems) = Preferences::open(start.settings.as_deref());
+    fn new(cli: Cli, source: Source, log: Log, proxy: EventLoopProxy<Wake>) -> Self {
+        let (file, problems) = SettingsFile::open(cli.settings.clone().or_else(SettingsFile::usual_path));
         let (mut camera, problem) = CameraControl::new();
-        let kept = preferences.world(&start.source);
+        let kept = file.settings.world(&source);
         camera.return_to(kept.place.as_ref());
         let now = Instant::now();
         let mut app = Self {
-            editor: Editor::open(start.source.clone(), &kept),
-            preferences,
+            editor: Editor::open(source.clone(), &kept),
+            file,
             layout: Layout::default(),
             camera,
             ui: ui::State::default(),
             focus: Focus::default(),
             background: Background::default(),
-            clock: Clock { start: now, last_step: now },
+            clock: Clock { start: now, last_step: now, last_save: now },
             live: None,
             failure: None,
             log,
             proxy,
-            start,
+            source,
+            cli,
         };
         problems.into_iter().for_each(|problem| app.tell(Tone::Warning, problem));
         problem.into_iter().for_each(|problem| app.tell(Tone::Info, problem));
@@ -167,15 +152,17 @@ impl App {
     /// Watches the source's files and lets them be baked.
     fn start_background(&mut self) {
         self.background = Background::default();
-        let Source::World(root) = self.start.source.clone() else { return };
-        let shaders = self.start.shaders.clone();
+        let Source::World(root) = self.source.clone() else { return };
+        let shaders = self.cli.shaders.clone();
         let scope = Scope { scenes: true, shaders, ..Scope::of(World::new(&root)) };
-        match Watch::start(scope, self.start.poll, self.wake()) {
+        match Watch::start(scope, self.cli.bake.poll, self.wake()) {
             Ok(watch) => self.background.watch = Some(watch),
             Err(error) => self.tell(Tone::Error, format!("{} cannot be watched: {error}", root.display())),
         }
-        let Some(options) = self.start.bake.clone() else { return };
-        match Baker::start(&root, options, self.wake()) {
+        if self.cli.no_bake {
+            return;
+        }
+        match Baker::start(&root, self.cli.bake.clone(), self.wake()) {
             Ok(baker) => self.background.baker = Some(baker),
             Err(error) => self.tell(Tone::Error, format!("nothing can be baked: {error}")),
         }
@@ -184,9 +171,9 @@ impl App {
     /// Shows another world or other scenes.
     fn open(&mut self, source: Source) {
         self.save_settings();
-        let kept = self.preferences.world(&source);
+        let kept = self.file.settings.world(&source);
         self.editor = Editor::open(source.clone(), &kept);
-        self.start.source = source;
+        self.source = source;
         self.camera.return_to(kept.place.as_ref());
         if let Some(live) = &mut self.live {
             live.viewports.clear();
@@ -204,7 +191,7 @@ impl App {
         self.focus = Focus { typing: output.typing, on_picture: output.views.free };
         self.drag(&output.views);
         output.events.into_iter().for_each(|event| self.dispatch(event, events));
-        if self.preferences.due() {
+        if self.clock.last_save.elapsed() > SAVE_EVERY {
             self.save_settings();
         }
         self.pace(events, start.elapsed());
@@ -227,7 +214,7 @@ impl App {
         }
     }
 
-    /// Puts landscapes into the viewports that were read meanwhile.
+    /// Puts landscapes that were read meanwhile into the viewports.
     fn show_loaded(&mut self) {
         let Some(live) = &mut self.live else { return };
         let mut changed = false;
@@ -258,7 +245,7 @@ impl App {
 
     fn reload_shaders(&mut self) {
         let Some(live) = &mut self.live else { return };
-        match live.viewports.reload_shaders(self.preferences.settings.options.samples) {
+        match live.viewports.reload_shaders(self.file.settings.options.samples) {
             Ok(()) => {
                 self.editor.shaders(None);
                 self.tell(Tone::Success, "Shaders are new");
@@ -270,7 +257,7 @@ impl App {
     fn step_camera(&mut self, events: &ActiveEventLoop) {
         let now = Instant::now();
         let dt_s = (now - std::mem::replace(&mut self.clock.last_step, now)).as_secs_f32();
-        let comfort = &self.preferences.settings.comfort.value;
+        let comfort = &self.file.settings.comfort.value;
         let commands = self.camera.step(dt_s, comfort, &lands(&self.live));
         commands.into_iter().for_each(|command| self.dispatch(command.into(), events));
     }
@@ -278,7 +265,7 @@ impl App {
     /// Draws the landscapes and the user interface; what the person did there.
     fn draw(&mut self, model: &Model) -> Option<ui::Output> {
         let Live { screen, gpu, viewports, .. } = self.live.as_mut()?;
-        let options = self.preferences.settings.options;
+        let options = self.file.settings.options;
         let frame = FrameInput { options, time_s: self.clock.start.elapsed().as_secs_f32() };
         if let Err(error) = viewports.set_samples(options.samples) {
             self.editor.shaders(Some(error.to_string()));
@@ -293,16 +280,16 @@ impl App {
         let widgets = accessible.map(|update| log::widgets(update, full.pixels_per_point));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         viewports.record(&mut encoder, &mut screen.painter, &output.views.slots, &frame, &self.camera);
-        let presented = screen.present(full, encoder);
+        let visible = screen.present(full, encoder);
         viewports.end_frame();
         self.log.frame(Moment {
             model,
             landscapes: std::array::from_fn(|view| viewports.scene(view)),
-            pose: self.camera.pose(),
+            pose: self.camera.rig.pose(),
             size_px: screen.window.inner_size().into(),
             widgets,
         });
-        if presented == Presented::Hidden {
+        if !visible {
             viewports.pause();
             std::thread::sleep(Duration::from_millis(50));
         }
@@ -317,12 +304,12 @@ impl App {
         }
     }
 
-    /// When the next frame comes: at once, for clouds drift and waves run; but not while there is nothing to look at, and
-    /// where the processor draws while it bakes or reads, it does the one half of the time and the other half the other.
+    /// When the next frame comes: at once, for clouds drift and waves run, but not while there is nothing to look at. Where
+    /// the processor draws while it also bakes or reads, each gets half of the time.
     fn pace(&self, events: &ActiveEventLoop, frame: Duration) {
         let Some(live) = &self.live else { return };
         let idle = live.viewports.lands().is_empty();
-        let waiting = self.editor.baking().is_some() || self.editor.awaits_scenes();
+        let waiting = self.editor.bake.baking.is_some() || self.editor.awaits_scenes();
         let shared = live.gpu.software && waiting;
         let rest = match (idle, shared) {
             (true, _) => Duration::from_millis(100),
@@ -338,21 +325,22 @@ impl App {
 
     /// Writes settings down if they changed.
     fn save_settings(&mut self) {
-        let source = &self.start.source;
-        let mut kept = self.preferences.world(source);
+        self.clock.last_save = Instant::now();
+        let (source, settings) = (&self.source, &mut self.file.settings);
+        let mut kept = settings.world(source);
         self.editor.keep(&mut kept);
         // Not at every step of a walk, or the file would be written for as long as it goes.
         if self.editor.world().is_some() {
             kept.place = self.camera.rested_at().or(kept.place);
         }
-        if kept != self.preferences.world(source) {
-            *self.preferences.world_mut(source) = kept;
+        if kept != settings.world(source) {
+            *settings.world_mut(source) = kept;
         }
         if let Some(live) = &self.live {
-            live.screen.keep(&mut self.preferences.settings.window);
+            live.screen.keep(&mut settings.window);
         }
-        if let Err(error) = self.preferences.save() {
-            self.editor.settings_fault(error);
+        if let Err(error) = self.file.save() {
+            self.editor.settings_fault(error.to_string());
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::ui::model::{Model, Situation, Stats, ViewModel, ViewState};
 impl App {
     /// Fills the model for one frame.
     pub(super) fn model(&self) -> Model {
-        let (editor, settings) = (&self.editor, &self.preferences.settings);
+        let (editor, settings) = (&self.editor, &self.file.settings);
         let viewports = self.live.as_ref().map(|live| &live.viewports);
         let (generation, generations) = editor.generations();
         let views = array::from_fn(|view| {
@@ -24,15 +24,15 @@ impl App {
             situation: self.situation(&views),
             generation,
             generations: generations.to_vec(),
-            baking: editor.baking(),
+            baking: editor.bake.baking.clone(),
             undo: editor.next_undo(),
             redo: editor.next_redo(),
             views,
-            ballots: editor.ballots(),
+            ballots: editor.ballots,
             arrangement: self.layout.arrangement,
             chosen: self.layout.chosen,
             genes: editor.genes(),
-            bake_log: editor.bake_log().to_vec(),
+            bake_log: editor.bake.log.clone(),
             errors: editor.errors(),
             stats: viewports.map_or_else(Stats::default, |viewports| viewports.stats().clone()),
             keys: settings.bindings.value.help(),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use anyhow::{Result, anyhow};
 use winit::window::Window;
 
-use crate::gpu::{Gpu, GpuError};
+use crate::gpu::{Gpu, GpuError, cleared};
 use crate::settings;
 
 /// A window with its surface and what paints the user interface.
@@ -22,22 +22,12 @@ pub struct Screen {
     gpu: Gpu,
 }
 
-/// What became of a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Presented {
-    /// It is on the screen.
-    Yes,
-    /// The window cannot be seen now.
-    Hidden,
-}
-
 impl Screen {
     /// Opens a device that can draw to `window`.
     pub fn open(window: Arc<Window>) -> Result<(Self, Gpu)> {
         let instance = crate::gpu::instance();
         let surface = instance.create_surface(window.clone()).map_err(GpuError::from)?;
-        let (gpu, adapter) =
-            Gpu::open(&instance, Some(&surface)).map_err(|error: GpuError| anyhow!(error))?;
+        let (gpu, adapter) = Gpu::open(&instance, Some(&surface))?;
         let size = window.inner_size();
         let mut config = surface
             .get_default_config(&adapter, size.width.max(1), size.height.max(1))
@@ -76,8 +66,9 @@ impl Screen {
         self.surface.configure(&self.gpu.device, &self.config);
     }
 
-    /// Paints the user interface and shows it; `encoder` has recorded what it shows.
-    pub fn present(&mut self, mut output: egui::FullOutput, mut encoder: wgpu::CommandEncoder) -> Presented {
+    /// Paints the user interface and shows it; `encoder` has recorded what it shows. False if the window cannot be seen
+    /// now.
+    pub fn present(&mut self, mut output: egui::FullOutput, mut encoder: wgpu::CommandEncoder) -> bool {
         self.input.handle_platform_output(&self.window, output.platform_output);
         let pixels_per_point = output.pixels_per_point;
         let shapes = self.ctx.tessellate(output.shapes, pixels_per_point);
@@ -95,19 +86,10 @@ impl Screen {
         let frame = self.frame();
         if let Some(frame) = &frame {
             let view = frame.texture.create_view(&Default::default());
-            let attachment = wgpu::RenderPassColorAttachment {
-                view: &view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                    store: wgpu::StoreOp::Store,
-                },
-            };
             let mut pass = encoder
                 .begin_render_pass(&wgpu::RenderPassDescriptor {
                     label: Some("user interface"),
-                    color_attachments: &[Some(attachment)],
+                    color_attachments: &[cleared(&view, None)],
                     ..Default::default()
                 })
                 .forget_lifetime();
@@ -119,14 +101,10 @@ impl Screen {
         }
         // Says that all is done; egui complains of changes that are dropped.
         output.textures_delta.clear();
-        match frame {
-            Some(frame) => {
-                self.window.pre_present_notify();
-                self.gpu.queue.present(frame);
-                Presented::Yes
-            }
-            None => Presented::Hidden,
-        }
+        let Some(frame) = frame else { return false };
+        self.window.pre_present_notify();
+        self.gpu.queue.present(frame);
+        true
     }
 
     fn frame(&mut self) -> Option<wgpu::SurfaceTexture> {

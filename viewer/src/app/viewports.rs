@@ -1,10 +1,11 @@
 //! The four pictures on the device: which landscape each shows, how large they are, how long they take.
 
-use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::Result;
+use egui::TextureId;
+use egui_wgpu::Renderer;
 use genescape_schema::INDIVIDUALS;
 use image::RgbaImage;
 use wgpu_profiler::{GpuProfiler, GpuProfilerSettings, GpuTimerQueryResult};
@@ -12,10 +13,9 @@ use wgpu_profiler::{GpuProfiler, GpuProfilerSettings, GpuTimerQueryResult};
 use super::camera_control::CameraControl;
 use super::lod_readback::LodReadback;
 use crate::gpu::Gpu;
+use crate::image_file;
 use crate::options::FrameInput;
-use crate::passes::Passes;
-use crate::passes::{ShaderError, Shaders};
-use crate::picture_file;
+use crate::passes::{Passes, ShaderError, Shaders};
 use crate::scene_loader::Loaded;
 use crate::ui::arrange::Slot;
 use crate::ui::model::{PassTime, Stats};
@@ -36,10 +36,9 @@ pub struct Viewports {
     shaders: Shaders,
     views: [View; INDIVIDUALS],
     lands: [Option<Arc<Land>>; INDIVIDUALS],
-    pictures: [Option<egui::TextureId>; INDIVIDUALS],
+    pictures: [Option<TextureId>; INDIVIDUALS],
     profiler: GpuProfiler,
     lod_readback: LodReadback,
-    frames_ms: VecDeque<f32>,
     last_frame: Option<Instant>,
     stats: Stats,
 }
@@ -59,7 +58,6 @@ impl Viewports {
             views,
             lands: Default::default(),
             pictures: Default::default(),
-            frames_ms: VecDeque::new(),
             last_frame: None,
         })
     }
@@ -74,7 +72,7 @@ impl Viewports {
     }
 
     /// What the user interface knows a picture by, if there is one.
-    pub fn picture(&self, view: usize) -> Option<egui::TextureId> {
+    pub fn picture(&self, view: usize) -> Option<TextureId> {
         self.pictures[view].filter(|_| self.views[view].scene().is_some())
     }
 
@@ -103,7 +101,7 @@ impl Viewports {
     /// The finished pictures of some views, copied from the device; views without a landscape are left out.
     pub fn pixels(&self, views: &[usize]) -> Result<Vec<RgbaImage>> {
         let shown = views.iter().filter(|view| self.views[**view].scene().is_some());
-        shown.map(|&view| picture_file::read(&self.gpu, &self.views[view].targets().display)).collect()
+        shown.map(|&view| image_file::read(&self.gpu, &self.views[view].targets().display)).collect()
     }
 
     /// Compiles the shaders again; if one is wrong the last good ones go on.
@@ -128,7 +126,7 @@ impl Viewports {
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        painter: &mut egui_wgpu::Renderer,
+        painter: &mut Renderer,
         slots: &[Slot],
         frame: &FrameInput,
         control: &CameraControl,
@@ -145,7 +143,7 @@ impl Viewports {
                 let picture = view.targets().display.create_view(&Default::default());
                 register(&self.gpu, painter, &mut self.pictures[index], &picture);
             }
-            let walker = control.camera(land, fov_y_rad);
+            let walker = control.rig.camera(land, fov_y_rad);
             let camera = if frame.options.overhead { land.overhead(fov_y_rad) } else { walker };
             let drawn = view.record(encoder, &self.passes, frame, &camera, &walker, &self.profiler);
             self.stats.draws[index] = drawn.draws;
@@ -158,13 +156,9 @@ impl Viewports {
     /// After the frame was submitted: gathers what the device has measured of this and earlier ones.
     pub fn end_frame(&mut self) {
         let now = Instant::now();
-        if let Some(last) = self.last_frame.replace(now) {
-            self.frames_ms.push_back((now - last).as_secs_f32() * 1e3);
-        }
-        while self.frames_ms.len() > FRAMES {
-            self.frames_ms.pop_front();
-        }
-        self.stats.frames_ms = self.frames_ms.iter().copied().collect();
+        let frames_ms = &mut self.stats.frames_ms;
+        frames_ms.extend(self.last_frame.replace(now).map(|last| (now - last).as_secs_f32() * 1e3));
+        frames_ms.drain(..frames_ms.len().saturating_sub(FRAMES));
         for (index, view) in self.views.iter().enumerate().filter(|(view, _)| self.stats.draws[*view] > 0) {
             if let Some((set, counts)) = view.tree_counts() {
                 self.lod_readback.request(&self.gpu, index, set, counts);
@@ -186,12 +180,7 @@ impl Viewports {
     }
 }
 
-fn register(
-    gpu: &Gpu,
-    painter: &mut egui_wgpu::Renderer,
-    id: &mut Option<egui::TextureId>,
-    picture: &wgpu::TextureView,
-) {
+fn register(gpu: &Gpu, painter: &mut Renderer, id: &mut Option<TextureId>, picture: &wgpu::TextureView) {
     let filter = wgpu::FilterMode::Nearest;
     match *id {
         Some(id) => painter.update_egui_texture_from_wgpu_texture(&gpu.device, picture, filter, id),

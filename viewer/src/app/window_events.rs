@@ -12,12 +12,12 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::keyboard::PhysicalKey;
 use winit::window::{WindowAttributes, WindowId};
 
-use super::loader::Loader;
 use super::screen::Screen;
 use super::viewports::Viewports;
 use super::{App, Live, Wake};
 use crate::event::Event;
 use crate::input::{Command, Input};
+use crate::loader::Loader;
 use crate::passes::Shaders;
 
 /// Pixels of a touchpad that count as one line of a wheel.
@@ -106,18 +106,18 @@ impl App {
         if state == ElementState::Released {
             self.camera.held.release(input);
         } else if ours
-            && let Some(command) = self.camera.held.press(&self.preferences.settings.bindings.value, input)
+            && let Some(command) = self.camera.held.press(&self.file.settings.bindings.value, input)
         {
             self.dispatch(command.into(), events);
         }
     }
 
     fn open_window(&mut self, events: &ActiveEventLoop) -> Result<Live> {
-        let kept = self.preferences.settings.window;
-        let [width, height] = self.start.size.unwrap_or([kept.width, kept.height]);
+        let (asked, kept) = (self.cli.size, self.file.settings.window);
+        let [width, height] = asked.map_or([kept.width, kept.height], |size| size.map(|side| side as f32));
         let attributes = WindowAttributes::default()
             .with_title("Genescape")
-            .with_maximized(kept.maximized && self.start.size.is_none())
+            .with_maximized(kept.maximized && asked.is_none())
             .with_inner_size(winit::dpi::LogicalSize::new(width.max(480.0), height.max(320.0)));
         let window = Arc::new(events.create_window(attributes).context("no window can be opened")?);
         let (screen, gpu) = Screen::open(window)?;
@@ -125,12 +125,12 @@ impl App {
             screen.ctx.enable_accesskit();
         }
         self.log.note("start", json!({ "version": env!("CARGO_PKG_VERSION"), "adapter": gpu.name }));
-        if !gpu.software && self.preferences.are_new() {
+        if !gpu.software && self.file.is_new() {
             // Before a person chooses: a card can afford smooth edges.
-            self.preferences.settings.options.samples = 4;
+            self.file.settings.options.samples = 4;
         }
-        let shaders = Shaders::from(self.start.shaders.clone());
-        let viewports = Viewports::new(&gpu, shaders, self.preferences.settings.options.samples)?;
+        let shaders = Shaders::from(self.cli.shaders.clone());
+        let viewports = Viewports::new(&gpu, shaders, self.file.settings.options.samples)?;
         let loader = Loader::start(&gpu, self.wake())?;
         screen.window.request_redraw();
         Ok(Live { screen, gpu, viewports, loader })

@@ -10,8 +10,8 @@ use super::forest::{camera_path, forest};
 use super::report::{Aim, Report};
 use super::{Bench, frame_with};
 use crate::camera::Camera;
+use crate::image_file;
 use crate::lod_mode::{LodMode, TerrainLodMode, TreeLodMode};
-use crate::picture_file;
 use crate::view::View;
 
 /// Trees of the forest.
@@ -91,7 +91,7 @@ fn walk(bench: &Bench, runs: &mut [Run], cameras: &[Camera]) -> Result<()> {
         for run in runs.iter_mut() {
             let cost = run.draw(bench, camera);
             run.costs.push(cost);
-            let picture = picture_file::read(&bench.headless.gpu, &run.view[0].targets().display)?.into_raw();
+            let picture = image_file::read(&bench.headless.gpu, &run.view[0].targets().display)?.into_raw();
             if reference.is_empty() {
                 reference = picture.clone();
             }

@@ -1,4 +1,4 @@
-//! Where is measured: forests of any number of trees, and the camera's path across a land.
+//! Where measurements are made: forests of any number of trees, and the camera's path across a land.
 
 use glam::{Vec2, Vec3};
 

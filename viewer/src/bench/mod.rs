@@ -25,10 +25,10 @@ use genescape_world::Source;
 
 use crate::camera::Camera;
 use crate::headless::{Headless, scene_files};
+use crate::image_file::parse_size;
 use crate::lod_mode::{TerrainLodMode, TreeLodMode};
 use crate::options::{FrameInput, Options};
 use crate::passes::Shaders;
-use crate::picture_file::parse_size;
 use crate::scene::Scene;
 use crate::view::View;
 use cost::Cost;

@@ -36,7 +36,7 @@ pub(super) fn measure(bench: &mut Bench) -> Result<()> {
         for (view, times) in views.iter_mut().zip(&mut recorded) {
             let (ms, (commands, one)) = Cost::of_thread(|| headless.record(view, &frame, camera, camera));
             drop(commands);
-            // Takes along what was written to buffers, lest it pile up.
+            // Flushes what was written to buffers, which would pile up otherwise.
             headless.gpu.queue.submit([]);
             times.push(ms);
             draws = draws.max(one.draws);

@@ -36,7 +36,7 @@ struct Figure {
 }
 
 /// All figures of a run; in text each is printed as soon as it is known.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 pub(super) struct Report {
     device: String,
     software: bool,
@@ -61,11 +61,8 @@ impl Report {
             system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
             cores: std::thread::available_parallelism().map_or(0, usize::from),
             load_average_at_start: load_average(),
-            load_average_at_end: None,
-            figures: Vec::new(),
-            notes: Vec::new(),
             json,
-            measure: String::new(),
+            ..Self::default()
         };
         let kind = if gpu.software { "in software" } else { "a graphics card" };
         let Self { device, system, cores, .. } = &report;

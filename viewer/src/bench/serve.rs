@@ -19,7 +19,7 @@ use super::forest::camera_path;
 use super::{BenchArgs, frame_with};
 use crate::camera::{Camera, NEAR_M};
 use crate::headless::Headless;
-use crate::picture_file;
+use crate::image_file;
 use crate::say;
 use crate::view::View;
 
@@ -60,8 +60,8 @@ pub(super) fn run(headless: &Headless, path: &Path, args: &BenchArgs) -> Result<
         match (verb, file) {
             ("frame", None) => {}
             ("picture", Some(file)) => {
-                let picture = picture_file::read(&headless.gpu, &view[0].targets().display)?;
-                picture_file::write_png(Path::new(file), &picture)?;
+                let picture = image_file::read(&headless.gpu, &view[0].targets().display)?;
+                image_file::write_png(Path::new(file), &picture)?;
             }
             _ => bail!("{line:?} asks for nothing that is known"),
         }

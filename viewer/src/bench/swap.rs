@@ -8,8 +8,8 @@ use super::Bench;
 use super::cost::Cost;
 use super::forest::camera_path;
 use super::report::{Aim, median, quantile};
-use crate::app::loader::{Loader, Request};
 use crate::load;
+use crate::loader::{Loader, Request};
 use crate::options::FrameInput;
 use crate::upload::Uploader;
 

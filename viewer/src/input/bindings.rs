@@ -2,7 +2,7 @@
 //!
 //! In a file, bindings are a map from a command's name to its chords: `{"forward": ["W", "Up"], "undo": ["Ctrl+Z"]}`.
 //! What is not named keeps its default. A key that the file gives to one command is taken from the command that has it
-//! by default; a key that the file gives to two is an error that names both. All errors are told at once.
+//! by default; a key that the file gives to two is an error that names both. All errors are reported at once.
 
 use std::collections::BTreeMap;
 
@@ -62,13 +62,12 @@ impl Bindings {
     pub fn bind(&mut self, chord: Chord, command: Command) -> Result<(), String> {
         check(chord, command)?;
         match self.pairs.iter().find(|(known, _)| *known == chord) {
+            None => self.insert([(chord, command)]),
             Some((_, first)) if *first == command => {}
             Some((_, first)) => {
-                return Err(format!(
-                    "{chord} is given to both {first} and {command}; give one of them another key"
-                ));
+                let both = format!("{chord} is given to both {first} and {command}");
+                return Err(format!("{both}; give one of them another key"));
             }
-            None => self.insert([(chord, command)]),
         }
         Ok(())
     }
@@ -126,20 +125,12 @@ impl TryFrom<BTreeMap<String, Vec<String>>> for Bindings {
         let mut named = Vec::new();
         let mut bindings = Self { pairs: Vec::new() };
         for (name, chords) in &file {
-            let command: Command = match name.parse() {
-                Ok(command) => command,
-                Err(problem) => {
-                    problems.push(problem);
-                    continue;
-                }
-            };
+            let parsed: Result<Command, String> = name.parse();
+            let Ok(command) = parsed.map_err(|problem| problems.push(problem)) else { continue };
             named.push(command);
             for text in chords {
-                let bound = match text.parse() {
-                    Ok(chord) => bindings.bind(chord, command),
-                    Err(problem) => Err(format!("{name}: {problem}")),
-                };
-                problems.extend(bound.err());
+                let chord = text.parse().map_err(|problem| format!("{name}: {problem}"));
+                problems.extend(chord.and_then(|chord| bindings.bind(chord, command)).err());
             }
         }
         if !problems.is_empty() {
@@ -154,23 +145,20 @@ impl TryFrom<BTreeMap<String, Vec<String>>> for Bindings {
 
 /// Whether a chord can mean a command; the error says why not.
 fn check(chord: Chord, command: Command) -> Result<(), String> {
-    if command.is_held() && chord.with != Modifiers::NONE {
-        return Err(format!(
-            "{command}: {chord}: what is held down must be one key, without Ctrl, Alt or Shift"
-        ));
-    }
-    if chord.input == Input::Mouse(MouseButton::Left) {
-        return Err(format!(
-            "{command}: the left mouse button works panels and takes hold of the view; use another"
-        ));
-    }
-    Ok(())
+    let why = if command.is_held() && chord.with != Modifiers::NONE {
+        "what is held down must be one key, without Ctrl, Alt or Shift"
+    } else if chord.input == Input::Mouse(MouseButton::Left) {
+        "the left mouse button works panels and takes hold of the view; use another"
+    } else {
+        return Ok(());
+    };
+    Err(format!("{command}: {chord}: {why}"))
 }
 
 fn defaults() -> impl Iterator<Item = (Chord, Command)> {
     Command::all().flat_map(|command| {
         let keys = command.default_keys();
-        // A test sees to it that all of them are chords.
+        // A test checks that all of them are chords.
         let chords: Vec<Chord> = keys.split(" or ").filter_map(|key| key.parse().ok()).collect();
         chords.into_iter().map(move |chord| (chord, command))
     })
@@ -295,7 +283,7 @@ mod tests {
             "forward: \"Spcae\" is not a key; did you mean Space?",
             "jupm is not an action",
             "left: Ctrl+A: what is held down must be one key",
-            "undo: the left mouse button",
+            "undo: Mouse Left: the left mouse button",
         ] {
             assert!(told.contains(part), "{part} is not in\n{told}");
         }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use genescape_schema::scene::Resource;
 use serde::de::DeserializeOwned;
 
-use super::{LoadError, Store};
+use super::{LoadError, Result, Store};
 
 /// A scene file with the folder it names others from.
 pub(super) struct Document<'a> {
@@ -21,7 +21,7 @@ pub(super) struct Document<'a> {
 }
 
 impl<'a> Document<'a> {
-    pub fn open(path: &Path, store: &'a Store) -> Result<Self, LoadError> {
+    pub fn open(path: &Path, store: &'a Store) -> Result<Self> {
         let bytes =
             std::fs::read(path).map_err(|source| LoadError::Unreadable { path: path.to_owned(), source })?;
         let parsed = gltf::Gltf::from_slice(&bytes)
@@ -36,7 +36,7 @@ impl<'a> Document<'a> {
         LoadError::foreign(&self.path, what)
     }
 
-    pub fn scene(&self) -> Result<gltf::Scene<'_>, LoadError> {
+    pub fn scene(&self) -> Result<gltf::Scene<'_>> {
         self.gltf.default_scene().ok_or_else(|| self.wrong("it names no scene to show"))
     }
 
@@ -46,11 +46,7 @@ impl<'a> Document<'a> {
     }
 
     /// An extension's object, read as `T`.
-    pub fn extension<T: DeserializeOwned>(
-        &self,
-        value: Option<&serde_json::Value>,
-        name: &str,
-    ) -> Result<T, LoadError> {
+    pub fn extension<T: DeserializeOwned>(&self, value: Option<&serde_json::Value>, name: &str) -> Result<T> {
         let value = value.ok_or_else(|| self.wrong(format!("it has no {name}")))?;
         serde_json::from_value(value.clone())
             .map_err(|error| self.wrong(format!("its {name} is wrong: {error}")))
@@ -69,7 +65,7 @@ impl<'a> Document<'a> {
     }
 
     /// What a resource holds.
-    pub fn bytes(&self, resource: &Resource) -> Result<Arc<Vec<u8>>, LoadError> {
+    pub fn bytes(&self, resource: &Resource) -> Result<Arc<Vec<u8>>> {
         match (&resource.uri, resource.buffer_view) {
             (Some(uri), _) => self.store.blob(&self.file(uri)),
             (None, Some(view)) => Ok(self.view(view)?.into()),
@@ -78,7 +74,7 @@ impl<'a> Document<'a> {
     }
 
     /// A buffer view's bytes.
-    pub fn view(&self, index: usize) -> Result<Vec<u8>, LoadError> {
+    pub fn view(&self, index: usize) -> Result<Vec<u8>> {
         let view = self.gltf.views().nth(index);
         let view = view.ok_or_else(|| self.wrong(format!("it has no bufferView {index}")))?;
         let buffer = self.buffer(view.buffer().index())?;
@@ -87,7 +83,7 @@ impl<'a> Document<'a> {
     }
 
     /// A buffer's bytes.
-    pub fn buffer(&self, index: usize) -> Result<Arc<Vec<u8>>, LoadError> {
+    pub fn buffer(&self, index: usize) -> Result<Arc<Vec<u8>>> {
         if let Some(Some(known)) = self.buffers.borrow().get(index) {
             return Ok(known.clone());
         }
@@ -107,7 +103,7 @@ impl<'a> Document<'a> {
     }
 
     /// All buffers that an accessor needs, in memory.
-    pub fn fetch(&self, accessor: &gltf::Accessor<'_>) -> Result<(), LoadError> {
+    pub fn fetch(&self, accessor: &gltf::Accessor<'_>) -> Result<()> {
         if let Some(view) = accessor.view() {
             self.buffer(view.buffer().index())?;
         }
@@ -119,10 +115,7 @@ impl<'a> Document<'a> {
     }
 
     /// An accessor's values, `T` being what glTF says of its type.
-    pub fn values<T: gltf::accessor::Item + Copy>(
-        &self,
-        accessor: gltf::Accessor<'_>,
-    ) -> Result<Vec<T>, LoadError> {
+    pub fn values<T: gltf::accessor::Item + Copy>(&self, accessor: gltf::Accessor<'_>) -> Result<Vec<T>> {
         self.fetch(&accessor)?;
         let index = accessor.index();
         if accessor.size() != size_of::<T>() {
@@ -135,12 +128,12 @@ impl<'a> Document<'a> {
     }
 
     /// An accessor by number.
-    pub fn accessor(&self, index: usize) -> Result<gltf::Accessor<'_>, LoadError> {
+    pub fn accessor(&self, index: usize) -> Result<gltf::Accessor<'_>> {
         self.gltf.accessors().nth(index).ok_or_else(|| self.wrong(format!("it has no accessor {index}")))
     }
 
     /// Indices of any width.
-    pub fn indices(&self, primitive: &gltf::Primitive<'_>) -> Result<Vec<u32>, LoadError> {
+    pub fn indices(&self, primitive: &gltf::Primitive<'_>) -> Result<Vec<u32>> {
         use gltf::accessor::DataType;
         let accessor = primitive.indices().ok_or_else(|| self.wrong("a mesh has no indices"))?;
         Ok(match accessor.data_type() {

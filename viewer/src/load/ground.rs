@@ -5,10 +5,10 @@ use std::sync::Arc;
 use genescape_schema::scene::{GSC_HEIGHTFIELD, HeightfieldExtension, TerrainLod};
 
 use super::document::Document;
-use super::{LoadError, pictures};
+use super::{Result, images};
 use crate::scene::{Apron, Ground};
 
-pub(super) fn read(document: &Document) -> Result<Ground, LoadError> {
+pub(super) fn read(document: &Document) -> Result<Ground> {
     let object = document.gltf.nodes().find_map(|node| node.extension_value(GSC_HEIGHTFIELD).cloned());
     let extension: HeightfieldExtension = document.extension(object.as_ref(), GSC_HEIGHTFIELD)?;
     let name = document.name_of(&extension.lod);
@@ -22,13 +22,13 @@ pub(super) fn read(document: &Document) -> Result<Ground, LoadError> {
         field: lod.field.clone(),
         lod,
         water_level_m: extension.water_level_m,
-        surface: extension.surface.try_map(|image| pictures::png(document, image))?,
+        surface: extension.surface.try_map(|image| images::png(document, image))?,
         apron: Arc::new(apron(document)?),
     })
 }
 
 /// The mesh of the node "apron"; empty if the scene has none.
-fn apron(document: &Document) -> Result<Apron, LoadError> {
+fn apron(document: &Document) -> Result<Apron> {
     let mut apron = Apron::default();
     let Some(mesh) = document.node("apron").and_then(|node| node.mesh()) else { return Ok(apron) };
     for primitive in mesh.primitives() {

@@ -3,7 +3,7 @@
 
 mod document;
 mod ground;
-mod pictures;
+mod images;
 mod store;
 mod trees;
 
@@ -15,43 +15,24 @@ use thiserror::Error;
 
 pub use store::Store;
 
-use crate::scene::{Ground, Scene, Sky};
+use crate::scene::{Ground, HdrImage, Scene, Sky};
 use document::Document;
 
 /// Why a landscape cannot be shown.
 #[derive(Debug, Error)]
 pub enum LoadError {
-    /// A file cannot be read.
     #[error("cannot read {path}: {source}; `bake` makes it again")]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// A blob's bytes are not those that its name promises.
+    Unreadable { path: PathBuf, source: std::io::Error },
     #[error("{path} is damaged: its bytes are not those that its name promises; `bake` makes it again")]
-    Damaged {
-        /// The file.
-        path: PathBuf,
-    },
-    /// The scene is no glTF.
+    Damaged { path: PathBuf },
     #[error("{path} is no glTF file: {source}")]
-    NoGltf {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: Box<gltf::Error>,
-    },
+    NoGltf { path: PathBuf, source: Box<gltf::Error> },
     /// The scene is glTF, but none of ours.
     #[error("{path} is no landscape of Genescape: {what}")]
-    Foreign {
-        /// The file.
-        path: PathBuf,
-        /// What is missing or wrong.
-        what: String,
-    },
+    Foreign { path: PathBuf, what: String },
 }
+
+type Result<T> = std::result::Result<T, LoadError>;
 
 impl LoadError {
     fn foreign(path: &Path, what: impl Into<String>) -> Self {
@@ -60,7 +41,7 @@ impl LoadError {
 }
 
 /// Reads a landscape from its `scene.gltf`.
-pub fn load(path: &Path, store: &Store) -> Result<Scene, LoadError> {
+pub fn load(path: &Path, store: &Store) -> Result<Scene> {
     let document = Document::open(path, store)?;
     let scene = document.scene()?;
     let ground = ground::read(&document)?;
@@ -79,16 +60,20 @@ fn start(document: &Document, ground: &Ground) -> StartView {
     StartView { position_m, direction: Vec3::NEG_Z }
 }
 
-fn sky(document: &Document) -> Result<Sky, LoadError> {
+fn sky(document: &Document) -> Result<Sky> {
     let scene = document.scene()?;
     let SkyExtension { images, light } = document.extension(scene.extension_value(GSC_SKY), GSC_SKY)?;
     let mut images =
-        images.try_map(|face| pictures::exr(document, face), |layer| pictures::png(document, layer))?;
+        images.try_map(|face| images::exr(document, face), |layer| images::png(document, layer))?;
     if images.clear_faces.is_empty() {
         images.clear_faces = images.faces.clone();
     }
-    if images.faces.len() != 6 || images.clear_faces.len() != 6 {
-        return Err(document.wrong("GSC_sky has not six faces"));
+    let is_cube = |faces: &[HdrImage]| {
+        let same = |face: &HdrImage| [face.width_px, face.height_px] == [faces[0].width_px; 2];
+        faces.len() == 6 && faces.iter().all(same)
+    };
+    if !is_cube(&images.faces) || !is_cube(&images.clear_faces) {
+        return Err(document.wrong("GSC_sky does not have six square faces of one size"));
     }
     Ok(Sky { images, light })
 }

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
 use genescape_cache::Digest;
 
-use super::LoadError;
+use super::{LoadError, Result};
 
 /// Values by name. None is kept alive by it.
 #[derive(Debug, Default)]
@@ -22,8 +22,8 @@ impl Store {
     pub(super) fn get<T: Any + Send + Sync>(
         &self,
         name: &str,
-        make: impl FnOnce() -> Result<T, LoadError>,
-    ) -> Result<Arc<T>, LoadError> {
+        make: impl FnOnce() -> Result<T>,
+    ) -> Result<Arc<T>> {
         let known = self.values().get(name).and_then(Weak::upgrade);
         if let Some(Ok(known)) = known.map(Arc::downcast) {
             return Ok(known);
@@ -37,7 +37,7 @@ impl Store {
     }
 
     /// A blob's bytes, verified against its name if that is a digest (a person's own files have other names).
-    pub(super) fn blob(&self, path: &Path) -> Result<Arc<Vec<u8>>, LoadError> {
+    pub(super) fn blob(&self, path: &Path) -> Result<Arc<Vec<u8>>> {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         self.get(&format!("bytes of {name}"), || {
             let bytes = std::fs::read(path)

@@ -7,11 +7,11 @@ use glam::Vec3;
 use gltf::Semantic;
 
 use super::document::Document;
-use super::{LoadError, pictures};
-use crate::scene::{Level, Material, Range, Template, TreeVertex, Trees};
+use super::{Result, images};
+use crate::scene::{Image, Level, Material, Range, Template, TreeVertex, Trees};
 
 /// The trees; none if the scene has none.
-pub(super) fn read(document: &Document) -> Result<Trees, LoadError> {
+pub(super) fn read(document: &Document) -> Result<Trees> {
     let has = |node: &gltf::Node<'_>| node.extension_value("GSC_instances").is_some();
     let Some(node) = document.gltf.nodes().find(has) else { return Ok(Trees::default()) };
     let extension: InstancesExtension =
@@ -22,14 +22,14 @@ pub(super) fn read(document: &Document) -> Result<Trees, LoadError> {
         .templates
         .iter()
         .map(|entry| template(document, &entry.name, entry.mesh))
-        .collect::<Result<Vec<_>, _>>()?;
+        .collect::<Result<Vec<_>>>()?;
     if let Some(tree) = instances.iter().find(|tree| tree.template as usize >= templates.len()) {
         return Err(document.wrong(format!("a tree is of unknown template {}", tree.template)));
     }
     Ok(Trees { templates, instances: instances.into() })
 }
 
-fn template(document: &Document, name: &str, finest: usize) -> Result<Arc<Template>, LoadError> {
+fn template(document: &Document, name: &str, finest: usize) -> Result<Arc<Template>> {
     let mesh = mesh(document, finest)?;
     let blob = blob_name(document, &mesh);
     document.store.get(&format!("{blob} {finest}"), || {
@@ -39,7 +39,7 @@ fn template(document: &Document, name: &str, finest: usize) -> Result<Arc<Templa
     })
 }
 
-fn mesh<'a>(document: &'a Document, index: usize) -> Result<gltf::Mesh<'a>, LoadError> {
+fn mesh<'a>(document: &'a Document, index: usize) -> Result<gltf::Mesh<'a>> {
     document.gltf.meshes().nth(index).ok_or_else(|| document.wrong(format!("it has no mesh {index}")))
 }
 
@@ -58,17 +58,8 @@ fn build(
     name: &str,
     blob: &str,
     extension: &ProgressiveMeshExtension,
-) -> Result<Template, LoadError> {
-    let mut template = Template {
-        name: name.to_owned(),
-        blob: blob.to_owned(),
-        vertices: Vec::new(),
-        indices: Vec::new(),
-        levels: Vec::new(),
-        materials: Vec::new(),
-        center_m: [0.0; 3],
-        radius_m: 0.0,
-    };
+) -> Result<Template> {
+    let mut template = Template { name: name.to_owned(), blob: blob.to_owned(), ..Default::default() };
     // Numbers of the materials in the file, in the order of the finest level.
     let mut materials: Vec<usize> = Vec::new();
     for (number, level) in extension.levels.iter().enumerate() {
@@ -107,19 +98,16 @@ fn build(
     Ok(template)
 }
 
-fn check(document: &Document, template: &Template) -> Result<(), LoadError> {
+fn check(document: &Document, template: &Template) -> Result<()> {
     let errors = || template.levels.iter().map(|level| level.error_m);
-    if template.levels.is_empty() || !errors().all(|error| error.is_finite() && error > 0.0) {
-        return Err(
-            document.wrong(format!("{} has no levels of detail, or levels without error", template.name))
-        );
-    }
-    if !errors().is_sorted() {
-        return Err(
-            document.wrong(format!("the levels of {} are not in order of their errors", template.name))
-        );
-    }
-    Ok(())
+    let what = if template.levels.is_empty() || !errors().all(|error| error.is_finite() && error > 0.0) {
+        "no levels of detail, or levels without error"
+    } else if !errors().is_sorted() {
+        "levels of detail that are not in order of their errors"
+    } else {
+        return Ok(());
+    };
+    Err(document.wrong(format!("{} has {what}", template.name)))
 }
 
 /// One primitive's vertices with where they go at the end of the morph.
@@ -127,7 +115,7 @@ fn vertices(
     document: &Document,
     primitive: &gltf::Primitive<'_>,
     texcoord_deltas: Option<usize>,
-) -> Result<Vec<TreeVertex>, LoadError> {
+) -> Result<Vec<TreeVertex>> {
     let positions = primitive.get(&Semantic::Positions);
     let positions: Vec<[f32; 3]> =
         document.values(positions.ok_or_else(|| document.wrong("a tree has no positions"))?)?;
@@ -168,7 +156,7 @@ fn values_or<T: gltf::accessor::Item + Copy>(
     default: T,
     count: usize,
     what: &str,
-) -> Result<Vec<T>, LoadError> {
+) -> Result<Vec<T>> {
     let Some(accessor) = accessor else { return Ok(vec![default; count]) };
     let values = document.values(accessor)?;
     if values.len() == count {
@@ -216,18 +204,18 @@ fn sphere(vertices: &[TreeVertex]) -> ([f32; 3], f32) {
     (center.into(), radius)
 }
 
-fn read_material(document: &Document, material: &gltf::Material<'_>) -> Result<Material, LoadError> {
+fn read_material(document: &Document, material: &gltf::Material<'_>) -> Result<Material> {
     let pbr = material.pbr_metallic_roughness();
-    let picture = |texture: gltf::Texture<'_>| -> Result<crate::scene::Picture, LoadError> {
+    let read = |texture: gltf::Texture<'_>| -> Result<Image> {
         let image = texture.source();
         let (resource, mipmaps) = image_files(document, &image)?;
-        pictures::with_mips(document, &resource, &mipmaps)
+        images::with_mips(document, &resource, &mipmaps)
     };
     Ok(Material {
         name: material.name().unwrap_or("unnamed").to_owned(),
-        color: pbr.base_color_texture().map(|info| picture(info.texture())).transpose()?,
+        color: pbr.base_color_texture().map(|info| read(info.texture())).transpose()?,
         color_factor: pbr.base_color_factor(),
-        normal: material.normal_texture().map(|info| picture(info.texture())).transpose()?,
+        normal: material.normal_texture().map(|info| read(info.texture())).transpose()?,
         alpha_cutoff: match material.alpha_mode() {
             gltf::material::AlphaMode::Opaque => None,
             _ => Some(material.alpha_cutoff().unwrap_or(0.5)),
@@ -236,7 +224,7 @@ fn read_material(document: &Document, material: &gltf::Material<'_>) -> Result<M
 }
 
 /// An image's own file and those of its coarser versions.
-fn image_files(document: &Document, image: &gltf::Image<'_>) -> Result<(Resource, Vec<Resource>), LoadError> {
+fn image_files(document: &Document, image: &gltf::Image<'_>) -> Result<(Resource, Vec<Resource>)> {
     #[derive(Default, serde::Deserialize)]
     #[serde(default)]
     struct Extras {

@@ -64,14 +64,10 @@ impl BoundScene {
             Binding::texture(&land.light),
         ];
         let ground = [&land.color, &land.weights, &land.details, &land.detail_normals];
+        let ground = (0..).zip(ground.map(|texture| Binding::texture(texture)));
         Self {
             view_group: bind(gpu, "view", &layouts.view, (0..).zip(view)),
-            ground_group: bind(
-                gpu,
-                "ground",
-                &layouts.ground,
-                (0..).zip(ground.map(|texture| Binding::texture(texture))),
-            ),
+            ground_group: bind(gpu, "ground", &layouts.ground, ground),
             trees: scene.trees.as_ref().map(|set| BoundTrees::new(gpu, layouts, set)),
             terrain: Elements::new(gpu, "terrain"),
             clumps: Elements::new(gpu, "clumps of grass"),

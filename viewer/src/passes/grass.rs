@@ -8,7 +8,7 @@ use super::shaders::ShaderError;
 use super::{BoundScene, Compiler, DrawPass, PipelineDesc, Shader, buffer_layout};
 use crate::camera::Frustum;
 use crate::options::Options;
-use crate::scene::{Ground, Picture};
+use crate::scene::{Ground, Image};
 
 pub const SHADER: Shader = Shader {
     name: "grass",
@@ -130,7 +130,7 @@ pub fn clumps(ground: &Ground, eye_m: Vec3, frustum: &Frustum, out: &mut Vec<Clu
 }
 
 /// True if nothing grows in a cell: neither in its middle nor at its corners.
-fn is_bare(weights: &Picture, middle_m: Vec2, half_m: f32) -> bool {
+fn is_bare(weights: &Image, middle_m: Vec2, half_m: f32) -> bool {
     let Some(pixels) = weights.levels.first() else { return false };
     let texel = |along_m: f32, size_px: u32| {
         let along = (along_m / half_m * 0.5 + 0.5) * size_px as f32;
@@ -158,7 +158,7 @@ mod tests {
     fn slope() -> Ground {
         let mut field = Heightfield { side: 33, spacing_m: 2.0, ..Heightfield::default() };
         field.heights_m = (0..33 * 33).map(|n| (n % 33) as f32).collect();
-        let pixels = |bare: u8| Picture {
+        let pixels = |bare: u8| Image {
             name: String::new(),
             width_px: 1,
             height_px: 2,

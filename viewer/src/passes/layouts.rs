@@ -1,8 +1,8 @@
 //! What the bind groups of all passes look like, and the samplers they share.
 
 use crate::gpu::Gpu;
-use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, ShaderStages, TextureViewDimension};
-use wgpu::{BufferBindingType, SamplerBindingType, TextureSampleType};
+use wgpu::{AddressMode, CompareFunction, Sampler, ShaderStages, TextureSampleType, TextureViewDimension};
+use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType, SamplerBindingType};
 
 /// Bind group layouts by what they hold; each pass names the groups it needs.
 #[derive(Debug)]
@@ -60,6 +60,7 @@ impl Layouts {
             layout(gpu, label, visibility, (0..).zip(types.iter().copied()))
         };
         let (both, fragment) = (ShaderStages::VERTEX_FRAGMENT, ShaderStages::FRAGMENT);
+        let (clamp, repeat) = (AddressMode::ClampToEdge, AddressMode::Repeat);
         let view =
             [UNIFORM, FILTERING, FILTERING, CUBE, CUBE, IMAGE, IMAGE, DEPTH_MAP, COMPARISON, DATA, IMAGE];
         let sun_view = SUN_VIEW.map(|binding| (binding, view[binding as usize]));
@@ -71,14 +72,9 @@ impl Layouts {
             material: all("material", fragment, &[UNIFORM, IMAGE, IMAGE]),
             cull: all("culling", ShaderStages::COMPUTE, &[UNIFORM, READ, READ, WRITE, WRITE, WRITE]),
             radiance: all("radiance", fragment, &[DATA]),
-            repeating: sampler(gpu, wgpu::AddressMode::Repeat, anisotropy, None),
-            clamped: sampler(gpu, wgpu::AddressMode::ClampToEdge, 1, None),
-            comparing: sampler(
-                gpu,
-                wgpu::AddressMode::ClampToEdge,
-                1,
-                Some(wgpu::CompareFunction::LessEqual),
-            ),
+            repeating: sampler(gpu, repeat, anisotropy, None),
+            clamped: sampler(gpu, clamp, 1, None),
+            comparing: sampler(gpu, clamp, 1, Some(CompareFunction::LessEqual)),
         }
     }
 }
@@ -95,19 +91,14 @@ fn layout(
     gpu.device.create_bind_group_layout(&descriptor)
 }
 
-fn sampler(
-    gpu: &Gpu,
-    address: wgpu::AddressMode,
-    anisotropy_clamp: u16,
-    compare: Option<wgpu::CompareFunction>,
-) -> wgpu::Sampler {
+fn sampler(gpu: &Gpu, address: AddressMode, anisotropy: u16, compare: Option<CompareFunction>) -> Sampler {
     gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         address_mode_u: address,
         address_mode_v: address,
         mag_filter: wgpu::FilterMode::Linear,
         min_filter: wgpu::FilterMode::Linear,
         mipmap_filter: wgpu::MipmapFilterMode::Linear,
-        anisotropy_clamp,
+        anisotropy_clamp: anisotropy,
         compare,
         ..Default::default()
     })

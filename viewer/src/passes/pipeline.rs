@@ -3,6 +3,7 @@
 use super::shaders::{ShaderError, Shaders};
 use super::{DEPTH, DISPLAY, Layouts, RADIANCE, SHADOW};
 use crate::gpu::Gpu;
+use wgpu::{BindGroupLayout, ComputePipeline, ComputePipelineDescriptor};
 
 /// A pass's WGSL, and the numbers that it has in common with Rust.
 #[derive(Debug)]
@@ -47,7 +48,7 @@ pub(super) struct PipelineDesc<'a> {
     pub vertex: &'a str,
     pub fragment: Option<&'a str>,
     pub buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
-    pub groups: &'a [&'a wgpu::BindGroupLayout],
+    pub groups: &'a [&'a BindGroupLayout],
     pub topology: wgpu::PrimitiveTopology,
     pub cull: Option<wgpu::Face>,
     pub blend: Option<wgpu::BlendState>,
@@ -59,7 +60,7 @@ pub(super) struct PipelineDesc<'a> {
 impl<'a> PipelineDesc<'a> {
     /// Filled triangles with two sides that hide what is behind, from the entry points "vertex" and "fragment" into
     /// radiance: what most passes draw.
-    pub fn new(shader: &'a Module, groups: &'a [&'a wgpu::BindGroupLayout]) -> Self {
+    pub fn new(shader: &'a Module, groups: &'a [&'a BindGroupLayout]) -> Self {
         Self {
             shader,
             vertex: "vertex",
@@ -87,7 +88,7 @@ impl Compiler<'_> {
         Ok(Module { module: self.shaders.module(&self.gpu.device, shader.name)?, shader })
     }
 
-    fn layout(&self, label: &str, groups: &[Option<&wgpu::BindGroupLayout>]) -> wgpu::PipelineLayout {
+    fn layout(&self, label: &str, groups: &[Option<&BindGroupLayout>]) -> wgpu::PipelineLayout {
         self.gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(label),
             bind_group_layouts: groups,
@@ -96,13 +97,8 @@ impl Compiler<'_> {
     }
 
     /// A compute pipeline whose bindings are all in group 1: group 0 is what `common.wgsl` declares.
-    pub fn compute(
-        &self,
-        shader: &Module,
-        group: &wgpu::BindGroupLayout,
-        entry: &str,
-    ) -> wgpu::ComputePipeline {
-        self.gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+    pub fn compute(&self, shader: &Module, group: &BindGroupLayout, entry: &str) -> ComputePipeline {
+        self.gpu.device.create_compute_pipeline(&ComputePipelineDescriptor {
             label: Some(entry),
             layout: Some(&self.layout(shader.shader.name, &[None, Some(group)])),
             module: &shader.module,

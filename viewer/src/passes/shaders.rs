@@ -1,5 +1,5 @@
 //! WGSL sources: built in, or from a folder while one works on them. Each is `common.wgsl` followed by a pass's own,
-//! checked by naga so that errors are told with file and line before the driver sees anything.
+//! checked by naga so that errors are reported with file and line before the driver sees anything.
 
 use std::path::PathBuf;
 

@@ -5,11 +5,11 @@ use super::layouts::SUN_VIEW;
 use super::shaders::ShaderError;
 use super::trees::{TreePipelines, buffers};
 use super::view_uniform::shadow_from_world;
-use super::{
-    Binding, BoundTrees, Compiler, Cull, CullUniform, Layouts, PipelineDesc, Shader, Target, ViewUniform,
-};
+use super::{Binding, BoundTrees, Compiler, Cull, CullUniform, Layouts};
+use super::{PipelineDesc, Shader, Target, ViewUniform};
 use crate::gpu::Gpu;
 use crate::upload::SceneBuffers;
+use wgpu::{CommandEncoder, LoadOp, RenderPass, TextureView};
 
 pub const SHADER: Shader = Shader {
     name: "shadow",
@@ -63,7 +63,7 @@ impl Shadow {
         let map = scene.shadow_map.create_view(&Default::default());
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         {
-            let mut pass = begin(&mut encoder, &map, wgpu::LoadOp::Clear(1.0));
+            let mut pass = begin(&mut encoder, &map, LoadOp::Clear(1.0));
             pass.set_bind_group(0, &view, &[]);
             pass.set_pipeline(&self.land);
             let cells = (scene.ground.field.side - 1) / LAND_STEP;
@@ -78,7 +78,7 @@ impl Shadow {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             cull.dispatch(&mut encoder.begin_compute_pass(&Default::default()), &trees);
             {
-                let mut pass = begin(&mut encoder, &map, wgpu::LoadOp::Load);
+                let mut pass = begin(&mut encoder, &map, LoadOp::Load);
                 pass.set_bind_group(0, &view, &[]);
                 self.trees.draw(&mut pass, set, &trees);
             }
@@ -87,11 +87,7 @@ impl Shadow {
     }
 }
 
-fn begin<'a>(
-    encoder: &'a mut wgpu::CommandEncoder,
-    map: &wgpu::TextureView,
-    load: wgpu::LoadOp<f32>,
-) -> wgpu::RenderPass<'a> {
+fn begin<'a>(encoder: &'a mut CommandEncoder, map: &TextureView, load: LoadOp<f32>) -> RenderPass<'a> {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("shadows"),
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
@@ -104,7 +100,7 @@ fn begin<'a>(
 }
 
 /// Hands work over and waits for it, so that pictures that others draw come in between.
-fn finish(gpu: &Gpu, encoder: wgpu::CommandEncoder) {
+fn finish(gpu: &Gpu, encoder: CommandEncoder) {
     let submitted = gpu.queue.submit([encoder.finish()]);
     // An error here means a lost device, which the next call reports.
     let _ = gpu.device.poll(wgpu::PollType::Wait { submission_index: Some(submitted), timeout: None });

@@ -1,6 +1,6 @@
 //! Camera, landscape and the person's wishes → the numbers that all shaders read (`View` in `common.wgsl`).
 
-use glam::{Mat4, Vec3, Vec4};
+use glam::{BVec3, Mat4, Vec3, Vec4};
 
 use crate::camera::Camera;
 use crate::lod::morph::Detail;
@@ -90,15 +90,10 @@ impl ViewUniform {
 
     /// What the shadow pass reads of it.
     pub fn for_sun(scene: &SceneBuffers) -> Self {
-        let field = &scene.ground.field;
+        let (field, [_, top_m]) = (&scene.ground.field, scene.ground.lod.range_m());
         Self {
             shadow_from_world: shadow_from_world(scene).to_cols_array_2d(),
-            field: [
-                field.side as f32,
-                field.spacing_m,
-                0.5 * field.extent_m(),
-                scene.ground.lod.range_m()[1],
-            ],
+            field: [field.side as f32, field.spacing_m, 0.5 * field.extent_m(), top_m],
             ..Default::default()
         }
     }
@@ -117,14 +112,10 @@ pub fn shadow_from_world(scene: &SceneBuffers) -> Mat4 {
     let up = to_sun.cross(right);
     let half = 0.5 * field.extent_m();
     let [low, high] = scene.ground.lod.range_m();
+    let (low, high) = (Vec3::new(-half, low - 5.0, -half), Vec3::new(half, high + MAX_TREE_HEIGHT_M, half));
     let (mut min, mut max) = (Vec3::MAX, Vec3::MIN);
-    for corner in 0..8 {
-        let pick = |bit: u32, a: f32, b: f32| if corner >> bit & 1 == 0 { a } else { b };
-        let place = Vec3::new(
-            pick(0, -half, half),
-            pick(1, low - 5.0, high + MAX_TREE_HEIGHT_M),
-            pick(2, -half, half),
-        );
+    for corner in 0..8u32 {
+        let place = Vec3::select(BVec3::from_array([0, 1, 2].map(|bit| corner >> bit & 1 == 1)), high, low);
         let seen = Vec3::new(right.dot(place), up.dot(place), -to_sun.dot(place));
         (min, max) = (min.min(seen), max.max(seen));
     }

@@ -1,10 +1,10 @@
-//! The land: its heights, what its levels of detail need, and what it looks like.
+//! The land as plain values: its heights, what its levels of detail need, and what covers it.
 
 use std::sync::Arc;
 
 use genescape_schema::scene::{GroundSurface, Heightfield, TerrainLod};
 
-use super::Picture;
+use super::Image;
 
 /// All of the land.
 #[derive(Clone, Debug)]
@@ -17,7 +17,7 @@ pub struct Ground {
     /// Surface of the lake in metres; `None` when the land is dry.
     pub water_level_m: Option<f32>,
     /// What covers it.
-    pub surface: GroundSurface<Picture>,
+    pub surface: GroundSurface<Image>,
     /// The coarse land around the field, to the horizon.
     pub apron: Arc<Apron>,
 }

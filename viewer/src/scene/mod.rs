@@ -2,7 +2,7 @@
 //! device. Coordinates as in glTF: right-handed, y up, metres.
 
 mod ground;
-mod picture;
+mod image;
 mod sky;
 mod trees;
 
@@ -10,7 +10,7 @@ pub use genescape_schema::scene::{
     GroundDetail, GroundSurface, Heightfield, Instance, StartView, TerrainLod,
 };
 pub use ground::{Apron, Ground};
-pub use picture::{HdrPicture, Picture};
+pub use image::{HdrImage, Image};
 pub use sky::Sky;
 pub use trees::{Level, Material, Range, Template, TreeVertex, Trees};
 

@@ -2,12 +2,12 @@
 
 use genescape_schema::scene::{SkyImages, SkyLight};
 
-use super::{HdrPicture, Picture};
+use super::{HdrImage, Image};
 
 /// What `GSC_sky` says.
 #[derive(Clone, Debug)]
 pub struct Sky {
     /// Six faces, and six faces without clouds.
-    pub images: SkyImages<HdrPicture, Picture>,
+    pub images: SkyImages<HdrImage, Image>,
     pub light: SkyLight,
 }

@@ -4,19 +4,19 @@ use std::sync::Arc;
 
 use genescape_schema::scene::Instance;
 
-use super::Picture;
+use super::Image;
 
 /// All trees of a landscape.
 #[derive(Clone, Debug, Default)]
 pub struct Trees {
-    /// Kinds of tree.
+    /// What copies are made of.
     pub templates: Vec<Arc<Template>>,
     /// Where they stand.
     pub instances: Arc<[Instance]>,
 }
 
-/// A kind of tree with all its levels of detail.
-#[derive(Clone, Debug)]
+/// A tree that stands in many places, with all its levels of detail.
+#[derive(Clone, Debug, Default)]
 pub struct Template {
     /// "tree-0".
     pub name: String,
@@ -85,11 +85,11 @@ pub struct Material {
     /// "bark", "leaf", "blossom".
     pub name: String,
     /// Albedo, sRGB, with alpha.
-    pub color: Option<Picture>,
+    pub color: Option<Image>,
     /// Factor on the albedo, linear.
     pub color_factor: [f32; 4],
     /// Normals as in glTF.
-    pub normal: Option<Picture>,
+    pub normal: Option<Image>,
     /// Pixels below this alpha are not drawn; `None` for opaque materials.
     pub alpha_cutoff: Option<f32>,
 }

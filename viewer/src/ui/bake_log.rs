@@ -1,13 +1,11 @@
 //! What the last bake reused and what it built and why; and the full text of what is wrong with the person's files.
 
-use egui::{
-    CollapsingHeader, CornerRadius, Frame, Label, Margin, RichText, ScrollArea, Sense, Stroke, Ui, vec2,
-};
+use egui::{CollapsingHeader, Frame, Label, Margin, RichText, ScrollArea, Sense, Stroke, Ui, vec2};
 
 use super::icon::Icon;
 use super::model::{FileError, StageEntry};
 use super::theme::{self, Palette};
-use super::widgets::{ends, section, sized_icon_button, small};
+use super::widgets::{Asks, ends, section, sized_icon_button, small};
 use crate::event::Event;
 
 /// Stages of the last bake; nothing if there was none.
@@ -58,24 +56,24 @@ fn row(ui: &mut Ui, entry: &StageEntry) {
 }
 
 /// The faults of the person's files, in full.
-pub fn errors(ui: &mut Ui, errors: &[FileError], events: &mut Vec<Event>) {
+pub fn errors(ui: &mut Ui, errors: &[FileError]) {
     for (index, error) in errors.iter().enumerate() {
         let palette = Palette::of(ui.visuals());
         let line = Stroke::new(1.0, palette.danger.gamma_multiply(0.6));
         let frame = Frame::NONE
             .fill(palette.sunken)
             .stroke(line)
-            .corner_radius(CornerRadius::same(theme::RADIUS))
+            .corner_radius(theme::RADIUS)
             .inner_margin(Margin::same(8))
             .outer_margin(Margin { top: 4, bottom: 4, left: 0, right: 0 });
         frame.show(ui, |ui| {
             ui.set_width(ui.available_width());
-            ui.push_id(("error", index), |ui| one(ui, index, error, events));
+            ui.push_id(("error", index), |ui| one(ui, index, error));
         });
     }
 }
 
-fn one(ui: &mut Ui, index: usize, error: &FileError, events: &mut Vec<Event>) {
+fn one(ui: &mut Ui, index: usize, error: &FileError) {
     let palette = Palette::of(ui.visuals());
     ui.horizontal(|ui| {
         Icon::Warning.show(ui, 16.0, 24.0, palette.danger);
@@ -85,15 +83,11 @@ fn one(ui: &mut Ui, index: usize, error: &FileError, events: &mut Vec<Event>) {
             |ui| ui.add(title),
             |ui| {
                 ui.spacing_mut().item_spacing.x = 2.0;
-                let mut button = |icon, verb| {
-                    let label = format!("{verb}: {}", error.title);
-                    sized_icon_button(ui, icon, &label, false, 24.0).clicked()
-                };
-                if button(Icon::Close, "Dismiss") {
-                    events.push(Event::DismissError(index));
-                }
-                if button(Icon::Copy, "Copy") {
-                    ui.ctx().copy_text(error.report.clone());
+                let label = |verb: &str| format!("{verb}: {}", error.title);
+                sized_icon_button(ui, Icon::Close, &label("Dismiss"), false, 24.0)
+                    .asks(Event::DismissError(index));
+                if sized_icon_button(ui, Icon::Copy, &label("Copy"), false, 24.0).clicked() {
+                    ui.copy_text(error.report.clone());
                 }
             },
         );

@@ -1,7 +1,7 @@
 //! What is shown where there is nothing to show yet: that landscapes are growing, or why they can't be shown and what
 //! to do about it.
 
-use egui::{Align2, Color32, CornerRadius, FontId, Rect, RichText, Sense, Ui, UiBuilder, vec2};
+use egui::{Align2, Color32, FontId, Rect, RichText, Sense, Ui, UiBuilder, vec2};
 use genescape_schema::Category;
 
 use super::icon::Icon;
@@ -11,19 +11,19 @@ use super::widgets::{Asks, primary_button, progress_bar, small};
 use crate::event::Event;
 
 /// Draws it into what is left of `ui`; false if there is something to look at, and nothing was drawn.
-pub fn show(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) -> bool {
+pub fn show(ui: &mut Ui, model: &Model) -> bool {
     if model.situation == Situation::Ready {
         return false;
     }
     let area = ui.available_rect_before_wrap();
     ui.allocate_rect(area, Sense::hover());
-    ui.painter().rect_filled(area, CornerRadius::ZERO, Palette::of(ui.visuals()).ground);
+    ui.painter().rect_filled(area, 0, Palette::of(ui.visuals()).ground);
     let width = (area.width() - 48.0).clamp(120.0, 460.0);
     let height = if model.situation == Situation::Growing { 210.0 } else { 290.0 };
     let card = Rect::from_center_size(area.center(), vec2(width, height)).intersect(area);
     let mut ui = ui.new_child(UiBuilder::new().max_rect(card));
     ui.vertical_centered(|ui| match &model.situation {
-        Situation::Stuck { title, what, remedy } => stuck(ui, title, what, remedy, events),
+        Situation::Stuck { title, what, remedy } => stuck(ui, title, what, remedy),
         Situation::Growing | Situation::Ready => growing(ui, model.baking.as_ref()),
     });
     true
@@ -50,7 +50,7 @@ fn growing(ui: &mut Ui, baking: Option<&Baking>) {
     }
 }
 
-fn stuck(ui: &mut Ui, title: &str, what: &str, remedy: &str, events: &mut Vec<Event>) {
+fn stuck(ui: &mut Ui, title: &str, what: &str, remedy: &str) {
     let palette = Palette::of(ui.visuals());
     Icon::Warning.show(ui, 40.0, 40.0, palette.warning);
     ui.add_space(8.0);
@@ -60,7 +60,7 @@ fn stuck(ui: &mut Ui, title: &str, what: &str, remedy: &str, events: &mut Vec<Ev
     ui.add_space(8.0);
     ui.label(remedy);
     ui.add_space(14.0);
-    primary_button(ui, "Try again", Icon::Reset).asks(events, Event::Retry);
+    primary_button(ui, "Try again", Icon::Reset).asks(Event::Retry);
 }
 
 /// A sign over the window while a folder is held over it.
@@ -72,9 +72,9 @@ pub fn drop_target(ui: &Ui) {
     let window = ui.ctx().content_rect();
     let layer = egui::LayerId::new(egui::Order::Tooltip, egui::Id::unique("drop target"));
     let painter = ui.ctx().layer_painter(layer);
-    painter.rect_filled(window, CornerRadius::ZERO, Color32::from_black_alpha(150));
+    painter.rect_filled(window, 0, Color32::from_black_alpha(150));
     let line = egui::Stroke::new(3.0, theme::DARK.accent);
-    painter.rect_stroke(window.shrink(14.0), CornerRadius::same(12), line, egui::StrokeKind::Inside);
+    painter.rect_stroke(window.shrink(14.0), 12, line, egui::StrokeKind::Inside);
     let font = FontId::proportional(22.0);
     let text = "Drop a world or a baked folder to open it";
     painter.text(window.center(), Align2::CENTER_CENTER, text, font, theme::ON_SCRIM);

@@ -1,16 +1,14 @@
 //! One gene of the genome panel: name, value that can be typed, lock, reset, and a slider over the gene's codes (so it
 //! snaps by itself, and is linear or logarithmic as declared), with marks where the other landscapes stand.
 
-use egui::{
-    Align, Align2, Color32, CornerRadius, FontId, Layout, Rect, Response, RichText, Sense, Stroke, Ui,
-};
+use egui::{Align, Align2, Color32, FontId, Layout, Rect, Response, RichText, Sense, Stroke, Ui};
 use egui::{pos2, vec2};
 use genescape_schema::Parameter;
 
 use super::icon::Icon;
 use super::model::Genes;
 use super::theme::Palette;
-use super::widgets::{Asks, sized_icon_button, small};
+use super::widgets::{Asks, ask, sized_icon_button, small};
 use crate::event::Event;
 
 /// What is being dragged or typed just now; the model hears of it by events only.
@@ -34,14 +32,7 @@ struct Row<'a> {
 }
 
 /// Draws the row of one gene of landscape `individual`.
-pub fn show(
-    ui: &mut Ui,
-    genes: &Genes,
-    individual: usize,
-    parameter: &Parameter,
-    state: &mut State,
-    events: &mut Vec<Event>,
-) {
+pub fn show(ui: &mut Ui, genes: &Genes, individual: usize, parameter: &Parameter, state: &mut State) {
     let locked = genes.is_locked(parameter);
     let code = match &state.dragged {
         Some((of, name, code)) if *of == individual && *name == parameter.name && !locked => *code,
@@ -56,12 +47,12 @@ pub fn show(
             row.name(ui);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 ui.spacing_mut().item_spacing.x = 2.0;
-                row.lock(ui, events);
-                row.reset(ui, events);
-                row.value(ui, state, events);
+                row.lock(ui);
+                row.reset(ui);
+                row.value(ui, state);
             });
         });
-        row.slider(ui, state, events);
+        row.slider(ui, state);
     });
 }
 
@@ -95,7 +86,7 @@ impl Row<'_> {
         });
     }
 
-    fn lock(&self, ui: &mut Ui, events: &mut Vec<Event>) {
+    fn lock(&self, ui: &mut Ui) {
         let (name, locked) = (&self.parameter.name, self.locked);
         let by_category = self.genes.locked_categories[self.parameter.category as usize];
         let (icon, verb) = if locked { (Icon::Locked, "Unlock") } else { (Icon::Unlocked, "Lock") };
@@ -105,25 +96,25 @@ impl Row<'_> {
             }
             let button = |ui: &mut Ui| sized_icon_button(ui, icon, &format!("{verb} {name}"), locked, 24.0);
             let response = ui.add_enabled_ui(!by_category, button).inner;
-            response.asks(events, Event::LockGene { name: name.clone(), locked: !locked });
+            response.asks(Event::LockGene { name: name.clone(), locked: !locked });
             if by_category {
                 response.on_disabled_hover_text("Locked with its whole category");
             }
         });
     }
 
-    fn reset(&self, ui: &mut Ui, events: &mut Vec<Event>) {
+    fn reset(&self, ui: &mut Ui) {
         if self.code == self.bred {
             return ui.add_space(26.0);
         }
         let Parameter { name, unit, .. } = self.parameter;
         let label = format!("Reset {name} to {} {unit}", self.parameter.text(self.bred));
         let button = |ui: &mut Ui| sized_icon_button(ui, Icon::Reset, label.trim_end(), false, 24.0);
-        ui.add_enabled_ui(!self.locked, button).inner.asks(events, self.event(self.bred));
+        ui.add_enabled_ui(!self.locked, button).inner.asks(self.event(self.bred));
     }
 
     /// The value as text, with its unit behind it; Enter or leaving the field takes what was typed.
-    fn value(&self, ui: &mut Ui, state: &mut State, events: &mut Vec<Event>) {
+    fn value(&self, ui: &mut Ui, state: &mut State) {
         let (individual, parameter, palette) = (self.individual, self.parameter, Palette::of(ui.visuals()));
         let (rect, _) = ui.allocate_exact_size(vec2(30.0, 22.0), Sense::hover());
         let unit = if parameter.unit == "deg" { "°" } else { &parameter.unit };
@@ -152,13 +143,13 @@ impl Row<'_> {
             let given_up = ui.input(|input| input.key_pressed(egui::Key::Escape));
             let typed = parse(&text, parameter).map(|value| parameter.snap(value));
             if let Some(typed) = typed.filter(|&typed| typed != self.code && !self.locked && !given_up) {
-                events.push(self.event(typed));
+                ask(ui, self.event(typed));
             }
         }
         response.on_hover_text(format!("Type a value: {}", parameter.range_text()));
     }
 
-    fn slider(&self, ui: &mut Ui, state: &mut State, events: &mut Vec<Event>) {
+    fn slider(&self, ui: &mut Ui, state: &mut State) {
         let (parameter, mut chosen) = (self.parameter, self.code);
         let palette = Palette::of(ui.visuals());
         let color = palette.category(parameter.category);
@@ -173,7 +164,7 @@ impl Row<'_> {
                 for state in [&mut widgets.inactive, &mut widgets.hovered, &mut widgets.active] {
                     state.fg_stroke = Stroke::new(2.0, color);
                     state.bg_stroke = Stroke::new(2.0, color);
-                    state.corner_radius = CornerRadius::same(2);
+                    state.corner_radius = 2.into();
                 }
                 let range = 0..=parameter.last_code();
                 ui.add(egui::Slider::new(&mut chosen, range).show_value(false).smart_aim(false))
@@ -188,13 +179,13 @@ impl Row<'_> {
         if response.drag_stopped() {
             // A press that moved nothing asks for nothing.
             if state.dragged.take().is_some() || chosen != self.code {
-                events.push(self.event(chosen));
+                ask(ui, self.event(chosen));
             }
         } else if chosen != self.code {
             // While it moves only the panel shows it; it is written when it is let go.
             state.dragged = moving.then(|| (self.individual, parameter.name.clone(), chosen));
             if !moving {
-                events.push(self.event(chosen));
+                ask(ui, self.event(chosen));
             }
         }
     }
@@ -208,7 +199,7 @@ impl Row<'_> {
             let part = code as f32 / self.parameter.last_code() as f32;
             let at = pos2(egui::lerp(rail, part), response.rect.center().y + 4.0);
             let tick = Rect::from_min_max(at - vec2(0.75, 0.0), at + vec2(0.75, 5.0));
-            ui.painter().rect_filled(tick, CornerRadius::ZERO, palette.weak);
+            ui.painter().rect_filled(tick, 0, palette.weak);
             if response.hovered() || response.dragged() {
                 let (place, font) = (at + vec2(0.0, 4.0), FontId::proportional(9.0));
                 ui.painter().text(place, Align2::CENTER_TOP, view + 1, font, palette.weak);

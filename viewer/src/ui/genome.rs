@@ -1,13 +1,13 @@
 //! The genome panel: every gene of the chosen landscape by category, what the last bake reused, and what is wrong with
 //! the person's files.
 
-use egui::{Align, CornerRadius, Frame, Layout, Margin, Rect, RichText, ScrollArea, Ui, pos2, vec2};
+use egui::{Align, Frame, Layout, Margin, Rect, RichText, ScrollArea, Ui, pos2, vec2};
 use genescape_schema::{Category, INDIVIDUALS, Parameter};
 
 use super::icon::Icon;
 use super::model::{Genes, Model};
 use super::theme::{self, Palette};
-use super::widgets::{Asks, close_button, ends, painted_button, segmented, sized_icon_button};
+use super::widgets::{Asks, ask, close_button, ends, painted_button, segmented, sized_icon_button};
 use super::{bake_log, gene_row};
 use crate::event::{Event, Panel};
 
@@ -28,7 +28,7 @@ pub struct State {
 }
 
 /// Draws it at the right of `ui`.
-pub fn show(ui: &mut Ui, model: &Model, state: &mut State, events: &mut Vec<Event>) {
+pub fn show(ui: &mut Ui, model: &Model, state: &mut State) {
     let palette = Palette::of(ui.visuals());
     let frame =
         Frame::NONE.fill(palette.panel).inner_margin(Margin { left: 14, right: 6, top: 4, bottom: 8 });
@@ -39,13 +39,13 @@ pub fn show(ui: &mut Ui, model: &Model, state: &mut State, events: &mut Vec<Even
         .frame(frame)
         .show_separator_line(false)
         .show(ui, |ui| {
-            header(ui, model, events);
+            header(ui, model);
             ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
                 // Room for the scroll bar, so that it never lies on the locks.
                 ui.set_width(ui.available_width() - 10.0);
-                bake_log::errors(ui, &model.errors, events);
+                bake_log::errors(ui, &model.errors);
                 match &model.genes {
-                    Some(genes) => body(ui, genes, model.chosen.min(INDIVIDUALS - 1), state, events),
+                    Some(genes) => body(ui, genes, model.chosen.min(INDIVIDUALS - 1), state),
                     None => {
                         ui.add_space(20.0);
                         ui.weak("Genes appear here as soon as a world is read.");
@@ -57,14 +57,14 @@ pub fn show(ui: &mut Ui, model: &Model, state: &mut State, events: &mut Vec<Even
         });
 }
 
-fn header(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
+fn header(ui: &mut Ui, model: &Model) {
     let chosen = model.chosen.min(INDIVIDUALS - 1);
     ui.horizontal(|ui| {
         ui.set_min_height(34.0);
         ends(
             ui,
             |ui| ui.add(egui::Label::new(RichText::new(&model.views[chosen].name).heading()).truncate()),
-            |ui| close_button(ui, "Close the genes", Panel::Genome, events),
+            |ui| close_button(ui, "Close the genes", Panel::Genome),
         );
     });
     ui.scope(|ui| {
@@ -75,13 +75,13 @@ fn header(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
         let mut view = model.chosen;
         segmented(ui, "Genes of", &choices, &mut view);
         if view != model.chosen {
-            events.push(Event::Choose(view));
+            ask(ui, Event::Choose(view));
         }
     });
     ui.add_space(4.0);
 }
 
-fn body(ui: &mut Ui, genes: &Genes, individual: usize, state: &mut State, events: &mut Vec<Event>) {
+fn body(ui: &mut Ui, genes: &Genes, individual: usize, state: &mut State) {
     search(ui, state);
     let mut none = true;
     for category in Category::ALL {
@@ -93,10 +93,10 @@ fn body(ui: &mut Ui, genes: &Genes, individual: usize, state: &mut State, events
             continue;
         }
         none = false;
-        category_head(ui, genes, individual, category, state, events);
+        category_head(ui, genes, individual, category, state);
         if !state.folded[category as usize] || !state.search.is_empty() {
             for parameter in listed {
-                gene_row::show(ui, genes, individual, parameter, &mut state.row, events);
+                gene_row::show(ui, genes, individual, parameter, &mut state.row);
             }
         }
     }
@@ -129,14 +129,7 @@ fn search(ui: &mut Ui, state: &mut State) {
     });
 }
 
-fn category_head(
-    ui: &mut Ui,
-    genes: &Genes,
-    individual: usize,
-    category: Category,
-    state: &mut State,
-    events: &mut Vec<Event>,
-) {
+fn category_head(ui: &mut Ui, genes: &Genes, individual: usize, category: Category, state: &mut State) {
     let palette = Palette::of(ui.visuals());
     let (color, title) = (palette.category(category), theme::title(category));
     ui.add_space(10.0);
@@ -146,7 +139,7 @@ fn category_head(
     let (response, _) = painted_button(ui, fold, ("fold", category.name()), title, !*folded);
     *folded ^= response.clicked();
     let fill = if response.hovered() { palette.hovered } else { color.gamma_multiply(0.16) };
-    ui.painter().rect_filled(rect, CornerRadius::same(theme::RADIUS), fill);
+    ui.painter().rect_filled(rect, theme::RADIUS, fill);
     Icon::from(category).paint_at(ui.painter(), rect.left_center() + vec2(18.0, 0.0), 17.0, color);
     let (at, font) = (rect.left_center() + vec2(34.0, 0.0), egui::FontId::proportional(15.0));
     ui.painter().text(at, egui::Align2::LEFT_CENTER, title, font, palette.text);
@@ -157,17 +150,11 @@ fn category_head(
     let (icon, verb) = if locked { (Icon::Locked, "Unlock all") } else { (Icon::Unlocked, "Lock all") };
     let label = format!("{verb}: {}", title.to_lowercase());
     sized_icon_button(&mut corner, icon, &label, locked, 26.0)
-        .asks(events, Event::LockCategory { category, locked: !locked });
-    reset_category(&mut corner, genes, individual, category, events);
+        .asks(Event::LockCategory { category, locked: !locked });
+    reset_category(&mut corner, genes, individual, category);
 }
 
-fn reset_category(
-    ui: &mut Ui,
-    genes: &Genes,
-    individual: usize,
-    category: Category,
-    events: &mut Vec<Event>,
-) {
+fn reset_category(ui: &mut Ui, genes: &Genes, individual: usize, category: Category) {
     let (now, bred) = (&genes.now[individual], &genes.bred[individual]);
     let changed: Vec<_> =
         genes.space.category(category).filter(|gene| now.code(gene) != bred.code(gene)).collect();
@@ -178,7 +165,7 @@ fn reset_category(
     if sized_icon_button(ui, Icon::Reset, &label, false, 26.0).clicked() {
         let free = changed.iter().filter(|gene| !genes.is_locked(gene));
         let values = free.map(|gene| (gene.name.clone(), gene.value(bred.code(gene)))).collect();
-        events.push(Event::Genes { individual, values });
+        ask(ui, Event::Genes { individual, values });
     }
     let text = RichText::new(format!("{} changed", changed.len())).small();
     ui.add(egui::Label::new(text.color(Palette::of(ui.visuals()).weak)).selectable(false));

@@ -1,11 +1,11 @@
 //! The help: first steps in three lines, and what every key does, as the bindings say it.
 
-use egui::{Align2, Area, Color32, CornerRadius, Id, Order, Rect, RichText, Sense, Ui, vec2};
+use egui::{Align2, Area, Color32, Id, Order, Rect, RichText, Sense, Ui, vec2};
 
 use super::icon::Icon;
 use super::model::Model;
 use super::theme::{self, Palette};
-use super::widgets::{icon_button, key_caps, scrolled};
+use super::widgets::{ask, icon_button, key_caps, scrolled};
 use crate::event::{Event, Panel};
 use crate::input::KeyGroup;
 
@@ -17,7 +17,7 @@ const FIRST_STEPS: [(&str, &str); 3] = [
 ];
 
 /// Draws it in the middle of the window, over a veil that closes it.
-pub fn show(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
+pub fn show(ui: &mut Ui, model: &Model) {
     let window = ui.ctx().content_rect();
     let mut close = veil(ui, window) || ui.input(|input| input.key_pressed(egui::Key::Escape));
     let columns = if window.width() >= 900.0 { 2 } else { 1 };
@@ -45,7 +45,7 @@ pub fn show(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
             });
         });
     if close {
-        events.push(Event::Panel { panel: Panel::Help, open: false });
+        ask(ui, Event::Panel { panel: Panel::Help, open: false });
     }
 }
 
@@ -53,7 +53,7 @@ pub fn show(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
 fn veil(ui: &Ui, window: Rect) -> bool {
     let area = Area::new(Id::unique("help veil")).order(Order::Foreground).fixed_pos(window.min);
     area.show(ui.ctx(), |ui| {
-        ui.painter().rect_filled(window, CornerRadius::ZERO, Color32::from_black_alpha(120));
+        ui.painter().rect_filled(window, 0, Color32::from_black_alpha(120));
         ui.allocate_rect(window, Sense::click()).clicked()
     })
     .inner

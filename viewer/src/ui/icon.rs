@@ -4,7 +4,8 @@ use egui::epaint::PathShape;
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Ui, lerp, pos2};
 use genescape_schema::Category;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::VariantArray)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::IntoStaticStr, strum::VariantArray)]
+#[strum(serialize_all = "snake_case")]
 pub enum Icon {
     Tree,
     Terrain,
@@ -80,77 +81,12 @@ impl Icon {
         })
     }
 
-    /// Its parts in a unit square, x right and y down: a filled convex polygon or a line through points; a dot or a ring
-    /// of twice the usual weight by centre and radius; an arc by centre, radius and two angles in degrees, clockwise from
-    /// the right.
+    /// Its line in `icons.txt`: parts in a unit square, x right and y down. A filled convex polygon or a line through
+    /// points; a dot or a ring of twice the usual weight by centre and radius; an arc by centre, radius and two angles in
+    /// degrees, clockwise from the right.
     fn drawing(self) -> &'static str {
-        match self {
-            Self::Tree => {
-                "fill .5 .02 .76 .4 .24 .4; fill .5 .22 .88 .78 .12 .78; \
-                 fill .43 .78 .57 .78 .57 .97 .43 .97"
-            }
-            Self::Terrain => "fill .4 .16 .8 .86 0 .86; fill .74 .42 1 .86 .48 .86",
-            Self::Sky => {
-                "dot .5 .5 .21; line .5 .04 .5 .17; line .5 .83 .5 .96; line .04 .5 .17 .5; \
-                 line .83 .5 .96 .5; line .175 .175 .267 .267; line .733 .733 .825 .825; \
-                 line .175 .825 .267 .733; line .733 .267 .825 .175"
-            }
-            Self::Undo => {
-                "line .36 .1 .13 .33 .36 .56; line .13 .33 .6 .33; arc .6 .59 .26 -90 90; \
-                 line .6 .85 .3 .85"
-            }
-            Self::Redo => {
-                "line .64 .1 .87 .33 .64 .56; line .87 .33 .4 .33; arc .4 .59 .26 -90 -270; \
-                 line .4 .85 .7 .85"
-            }
-            Self::Next => "line .1 .5 .88 .5; line .58 .2 .88 .5 .58 .8",
-            Self::Grid => {
-                "fill .1 .1 .45 .1 .45 .45 .1 .45; fill .55 .1 .9 .1 .9 .45 .55 .45; \
-                 fill .1 .55 .45 .55 .45 .9 .1 .9; fill .55 .55 .9 .55 .9 .9 .55 .9"
-            }
-            Self::Single => "line .1 .16 .9 .16 .9 .84 .1 .84 .1 .11",
-            Self::Compare => "line .1 .16 .9 .16 .9 .84 .1 .84 .1 .11; fill .5 .16 .9 .16 .9 .84 .5 .84",
-            Self::Genome => {
-                "line .08 .2 .92 .2; line .08 .5 .92 .5; line .08 .8 .92 .8; dot .68 .2 .12; \
-                 dot .3 .5 .12; dot .56 .8 .12"
-            }
-            Self::Stats => {
-                "fill .1 .55 .27 .55 .27 .9 .1 .9; fill .415 .12 .585 .12 .585 .9 .415 .9; \
-                 fill .73 .36 .9 .36 .9 .9 .73 .9"
-            }
-            Self::Settings => {
-                "ring .5 .5 .26; fill .4 .02 .6 .02 .63 .25 .37 .25; fill .37 .75 .63 .75 .6 .98 .4 .98; \
-                 fill .034 .347 .134 .173 .349 .262 .219 .488; \
-                 fill .651 .738 .781 .512 .966 .653 .866 .827; \
-                 fill .134 .827 .034 .653 .219 .512 .349 .738; \
-                 fill .781 .488 .651 .262 .866 .173 .966 .347"
-            }
-            Self::Help => {
-                "arc .5 .5 .43 0 360; arc .5 .38 .135 -180 60; line .567 .497 .5 .56 .5 .62; \
-                 dot .5 .75 .06"
-            }
-            Self::Locked => {
-                "fill .2 .46 .8 .46 .8 .92 .2 .92; arc .5 .36 .2 -180 0; line .3 .36 .3 .48; \
-                 line .7 .36 .7 .48"
-            }
-            Self::Unlocked => {
-                "line .2 .46 .8 .46 .8 .92 .2 .92 .2 .42; arc .5 .28 .2 -180 -20; line .3 .28 .3 .48"
-            }
-            Self::Camera => {
-                "line .06 .28 .3 .28 .38 .14 .62 .14 .7 .28 .94 .28 .94 .84 .06 .84 .06 .23; \
-                 arc .5 .55 .16 0 360"
-            }
-            Self::Maximise => {
-                "line .58 .12 .88 .12 .88 .42; line .42 .88 .12 .88 .12 .58; line .88 .12 .58 .42; \
-                 line .12 .88 .42 .58"
-            }
-            Self::Close => "line .2 .2 .8 .8; line .8 .2 .2 .8",
-            Self::Reset => "arc .5 .54 .34 -40 240; line .28 .02 .33 .25 .1 .31",
-            Self::Warning => "line .5 .1 .95 .88 .05 .88 .5 .1 .55 .19; line .5 .38 .5 .62; dot .5 .75 .06",
-            Self::Copy => {
-                "line .1 .34 .66 .34 .66 .92 .1 .92 .1 .3; line .34 .2 .34 .08 .9 .08 .9 .66 .78 .66"
-            }
-        }
+        let mut lines = include_str!("icons.txt").lines().filter_map(|line| line.split_once(": "));
+        lines.find(|(name, _)| *name == <&str>::from(self)).map_or("", |(_, drawing)| drawing)
     }
 }
 

@@ -27,12 +27,12 @@ pub use views::Views;
 
 use crate::event::{Event, Panel};
 use model::Model;
-use widgets::Asks;
+use widgets::{Asks, ask, asked};
 
 /// What the panels remember between frames.
 pub struct State {
-    /// The splitter.
-    pub views: views::State,
+    /// Where the splitter is, as a part of the pictures' width.
+    pub split: f32,
     /// Search field and what is being dragged.
     pub genome: genome::State,
     toasts: Toasts,
@@ -41,7 +41,7 @@ pub struct State {
 impl Default for State {
     fn default() -> Self {
         let toasts = Toasts::default().with_anchor(Anchor::BottomLeft).with_margin(egui::vec2(14.0, 14.0));
-        Self { views: views::State::default(), genome: genome::State::default(), toasts }
+        Self { split: 0.5, genome: genome::State::default(), toasts }
     }
 }
 
@@ -87,36 +87,36 @@ pub struct Output {
 /// been called once, [`theme::follow`] in each frame before.
 pub fn show(ui: &mut Ui, model: &Model, state: &mut State) -> Output {
     let mut output = Output::default();
-    let events = &mut output.events;
-    top_bar::show(ui, model, events);
+    top_bar::show(ui, model);
     if model.panels.genome {
-        genome::show(ui, model, &mut state.genome, events);
+        genome::show(ui, model, &mut state.genome);
     }
     let docked = model.panels.stats && stats::show_docked(ui, &model.stats);
     let area = ui.available_rect_before_wrap();
-    if !empty::show(ui, model, events) {
-        output.views = views::show(ui, model, &mut state.views, events);
-        banner(ui, model, area, events);
+    if !empty::show(ui, model) {
+        output.views = views::show(ui, model, &mut state.split);
+        banner(ui, model, area);
     }
     if model.panels.stats && !docked {
         stats::show_card(ui, &model.stats, area);
     }
     if model.panels.settings {
-        settings::show(ui, model, area, events);
+        settings::show(ui, model, area);
     }
     if model.panels.help {
-        help::show(ui, model, events);
+        help::show(ui, model);
     }
     empty::drop_target(ui);
     let dropped = ui.input(|input| input.raw.dropped_files.clone());
-    events.extend(dropped.into_iter().map(|file| Event::OpenFolder(file.path().to_path_buf())));
+    dropped.into_iter().for_each(|file| ask(ui, Event::OpenFolder(file.path().to_path_buf())));
     state.toasts.show(ui.ctx());
+    output.events = asked(ui);
     output.typing = ui.ctx().egui_wants_keyboard_input();
     output
 }
 
 /// A line over the pictures while a file is broken and the panel that tells more is closed.
-fn banner(ui: &mut Ui, model: &Model, area: Rect, events: &mut Vec<Event>) {
+fn banner(ui: &mut Ui, model: &Model, area: Rect) {
     let Some(error) = model.errors.first().filter(|_| !model.panels.genome) else { return };
     egui::Area::new(egui::Id::unique("error banner"))
         .pivot(egui::Align2::CENTER_BOTTOM)
@@ -131,7 +131,7 @@ fn banner(ui: &mut Ui, model: &Model, area: Rect, events: &mut Vec<Event>) {
                 ui.horizontal(|ui| {
                     icon::Icon::Warning.show(ui, 16.0, 24.0, palette.danger);
                     ui.label(format!("{} – the last good landscapes stay", error.title));
-                    ui.button("Show").asks(events, Event::Panel { panel: Panel::Genome, open: true });
+                    ui.button("Show").asks(Event::Panel { panel: Panel::Genome, open: true });
                 });
             });
         });

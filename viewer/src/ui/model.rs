@@ -47,7 +47,7 @@ pub struct Model {
     pub keys: Vec<KeyGroup>,
     /// What is drawn, and how.
     pub options: Options,
-    /// How the program feels in the hand.
+    /// How the program handles.
     pub comfort: Comfort,
     /// The panels that are shown.
     pub panels: Panels,
@@ -63,15 +63,9 @@ pub enum Situation {
     Ready,
     /// No scene exists yet and none of the views has anything to show.
     Growing,
-    /// Nothing can be shown until the person does something.
-    Stuck {
-        /// In a few words: "No graphics adapter".
-        title: String,
-        /// What was tried and what it said.
-        what: String,
-        /// What the person should do.
-        remedy: String,
-    },
+    /// Nothing can be shown until the person does something: in a few words, what was tried and what it said, and what
+    /// to do about it.
+    Stuck { title: String, what: String, remedy: String },
 }
 
 /// One landscape's picture and state.
@@ -90,22 +84,11 @@ pub struct ViewModel {
 pub enum ViewState {
     /// The picture is right.
     Ready,
-    /// The scene is being baked.
-    Baking {
-        /// Stages that are finished.
-        done: usize,
-        /// All of its stages; 0 while that is not known.
-        total: usize,
-        /// What is being computed now: "terrain: erosion"; may be empty.
-        stage: String,
-    },
-    /// Baking or reading failed; the picture, if any, is the last good one.
-    Failed {
-        /// What went wrong.
-        what: String,
-        /// What the person should do.
-        remedy: String,
-    },
+    /// The scene is being baked: `done` of `total` stages (0 while that is not known) are finished, and `stage`
+    /// ("terrain: erosion"; may be empty) is being computed.
+    Baking { done: usize, total: usize, stage: String },
+    /// Baking or reading failed; the picture, if any, is the last good one. What went wrong, and what to do about it.
+    Failed { what: String, remedy: String },
 }
 
 /// Progress of the bake of a whole generation.

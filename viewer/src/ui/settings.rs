@@ -1,4 +1,4 @@
-//! The settings: what is drawn and how, and how the program feels in the hand. Each change is one event with the whole
+//! The settings: what is drawn and how, and how the program handles. Each change is one event with the whole
 //! new value.
 
 use std::ops::RangeInclusive;
@@ -8,7 +8,7 @@ use egui::{Align2, Area, Id, Margin, Rect, RichText, Slider, Ui, vec2};
 use super::icon::Icon;
 use super::model::Model;
 use super::theme::{self, Palette};
-use super::widgets::{Asks, close_button, icon_button, scrolled, section, segmented, switch};
+use super::widgets::{Asks, ask, close_button, icon_button, scrolled, section, segmented, switch};
 use crate::event::{Event, Panel};
 use crate::lod_mode::LodMode;
 use crate::options::{LOD_SWITCHES, Options, PICTURE_SWITCHES, Switch};
@@ -18,7 +18,7 @@ use crate::settings::{Comfort, Theme};
 const WIDTH: f32 = 330.0;
 
 /// Draws the card at the upper right of `area`.
-pub fn show(ui: &mut Ui, model: &Model, area: Rect, events: &mut Vec<Event>) {
+pub fn show(ui: &mut Ui, model: &Model, area: Rect) {
     let width = WIDTH.min(area.width() - 24.0);
     Area::new(Id::unique("settings"))
         .pivot(Align2::RIGHT_TOP)
@@ -29,21 +29,21 @@ pub fn show(ui: &mut Ui, model: &Model, area: Rect, events: &mut Vec<Event>) {
             let margin = Margin { left: 14, right: 8, top: 8, bottom: 10 };
             theme::card(Palette::of(ui.visuals())).inner_margin(margin).show(ui, |ui| {
                 ui.set_width(width - 22.0);
-                ui.horizontal(|ui| header(ui, events));
+                ui.horizontal(header);
                 scrolled(ui, area.height() - 80.0, |ui| {
                     ui.set_width(ui.available_width() - 10.0);
-                    options(ui, &model.options, events);
-                    comfort(ui, &model.comfort, events);
+                    options(ui, &model.options);
+                    comfort(ui, &model.comfort);
                 });
             });
         });
 }
 
-fn header(ui: &mut Ui, events: &mut Vec<Event>) {
+fn header(ui: &mut Ui) {
     ui.label(RichText::new("Settings").heading());
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-        close_button(ui, "Close the settings", Panel::Settings, events);
-        icon_button(ui, Icon::Reset, "Reset all settings", false).asks(events, Event::ResetSettings);
+        close_button(ui, "Close the settings", Panel::Settings);
+        icon_button(ui, Icon::Reset, "Reset all settings", false).asks(Event::ResetSettings);
     });
 }
 
@@ -58,32 +58,32 @@ fn switches(ui: &mut Ui, all: &[Switch], options: &mut Options) {
     }
 }
 
-fn options(ui: &mut Ui, current: &Options, events: &mut Vec<Event>) {
+fn options(ui: &mut Ui, current: &Options) {
     let mut options = *current;
     section(ui, "LEVELS OF DETAIL");
     ui.label("Trees");
     segmented(ui, "Tree detail", &modes(), &mut options.tree_lod);
-    number(ui, &mut options.tree_error_px, 0.1..=16.0, "Error allowed on trees", " px", true);
+    number(ui, &mut options.tree_error_px, 0.1..=16.0, "Error allowed on trees", " px");
     ui.label("Terrain");
     segmented(ui, "Terrain detail", &modes(), &mut options.terrain_lod);
-    number(ui, &mut options.terrain_error_px, 0.1..=16.0, "Error allowed on terrain", " px", true);
+    number(ui, &mut options.terrain_error_px, 0.1..=16.0, "Error allowed on terrain", " px");
     switches(ui, &LOD_SWITCHES, &mut options);
     section(ui, "PICTURE");
     switches(ui, &PICTURE_SWITCHES, &mut options);
-    number(ui, &mut options.exposure, 0.125..=8.0, "Exposure", " ×", true);
-    number(ui, &mut options.fov_y_deg, 20.0..=110.0, "Field of view", "°", false);
+    number(ui, &mut options.exposure, 0.125..=8.0, "Exposure", " ×");
+    number(ui, &mut options.fov_y_deg, 20.0..=110.0, "Field of view", "°");
     ui.label("Samples a pixel");
     let samples = [(1, "1", "Fastest"), (4, "4", "Smooth edges")];
     segmented(ui, "Samples a pixel", &samples, &mut options.samples);
     if options != *current {
-        events.push(Event::Options(options));
+        ask(ui, Event::Options(options));
     }
 }
 
-fn comfort(ui: &mut Ui, current: &Comfort, events: &mut Vec<Event>) {
+fn comfort(ui: &mut Ui, current: &Comfort) {
     let mut comfort = *current;
     section(ui, "HANDLING");
-    number(ui, &mut comfort.mouse_sensitivity, 0.1..=5.0, "Mouse sensitivity", " ×", true);
+    number(ui, &mut comfort.mouse_sensitivity, 0.1..=5.0, "Mouse sensitivity", " ×");
     switch(ui, &mut comfort.invert_y, "Invert up and down", "Mouse up looks down");
     section(ui, "APPEARANCE");
     let themes = [(Theme::System, "System", ""), (Theme::Light, "Light", ""), (Theme::Dark, "Dark", "")];
@@ -93,21 +93,15 @@ fn comfort(ui: &mut Ui, current: &Comfort, events: &mut Vec<Event>) {
         [(0.8, "80 %", ""), (1.0, "100 %", ""), (1.25, "125 %", ""), (1.5, "150 %", ""), (2.0, "200 %", "")];
     segmented(ui, "Scale", &scales, &mut comfort.ui_scale);
     if comfort != *current {
-        events.push(Event::Comfort(comfort));
+        ask(ui, Event::Comfort(comfort));
     }
 }
 
-/// A slider with its name above and its value behind.
-fn number(
-    ui: &mut Ui,
-    value: &mut f32,
-    range: RangeInclusive<f32>,
-    name: &str,
-    unit: &str,
-    logarithmic: bool,
-) {
+/// A slider with its name above and its value behind; logarithmic if it spans more than a power of ten.
+fn number(ui: &mut Ui, value: &mut f32, range: RangeInclusive<f32>, name: &str, unit: &str) {
     ui.label(RichText::new(name).small());
     ui.spacing_mut().slider_width = ui.available_width() - 84.0;
+    let logarithmic = range.end() / range.start() > 10.0;
     let slider = Slider::new(value, range).logarithmic(logarithmic).suffix(unit.to_owned()).max_decimals(2);
     let _ = ui.add(slider).accessible_name(name);
 }

@@ -1,7 +1,7 @@
 //! Frame times and counts, beside the pictures or, in a small window, over them: a graph of the last frames, where the
-//! GPU's time goes pass by pass and view by view, what was drawn, and how many trees stand at each level of detail.
+//! GPU's time goes pass by pass and view by view, what was drawn, and how many trees have each level of detail.
 
-use egui::{Align2, Color32, CornerRadius, FontId, Frame, Margin, Rect, RichText, Sense, Shape, Stroke};
+use egui::{Align2, Color32, FontId, Frame, Margin, Rect, RichText, Sense, Shape, Stroke};
 use egui::{Ui, pos2, vec2};
 use genescape_schema::Category;
 
@@ -57,7 +57,7 @@ pub fn show_card(ui: &mut Ui, stats: &Stats, area: Rect) {
             ui.set_style(ui.ctx().style_of(egui::Theme::Dark));
             let frame = Frame::NONE
                 .fill(Color32::from_rgba_unmultiplied(17, 19, 19, 232))
-                .corner_radius(CornerRadius::same(10))
+                .corner_radius(10)
                 .inner_margin(Margin::same(12));
             frame.show(ui, |ui| {
                 ui.set_width(width - 24.0);
@@ -109,7 +109,7 @@ fn frames(ui: &mut Ui, stats: &Stats) {
 fn graph(ui: &Ui, rect: Rect, frames_ms: &[f32], p99: f32) {
     let palette = Palette::of(ui.visuals());
     let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
-    painter.rect_filled(rect, CornerRadius::same(4), palette.sunken);
+    painter.rect_filled(rect, 4, palette.sunken);
     let top = (p99 * 1.25).max(1.3 * SMOOTH_MS);
     let height = |ms: f32| rect.height() * (ms / top).clamp(0.0, 1.0);
     let shown = &frames_ms[frames_ms.len().saturating_sub(rect.width() as usize)..];
@@ -122,7 +122,7 @@ fn graph(ui: &Ui, rect: Rect, frames_ms: &[f32], p99: f32) {
             _ => palette.accent,
         };
         let bar = Rect::from_min_max(corner - vec2(step, height(ms)), corner);
-        painter.rect_filled(bar, CornerRadius::ZERO, color);
+        painter.rect_filled(bar, 0, color);
     }
     let y = rect.bottom() - height(SMOOTH_MS);
     let dash = Stroke::new(1.0, palette.weak);
@@ -152,7 +152,7 @@ fn gpu(ui: &mut Ui, stats: &Stats) {
             let width = room * (ms / total.max(1e-6)).clamp(0.0, 1.0);
             let bar = Rect::from_min_size(pos2(x, rect.top() + 4.0), vec2(width, 9.0));
             let color = palette.category(Category::Sky).gamma_multiply(1.0 - 0.17 * view as f32);
-            painter.rect_filled(bar, CornerRadius::ZERO, color);
+            painter.rect_filled(bar, 0, color);
             x += width;
         }
         painter.text(rect.left_center(), Align2::LEFT_CENTER, &pass.name, font.clone(), palette.text);
@@ -178,7 +178,7 @@ fn levels(ui: &mut Ui, trees_per_level: &[u32]) {
         let left = rect.left() + level as f32 * step;
         let top = pos2(left + 1.0, rect.bottom() - height);
         let bar = Rect::from_min_max(top, pos2(left + step - 1.0, rect.bottom()));
-        ui.painter().rect_filled(bar, CornerRadius::same(2), palette.category(Category::Tree));
+        ui.painter().rect_filled(bar, 2, palette.category(Category::Tree));
         let place = pos2(bar.center().x, bar.top() - 1.0);
         let font = FontId::proportional(10.0);
         if step > 22.0 && trees > 0 {

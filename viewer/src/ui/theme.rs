@@ -54,9 +54,9 @@ pub struct Palette {
     pub sunken: Color32,
     /// Hair lines.
     pub line: Color32,
-    /// What is read.
+    /// Text.
     pub text: Color32,
-    /// What is read when looked for.
+    /// Text that matters less.
     pub weak: Color32,
     /// Buttons at rest.
     pub button: Color32,

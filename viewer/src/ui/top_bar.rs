@@ -1,5 +1,5 @@
-//! The slim bar on top: the line of generations, undo and the way on at the left; progress in the middle; arrangement,
-//! screenshot and panels at the right.
+//! The slim bar on top: the line of generations, undo and the next generation at the left; progress in the middle;
+//! arrangement, screenshot and panels at the right.
 
 use egui::{Align, Frame, Layout, Margin, Rect, Sense, Stroke, TextStyle, Ui, vec2};
 
@@ -7,7 +7,7 @@ use super::icon::Icon;
 use super::model::{Baking, Model};
 use super::theme::Palette;
 use super::votes;
-use super::widgets::{Asks, ICON_BUTTON, flat_button, icon_button, primary_button, progress_bar};
+use super::widgets::{Asks, ICON_BUTTON, ask, flat_button, icon_button, primary_button, progress_bar};
 use crate::event::{Arrangement, Event, Panel};
 use crate::input::Command;
 
@@ -17,24 +17,24 @@ const HEIGHT: f32 = 40.0;
 const WORDS_FROM: f32 = 940.0;
 
 /// Draws it across the top of `ui`.
-pub fn show(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
+pub fn show(ui: &mut Ui, model: &Model) {
     let palette = Palette::of(ui.visuals());
     let frame = Frame::NONE.fill(palette.panel).inner_margin(Margin::symmetric(8, 0));
     egui::Panel::top("top bar").exact_size(HEIGHT).frame(frame).show_separator_line(false).show(ui, |ui| {
         let words = ui.available_width() >= WORDS_FROM;
         ui.spacing_mut().item_spacing.x = 4.0;
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            panels(ui, model, events);
-            arrangements(ui, model, events);
+            panels(ui, model);
+            arrangements(ui, model);
             ui.add_space(4.0);
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                generations(ui, model, words, events);
+                generations(ui, model, words);
             });
         });
     });
 }
 
-fn panels(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
+fn panels(ui: &mut Ui, model: &Model) {
     let all = [
         (Panel::Help, Icon::Help, "Help and keys"),
         (Panel::Settings, Icon::Settings, "Settings"),
@@ -48,13 +48,13 @@ fn panels(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
             let center = response.rect.right_top() + vec2(-6.0, 6.0);
             ui.painter().circle_filled(center, 4.0, Palette::of(ui.visuals()).danger);
         }
-        response.asks(events, Event::Panel { panel, open: !open });
+        response.asks(Event::Panel { panel, open: !open });
     }
     divider(ui);
-    icon_button(ui, Icon::Camera, "Save a screenshot", false).asks(events, Command::Screenshot.into());
+    icon_button(ui, Icon::Camera, "Save a screenshot", false).asks(Command::Screenshot);
 }
 
-fn arrangements(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
+fn arrangements(ui: &mut Ui, model: &Model) {
     divider(ui);
     let (left, right) = (model.chosen, (model.chosen + 1) % model.views.len());
     let all = [
@@ -65,7 +65,7 @@ fn arrangements(ui: &mut Ui, model: &Model, events: &mut Vec<Event>) {
     for (arrangement, icon, label) in all {
         let same = std::mem::discriminant(&arrangement) == std::mem::discriminant(&model.arrangement);
         if icon_button(ui, icon, label, same).clicked() && !same {
-            events.push(Event::Arrange(arrangement));
+            ask(ui, Event::Arrange(arrangement));
         }
     }
 }
@@ -76,15 +76,15 @@ fn divider(ui: &mut Ui) {
     ui.painter().vline(rect.center().x, rect.y_range(), line);
 }
 
-fn generations(ui: &mut Ui, model: &Model, words: bool, events: &mut Vec<Event>) {
-    step(ui, Icon::Undo, "Undo", model.undo.as_deref(), Command::Undo, events);
+fn generations(ui: &mut Ui, model: &Model, words: bool) {
+    step(ui, Icon::Undo, "Undo", model.undo.as_deref(), Command::Undo);
     if model.redo.is_some() {
-        step(ui, Icon::Redo, "Redo", model.redo.as_deref(), Command::Redo, events);
+        step(ui, Icon::Redo, "Redo", model.redo.as_deref(), Command::Redo);
     }
     divider(ui);
     let way_on = if words { 330.0 } else { 36.0 };
-    strip(ui, model, (ui.available_width() - way_on).max(40.0), events);
-    next(ui, model, words, events);
+    strip(ui, model, (ui.available_width() - way_on).max(40.0));
+    next(ui, model, words);
     if words && let Some(baking) = &model.baking {
         ui.add_space(6.0);
         let (Baking { generation, done, total }, part) = (baking, baking.part());
@@ -98,18 +98,16 @@ fn generations(ui: &mut Ui, model: &Model, words: bool, events: &mut Vec<Event>)
 }
 
 /// Takes a step back or does it again; `what` says which, `None` that there is none.
-fn step(ui: &mut Ui, icon: Icon, verb: &str, what: Option<&str>, command: Command, events: &mut Vec<Event>) {
+fn step(ui: &mut Ui, icon: Icon, verb: &str, what: Option<&str>, command: Command) {
     let label = match what {
         Some(what) => format!("{verb}: {what}"),
         None => format!("Nothing to {}", verb.to_lowercase()),
     };
-    ui.add_enabled_ui(what.is_some(), |ui| icon_button(ui, icon, &label, false))
-        .inner
-        .asks(events, command.into());
+    ui.add_enabled_ui(what.is_some(), |ui| icon_button(ui, icon, &label, false)).inner.asks(command);
 }
 
 /// The line of generations, the newest at the right; scrolls when it is longer than `room`.
-fn strip(ui: &mut Ui, model: &Model, room: f32, events: &mut Vec<Event>) {
+fn strip(ui: &mut Ui, model: &Model, room: f32) {
     let wanted = model.generations.len() as f32 * 44.0;
     let size = vec2(room.min(wanted.max(40.0)), ICON_BUTTON);
     ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
@@ -123,14 +121,14 @@ fn strip(ui: &mut Ui, model: &Model, room: f32, events: &mut Vec<Event>) {
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = 2.0;
                 for &generation in &model.generations {
-                    generation_tab(ui, model, generation, events);
+                    generation_tab(ui, model, generation);
                 }
             });
         });
     });
 }
 
-fn generation_tab(ui: &mut Ui, model: &Model, generation: u32, events: &mut Vec<Event>) {
+fn generation_tab(ui: &mut Ui, model: &Model, generation: u32) {
     let palette = Palette::of(ui.visuals());
     let current = generation == model.generation;
     let text = format!("g{generation}");
@@ -144,7 +142,7 @@ fn generation_tab(ui: &mut Ui, model: &Model, generation: u32, events: &mut Vec<
         ui.painter().hline(rect.x_range().shrink(8.0), y, Stroke::new(2.0, palette.accent));
     }
     if response.clicked() && !current {
-        events.push(Event::GoToGeneration(generation));
+        ask(ui, Event::GoToGeneration(generation));
     }
     response.on_hover_text(match current {
         true => format!("Generation {generation}, shown now"),
@@ -152,7 +150,7 @@ fn generation_tab(ui: &mut Ui, model: &Model, generation: u32, events: &mut Vec<
     });
 }
 
-fn next(ui: &mut Ui, model: &Model, words: bool, events: &mut Vec<Event>) {
+fn next(ui: &mut Ui, model: &Model, words: bool) {
     ui.add_space(4.0);
     let hindrance = votes::hindrance(model);
     let response = ui
@@ -161,7 +159,7 @@ fn next(ui: &mut Ui, model: &Model, words: bool, events: &mut Vec<Event>) {
             false => icon_button(ui, Icon::Next, "Next generation", true),
         })
         .inner;
-    response.asks(events, Command::NextGeneration.into());
+    response.asks(Command::NextGeneration);
     match hindrance {
         Some(text) => response.on_disabled_hover_text(text),
         None => response.on_hover_text("Breed four new landscapes from what you chose"),

@@ -2,26 +2,26 @@
 //! when it does not show what it should, why and what to do.
 
 use egui::text::{LayoutJob, TextFormat, TextWrapping};
-use egui::{Align2, Color32, CornerRadius, FontId, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
+use egui::{Align2, Color32, FontId, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 use genescape_schema::INDIVIDUALS;
 
 use super::icon::Icon;
 use super::model::{Model, ViewState};
 use super::theme;
-use super::widgets::{Asks, painted_button, progress_ring};
+use super::widgets::{Asks, ask, painted_button, progress_ring};
 use crate::event::{Arrangement, Event};
 
 /// Side of a button on a picture, in points.
 const BUTTON: f32 = 26.0;
 
 /// Draws name, buttons and state over the picture in `rect`; `lively` when the pointer is over it.
-pub fn show(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool, events: &mut Vec<Event>) {
+pub fn show(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool) {
     let buttons = if lively { 2.0 * (BUTTON + 4.0) } else { 0.0 };
     name_tag(ui, model, view, rect, rect.width() - 20.0 - buttons);
     match &model.views[view].state {
         ViewState::Ready => {}
         ViewState::Baking { done, total, stage } => baking(ui, rect, *done, *total, stage),
-        ViewState::Failed { what, remedy } => failed(ui, view, rect, what, remedy, events),
+        ViewState::Failed { what, remedy } => failed(ui, view, rect, what, remedy),
     }
     let compared = Arrangement::Compare { left: view, right: (view + 1) % INDIVIDUALS };
     let tools: &[(Icon, &str, Arrangement)] = match model.arrangement {
@@ -37,9 +37,9 @@ pub fn show(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool, e
         let rect = Rect::from_min_size(corner, vec2(BUTTON, BUTTON));
         let name = format!("{label}: {}", view + 1);
         let (response, lit) = painted_button(ui, rect, (label, view), &name, false);
-        ui.painter().rect_filled(rect, CornerRadius::same(13), scrim(lit));
+        ui.painter().rect_filled(rect, 13, scrim(lit));
         icon.paint(ui.painter(), rect.shrink(7.0), theme::ON_SCRIM);
-        response.on_hover_text(label).asks(events, Event::Arrange(arrangement));
+        response.on_hover_text(label).asks(Event::Arrange(arrangement));
         corner.x -= BUTTON + 4.0;
     }
 }
@@ -54,7 +54,7 @@ fn text(size: f32, color: Color32) -> TextFormat {
 }
 
 /// Four numbers below the name that choose which landscape this side of the comparison shows.
-pub fn choose_side(ui: &mut Ui, model: &Model, side: usize, half: Rect, events: &mut Vec<Event>) {
+pub fn choose_side(ui: &mut Ui, model: &Model, side: usize, half: Rect) {
     let Arrangement::Compare { left, right } = model.arrangement else { return };
     let shown = [left, right][side];
     for view in 0..INDIVIDUALS {
@@ -67,11 +67,11 @@ pub fn choose_side(ui: &mut Ui, model: &Model, side: usize, half: Rect, events: 
             (false, true) => (theme::SCRIM_HOVERED, theme::ON_SCRIM),
             (false, false) => (theme::SCRIM, theme::ON_SCRIM_WEAK),
         };
-        ui.painter().rect_filled(rect, CornerRadius::same(theme::RADIUS), fill);
+        ui.painter().rect_filled(rect, theme::RADIUS, fill);
         ui.painter().text(rect.center(), Align2::CENTER_CENTER, view + 1, FontId::proportional(13.0), ink);
         if response.clicked() && view != shown {
             let (left, right) = if side == 0 { (view, right) } else { (left, view) };
-            events.push(Event::Arrange(Arrangement::Compare { left, right }));
+            ask(ui, Event::Arrange(Arrangement::Compare { left, right }));
         }
     }
 }
@@ -83,7 +83,7 @@ fn name_tag(ui: &Ui, model: &Model, view: usize, rect: Rect, room: f32) {
     job.wrap = TextWrapping::truncate_at_width((room - 20.0).max(20.0));
     let galley = ui.painter().layout_job(job);
     let tag = Rect::from_min_size(rect.min + vec2(10.0, 10.0), galley.size() + vec2(20.0, 9.0));
-    ui.painter().rect_filled(tag, CornerRadius::same(13), theme::SCRIM);
+    ui.painter().rect_filled(tag, 13, theme::SCRIM);
     ui.painter().galley(tag.min + vec2(10.0, 4.5), galley, theme::ON_SCRIM);
 }
 
@@ -108,11 +108,11 @@ fn baking(ui: &Ui, rect: Rect, done: usize, total: usize, stage: &str) {
     let galley = painter.layout_job(job);
     let place = pos2(center.x, center.y + radius + 26.0);
     let tag = Rect::from_center_size(place, galley.size() + vec2(20.0, 8.0));
-    painter.rect_filled(tag, CornerRadius::same(12), theme::SCRIM);
+    painter.rect_filled(tag, 12, theme::SCRIM);
     painter.galley(tag.min + vec2(10.0, 4.0), galley, theme::ON_SCRIM);
 }
 
-fn failed(ui: &mut Ui, view: usize, rect: Rect, what: &str, remedy: &str, events: &mut Vec<Event>) {
+fn failed(ui: &mut Ui, view: usize, rect: Rect, what: &str, remedy: &str) {
     let width = (rect.width() - 40.0).clamp(80.0, 420.0);
     let mut job = LayoutJob::default();
     job.append(what, 0.0, text(14.0, theme::ON_SCRIM));
@@ -123,7 +123,7 @@ fn failed(ui: &mut Ui, view: usize, rect: Rect, what: &str, remedy: &str, events
     let card = Rect::from_center_size(rect.center(), vec2(width, galley.size().y + 62.0));
     let line = Stroke::new(1.0, theme::DARK.danger.gamma_multiply(0.7));
     let fill = Color32::from_rgba_unmultiplied(20, 20, 20, 235);
-    ui.painter().rect(card, CornerRadius::same(10), fill, line, StrokeKind::Inside);
+    ui.painter().rect(card, 10, fill, line, StrokeKind::Inside);
     let icon_rect = Rect::from_min_size(card.min + vec2(14.0, 15.0), vec2(18.0, 18.0));
     Icon::Warning.paint(ui.painter(), icon_rect, theme::DARK.danger);
     ui.painter().galley(card.min + vec2(42.0, 14.0), galley, theme::ON_SCRIM);
@@ -131,10 +131,10 @@ fn failed(ui: &mut Ui, view: usize, rect: Rect, what: &str, remedy: &str, events
     let name = format!("Try again: {}", view + 1);
     let (response, lit) = painted_button(ui, button, ("retry", view), &name, false);
     let fill = Color32::from_white_alpha(if lit { 60 } else { 32 });
-    ui.painter().rect_filled(button, CornerRadius::same(theme::RADIUS), fill);
+    ui.painter().rect_filled(button, theme::RADIUS, fill);
     let font = FontId::proportional(13.0);
     ui.painter().text(button.center(), Align2::CENTER_CENTER, "Try again", font, theme::ON_SCRIM);
-    response.asks(events, Event::Retry);
+    response.asks(Event::Retry);
     let full = format!("{what}\n{remedy}");
     ui.interact(card, ui.scope_id().with(("failed", view)), Sense::hover())
         .on_hover_text(&full)

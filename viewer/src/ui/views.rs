@@ -1,28 +1,14 @@
 //! The four pictures: two by two, one alone, or two over each other with a splitter; on each its name, its state and
 //! its vote buttons. Says which rectangles the renderer has to fill and where the pointer is.
 
-use egui::{
-    Color32, CornerRadius, CursorIcon, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2, pos2, vec2,
-};
+use egui::{Color32, CursorIcon, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};
 
 use super::arrange::{Slot, slots};
 use super::model::{Model, ViewState};
 use super::theme::{self, Palette};
+use super::widgets::ask;
 use super::{viewport, votes};
 use crate::event::{Arrangement, Event};
-
-/// Splitter and what else the views remember.
-#[derive(Clone, Debug)]
-pub struct State {
-    /// Where the splitter is, as a part of the width.
-    pub split: f32,
-}
-
-impl Default for State {
-    fn default() -> Self {
-        Self { split: 0.5 }
-    }
-}
 
 /// What the application has to know about the views.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -40,28 +26,28 @@ pub struct Views {
 }
 
 /// Draws them into what is left of `ui`.
-pub fn show(ui: &mut Ui, model: &Model, state: &mut State, events: &mut Vec<Event>) -> Views {
+pub fn show(ui: &mut Ui, model: &Model, split: &mut f32) -> Views {
     let area = ui.available_rect_before_wrap();
     ui.allocate_rect(area, Sense::hover());
-    ui.painter().rect_filled(area, CornerRadius::ZERO, Palette::of(ui.visuals()).ground);
+    ui.painter().rect_filled(area, 0, Palette::of(ui.visuals()).ground);
     let slots = slots(area.shrink(4.0), model.arrangement, ui.pixels_per_point());
     let mut views = Views::default();
     match (model.arrangement, &slots[..]) {
         (Arrangement::Compare { .. }, &[left, right]) => {
-            compare(ui, model, [left, right], state, &mut views, events);
+            compare(ui, model, [left, right], split, &mut views);
         }
         _ => {
             for slot in &slots {
-                let response = picture(ui, model, slot.view, slot.rect, slot.rect, &mut views, events);
+                let response = picture(ui, model, slot.view, slot.rect, slot.rect, &mut views);
                 let lively = !model.captured && response.contains_pointer();
                 frame(ui, model, slot, lively);
-                viewport::show(ui, model, slot.view, slot.rect, lively, events);
-                vote_bar(ui, model, slot.view, slot.rect, lively, events);
+                viewport::show(ui, model, slot.view, slot.rect, lively);
+                vote_bar(ui, model, slot.view, slot.rect, lively);
             }
         }
     }
     let (anchor, beside) = hub_place(model.arrangement, area, &slots);
-    votes::hub(ui, model, anchor, beside, events);
+    votes::hub(ui, model, anchor, beside);
     views.slots = slots;
     views
 }
@@ -79,15 +65,7 @@ fn hub_place(arrangement: Arrangement, area: Rect, slots: &[Slot]) -> (Pos2, f32
 }
 
 /// Paints one picture, cut to `clip`, and listens to the pointer there.
-fn picture(
-    ui: &mut Ui,
-    model: &Model,
-    view: usize,
-    rect: Rect,
-    clip: Rect,
-    views: &mut Views,
-    events: &mut Vec<Event>,
-) -> Response {
+fn picture(ui: &mut Ui, model: &Model, view: usize, rect: Rect, clip: Rect, views: &mut Views) -> Response {
     let response = ui.interact(clip, ui.scope_id().with(("picture", view)), Sense::click_and_drag());
     paint_picture(ui, model, view, rect, clip);
     let name = format!("Landscape {}: {}", view + 1, model.views[view].name);
@@ -106,17 +84,17 @@ fn picture(
             Arrangement::Grid => Arrangement::One(view),
             _ => Arrangement::Grid,
         };
-        events.push(Event::Arrange(arrangement));
+        ask(ui, Event::Arrange(arrangement));
     } else if response.clicked() && model.chosen != view {
-        events.push(Event::Choose(view));
+        ask(ui, Event::Choose(view));
     } else if response.secondary_clicked() {
-        events.push(Event::Capture(true));
+        ask(ui, Event::Capture(true));
     }
     response.on_hover_cursor(CursorIcon::Default)
 }
 
 fn paint_picture(ui: &Ui, model: &Model, view: usize, rect: Rect, clip: Rect) {
-    let corner = CornerRadius::same(theme::RADIUS);
+    let corner = theme::RADIUS;
     let painter = ui.painter().with_clip_rect(clip.intersect(ui.clip_rect()));
     match model.views[view].picture {
         Some(texture) => {
@@ -139,62 +117,55 @@ fn frame(ui: &Ui, model: &Model, slot: &Slot, lively: bool) {
         (false, true) => Color32::from_white_alpha(110),
         (false, false) => return,
     };
-    let corner = CornerRadius::same(theme::RADIUS);
+    let corner = theme::RADIUS;
     ui.painter().rect_stroke(slot.rect, corner, Stroke::new(2.0, color), StrokeKind::Inside);
 }
 
-fn vote_bar(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool, events: &mut Vec<Event>) {
+fn vote_bar(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool) {
     let seen = model.views[view].picture.is_some();
     if seen && matches!(model.views[view].state, ViewState::Ready) {
-        votes::bar(ui, model, view, rect, lively, events);
+        votes::bar(ui, model, view, rect, lively);
     }
 }
 
 /// Two pictures of the whole area over each other; the splitter says where one ends and the other begins.
-fn compare(
-    ui: &mut Ui,
-    model: &Model,
-    [left, right]: [Slot; 2],
-    state: &mut State,
-    views: &mut Views,
-    events: &mut Vec<Event>,
-) {
+fn compare(ui: &mut Ui, model: &Model, [left, right]: [Slot; 2], split: &mut f32, views: &mut Views) {
     let rect = left.rect;
-    let parts = rect.split_left_right_at_fraction(state.split);
+    let parts = rect.split_left_right_at_fraction(*split);
     let lively = [(0, left, parts.0), (1, right, parts.1)].map(|(side, slot, part)| {
         let response =
-            ui.push_id(("side", side), |ui| picture(ui, model, slot.view, rect, part, views, events)).inner;
+            ui.push_id(("side", side), |ui| picture(ui, model, slot.view, rect, part, views)).inner;
         !model.captured && response.contains_pointer()
     });
     // Names and votes keep to their half however far the splitter is moved.
     let halves = rect.split_left_right_at_fraction(0.5);
     for (side, (slot, half)) in [(left, halves.0), (right, halves.1)].into_iter().enumerate() {
         ui.push_id(("half", side), |ui| {
-            viewport::show(ui, model, slot.view, half, lively[side], events);
-            viewport::choose_side(ui, model, side, half, events);
-            vote_bar(ui, model, slot.view, half, lively[side], events);
+            viewport::show(ui, model, slot.view, half, lively[side]);
+            viewport::choose_side(ui, model, side, half);
+            vote_bar(ui, model, slot.view, half, lively[side]);
         });
     }
-    splitter(ui, rect, parts.0.right(), state);
+    splitter(ui, rect, parts.0.right(), split);
 }
 
-fn splitter(ui: &mut Ui, rect: Rect, split_x: f32, state: &mut State) {
+fn splitter(ui: &mut Ui, rect: Rect, split_x: f32, split: &mut f32) {
     let grip = Rect::from_center_size(pos2(split_x, rect.center().y), vec2(14.0, rect.height()));
     let response = ui.interact(grip, ui.scope_id().with("splitter"), Sense::drag());
     if let Some(pointer) = response.interact_pointer_pos()
         && response.dragged()
     {
-        state.split = ((pointer.x - rect.left()) / rect.width()).clamp(0.02, 0.98);
+        *split = ((pointer.x - rect.left()) / rect.width()).clamp(0.02, 0.98);
     }
-    let (enabled, value) = (ui.is_enabled(), f64::from(state.split));
+    let (enabled, value) = (ui.is_enabled(), f64::from(*split));
     response.widget_info(|| egui::WidgetInfo::slider(enabled, value, "Splitter"));
     let lit = response.hovered() || response.dragged();
     let line = Stroke::new(if lit { 3.0 } else { 2.0 }, Color32::from_white_alpha(230));
     ui.painter().vline(split_x, rect.y_range(), Stroke::new(line.width + 2.0, Color32::from_black_alpha(90)));
     ui.painter().vline(split_x, rect.y_range(), line);
     let knob = Rect::from_center_size(pos2(split_x, rect.center().y), vec2(22.0, 34.0));
-    ui.painter().add(theme::card_shadow().as_shape(knob, CornerRadius::same(11)));
-    ui.painter().rect_filled(knob, CornerRadius::same(11), Color32::WHITE);
+    ui.painter().add(theme::card_shadow().as_shape(knob, 11));
+    ui.painter().rect_filled(knob, 11, Color32::WHITE);
     for offset in [-3.0, 3.0] {
         let groove = Stroke::new(1.5, Color32::from_gray(90));
         ui.painter().vline(split_x + offset, knob.y_range().shrink(11.0), groove);

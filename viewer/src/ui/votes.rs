@@ -1,9 +1,7 @@
 //! Voting: three buttons on each picture, and the hub between the pictures, which shows how far the vote is and leads
 //! to the next generation. Colour says which category; a filled button is a vote that was won here.
 
-use egui::{
-    Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui,
-};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui};
 use egui::{pos2, vec2};
 use genescape_schema::Category;
 
@@ -24,7 +22,7 @@ const CHIP: f32 = 26.0;
 const HUB: f32 = 38.0;
 
 /// The vote buttons of one picture, centred at `bottom`; `lively` when the pointer is over the picture.
-pub fn bar(ui: &mut Ui, model: &Model, view: usize, within: Rect, lively: bool, events: &mut Vec<Event>) {
+pub fn bar(ui: &mut Ui, model: &Model, view: usize, within: Rect, lively: bool) {
     let words = within.width() >= WORDS_FROM;
     let widths = Category::ALL.map(|category| if words { pill_width(ui, category) } else { 36.0 });
     let total = widths.iter().sum::<f32>() + 12.0;
@@ -33,7 +31,7 @@ pub fn bar(ui: &mut Ui, model: &Model, view: usize, within: Rect, lively: bool, 
     shade_bottom(ui.painter(), within, lively);
     for (category, width) in Category::ALL.into_iter().zip(widths) {
         let rect = Rect::from_min_size(pos2(x, y), vec2(width, PILL));
-        pill(ui, model, view, category, rect, words, events);
+        pill(ui, model, view, category, rect, words);
         x += width + 6.0;
     }
 }
@@ -55,21 +53,12 @@ fn word_font() -> FontId {
     FontId::proportional(14.0)
 }
 
-fn pill(
-    ui: &mut Ui,
-    model: &Model,
-    view: usize,
-    category: Category,
-    rect: Rect,
-    words: bool,
-    events: &mut Vec<Event>,
-) {
+fn pill(ui: &mut Ui, model: &Model, view: usize, category: Category, rect: Rect, words: bool) {
     let (ballot, title) = (model.ballots.get(category), theme::title(category));
     let won = ballot == Ballot::For(view);
     let name = format!("{title}: best in {}", view + 1);
     let (response, lit) = painted_button(ui, rect, ("vote", view, category.name()), &name, won);
-    response
-        .asks(events, Event::Vote { category, ballot: if won { Ballot::Open } else { Ballot::For(view) } });
+    response.asks(Event::Vote { category, ballot: if won { Ballot::Open } else { Ballot::For(view) } });
     let (bright, none, white) = (theme::bright(category), Color32::TRANSPARENT, Color32::from_white_alpha);
     let (fill, line, picture, word) = match (ballot, lit) {
         (_, false) if won => (bright, none, theme::ON_BRIGHT, theme::ON_BRIGHT),
@@ -81,7 +70,7 @@ fn pill(
         _ => (Color32::from_black_alpha(110), none, white(120), white(150)),
     };
     let painter = ui.painter();
-    painter.rect(rect, CornerRadius::same(14), fill, Stroke::new(1.5, line), StrokeKind::Inside);
+    painter.rect(rect, 14, fill, Stroke::new(1.5, line), StrokeKind::Inside);
     let icon_center = if words { rect.left_center() + vec2(18.0, 0.0) } else { rect.center() };
     Icon::from(category).paint_at(painter, icon_center, 16.0, picture);
     if words {
@@ -105,8 +94,9 @@ pub fn hindrance(model: &Model) -> Option<String> {
     (!names.is_empty()).then(|| format!("Still to vote on: {}", names.join(", ")))
 }
 
-/// The hub between the pictures: three ballots, and the way on. `anchor` is the middle of its lower edge.
-pub fn hub(ui: &mut Ui, model: &Model, anchor: Pos2, picture_width: f32, events: &mut Vec<Event>) {
+/// The hub between the pictures: three ballots, and the button for the next generation. `anchor` is the middle of its
+/// lower edge.
+pub fn hub(ui: &mut Ui, model: &Model, anchor: Pos2, picture_width: f32) {
     let hindrance = hindrance(model);
     // Whatever leaves the vote buttons beside it free: a row with words, a row, or a column where pictures are narrow.
     let (words, column) = (picture_width >= 520.0, picture_width < 300.0);
@@ -124,18 +114,18 @@ pub fn hub(ui: &mut Ui, model: &Model, anchor: Pos2, picture_width: f32, events:
     let rect = Rect::from_min_size(anchor - vec2(0.5 * size.x, size.y), size);
     // The hub takes clicks itself, so that none falls through to a picture.
     ui.interact(rect, ui.scope_id().with("hub"), Sense::click());
-    ui.painter().add(theme::card_shadow().as_shape(rect, CornerRadius::same(19)));
+    ui.painter().add(theme::card_shadow().as_shape(rect, 19));
     let line = Stroke::new(1.0, Color32::from_white_alpha(40));
     let fill = Color32::from_rgba_unmultiplied(20, 23, 22, 244);
-    ui.painter().rect(rect, CornerRadius::same(19), fill, line, StrokeKind::Inside);
+    ui.painter().rect(rect, 19, fill, line, StrokeKind::Inside);
     let first = Rect::from_min_size(rect.min + vec2(6.0, 6.0), vec2(CHIP, CHIP));
     for (at, category) in Category::ALL.into_iter().enumerate() {
-        chip(ui, model, category, first.translate(step * at as f32), events);
+        chip(ui, model, category, first.translate(step * at as f32));
     }
     let rest =
         Rect::from_min_max(first.min + 3.0 * step + step.normalized() * 2.0, rect.max - vec2(6.0, 6.0));
     match (&model.baking, hindrance) {
-        (_, None) => next_button(ui, rest, words, events),
+        (_, None) => next_button(ui, rest, words),
         (Some(baking), Some(text)) => {
             let rest_color = Color32::from_white_alpha(45);
             progress_ring(ui.painter(), rest.center(), 9.0, baking.part(), DARK_ACCENT, rest_color);
@@ -148,11 +138,11 @@ pub fn hub(ui: &mut Ui, model: &Model, anchor: Pos2, picture_width: f32, events:
 /// The hub is dark in both themes, as everything that lies on pictures.
 const DARK_ACCENT: Color32 = theme::DARK.accent;
 
-fn next_button(ui: &mut Ui, rect: Rect, words: bool, events: &mut Vec<Event>) {
+fn next_button(ui: &mut Ui, rect: Rect, words: bool) {
     let name = "Next generation (hub)";
     let (response, lit) = painted_button(ui, rect, "next generation", name, false);
     let fill = if lit { DARK_ACCENT.lerp_to_gamma(Color32::WHITE, 0.3) } else { DARK_ACCENT };
-    ui.painter().rect_filled(rect, CornerRadius::same(14), fill);
+    ui.painter().rect_filled(rect, 14, fill);
     let ink = theme::DARK.on_accent;
     let icon_center = if words { pos2(rect.right() - 17.0, rect.center().y) } else { rect.center() };
     Icon::Next.paint_at(ui.painter(), icon_center, 13.0, ink);
@@ -160,20 +150,17 @@ fn next_button(ui: &mut Ui, rect: Rect, words: bool, events: &mut Vec<Event>) {
         let at = pos2(rect.left() + 14.0, rect.center().y);
         ui.painter().text(at, Align2::LEFT_CENTER, "Next generation", word_font(), ink);
     }
-    response.asks(events, Command::NextGeneration.into());
+    response.asks(Command::NextGeneration);
     response.on_hover_text("Breed four new landscapes from what you chose");
 }
 
 /// One category's ballot: who won, or that none pleases; a click says "none", a second takes that back.
-fn chip(ui: &mut Ui, model: &Model, category: Category, rect: Rect, events: &mut Vec<Event>) {
+fn chip(ui: &mut Ui, model: &Model, category: Category, rect: Rect) {
     let ballot = model.ballots.get(category);
     let title = theme::title(category);
     let (name, none) = (format!("{title}: none of the four"), ballot == Ballot::NoFavourite);
     let (response, lit) = painted_button(ui, rect, ("ballot", category.name()), &name, none);
-    response.asks(
-        events,
-        Event::Vote { category, ballot: if none { Ballot::Open } else { Ballot::NoFavourite } },
-    );
+    response.asks(Event::Vote { category, ballot: if none { Ballot::Open } else { Ballot::NoFavourite } });
     let bright = theme::bright(category);
     let painter = ui.painter();
     let icon_rect = Rect::from_center_size(rect.center(), vec2(14.0, 14.0));

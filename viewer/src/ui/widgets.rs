@@ -1,10 +1,8 @@
 //! The few controls that egui does not bring: buttons of a pictogram, switches, choices in a row, progress rings, keys.
 //! Each has a name for those who use a screen reader (and for the tests).
 
-use egui::{
-    Align, Align2, Color32, CornerRadius, FontId, Layout, Painter, Pos2, Rect, Response, RichText, Role,
-};
-use egui::{Sense, Shape, Stroke, StrokeKind, TextStyle, Ui, Vec2, WidgetInfo, vec2};
+use egui::{Align, Align2, AsIdSalt, Color32, Context, FontId, Id, Layout, Painter, Pos2, Rect, Response};
+use egui::{RichText, Role, Sense, Shape, Stroke, StrokeKind, TextStyle, Ui, Vec2, WidgetInfo, vec2};
 
 use super::icon::{Icon, arc};
 use super::theme::{self, Palette};
@@ -35,37 +33,41 @@ pub fn flat_button(ui: &mut Ui, size: Vec2, name: &str, active: bool) -> (Rect, 
         (true, false) => palette.button,
         (false, false) => Color32::TRANSPARENT,
     };
-    ui.painter().rect_filled(rect, CornerRadius::same(theme::RADIUS), fill);
+    ui.painter().rect_filled(rect, theme::RADIUS, fill);
     name_button(ui, &response, name, active);
     (rect, response)
 }
 
-/// A button that its caller paints; the flag says whether it is to look as under the pointer. `id` tells it from the
-/// others of this [`Ui`].
-pub fn painted_button(
-    ui: &Ui,
-    rect: Rect,
-    id: impl egui::AsIdSalt,
-    name: &str,
-    selected: bool,
-) -> (Response, bool) {
+/// A button that its caller paints, `on` or not; the flag says whether it is to look as under the pointer. `id` tells it
+/// from the others of this [`Ui`].
+pub fn painted_button(ui: &Ui, rect: Rect, id: impl AsIdSalt, name: &str, on: bool) -> (Response, bool) {
     let response = ui.interact(rect, ui.scope_id().with(id), Sense::click());
-    name_button(ui, &response, name, selected);
+    name_button(ui, &response, name, on);
     let lit = is_lit(&response);
     (response, lit)
 }
 
 /// What a click asks for.
 pub trait Asks {
-    fn asks(&self, events: &mut Vec<Event>, event: Event);
+    fn asks(&self, event: impl Into<Event>);
 }
 
 impl Asks for Response {
-    fn asks(&self, events: &mut Vec<Event>, event: Event) {
+    fn asks(&self, event: impl Into<Event>) {
         if self.clicked() {
-            events.push(event);
+            ask(&self.ctx, event.into());
         }
     }
+}
+
+/// Asks for something. Until [`asked`] takes it egui keeps it, so that no function has to pass it on.
+pub fn ask(ctx: &Context, event: Event) {
+    ctx.data_mut(|data| data.get_temp_mut_or_default::<Vec<Event>>(Id::NULL).push(event));
+}
+
+/// Everything that was asked for since the last call.
+pub fn asked(ui: &Ui) -> Vec<Event> {
+    ui.data_mut(|data| data.remove_temp(Id::NULL).unwrap_or_default())
 }
 
 /// Under the pointer, or reached by the keyboard.
@@ -80,8 +82,8 @@ fn name_button(ui: &Ui, response: &Response, label: &str, selected: bool) {
 }
 
 /// The cross that closes a panel.
-pub fn close_button(ui: &mut Ui, label: &str, panel: Panel, events: &mut Vec<Event>) {
-    icon_button(ui, Icon::Close, label, false).asks(events, Event::Panel { panel, open: false });
+pub fn close_button(ui: &mut Ui, label: &str, panel: Panel) {
+    icon_button(ui, Icon::Close, label, false).asks(Event::Panel { panel, open: false });
 }
 
 /// Something at the right end of a row, and something that fills the rest from the left.
@@ -92,7 +94,7 @@ pub fn ends<T>(ui: &mut Ui, left: impl FnOnce(&mut Ui) -> T, right: impl FnOnce(
     });
 }
 
-/// Text that is read when looked for.
+/// Text that matters less.
 pub fn small(ui: &mut Ui, text: impl Into<String>) {
     ui.label(RichText::new(text).small().color(Palette::of(ui.visuals()).weak));
 }
@@ -104,7 +106,7 @@ pub fn scrolled(ui: &mut Ui, room: f32, list: impl FnOnce(&mut Ui)) {
     area.auto_shrink([false, true]).show(ui, list);
 }
 
-/// The one button that leads on: filled with the accent. `icon` stands after the text.
+/// The button for the next step: filled with the accent. `icon` stands after the text.
 pub fn primary_button(ui: &mut Ui, text: &str, icon: Icon) -> Response {
     let palette = Palette::of(ui.visuals());
     let font = TextStyle::Button.resolve(ui.style());
@@ -116,7 +118,7 @@ pub fn primary_button(ui: &mut Ui, text: &str, icon: Icon) -> Response {
         (true, true) => (palette.accent.lerp_to_gamma(palette.text, 0.25), palette.on_accent),
         (true, false) => (palette.accent, palette.on_accent),
     };
-    ui.painter().rect_filled(rect, CornerRadius::same(14), fill);
+    ui.painter().rect_filled(rect, 14, fill);
     let at = Pos2::new(rect.left() + 14.0, rect.center().y - 0.5 * galley.size().y);
     ui.painter().galley_with_override_text_color(at, galley, ink);
     icon.paint_at(ui.painter(), rect.right_center() - vec2(18.0, 0.0), 12.0, ink);
@@ -135,13 +137,8 @@ pub fn switch(ui: &mut Ui, on: &mut bool, text: &str, help: &str) {
     let track = Rect::from_center_size(Pos2::new(rect.right() - 16.0, rect.center().y), vec2(32.0, 18.0));
     let part = ui.ctx().animate_bool_responsive(response.id, *on);
     let rest = if response.hovered() { palette.hovered } else { palette.button };
-    ui.painter().rect(
-        track,
-        CornerRadius::same(9),
-        rest.lerp_to_gamma(palette.accent, part),
-        Stroke::new(1.0, if *on { palette.accent } else { palette.line }),
-        StrokeKind::Inside,
-    );
+    let line = (1.0, if *on { palette.accent } else { palette.line });
+    ui.painter().rect(track, 9, rest.lerp_to_gamma(palette.accent, part), line, StrokeKind::Inside);
     let knob = Pos2::new(egui::lerp(track.left() + 9.0..=track.right() - 9.0, part), track.center().y);
     let knob_color = palette.weak.lerp_to_gamma(palette.on_accent, part);
     ui.painter().circle_filled(knob, 6.0, knob_color);
@@ -157,7 +154,7 @@ pub fn segmented<T: Copy + PartialEq>(ui: &mut Ui, name: &str, choices: &[(T, &s
     let palette = Palette::of(ui.visuals());
     let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
     let (_, rect) = ui.allocate_space(size);
-    ui.painter().rect_filled(rect, CornerRadius::same(theme::RADIUS), palette.sunken);
+    ui.painter().rect_filled(rect, theme::RADIUS, palette.sunken);
     let step = rect.width() / choices.len().max(1) as f32;
     let font = TextStyle::Button.resolve(ui.style());
     let current = *chosen;
@@ -169,7 +166,7 @@ pub fn segmented<T: Copy + PartialEq>(ui: &mut Ui, name: &str, choices: &[(T, &s
         let (response, lit) = painted_button(ui, cell, (name, text), &label, selected);
         if selected || lit {
             let fill = if selected { palette.hovered } else { palette.button };
-            ui.painter().rect_filled(cell, CornerRadius::same(5), fill);
+            ui.painter().rect_filled(cell, 5, fill);
         }
         let color = if selected { palette.text } else { palette.weak };
         ui.painter().text(cell.center(), Align2::CENTER_CENTER, text, font.clone(), color);
@@ -193,7 +190,7 @@ pub fn progress_ring(painter: &Painter, center: Pos2, radius: f32, part: f32, co
 
 /// A thin bar that is filled from the left, as far as `part` (0 to 1).
 pub fn progress_bar(painter: &Painter, rect: Rect, part: f32, color: Color32, rest: Color32) {
-    let radius = CornerRadius::same((rect.height() * 0.5) as u8);
+    let radius = (0.5 * rect.height()) as u8;
     painter.rect_filled(rect, radius, rest);
     if part > 0.0 {
         let width = (rect.width() * part.min(1.0)).max(rect.height());
@@ -218,7 +215,7 @@ pub fn key_caps(ui: &mut Ui, keys: &str) {
             let size = vec2((galley.size().x + 12.0).max(22.0), 21.0);
             let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
             let line = Stroke::new(1.0, palette.line);
-            ui.painter().rect(rect, CornerRadius::same(5), palette.sunken, line, StrokeKind::Inside);
+            ui.painter().rect(rect, 5, palette.sunken, line, StrokeKind::Inside);
             ui.painter().galley(rect.center() - 0.5 * galley.size(), galley, palette.text);
             response.widget_info(|| WidgetInfo::labeled(Role::Label, true, key));
         }

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::{PictureUse, Uploader};
+use super::{ImageUse, Uploader};
 use crate::lod::quadtree;
-use crate::scene::{Apron, Ground, GroundDetail, Picture};
+use crate::scene::{Apron, Ground, GroundDetail, Image};
 
 /// How far a curtain hangs down from the ring's inner edge: more than the field's edge can lie below it.
 const CURTAIN_M: f32 = 40.0;
@@ -54,33 +54,27 @@ impl Uploader {
         let surface = &ground.surface;
         let half_m = 0.5 * ground.field.extent_m();
         let (vertices, indices) = ring(&ground.apron, half_m);
-        let pick = |choose: fn(&GroundDetail<Picture>) -> &Picture| {
+        let pick = |choose: fn(&GroundDetail<Image>) -> &Image| {
             surface.details.iter().map(choose).collect::<Vec<_>>()
         };
         if surface.details.len() != 5 {
             return Err(format!("the ground has {} tiling textures instead of 5", surface.details.len()));
         }
         if ground.field.side <= 1 << quadtree::BLOCK_BITS {
-            return Err(format!(
-                "a heightfield of {} samples a side is too small to be drawn",
-                ground.field.side
-            ));
+            let side = ground.field.side;
+            return Err(format!("a heightfield of {side} samples a side is too small to be drawn"));
         }
         Ok(GroundBuffers {
             errors: quadtree::Errors::of(&ground.field),
             heights: self.heights(&ground.name, ground.field.side, &ground.field.heights_m),
-            color: self.picture(&surface.color, PictureUse::Color),
-            weights: self.picture(&surface.weights, PictureUse::Data),
-            light: self.picture(&surface.light, PictureUse::Data),
-            details: self.layers(&pick(|detail| &detail.detail), PictureUse::Data)?,
-            detail_normals: self.layers(&pick(|detail| &detail.normal), PictureUse::Data)?,
+            color: self.image(&surface.color, ImageUse::Color),
+            weights: self.image(&surface.weights, ImageUse::Data),
+            light: self.image(&surface.light, ImageUse::Data),
+            details: self.layers(&pick(|detail| &detail.detail), ImageUse::Data)?,
+            detail_normals: self.layers(&pick(|detail| &detail.normal), ImageUse::Data)?,
             tiles_m: std::array::from_fn(|layer| surface.details[layer].tile_m),
-            ring_vertices: self.buffer("ring", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX),
-            ring_indices: self.buffer(
-                "ring triangles",
-                bytemuck::cast_slice(&indices),
-                wgpu::BufferUsages::INDEX,
-            ),
+            ring_vertices: self.gpu.buffer("ring", &vertices, wgpu::BufferUsages::VERTEX),
+            ring_indices: self.gpu.buffer("ring triangles", &indices, wgpu::BufferUsages::INDEX),
             ring_index_count: indices.len() as u32,
         })
     }

@@ -13,13 +13,13 @@ use genescape_schema::scene::SkyLight;
 
 pub use ground::{GroundBuffers, RingVertex};
 pub use sky::SkyTextures;
-pub use texture::PictureUse;
+pub use texture::ImageUse;
 pub use trees::{
     DrawCommand, MATERIALS_PER_TREE_SET, MAX_LEVELS, MaterialUniform, TemplateData, TreeData, TreeMaterial,
     TreeSet,
 };
 
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, flat};
 use crate::scene::{Ground, Scene};
 
 /// A landscape on the device.
@@ -33,7 +33,7 @@ pub struct SceneBuffers {
     pub sky: SkyLight,
     /// The land.
     pub land: GroundBuffers,
-    /// Sky pictures.
+    /// Sky images.
     pub sky_textures: SkyTextures,
     /// Trees; none if the land is bare.
     pub trees: Option<TreeSet>,
@@ -68,18 +68,11 @@ impl Uploader {
     }
 
     fn shadow_map(&self) -> wgpu::Texture {
-        // A tree's crown is some metres wide: half a metre a texel shows it, a quarter is better where memory is no matter.
+        // A tree's crown is some metres wide: half a metre a texel shows it; a quarter is better where memory is plentiful.
         let side = if self.gpu.software { 2048 } else { 4096 };
-        self.gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("shadow map"),
-            size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Depth16Unorm,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        })
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+        let format = wgpu::TextureFormat::Depth16Unorm;
+        self.gpu.device.create_texture(&flat("shadow map", [side, side], format, usage))
     }
 
     /// The texture of that name, made if none is in use.
@@ -93,13 +86,5 @@ impl Uploader {
         textures.retain(|_, texture| texture.strong_count() > 0);
         textures.insert(name, Arc::downgrade(&made));
         made
-    }
-
-    fn buffer(&self, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
-        use wgpu::util::DeviceExt;
-        // Empty buffers cannot be bound.
-        let contents = if contents.is_empty() { &[0; 16] } else { contents };
-        let descriptor = wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage };
-        self.gpu.device.create_buffer_init(&descriptor)
     }
 }

@@ -1,11 +1,11 @@
-//! The sky's pictures.
+//! The sky's images.
 
 use std::sync::Arc;
 
-use super::{PictureUse, Uploader};
-use crate::scene::{Picture, Sky};
+use super::{ImageUse, Uploader};
+use crate::scene::{Image, Sky};
 
-/// Sky pictures on the device.
+/// Sky images on the device.
 #[derive(Debug)]
 pub struct SkyTextures {
     /// With clouds.
@@ -23,16 +23,9 @@ pub struct SkyTextures {
 impl Uploader {
     pub(super) fn sky(&self, sky: &Sky) -> SkyTextures {
         let layer = |name: &str| sky.images.layers.iter().find(|layer| layer.name == name);
-        let nothing = Picture {
-            name: "nothing".into(),
-            width_px: 1,
-            height_px: 1,
-            levels: vec![Arc::from([0u8; 4].as_slice())],
-        };
-        let texture = |name: &str| {
-            let image = layer(name).map_or(&nothing, |layer| &layer.image);
-            self.picture(image, PictureUse::Color)
-        };
+        let none = Image::of_one_pixel([0; 4]);
+        let texture =
+            |name: &str| self.image(layer(name).map_or(&none, |layer| &layer.image), ImageUse::Color);
         let measure = |name: &str| layer(name).map_or([0.0; 2], |layer| [layer.altitude_m, layer.extent_m]);
         let ([a, b], [c, d]) = (measure("cumulus"), measure("cirrus"));
         SkyTextures {

@@ -1,20 +1,21 @@
-//! Pictures → textures with all their mip levels.
+//! Images → textures with all their mip levels.
 
 use std::sync::Arc;
 
 use super::Uploader;
-use crate::scene::{HdrPicture, Picture};
+use crate::gpu::flat;
+use crate::scene::{HdrImage, Image};
 
-/// What a picture's numbers mean.
+/// What an image's numbers mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PictureUse {
+pub enum ImageUse {
     /// Colour in sRGB.
     Color,
     /// Numbers: normals, weights, light.
     Data,
 }
 
-impl PictureUse {
+impl ImageUse {
     fn format(self) -> wgpu::TextureFormat {
         match self {
             Self::Color => wgpu::TextureFormat::Rgba8UnormSrgb,
@@ -24,129 +25,66 @@ impl PictureUse {
 }
 
 impl Uploader {
-    /// A picture as a texture. Mip levels that its file brings are used as they are (leaves keep their coverage by
-    /// them); a picture without gets averages.
-    pub(super) fn picture(&self, picture: &Picture, kind: PictureUse) -> Arc<wgpu::Texture> {
-        self.shared(format!("{kind:?} {}", picture.name), || self.array(&[picture], kind))
+    /// An image as a texture. Mip levels that its file brings are used as they are (leaves keep their coverage by
+    /// them); an image without gets averages.
+    pub(super) fn image(&self, image: &Image, kind: ImageUse) -> Arc<wgpu::Texture> {
+        self.shared(format!("{kind:?} {}", image.name), || self.array(&[image], kind))
     }
 
-    /// Several pictures of one size as the layers of one texture.
-    pub(super) fn layers(
-        &self,
-        pictures: &[&Picture],
-        kind: PictureUse,
-    ) -> Result<Arc<wgpu::Texture>, String> {
-        let Some(first) = pictures.first() else { return Err("there are no tiling textures".to_owned()) };
-        let odd = pictures.iter().find(|p| (p.width_px, p.height_px) != (first.width_px, first.height_px));
+    /// Several images of one size as the layers of one texture.
+    pub(super) fn layers(&self, images: &[&Image], kind: ImageUse) -> Result<Arc<wgpu::Texture>, String> {
+        let first = images.first().ok_or("there are no tiling textures")?;
+        let odd = images.iter().find(|p| (p.width_px, p.height_px) != (first.width_px, first.height_px));
         if let Some(odd) = odd {
             return Err(format!(
                 "tiling textures differ in size: {} is {} × {}, {} is {} × {}",
                 first.name, first.width_px, first.height_px, odd.name, odd.width_px, odd.height_px
             ));
         }
-        let names: Vec<&str> = pictures.iter().map(|picture| picture.name.as_str()).collect();
-        Ok(self.shared(format!("{kind:?} {}", names.join(" ")), || self.array(pictures, kind)))
+        let names: Vec<&str> = images.iter().map(|image| image.name.as_str()).collect();
+        Ok(self.shared(format!("{kind:?} {}", names.join(" ")), || self.array(images, kind)))
     }
 
-    fn array(&self, pictures: &[&Picture], kind: PictureUse) -> wgpu::Texture {
-        let chains: Vec<Vec<Arc<[u8]>>> = pictures.iter().map(|picture| chain(picture, kind)).collect();
-        let (width, height) = (pictures[0].width_px, pictures[0].height_px);
-        let levels = chains.iter().map(Vec::len).min().unwrap_or(1) as u32;
-        let texture = self.gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some(&pictures[0].name),
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: pictures.len() as u32 },
-            mip_level_count: levels,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: kind.format(),
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        });
-        for (layer, chain) in chains.iter().enumerate() {
-            for (level, pixels) in chain.iter().take(levels as usize).enumerate() {
-                let (width, height) = ((width >> level).max(1), (height >> level).max(1));
-                self.write(&texture, layer as u32, level as u32, [width, height], pixels, 4);
-            }
-        }
-        texture
+    fn array(&self, images: &[&Image], kind: ImageUse) -> wgpu::Texture {
+        let chains: Vec<Vec<Arc<[u8]>>> = images.iter().map(|image| chain(image, kind)).collect();
+        let levels = chains.iter().map(Vec::len).min().unwrap_or(1);
+        let (first, usage) = (images[0], wgpu::TextureUsages::TEXTURE_BINDING);
+        let mut texture = flat(&first.name, [first.width_px, first.height_px], kind.format(), usage);
+        texture.size.depth_or_array_layers = images.len() as u32;
+        texture.mip_level_count = levels as u32;
+        let texels: Vec<&[u8]> = chains.iter().flat_map(|chain| &chain[..levels]).map(Arc::as_ref).collect();
+        self.gpu.texture(&texture, &texels.concat())
     }
 
-    fn write(
-        &self,
-        texture: &wgpu::Texture,
-        layer: u32,
-        level: u32,
-        [width, height]: [u32; 2],
-        pixels: &[u8],
-        bytes_per_pixel: u32,
-    ) {
-        self.gpu.queue.write_texture(
-            wgpu::TexelCopyTextureInfo {
-                texture,
-                mip_level: level,
-                origin: wgpu::Origin3d { x: 0, y: 0, z: layer },
-                aspect: wgpu::TextureAspect::All,
-            },
-            pixels,
-            wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(width * bytes_per_pixel),
-                rows_per_image: Some(height),
-            },
-            wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        );
-    }
-
-    /// Six faces of half floats as a cube.
-    pub(super) fn cube(&self, faces: &[HdrPicture]) -> Arc<wgpu::Texture> {
+    /// Six faces of half floats, all squares of one size, as a cube.
+    pub(super) fn cube(&self, faces: &[HdrImage]) -> Arc<wgpu::Texture> {
         let names: Vec<&str> = faces.iter().map(|face| face.name.as_str()).collect();
         self.shared(names.join(" "), || {
-            let side = faces[0].width_px;
-            let texture = self.gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("sky"),
-                size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 6 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: wgpu::TextureFormat::Rgba16Float,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-                view_formats: &[],
-            });
-            for (layer, face) in faces.iter().enumerate() {
-                if (face.width_px, face.height_px) == (side, side) {
-                    self.write(&texture, layer as u32, 0, [side, side], &face.pixels, 8);
-                }
-            }
-            texture
+            let (format, usage) = (wgpu::TextureFormat::Rgba16Float, wgpu::TextureUsages::TEXTURE_BINDING);
+            let mut texture = flat("sky", [faces[0].width_px, faces[0].height_px], format, usage);
+            texture.size.depth_or_array_layers = faces.len() as u32;
+            let texels: Vec<&[u8]> = faces.iter().map(|face| &*face.pixels).collect();
+            self.gpu.texture(&texture, &texels.concat())
         })
     }
 
     /// A square of heights, one float a texel, for `textureLoad`.
     pub(super) fn heights(&self, name: &str, side: u32, heights_m: &[f32]) -> Arc<wgpu::Texture> {
         self.shared(format!("heights {name}"), || {
-            let texture = self.gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("heights"),
-                size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: wgpu::TextureFormat::R32Float,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-                view_formats: &[],
-            });
-            self.write(&texture, 0, 0, [side, side], bytemuck::cast_slice(heights_m), 4);
-            texture
+            let (format, usage) = (wgpu::TextureFormat::R32Float, wgpu::TextureUsages::TEXTURE_BINDING);
+            let texture = flat("heights", [side, side], format, usage);
+            self.gpu.texture(&texture, bytemuck::cast_slice(heights_m))
         })
     }
 }
 
-/// A picture's mip levels: its own, or averages down to one pixel.
-fn chain(picture: &Picture, kind: PictureUse) -> Vec<Arc<[u8]>> {
-    if picture.levels.len() > 1 {
-        return picture.levels.clone();
+/// An image's mip levels: its own, or averages down to one pixel.
+fn chain(image: &Image, kind: ImageUse) -> Vec<Arc<[u8]>> {
+    if image.levels.len() > 1 {
+        return image.levels.clone();
     }
-    let mut levels = picture.levels.clone();
-    let (mut width, mut height) = (picture.width_px, picture.height_px);
+    let mut levels = image.levels.clone();
+    let (mut width, mut height) = (image.width_px, image.height_px);
     while let Some(finer) = levels.last().filter(|_| width > 1 || height > 1) {
         let coarser = halve(finer, width, height, kind);
         (width, height) = ((width / 2).max(1), (height / 2).max(1));
@@ -156,7 +94,7 @@ fn chain(picture: &Picture, kind: PictureUse) -> Vec<Arc<[u8]>> {
 }
 
 /// Averages of 2 × 2 pixels; colour is averaged as light.
-fn halve(pixels: &[u8], width: u32, height: u32, kind: PictureUse) -> Vec<u8> {
+fn halve(pixels: &[u8], width: u32, height: u32, kind: ImageUse) -> Vec<u8> {
     let (half_width, half_height) = ((width / 2).max(1), (height / 2).max(1));
     let mut halved = Vec::with_capacity((half_width * half_height * 4) as usize);
     let table = linear_table();
@@ -169,7 +107,7 @@ fn halve(pixels: &[u8], width: u32, height: u32, kind: PictureUse) -> Vec<u8> {
             let four = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
             for channel in 0..4 {
                 let plain = || (four.iter().map(|&p| u32::from(pixels[p + channel])).sum::<u32>() + 2) / 4;
-                let value = if kind == PictureUse::Color && channel < 3 {
+                let value = if kind == ImageUse::Color && channel < 3 {
                     let light: f32 = four.iter().map(|&p| table[usize::from(pixels[p + channel])]).sum();
                     encode(0.25 * light)
                 } else {
@@ -204,25 +142,25 @@ fn encode(light: f32) -> u8 {
 mod tests {
     use super::*;
 
-    fn checkered(a: u8, b: u8) -> Picture {
+    fn checkered(a: u8, b: u8) -> Image {
         let pixels: Vec<u8> = (0..16).flat_map(|p| [if (p + p / 4) % 2 == 0 { a } else { b }; 4]).collect();
-        Picture { name: "checkers".into(), width_px: 4, height_px: 4, levels: vec![pixels.into()] }
+        Image { name: "checkers".into(), width_px: 4, height_px: 4, levels: vec![pixels.into()] }
     }
 
     #[test]
     fn mips_go_down_to_one_pixel_and_keep_the_mean_of_light() {
-        let levels = chain(&checkered(0, 255), PictureUse::Color);
+        let levels = chain(&checkered(0, 255), ImageUse::Color);
         assert_eq!(levels.iter().map(|level| level.len()).collect::<Vec<_>>(), [64, 16, 4]);
         // Half the light of white is sRGB 188, not 128; alpha is no light.
         assert_eq!(levels[2][..], [188, 188, 188, 128]);
-        assert_eq!(chain(&checkered(0, 255), PictureUse::Data)[2][..], [128; 4]);
+        assert_eq!(chain(&checkered(0, 255), ImageUse::Data)[2][..], [128; 4]);
     }
 
     #[test]
     fn a_file_s_own_mips_are_left_as_they_are() {
-        let mut picture = checkered(10, 20);
-        picture.levels.push(vec![7; 16].into());
-        assert_eq!(chain(&picture, PictureUse::Color), picture.levels);
+        let mut image = checkered(10, 20);
+        image.levels.push(vec![7; 16].into());
+        assert_eq!(chain(&image, ImageUse::Color), image.levels);
     }
 
     #[test]

@@ -1,9 +1,9 @@
-//! Trees: one vertex buffer and one index buffer for all kinds and levels, instances, and the commands that draw them.
+//! Trees: one vertex buffer and one index buffer for all templates and levels, instances, and the commands that draw them.
 
 use std::sync::Arc;
 
-use super::{PictureUse, Uploader};
-use crate::scene::{Instance, Material, Picture, Template, TreeVertex, Trees};
+use super::{ImageUse, Uploader};
+use crate::scene::{Image, Instance, Material, Template, TreeVertex, Trees};
 
 pub use crate::lod::tree::MAX_LEVELS;
 /// The most materials that all trees of a landscape may have: each is one draw.
@@ -15,7 +15,7 @@ pub const MATERIALS_PER_TREE_SET: usize = 4;
 pub struct TreeData {
     /// World from the template's space, by rows.
     pub rows: [[f32; 4]; 3],
-    /// Which kind.
+    /// Number of its template.
     pub template_index: u32,
     /// Greatest singular value of the linear part.
     pub scale: f32,
@@ -23,7 +23,7 @@ pub struct TreeData {
     pub pad: [f32; 2],
 }
 
-/// A kind of tree, as the shaders read it.
+/// A template, as the shaders read it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct TemplateData {
@@ -33,11 +33,11 @@ pub struct TemplateData {
     pub radius: f32,
     /// Error of each level in metres.
     pub errors: [f32; MAX_LEVELS],
-    /// How many levels.
+    /// Number of levels.
     pub levels: u32,
     /// Where its first list of visible trees starts.
     pub first: u32,
-    /// How many entries each of its lists has room for.
+    /// Entries that each of its lists has room for.
     pub capacity: u32,
     /// Error of the simple mode, [`crate::lod::tree::simple_error_m`].
     pub simple_error: f32,
@@ -49,7 +49,7 @@ pub struct TemplateData {
 pub struct DrawCommand {
     /// Indices of the mesh.
     pub indices: u32,
-    /// How many trees; written by the device.
+    /// Number of trees; written by the device.
     pub instances: u32,
     /// Where the mesh's indices start.
     pub first_index: u32,
@@ -78,23 +78,23 @@ pub struct MaterialUniform {
 /// All trees of a landscape on the device.
 #[derive(Debug)]
 pub struct TreeSet {
-    /// [`TreeVertex`] of all kinds and levels.
+    /// [`TreeVertex`] of all templates and levels.
     pub vertices: wgpu::Buffer,
     /// 32-bit.
     pub indices: wgpu::Buffer,
     /// [`TreeData`] of each tree.
     pub trees: wgpu::Buffer,
-    /// How many trees.
+    /// Number of trees.
     pub count: u32,
-    /// [`TemplateData`] of each kind.
+    /// [`TemplateData`] of each template.
     pub templates: wgpu::Buffer,
-    /// How many kinds.
+    /// Number of templates.
     pub template_count: u32,
-    /// The most levels that a kind has.
+    /// Levels of the template that has most.
     pub level_count: u32,
-    /// One for each material, level and kind, in this order of significance, nearest levels first, with no trees yet.
+    /// One for each material, level and template, in this order of significance, nearest levels first, with no trees yet.
     pub commands: Vec<DrawCommand>,
-    /// Triangles of one tree for each level and kind, all materials together: index level · kinds + kind.
+    /// Triangles of one tree for each level and template, all materials together: index level · templates + template.
     pub triangles: Vec<u32>,
     /// What the trees are made of.
     pub materials: Vec<TreeMaterial>,
@@ -123,31 +123,29 @@ impl Uploader {
         if trees.instances.is_empty() || trees.templates.is_empty() {
             return None;
         }
-        let set = arrange(trees);
         use wgpu::BufferUsages as Usage;
-        let bytes = |label: &str, bytes: &[u8], usage| self.buffer(label, bytes, usage);
+        let (gpu, materials) = (&self.gpu, common_materials(trees));
+        let lists = arrange(trees, &materials);
+        let all_trees: Vec<TreeData> = trees.instances.iter().map(tree_data).collect();
+        let vertices: Vec<&[TreeVertex]> =
+            trees.templates.iter().map(|template| &template.vertices[..]).collect();
+        let indices: Vec<&[u32]> = trees.templates.iter().map(|template| &template.indices[..]).collect();
         Some(TreeSet {
-            vertices: bytes("tree vertices", bytemuck::cast_slice(&set.vertices), Usage::VERTEX),
-            indices: bytes("tree indices", bytemuck::cast_slice(&set.indices), Usage::INDEX),
-            trees: bytes("trees", bytemuck::cast_slice(&set.trees), Usage::STORAGE),
-            count: set.trees.len() as u32,
-            templates: bytes("kinds of tree", bytemuck::cast_slice(&set.templates), Usage::STORAGE),
-            template_count: set.templates.len() as u32,
-            level_count: set.level_count,
-            commands: set.commands,
-            triangles: set.triangles,
-            materials: set.materials.iter().map(|material| self.material(material)).collect(),
-            list_capacity: set.list_capacity,
+            vertices: gpu.buffer("tree vertices", &vertices.concat(), Usage::VERTEX),
+            indices: gpu.buffer("tree indices", &indices.concat(), Usage::INDEX),
+            trees: gpu.buffer("trees", &all_trees, Usage::STORAGE),
+            count: all_trees.len() as u32,
+            templates: gpu.buffer("templates of trees", &lists.templates, Usage::STORAGE),
+            template_count: lists.templates.len() as u32,
+            level_count: level_count(trees) as u32,
+            commands: lists.commands,
+            triangles: lists.triangles,
+            materials: materials.iter().map(|material| self.material(material)).collect(),
+            list_capacity: lists.capacity,
         })
     }
 
     fn material(&self, material: &Material) -> TreeMaterial {
-        let blank = |value: [u8; 4]| Picture {
-            name: format!("blank {value:?}"),
-            width_px: 1,
-            height_px: 1,
-            levels: vec![Arc::from(value.as_slice())],
-        };
         let flag = |present: bool| if present { 1.0 } else { 0.0 };
         let uniform = MaterialUniform {
             factor: material.color_factor,
@@ -156,75 +154,69 @@ impl Uploader {
             has_color: flag(material.color.is_some()),
             has_normal: flag(material.normal.is_some()),
         };
-        let color = material.color.clone().unwrap_or_else(|| blank([255; 4]));
-        let normal = material.normal.clone().unwrap_or_else(|| blank([128, 128, 255, 255]));
+        let image = |image: &Option<Image>, otherwise: [u8; 4], kind: ImageUse| match image {
+            Some(image) => self.image(image, kind),
+            None => self.image(&Image::of_one_pixel(otherwise), kind),
+        };
         TreeMaterial {
             name: material.name.clone(),
             masked: material.alpha_cutoff.is_some(),
-            uniform: self.buffer("material", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM),
-            color: self.picture(&color, PictureUse::Color),
-            normal: self.picture(&normal, PictureUse::Data),
+            uniform: self.gpu.buffer("material", &[uniform], wgpu::BufferUsages::UNIFORM),
+            color: image(&material.color, [255; 4], ImageUse::Color),
+            normal: image(&material.normal, [128, 128, 255, 255], ImageUse::Data),
         }
     }
 }
 
-/// What goes into the buffers.
-struct Arranged {
-    vertices: Vec<TreeVertex>,
-    indices: Vec<u32>,
-    trees: Vec<TreeData>,
+/// The lists that say how to draw the trees, as in [`TreeSet`].
+struct Lists {
     templates: Vec<TemplateData>,
-    level_count: u32,
     commands: Vec<DrawCommand>,
     triangles: Vec<u32>,
-    materials: Vec<Material>,
-    list_capacity: u32,
+    capacity: u32,
 }
 
-fn arrange(trees: &Trees) -> Arranged {
-    let kinds = trees.templates.len();
-    let depth = |template: &Template| template.levels.len().min(MAX_LEVELS);
-    let level_count = trees.templates.iter().map(|template| depth(template)).max().unwrap_or(1);
-    let materials = common_materials(trees);
-    let buckets = level_count * kinds;
-    let mut set = Arranged {
-        vertices: Vec::new(),
-        indices: Vec::new(),
-        trees: trees.instances.iter().map(tree_data).collect(),
-        templates: Vec::new(),
-        level_count: level_count as u32,
-        commands: vec![DrawCommand::default(); buckets * materials.len()],
-        triangles: vec![0; buckets],
-        materials,
-        list_capacity: 0,
-    };
-    for (kind, template) in trees.templates.iter().enumerate() {
-        let capacity = trees.instances.iter().filter(|tree| tree.template as usize == kind).count() as u32;
-        let (base_vertex, base_index) = (set.vertices.len() as u32, set.indices.len() as u32);
+fn arrange(trees: &Trees, materials: &[Material]) -> Lists {
+    let templates = trees.templates.len();
+    let buckets = level_count(trees) * templates;
+    let commands = vec![DrawCommand::default(); buckets * materials.len()];
+    let mut lists = Lists { templates: Vec::new(), commands, triangles: vec![0; buckets], capacity: 0 };
+    let (mut base_vertex, mut base_index) = (0, 0);
+    for (index, template) in trees.templates.iter().enumerate() {
+        let capacity = trees.instances.iter().filter(|tree| tree.template as usize == index).count() as u32;
         for (number, level) in template.levels.iter().take(MAX_LEVELS).enumerate() {
-            let bucket = number * kinds + kind;
+            let bucket = number * templates + index;
             for (range, material) in level.ranges.iter().zip(&template.materials) {
-                let slot = set.materials.iter().position(|known| same(known, material)).unwrap_or(0);
-                set.commands[slot * buckets + bucket] = DrawCommand {
+                let slot = materials.iter().position(|known| same(known, material)).unwrap_or(0);
+                lists.commands[slot * buckets + bucket] = DrawCommand {
                     indices: range.count,
                     instances: 0,
                     first_index: base_index + range.first,
                     base_vertex: (base_vertex + level.base_vertex) as i32,
-                    first_instance: set.list_capacity + number as u32 * capacity,
+                    first_instance: lists.capacity + number as u32 * capacity,
                 };
-                set.triangles[bucket] += range.count / 3;
+                lists.triangles[bucket] += range.count / 3;
             }
         }
-        set.templates.push(template_data(template, set.list_capacity, capacity));
-        set.list_capacity += capacity * depth(template) as u32;
-        set.vertices.extend_from_slice(&template.vertices);
-        set.indices.extend_from_slice(&template.indices);
+        lists.templates.push(template_data(template, lists.capacity, capacity));
+        lists.capacity += capacity * depth(template) as u32;
+        base_vertex += template.vertices.len() as u32;
+        base_index += template.indices.len() as u32;
     }
-    set
+    lists
+}
+
+/// Levels of a template that are drawn.
+fn depth(template: &Template) -> usize {
+    template.levels.len().min(MAX_LEVELS)
+}
+
+fn level_count(trees: &Trees) -> usize {
+    trees.templates.iter().map(|template| depth(template)).max().unwrap_or(1)
 }
 
 fn template_data(template: &Template, first: u32, capacity: u32) -> TemplateData {
-    let levels = template.levels.len().min(MAX_LEVELS);
+    let levels = depth(template);
     let mut errors = [f32::MAX; MAX_LEVELS];
     for (slot, level) in errors.iter_mut().zip(&template.levels) {
         *slot = level.error_m;
@@ -249,7 +241,7 @@ fn tree_data(instance: &Instance) -> TreeData {
     }
 }
 
-/// Materials of all kinds, equal ones once; beyond the greatest number the first stands in.
+/// Materials of all templates, equal ones once; beyond [`MATERIALS_PER_TREE_SET`] the first is used instead.
 fn common_materials(trees: &Trees) -> Vec<Material> {
     let mut materials: Vec<Material> = Vec::new();
     for material in trees.templates.iter().flat_map(|template| &template.materials) {
@@ -264,7 +256,7 @@ fn common_materials(trees: &Trees) -> Vec<Material> {
 }
 
 fn same(a: &Material, b: &Material) -> bool {
-    let name = |picture: &Option<Picture>| picture.as_ref().map(|picture| picture.name.clone());
+    let name = |image: &Option<Image>| image.as_ref().map(|image| image.name.clone());
     (name(&a.color), name(&a.normal), a.color_factor, a.alpha_cutoff)
         == (name(&b.color), name(&b.normal), b.color_factor, b.alpha_cutoff)
 }

@@ -21,7 +21,7 @@ pub struct View {
     label: String,
     uniform: wgpu::Buffer,
     targets: Targets,
-    /// The targets were made anew and no caller has been told.
+    /// The targets were made anew, and no caller knows yet.
     fresh: bool,
     bound: Option<BoundScene>,
     terrain: TerrainChoice,

@@ -1,6 +1,6 @@
 //! What one picture is drawn into.
 
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, cleared, flat};
 use crate::passes::{Binding, DEPTH, DISPLAY, Passes, RADIANCE, bind};
 
 /// A picture's render targets.
@@ -20,23 +20,12 @@ pub struct Targets {
     pub(super) radiance_group: wgpu::BindGroup,
 }
 
-const CLEARED: wgpu::Operations<wgpu::Color> =
-    wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store };
-
 impl Targets {
     pub(super) fn new(gpu: &Gpu, passes: &Passes, label: &str, size_px: [u32; 2]) -> Self {
         use wgpu::TextureUsages as Usage;
         let texture = |format: wgpu::TextureFormat, samples: u32, usage: Usage| {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d { width: size_px[0], height: size_px[1], depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: samples,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: usage | Usage::RENDER_ATTACHMENT,
-                view_formats: &[],
-            })
+            let flat = flat(label, size_px, format, usage | Usage::RENDER_ATTACHMENT);
+            gpu.device.create_texture(&wgpu::TextureDescriptor { sample_count: samples, ..flat })
         };
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
         let radiance = view(&texture(RADIANCE, 1, Usage::TEXTURE_BINDING));
@@ -57,7 +46,7 @@ impl Targets {
     /// Where radiance is drawn to.
     pub(super) fn radiance(&self) -> [Option<wgpu::RenderPassColorAttachment<'_>>; 1] {
         let resolved = self.multisampled.as_ref().map(|_| &self.radiance);
-        color(self.multisampled.as_ref().unwrap_or(&self.radiance), resolved)
+        [cleared(self.multisampled.as_ref().unwrap_or(&self.radiance), resolved)]
     }
 
     pub(super) fn depth(&self) -> wgpu::RenderPassDepthStencilAttachment<'_> {
@@ -72,13 +61,6 @@ impl Targets {
 
     /// Where the finished picture is drawn to.
     pub(super) fn display(&self) -> [Option<wgpu::RenderPassColorAttachment<'_>>; 1] {
-        color(&self.display_view, None)
+        [cleared(&self.display_view, None)]
     }
-}
-
-fn color<'a>(
-    view: &'a wgpu::TextureView,
-    resolve_target: Option<&'a wgpu::TextureView>,
-) -> [Option<wgpu::RenderPassColorAttachment<'a>>; 1] {
-    [Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target, ops: CLEARED })]
 }

@@ -1,6 +1,6 @@
-//! Flying: one altitude above zero in all views, and through trees. Where one
-//! landscape's ground is higher than that, its view alone is lifted over it; so a valley can be flown through in one
-//! view although a mountain stands there in another.
+//! Flying: one altitude above zero in all views, and through trees. Where one landscape's ground is higher than that, its
+//! view alone is lifted over it; so a valley can be flown through in one view although a mountain stands there in
+//! another.
 
 use glam::{Vec2, Vec3};
 

@@ -20,7 +20,7 @@ mod trunks;
 use std::f32::consts::{PI, TAU};
 
 use glam::{Vec2, Vec3, Vec3Swizzles};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 pub use land::{BODY_RADIUS_M, EDGE_M, EYE_HEIGHT_M, Land, MIN_HEIGHT_M, WADING_DEPTH_M, reach_m, within};
 pub use start::start_pose;
@@ -36,9 +36,15 @@ pub const MAX_PITCH_RAD: f32 = 89.0 * PI / 180.0;
 pub const MAX_STEP_S: f32 = 0.25;
 /// A change of mode moves the eyes up or down in this time.
 const BLEND_S: f32 = 0.4;
+/// Running and fast flying, as a multiple.
+const RUN_FACTOR: f32 = 4.0;
+/// Time in which the velocity comes within 1/e of the wish.
+const SMOOTH_S: f32 = 0.12;
+/// Turn at full deflection of a stick.
+const STICK_RAD_PER_S: f32 = 2.2;
 
 /// How the camera moves.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub enum Mode {
     /// On the ground, around trunks.
     #[default]
@@ -64,8 +70,7 @@ impl Mode {
 }
 
 /// A place and direction that can be kept: a bookmark, a command line's camera. Nothing in it depends on a landscape.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Pose {
     /// The eye, east of the middle of the land.
     pub x_m: f32,
@@ -120,34 +125,20 @@ impl Pose {
     }
 }
 
-/// How moving and looking feel: settings that a person may change.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+/// How moving and looking feel.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Feel {
     /// Walking speed in m/s.
     pub walk_mps: f32,
-    /// Running and fast flying, as a multiple.
-    pub run_factor: f32,
-    /// Time in which a wish's speed is reached but for 1/e; 0 is at once.
-    pub smooth_s: f32,
     /// Turn for one count of the mouse.
     pub mouse_rad: f32,
-    /// Turn at full deflection of a stick, in rad/s.
-    pub stick_rad_per_s: f32,
     /// Forward on the mouse or stick looks down.
     pub invert: bool,
 }
 
 impl Default for Feel {
     fn default() -> Self {
-        Self {
-            walk_mps: 3.0,
-            run_factor: 4.0,
-            smooth_s: 0.12,
-            mouse_rad: 0.0022,
-            stick_rad_per_s: 2.2,
-            invert: false,
-        }
+        Self { walk_mps: 3.0, mouse_rad: 0.0022, invert: false }
     }
 }
 
@@ -245,15 +236,15 @@ impl Rig {
             Mode::Walk => self.walk(dt_s, controls, feel, lands),
             Mode::Fly => {
                 self.fly_mps = fly::speed_mps(self.fly_mps, controls.wheel);
-                let wish_mps = fly::wish(&self.pose, controls) * self.fly_mps * pace(controls, feel);
-                let moved_m = glide(&mut self.velocity_mps, wish_mps, dt_s, feel.smooth_s);
+                let wish_mps = fly::wish(&self.pose, controls) * self.fly_mps * pace(controls);
+                let moved_m = glide(&mut self.velocity_mps, wish_mps, dt_s);
                 fly::advance(&mut self.pose, moved_m, lands);
             }
             Mode::Orbit => {
                 orbit::zoom(&mut self.pose, controls, dt_s);
-                let speed_mps = orbit::speed_mps(&self.pose, feel.walk_mps) * pace(controls, feel);
+                let speed_mps = orbit::speed_mps(&self.pose, feel.walk_mps) * pace(controls);
                 let wish_mps = level_wish(&self.pose, controls) * speed_mps;
-                let moved_m = glide(&mut self.velocity_mps, wish_mps, dt_s, feel.smooth_s);
+                let moved_m = glide(&mut self.velocity_mps, wish_mps, dt_s);
                 self.target_m = within(lands, self.target_m + moved_m.xz());
                 orbit::circle(&mut self.pose, self.target_m);
             }
@@ -278,7 +269,7 @@ impl Rig {
         Mode::ALL.into_iter().zip(self.parts).map(|(mode, part)| part * self.height_in(mode, land)).sum()
     }
 
-    /// Takes from the parts of other modes what the mode gains; so a change amid a change goes on from there.
+    /// Takes from the parts of other modes what the mode gains; so a change during a change goes on from there.
     fn blend(&mut self, dt_s: f32) {
         let own = self.parts[self.pose.mode as usize];
         let grown = own + dt_s / BLEND_S;
@@ -303,8 +294,7 @@ impl Rig {
     fn turn(&mut self, dt_s: f32, controls: &Controls, feel: &Feel) {
         // To the right and up are positive here; yaw turns left.
         let mouse = Vec2::new(controls.turn_px.x, -controls.turn_px.y) * feel.mouse_rad;
-        let stick = controls.turn_rate * (feel.stick_rad_per_s * dt_s);
-        let turn = mouse + stick;
+        let turn = mouse + controls.turn_rate * (STICK_RAD_PER_S * dt_s);
         if !turn.is_finite() {
             return;
         }
@@ -315,14 +305,14 @@ impl Rig {
 
     fn walk(&mut self, dt_s: f32, controls: &Controls, feel: &Feel, lands: &[&Land]) {
         self.settle(lands);
-        let wish_mps = level_wish(&self.pose, controls) * feel.walk_mps * pace(controls, feel);
-        let moved_m = glide(&mut self.velocity_mps, wish_mps, dt_s, feel.smooth_s);
+        let wish_mps = level_wish(&self.pose, controls) * feel.walk_mps * pace(controls);
+        let moved_m = glide(&mut self.velocity_mps, wish_mps, dt_s);
         self.pose.put(advance(lands, self.pose.place_m(), moved_m.xz()));
     }
 }
 
-fn pace(controls: &Controls, feel: &Feel) -> f32 {
-    if controls.run { feel.run_factor } else { 1.0 }
+fn pace(controls: &Controls) -> f32 {
+    if controls.run { RUN_FACTOR } else { 1.0 }
 }
 
 /// The level direction of a wish, no longer than 1: two keys together are no faster than one.
@@ -333,23 +323,19 @@ fn level_wish(pose: &Pose, controls: &Controls) -> Vec3 {
 
 /// Draws the velocity towards the wish, v' = (wish − v)/τ, and gives the way that this leads in dt, in metres: the
 /// exact integral, so that one long step and many short ones lead to the same place.
-fn glide(velocity_mps: &mut Vec3, wish_mps: Vec3, dt_s: f32, smooth_s: f32) -> Vec3 {
+fn glide(velocity_mps: &mut Vec3, wish_mps: Vec3, dt_s: f32) -> Vec3 {
     if !wish_mps.is_finite() {
         return Vec3::ZERO;
     }
-    if smooth_s.is_nan() || smooth_s < 1e-4 {
-        *velocity_mps = wish_mps;
-        return wish_mps * dt_s;
-    }
     let lag_mps = *velocity_mps - wish_mps;
     // 1 − e^(−dt/τ), exact for short frames too.
-    let passed = -libm::expm1f(-dt_s / smooth_s);
+    let passed = -libm::expm1f(-dt_s / SMOOTH_S);
     *velocity_mps = wish_mps + lag_mps * (1.0 - passed);
     // Below a millimetre a second nothing is seen to move.
     if wish_mps == Vec3::ZERO && velocity_mps.length_squared() < 1e-6 {
         *velocity_mps = Vec3::ZERO;
     }
-    wish_mps * dt_s + lag_mps * (smooth_s * passed)
+    wish_mps * dt_s + lag_mps * (SMOOTH_S * passed)
 }
 
 /// The same angle within ±π.

@@ -43,7 +43,7 @@ pub(super) fn begin(pose: &mut Pose, lands: &[&Land], heights_m: &[f32]) -> Vec2
     let mean_m = lands.iter().zip(heights_m).map(above).sum::<f32>() / lands.len().max(1) as f32;
     pose.pitch_rad = pose.pitch_rad.min(BEGIN_RAD);
     pose.distance_m = distance((mean_m / libm::sinf(-pose.pitch_rad)).max(BEGIN_M));
-    // Nearer where the land ends before: the eye had better stay where it is.
+    // Nearer if the land ends first, so that the eye stays where it is.
     let target_m = place_m + offset_m(pose);
     let edge_m = within(lands, target_m);
     if edge_m != target_m {

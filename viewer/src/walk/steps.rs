@@ -33,7 +33,7 @@ pub fn free(lands: &[&Land], place_m: Vec2) -> bool {
     lands.iter().all(|land| land.trunks.clear(place_m, BODY_RADIUS_M))
 }
 
-/// Where a walker at `from_m` gets that wants to move by `by_m`. `from_m` must be free; what comes back is.
+/// Where a walker at `from_m` ends up who wants to move by `by_m`. `from_m` must be free; the result is, too.
 pub fn advance(lands: &[&Land], from_m: Vec2, by_m: Vec2) -> Vec2 {
     let length_m = by_m.length();
     if !length_m.is_finite() || length_m == 0.0 {
@@ -95,7 +95,7 @@ fn deepest(lands: &[&Land], place_m: Vec2) -> Option<Trunk> {
 fn pushed_out(trunk: &Trunk, place_m: Vec2, by_m: Vec2) -> Vec2 {
     let reach_m = trunk.radius_m + BODY_RADIUS_M + SKIN_M;
     let normal = (place_m - trunk.center_m).try_normalize().unwrap_or_else(|| -by_m.normalize_or(Vec2::X));
-    // With x east and z south, this is what lies on the right of someone who faces the trunk.
+    // With x east and z south, this is what lies on the right of a walker who faces the trunk.
     let right = Vec2::new(normal.y, -normal.x);
     let slide_m = by_m.dot(right);
     let missing_m = (MIN_SLIDE * by_m.length() - slide_m.abs()).max(0.0);

@@ -11,10 +11,10 @@ use std::sync::Arc;
 
 use genescape_viewer::camera::Camera;
 use genescape_viewer::headless::Headless;
+use genescape_viewer::image_file;
 use genescape_viewer::lod_mode::{TerrainLodMode, TreeLodMode};
 use genescape_viewer::options::{FrameInput, Options};
-use genescape_viewer::picture_file;
-use genescape_viewer::scene::{Apron, GroundDetail, Heightfield, Picture, Scene, Trees};
+use genescape_viewer::scene::{Apron, GroundDetail, Heightfield, Image, Scene, Trees};
 use glam::Vec3;
 use image::RgbaImage;
 
@@ -56,7 +56,7 @@ fn landscape() -> Scene {
 }
 
 /// A tiling texture of soft blots.
-fn tile(layer: u32) -> GroundDetail<Picture> {
+fn tile(layer: u32) -> GroundDetail<Image> {
     let blot = move |i: u32, j: u32| {
         0.5 * made_up::hash(i % 16, j % 16, layer) + 0.5 * made_up::hash(i / 2, j / 2, layer)
     };
@@ -149,13 +149,13 @@ fn pictures_are_as_they_were() {
     for (name, place, options) in pictures() {
         let drawn = shoot(&studio, &scene, place, options);
         if std::env::var_os("GENESCAPE_BLESS").is_some() {
-            picture_file::write_png(&golden(name), &drawn).expect("written");
+            image_file::write_png(&golden(name), &drawn).expect("written");
         }
         let difference = difference(&read(name), &drawn);
         genescape_bake::say!("{name}: FLIP {difference}");
         if difference > THRESHOLD {
             let path = std::env::temp_dir().join(format!("genescape-golden-{name}.png"));
-            picture_file::write_png(&path, &drawn).expect("written");
+            image_file::write_png(&path, &drawn).expect("written");
             differing.push(format!("{name}: FLIP {difference}, see {}", path.display()));
         }
     }

@@ -4,11 +4,11 @@
 use genescape_viewer::camera::{Camera, Frustum};
 use genescape_viewer::gpu::Gpu;
 use genescape_viewer::headless::Headless;
+use genescape_viewer::image_file;
 use genescape_viewer::lod::tree::{MAX_LEVELS, MIN_DISTANCE_M, simple_error_m};
 use genescape_viewer::lod_mode::TreeLodMode;
 use genescape_viewer::options::Options;
 use genescape_viewer::passes::{BoundTrees, CullUniform};
-use genescape_viewer::picture_file;
 use genescape_viewer::scene::Trees;
 use genescape_viewer::upload::{DrawCommand, SceneBuffers};
 use glam::Vec3;
@@ -75,16 +75,7 @@ fn eye(rng: &mut Pcg32, trees: &Trees) -> Camera {
 }
 
 fn fetch(gpu: &Gpu, from: &wgpu::Buffer) -> Vec<u8> {
-    let to = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size: from.size(),
-        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    encoder.copy_buffer_to_buffer(from, 0, &to, 0, from.size());
-    gpu.queue.submit([encoder.finish()]);
-    picture_file::read_buffer(gpu, &to).expect("readable")
+    image_file::read_buffer(gpu, from).expect("readable")
 }
 
 /// λ of each tree as the device chose it, `None` where it is not seen. Checks lists, counts and commands on the way.

@@ -7,7 +7,7 @@ use genescape_schema::scene::{Heightfield, SkyImages, SkyLight};
 use genescape_viewer::headless::Headless;
 use genescape_viewer::passes::Shaders;
 use genescape_viewer::scene::{
-    Apron, Ground, GroundDetail, GroundSurface, HdrPicture, Instance, Level, Material, Picture, Range, Scene,
+    Apron, Ground, GroundDetail, GroundSurface, HdrImage, Image, Instance, Level, Material, Range, Scene,
     Sky, StartView, Template, TerrainLod, TreeVertex, Trees,
 };
 use genescape_viewer::upload::{SceneBuffers, Uploader};
@@ -50,18 +50,18 @@ pub fn field(side: u32, spacing_m: f32, relief_m: f32, rough_m: f32) -> TerrainL
 }
 
 /// A square picture.
-pub fn picture(name: &str, side: u32, pixel: impl Fn(u32, u32) -> [u8; 4]) -> Picture {
+pub fn picture(name: &str, side: u32, pixel: impl Fn(u32, u32) -> [u8; 4]) -> Image {
     let pixels: Vec<u8> = (0..side * side).flat_map(|n| pixel(n % side, n / side)).collect();
-    Picture { name: name.to_owned(), width_px: side, height_px: side, levels: vec![pixels.into()] }
+    Image { name: name.to_owned(), width_px: side, height_px: side, levels: vec![pixels.into()] }
 }
 
 /// Faces of one colour each, linear.
-pub fn faces(name: &str, color: impl Fn(usize) -> [f32; 3]) -> Vec<HdrPicture> {
+pub fn faces(name: &str, color: impl Fn(usize) -> [f32; 3]) -> Vec<HdrImage> {
     let face = |face| {
         let [r, g, b] = color(face);
         let halves = [r, g, b, 1.0].map(|value| half::f16::from_f32(value).to_le_bytes());
         let pixels: Arc<[u8]> = halves.as_flattened().into();
-        HdrPicture { name: format!("{name} {face}"), width_px: 1, height_px: 1, pixels }
+        HdrImage { name: format!("{name} {face}"), width_px: 1, height_px: 1, pixels }
     };
     (0..6).map(face).collect()
 }

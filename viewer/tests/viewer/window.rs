@@ -72,9 +72,9 @@ fn a_whole_round_in_a_window() {
     let stage = Stage::set();
     let mut viewer = stage.viewer(&["--size", "640x480", "--pictures", "pictures"]);
     the_first_landscapes_grow(&stage, &mut viewer);
-    somebody_walks_and_looks_around(&stage, &mut viewer);
-    somebody_votes_and_breeds(&stage, &mut viewer);
-    somebody_goes_back(&stage, &mut viewer);
+    a_person_walks_and_looks_around(&stage, &mut viewer);
+    a_person_votes_and_breeds(&stage, &mut viewer);
+    a_person_goes_back(&stage, &mut viewer);
     files_change_by_another_hand(&stage, &mut viewer);
     a_gene_changes_in_the_panel(&stage, &mut viewer);
     a_picture_is_saved(&stage, &mut viewer);
@@ -105,7 +105,7 @@ fn place(viewer: &Viewer) -> [f64; 4] {
     ["x_m", "z_m", "yaw_rad", "pitch_rad"].map(|key| viewer.get("pose", key).as_f64().expect("a pose"))
 }
 
-fn somebody_walks_and_looks_around(stage: &Stage, viewer: &mut Viewer) {
+fn a_person_walks_and_looks_around(stage: &Stage, viewer: &mut Viewer) {
     let display = &stage.display;
     let before = display.picture();
     let start = place(viewer);
@@ -145,7 +145,7 @@ fn somebody_walks_and_looks_around(stage: &Stage, viewer: &mut Viewer) {
 }
 
 /// By key, by click, and with a step back in between.
-fn somebody_votes_and_breeds(stage: &Stage, viewer: &mut Viewer) {
+fn a_person_votes_and_breeds(stage: &Stage, viewer: &mut Viewer) {
     let display = &stage.display;
     let cast = |viewer: &Viewer| ["tree", "terrain", "sky"].map(|name| viewer.get("ballots", name).clone());
     display.tap(keys::U);
@@ -172,7 +172,7 @@ fn somebody_votes_and_breeds(stage: &Stage, viewer: &mut Viewer) {
     stage.look("4-children.png");
 }
 
-fn somebody_goes_back(stage: &Stage, viewer: &mut Viewer) {
+fn a_person_goes_back(stage: &Stage, viewer: &mut Viewer) {
     let display = &stage.display;
     display.tap(keys::PAGE_UP);
     viewer.until("the parents", |viewer| viewer.shows(0));
@@ -274,8 +274,8 @@ fn it_ends_and_remembers(stage: &Stage, mut viewer: Viewer) {
     viewer.until("another size", |viewer| *viewer.get("screen", "size_px") == json!([600, 440]));
     let left = place(&viewer);
     assert_eq!(viewer.quit(&stage.display).code(), Some(0));
-    let kept = SettingsFile::open(stage.path("settings.ron"));
-    assert_eq!(kept.problems, [""; 0]);
+    let (kept, problems) = SettingsFile::open(Some(stage.path("settings.ron")));
+    assert_eq!(problems, [""; 0]);
     assert_eq!(kept.settings.options.tree_lod, genescape_viewer::lod_mode::TreeLodMode::Discrete);
 
     let mut viewer = stage.viewer(&["--no-bake"]);

@@ -1,4 +1,4 @@
-//! What the bake tells → how it gets on, for each scene, and what became of each stage.
+//! Events of the bake → its progress, for each scene, and what became of each stage.
 
 use genescape_cache::Cache;
 use genescape_schema::INDIVIDUALS;
@@ -8,7 +8,7 @@ use crate::baker::Event;
 use crate::ui::model::{Baking, StageEntry};
 
 #[derive(Default)]
-pub(super) struct BakeProgress {
+pub struct BakeProgress {
     pub baking: Option<Baking>,
     /// For each scene the stages that are finished, and the one that was started last.
     pub scenes: [(usize, String); INDIVIDUALS],

@@ -39,7 +39,7 @@ impl Editor {
         self.edit(&Edit::Locked(names));
     }
 
-    /// Writes a change into the file on show. Scenes alone have none, and no population either.
+    /// Writes a change into the file of the generation that is shown. Scenes alone have none, and no population either.
     fn edit(&mut self, edit: &Edit) {
         match self.history.apply(&self.world, &self.space, self.generation, edit) {
             Ok(true) => {
@@ -78,7 +78,7 @@ impl Editor {
         }
     }
 
-    /// Makes again what was taken back last in the file on show.
+    /// Makes again what was taken back last in the file of the generation that is shown.
     pub fn redo(&mut self) {
         match self.history.redo(&self.world, self.generation) {
             Ok(name) => {

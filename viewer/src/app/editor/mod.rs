@@ -1,4 +1,4 @@
-//! The person's work on a world: the generation on show, votes, genes, and how the bake gets on. Takes events and
+//! The person's work on a world: the generation shown, votes, genes, and the bake's progress. Takes events and
 //! changes of files, writes what the person decides, and says what has to be shown.
 
 mod bake_progress;
@@ -47,22 +47,22 @@ pub struct Editor {
     source: Source,
     world: World,
     space: Arc<Space>,
-    /// The generation on show.
+    /// The generation that is shown.
     generation: u32,
     generations: Vec<u32>,
     population: Option<Population>,
-    /// Genes as they were when the generation came on show.
+    /// Genes as they were when the generation was first shown.
     bred: Option<[Genome; INDIVIDUALS]>,
-    ballots: Ballots,
+    pub(super) ballots: Ballots,
     history: History,
     steps: Vec<Step>,
-    /// A newer generation comes on show by itself.
+    /// A newer generation is shown as soon as it is born.
     follows: bool,
-    /// Views that show their scene of the generation on show.
+    /// Views that show their scene of that generation.
     loaded: [bool; INDIVIDUALS],
     faults: BTreeMap<Fault, FileError>,
-    bake: BakeProgress,
-    /// Remarks on files that were told and still hold: the same file is read again for many reasons.
+    pub(super) bake: BakeProgress,
+    /// Remarks on files that were reported and still hold: a file is read again for many reasons.
     noticed: BTreeSet<String>,
     tasks: Vec<Task>,
 }
@@ -127,14 +127,14 @@ impl Editor {
         self.tasks.push(Task::Tell(tone, text.into()));
     }
 
-    /// Tells a remark on a file unless it was told already, by the bake for instance.
+    /// Reports a remark on a file unless it was reported already, by the bake for instance.
     fn notice(&mut self, text: String) {
         if self.noticed.insert(text.clone()) {
             self.tell(Tone::Info, text);
         }
     }
 
-    /// All remarks on the world's file of that name. Those that no longer hold may be told again.
+    /// All remarks on the world's file of that name. Those that no longer hold may be reported again.
     fn notices(&mut self, name: &str, notices: Vec<String>) {
         let file = self.world.root().join(name).display().to_string();
         self.noticed.retain(|old| !old.starts_with(&file) || notices.contains(old));
@@ -142,7 +142,7 @@ impl Editor {
     }
 
     fn fault(&mut self, kind: Fault, title: impl Into<String>, report: impl Into<String>) {
-        // The bake says the same of a person's files; with the files it is told better, whichever comes first.
+        // The bake reports faults in a person's files, too, but less well: whichever comes first, this one stays.
         if matches!(kind, Fault::Space | Fault::Population) {
             self.faults.remove(&Fault::Bake);
         }
@@ -184,7 +184,7 @@ impl Editor {
         }
     }
 
-    /// Puts a generation on show.
+    /// Shows a generation.
     fn go_to(&mut self, generation: u32) {
         self.generation = generation;
         self.follows = self.generations.last() == Some(&generation);
@@ -235,7 +235,7 @@ impl Editor {
                 if self.population.is_none() && before.is_none() {
                     self.go_to(generation);
                 } else if let (true, true, Some(newest)) = (newest > before, self.follows, newest) {
-                    // Whichever file's change made us look: the parents' may be told after the child is there.
+                    // Whichever file changed: the change of the parents' may be reported after the child exists.
                     self.go_to(newest);
                     self.tell(Tone::Success, format!("Generation {newest} is born"));
                 } else if generation == self.generation {
@@ -247,12 +247,12 @@ impl Editor {
         }
     }
 
-    /// The bake told something.
+    /// Takes an event of the bake.
     pub fn baked(&mut self, event: baker::Event) {
         use baker::Event;
         match &event {
             Event::Planned { .. } => drop(self.faults.remove(&Fault::Bake)),
-            // What a person's files say wrong is told with the files.
+            // Faults in a person's files are reported when they are read.
             Event::Failed { message }
                 if !self.faults.contains_key(&Fault::Population)
                     && !self.faults.contains_key(&Fault::Space) =>
@@ -303,7 +303,7 @@ impl Editor {
         }
     }
 
-    /// An error was read.
+    /// The person has read an error.
     pub fn dismiss(&mut self, index: usize) {
         if let Some(kind) = self.faults.keys().nth(index).copied() {
             self.faults.remove(&kind);

@@ -4,27 +4,12 @@ use genescape_schema::{Category, INDIVIDUALS};
 use genescape_world::Source;
 
 use super::{Editor, Fault};
-use crate::event::Ballots;
-use crate::ui::model::{Baking, FileError, Genes, StageEntry, ViewState};
+use crate::ui::model::{FileError, Genes, ViewState};
 
 impl Editor {
-    /// The generation on show, and all that exist.
+    /// The generation that is shown, and all that exist.
     pub fn generations(&self) -> (u32, &[u32]) {
         (self.generation, &self.generations)
-    }
-
-    pub fn ballots(&self) -> Ballots {
-        self.ballots
-    }
-
-    /// How the bake gets on.
-    pub fn baking(&self) -> Option<Baking> {
-        self.bake.baking.clone()
-    }
-
-    /// What became of each stage.
-    pub fn bake_log(&self) -> &[StageEntry] {
-        &self.bake.log
     }
 
     pub fn errors(&self) -> Vec<FileError> {

@@ -1,5 +1,7 @@
 //! Votes: cast, written into the population's file, and kept between runs while they are not.
 
+use std::collections::BTreeMap;
+
 use genescape_schema::{Category, INDIVIDUALS, Parent};
 
 use super::Editor;
@@ -50,19 +52,14 @@ impl Editor {
 
     /// What should be kept of this world between runs, besides bookmarks.
     pub fn keep(&self, kept: &mut WorldSettings) {
-        let cast = |category: Category| match self.ballots.get(category) {
-            Ballot::Open => None,
-            Ballot::NoFavourite => Some((category.name().to_owned(), None)),
-            Ballot::For(best) => Some((category.name().to_owned(), Some(best))),
-        };
-        let votes = RunningVotes {
-            generation: self.generation,
-            cast: Category::ALL.into_iter().filter_map(cast).collect(),
-        };
-        kept.running_votes = (!votes.cast.is_empty()).then_some(votes);
+        let cast =
+            |category: Category| Some((category.name().to_owned(), self.ballots.get(category).cast()?));
+        let cast: BTreeMap<_, _> = Category::ALL.into_iter().filter_map(cast).collect();
+        let generation = self.generation;
+        kept.running_votes = (!cast.is_empty()).then_some(RunningVotes { generation, cast });
     }
 
-    /// Takes up the votes that were kept, if they are on the generation on show.
+    /// Takes up the votes that were kept, if they are on the generation that is shown.
     pub(super) fn resume_votes(&mut self, kept: &WorldSettings) {
         let Some(votes) = kept.running_votes.as_ref().filter(|votes| votes.generation == self.generation)
         else {
@@ -70,10 +67,9 @@ impl Editor {
         };
         self.ballots = Ballots::default();
         for category in Category::ALL {
-            match votes.cast.get(category.name()) {
-                None => {}
-                Some(Some(best)) if *best < INDIVIDUALS => self.ballots.set(category, Ballot::For(*best)),
-                Some(_) => self.ballots.set(category, Ballot::NoFavourite),
+            if let Some(best) = votes.cast.get(category.name()) {
+                let best = best.filter(|best| *best < INDIVIDUALS);
+                self.ballots.set(category, best.map_or(Ballot::NoFavourite, Ballot::For));
             }
         }
     }

@@ -140,7 +140,7 @@ fn the_splitter_follows_the_pointer_and_stays_inside() {
         harness.run();
         harness.drop_at(pos2(to, from.y));
         harness.run();
-        (harness.state().state.views.split, harness.get_by_label("Splitter").rect().center().x)
+        (harness.state().state.split, harness.get_by_label("Splitter").rect().center().x)
     };
     let (split, x) = drag(320.0);
     assert!((x - 320.0).abs() < 1.0 && (split - 0.2475).abs() < 0.01, "{x} {split}");

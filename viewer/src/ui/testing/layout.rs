@@ -51,7 +51,7 @@ fn worlds() -> Vec<(&'static str, Model)> {
                 model.generations = (0..200).collect();
                 model.baking = baking();
                 for view in &mut model.views {
-                    view.name = "A very long name that nobody would choose ".repeat(4);
+                    view.name = "A very long name that fits in no window ".repeat(4);
                 }
             }),
         ),

@@ -13,7 +13,7 @@ use egui_wgpu::{RendererOptions, ScreenDescriptor};
 use super::*;
 use crate::event::Ballot;
 use crate::gpu::Gpu;
-use crate::picture_file;
+use crate::image_file;
 use genescape_schema::Category;
 use image::RgbaImage;
 
@@ -78,7 +78,7 @@ fn paint(gpu: &Gpu, harness: &Harness<'_, Bench>, deltas: &Deltas) -> RgbaImage 
         renderer.render(&mut pass, &jobs, &screen);
     }
     gpu.queue.submit([encoder.finish()]);
-    picture_file::read(gpu, &texture).expect("the device answers")
+    image_file::read(gpu, &texture).expect("the device answers")
 }
 
 type Prepare = fn(&mut Model);
@@ -237,7 +237,7 @@ fn pictures_for_people() {
     let gpu = Gpu::headless().expect("an adapter; on Debian, mesa-vulkan-drivers has one in software");
     for scene in SCENES {
         let path = Path::new(&folder).join(scene.0).with_extension("png");
-        picture_file::write_png(&path, &draw(&gpu, scene, [960, 600])).expect("the folder can be written");
+        image_file::write_png(&path, &draw(&gpu, scene, [960, 600])).expect("the folder can be written");
     }
 }
 
@@ -259,7 +259,7 @@ fn the_interface_looks_as_it_did() {
         let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join(&name);
         let drawn = draw(&gpu, scene, [8, 5]);
         if std::env::var_os("GENESCAPE_BLESS").is_some() {
-            picture_file::write_png(&golden, &drawn).expect("written");
+            image_file::write_png(&golden, &drawn).expect("written");
         }
         let off = difference(
             &image::open(&golden).expect("a picture; GENESCAPE_BLESS=1 writes it").into_rgba8(),

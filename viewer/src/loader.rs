@@ -5,14 +5,10 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, TryIter, channel};
 use std::thread;
 
-use thread_priority::{ThreadPriority, set_current_thread_priority};
-
+use crate::baker;
 use crate::gpu::Gpu;
 use crate::passes::Passes;
 use crate::scene_loader::{Loaded, SceneLoader};
-
-/// Below the thread that draws, as in [`crate::baker`].
-const PRIORITY: u8 = 25;
 
 /// A landscape to read.
 pub struct Request {
@@ -49,10 +45,7 @@ impl Loader {
         let (answer, replies) = channel();
         let gpu = gpu.clone();
         thread::Builder::new().name("loader".into()).spawn(move || {
-            if let Ok(priority) = PRIORITY.try_into() {
-                // Without this right it is merely less polite.
-                let _ = set_current_thread_priority(ThreadPriority::Crossplatform(priority));
-            }
+            baker::lower_priority();
             let loader = SceneLoader::new(&gpu);
             while let Ok(Request { view, generation, path, passes }) = asked.recv() {
                 let result = loader.load(&path, &passes).map_err(|error| error.to_string());

@@ -1,4 +1,4 @@
-//! PNG and EXR → pictures in memory.
+//! PNG and EXR → images in memory.
 
 use std::io::Cursor;
 use std::sync::Arc;
@@ -8,23 +8,19 @@ use genescape_schema::scene::Resource;
 use half::f16;
 use image::{ImageFormat, RgbaImage};
 
-use super::LoadError;
+use super::Result;
 use super::document::Document;
-use crate::scene::{HdrPicture, Picture};
+use crate::scene::{HdrImage, Image};
 
 /// An 8-bit PNG of any kind of colour as RGBA.
-pub(super) fn png(document: &Document, resource: &Resource) -> Result<Picture, LoadError> {
+pub(super) fn png(document: &Document, resource: &Resource) -> Result<Image> {
     with_mips(document, resource, &[])
 }
 
 /// The same with coarser versions from files of their own.
-pub(super) fn with_mips(
-    document: &Document,
-    resource: &Resource,
-    mipmaps: &[Resource],
-) -> Result<Picture, LoadError> {
+pub(super) fn with_mips(document: &Document, resource: &Resource, mipmaps: &[Resource]) -> Result<Image> {
     let name = document.name_of(resource);
-    let picture = document.store.get::<Picture>(&name, || {
+    let image = document.store.get::<Image>(&name, || {
         let finest = decode(document, resource)?;
         let (width_px, height_px) = finest.dimensions();
         let mut levels: Vec<Arc<[u8]>> = vec![finest.into_raw().into()];
@@ -35,12 +31,12 @@ pub(super) fn with_mips(
             }
             levels.push(coarser.into_raw().into());
         }
-        Ok(Picture { name: name.clone(), width_px, height_px, levels })
+        Ok(Image { name: name.clone(), width_px, height_px, levels })
     })?;
-    Ok((*picture).clone())
+    Ok((*image).clone())
 }
 
-fn decode(document: &Document, resource: &Resource) -> Result<RgbaImage, LoadError> {
+fn decode(document: &Document, resource: &Resource) -> Result<RgbaImage> {
     let bytes = document.bytes(resource)?;
     match image::load_from_memory_with_format(&bytes, ImageFormat::Png) {
         Ok(image) => Ok(image.into_rgba8()),
@@ -48,19 +44,18 @@ fn decode(document: &Document, resource: &Resource) -> Result<RgbaImage, LoadErr
     }
 }
 
-/// An EXR picture of radiance, kept as half floats.
-pub(super) fn exr(document: &Document, resource: &Resource) -> Result<HdrPicture, LoadError> {
+/// An EXR image of radiance, kept as half floats.
+pub(super) fn exr(document: &Document, resource: &Resource) -> Result<HdrImage> {
     let name = document.name_of(resource);
-    let picture = document.store.get::<HdrPicture>(&name, || {
+    let image = document.store.get::<HdrImage>(&name, || {
         let bytes = document.bytes(resource)?;
-        decode_exr(&name, &bytes)
-            .map_err(|error| document.wrong(format!("{name} is no EXR picture: {error}")))
+        decode_exr(&name, &bytes).map_err(|error| document.wrong(format!("{name} is no EXR image: {error}")))
     })?;
-    Ok((*picture).clone())
+    Ok((*image).clone())
 }
 
 /// By the `exr` crate itself: `image` would make floats of the halves first, in 5 ms for 384² instead of 0.4.
-fn decode_exr(name: &str, bytes: &[u8]) -> Result<HdrPicture, exr::error::Error> {
+fn decode_exr(name: &str, bytes: &[u8]) -> exr::error::Result<HdrImage> {
     let image = exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()
@@ -75,7 +70,7 @@ fn decode_exr(name: &str, bytes: &[u8]) -> Result<HdrPicture, exr::error::Error>
         .non_parallel()
         .from_buffered(Cursor::new(bytes))?;
     let layer = image.layer_data;
-    Ok(HdrPicture {
+    Ok(HdrImage {
         name: name.to_owned(),
         width_px: layer.size.width() as u32,
         height_px: layer.size.height() as u32,
@@ -97,11 +92,11 @@ mod tests {
         let channels = SpecificChannels::rgb(|at| (value(at, 0), value(at, 1), value(at, 2)));
         let mut bytes = Cursor::new(Vec::new());
         Image::from_channels((3, 2), channels).write().to_buffered(&mut bytes).expect("written");
-        let picture = decode_exr("sky.exr", &bytes.into_inner()).expect("an EXR picture");
+        let image = decode_exr("sky.exr", &bytes.into_inner()).expect("an EXR image");
         let places = [(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1)].map(|(x, y)| Vec2(x, y));
         let right = places.map(|at| [value(at, 0), value(at, 1), value(at, 2), f16::ONE]);
-        assert_eq!((picture.width_px, picture.height_px), (3, 2));
-        assert_eq!(*picture.pixels, *bytemuck::cast_slice::<_, u8>(&right));
-        assert!(decode_exr("sky.exr", b"no picture").is_err());
+        assert_eq!((image.width_px, image.height_px), (3, 2));
+        assert_eq!(*image.pixels, *bytemuck::cast_slice::<_, u8>(&right));
+        assert!(decode_exr("sky.exr", b"no image").is_err());
     }
 }

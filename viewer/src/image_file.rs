@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use image::{ImageFormat, RgbaImage};
+use wgpu::util::DownloadBuffer;
 
 use crate::gpu::Gpu;
 
@@ -11,12 +12,8 @@ use crate::gpu::Gpu;
 pub fn read(gpu: &Gpu, texture: &wgpu::Texture) -> Result<RgbaImage> {
     let (width, height) = (texture.width(), texture.height());
     let row = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("picture"),
-        size: u64::from(row) * u64::from(height),
-        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
+    let usage = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+    let buffer = gpu.empty_buffer("picture", u64::from(row) * u64::from(height), usage);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     encoder.copy_texture_to_buffer(
         texture.as_image_copy(),
@@ -33,18 +30,15 @@ pub fn read(gpu: &Gpu, texture: &wgpu::Texture) -> Result<RgbaImage> {
     RgbaImage::from_raw(width, height, rgba).context("the device gives too little back")
 }
 
-/// Copies a buffer that can be mapped from the device. Waits for it.
+/// Copies a buffer from the device. Waits for it.
 pub fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>> {
     let (sender, receiver) = std::sync::mpsc::channel();
-    buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
+    DownloadBuffer::read_buffer(&gpu.device, &gpu.queue, &buffer.slice(..), move |bytes| {
         // The receiver is gone if reading was given up.
-        let _ = sender.send(result);
+        let _ = sender.send(bytes.map(|bytes| bytes.to_vec()));
     });
     gpu.wait();
-    receiver.recv().context("the device was lost")?.context("the device gives nothing back")?;
-    let bytes = buffer.slice(..).get_mapped_range().context("the device gives nothing back")?.to_vec();
-    buffer.unmap();
-    Ok(bytes)
+    receiver.recv().context("the device was lost")?.context("the device gives nothing back")
 }
 
 /// Puts images of one size side by side, `columns` in a row.
