@@ -29,15 +29,8 @@ pub(super) fn build(
 ) -> Vec<[u32; 3]> {
     let habit = Habit::of(params.leaf_shape, params.levels);
     let (rows, columns) = habit.grid();
-    let chosen = || cards.iter().filter(|card| card.blossom == blossom);
-    let count = chosen().count();
-    let mut triangles = Vec::with_capacity(count * habit.triangles() as usize);
-    let vertices = count * (rows * columns) as usize;
-    mesh.positions.reserve(vertices);
-    mesh.normals.reserve(vertices);
-    mesh.uvs.reserve(vertices);
-    mesh.colors.reserve(vertices);
-    for card in chosen() {
+    let mut triangles = Vec::new();
+    for card in cards.iter().filter(|card| card.blossom == blossom) {
         let start = mesh.positions.len() as u32;
         if habit == Habit::Frond {
             arch(card, rows, shade, mesh);

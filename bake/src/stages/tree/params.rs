@@ -121,3 +121,8 @@ pub(super) fn card_length_m(habit: Habit, levels: u32, height_m: f32, leaf_size_
         Habit::Frond => 0.35 + 0.035 * height_m + 1.5 * leaf_size_m,
     }
 }
+
+/// How far the leaves have turned, from 0 (green) to 1.
+pub(super) fn autumn(leaf_hue_deg: f32) -> f32 {
+    ((78.0 - leaf_hue_deg) / 25.0).clamp(0.0, 1.0)
+}
