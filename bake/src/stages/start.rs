@@ -102,14 +102,9 @@ impl<'a> Surroundings<'a> {
 
     /// How good a spot is to stand on: `None` in water and on a steep slope.
     fn standing(&self, spot: Vec2) -> Option<f32> {
-        let at = |x, z| self.land.height_m(x, z);
-        let ground = at(spot.x, spot.y);
-        let rise = Vec2::new(
-            at(spot.x + 2.0, spot.y) - at(spot.x - 2.0, spot.y),
-            at(spot.x, spot.y + 2.0) - at(spot.x, spot.y - 2.0),
-        )
-        .length()
-            / 4.0;
+        let at = |x: f32, z: f32| self.land.height_m(spot.x + x, spot.y + z);
+        let rise = |x: f32, z: f32| at(x, z) - at(-x, -z);
+        let (ground, rise) = (at(0.0, 0.0), Vec2::new(rise(2.0, 0.0), rise(0.0, 2.0)).length() / 4.0);
         if ground < self.water_m + 0.3 || rise > 0.6 {
             return None;
         }
@@ -119,9 +114,9 @@ impl<'a> Surroundings<'a> {
         Some(-0.7 * rise - 0.4 * far - 0.4 * bare)
     }
 
-    /// For each azimuth, how many trees outside the clearing stand in a cone of ±30° around it: (in the way, in view).
-    fn trees_by_azimuth(&self, spot: Vec2) -> Vec<(f32, f32)> {
-        let mut bins = vec![(0.0f32, 0.0f32); AZIMUTHS as usize];
+    /// For each azimuth, how many trees outside the clearing stand in a cone of ±30° around it: x in the way, y in view.
+    fn trees_by_azimuth(&self, spot: Vec2) -> Vec<Vec2> {
+        let mut bins = vec![Vec2::ZERO; AZIMUTHS as usize];
         let standing = self.trees.iter().filter(|tree| clearance_m(spot, tree) >= CLEARING_M);
         for tree in standing {
             let offset = Vec2::new(tree.trunk_cylinder_m[0], tree.trunk_cylinder_m[1]) - spot;
@@ -132,17 +127,14 @@ impl<'a> Surroundings<'a> {
             let turn = libm::atan2f(offset.x, -offset.y) / core::f32::consts::TAU;
             let bin = ((turn + 1.0) * AZIMUTHS as f32 + 0.5) as usize % AZIMUTHS as usize;
             if distance < 22.0 {
-                bins[bin].0 += 1.0 - distance / 22.0;
+                bins[bin].x += 1.0 - distance / 22.0;
             } else if self.sees(spot, tree) {
                 // One near enough to see its leaves counts for many that are a texture on a hill.
-                bins[bin].1 += 1.0 / (1.0 + distance * distance * 0.001);
+                bins[bin].y += 1.0 / (1.0 + distance * distance * 0.001);
             }
         }
         let n = bins.len();
-        let near = |i: usize, j: usize| bins[(i + n + j - 2) % n];
-        (0..n)
-            .map(|i| (0..5).map(|j| near(i, j)).fold((0.0, 0.0), |sum, bin| (sum.0 + bin.0, sum.1 + bin.1)))
-            .collect()
+        (0..n).map(|i| (0..5).map(|j| bins[(i + n + j - 2) % n]).sum()).collect()
     }
 
     /// Whether the middle of a tree can be seen over the land between.
@@ -166,7 +158,7 @@ impl<'a> Surroundings<'a> {
     }
 
     /// How good a look is, whatever the light.
-    fn view(&self, spot: Vec2, azimuth: u32, trees: &[(f32, f32)]) -> f32 {
+    fn view(&self, spot: Vec2, azimuth: u32, trees: &[Vec2]) -> f32 {
         let along = heading(azimuth);
         let eye_m = self.land.height_m(spot.x, spot.y) + EYE_M;
         let (mut steepest, mut seen, mut steps, mut top) = (f32::MIN, 0.0, 0.0, f32::MIN);
@@ -192,7 +184,7 @@ impl<'a> Surroundings<'a> {
         let open = seen / f32::max(steps, 1.0);
         // Mountains are worth looking at, but not a wall before one's face.
         let relief = top.clamp(0.0, 0.3) - 5.0 * (top - 0.4).max(0.0);
-        let (in_the_way, in_view) = trees[azimuth as usize];
+        let Vec2 { x: in_the_way, y: in_view } = trees[azimuth as usize];
         // A landscape without a tree in it says nothing about its trees, and water doubles the sky.
         let trees = in_view / (1.5 + in_view);
         let water = (4.0 * lake / f32::max(steps, 1.0)).min(1.0);
@@ -205,11 +197,8 @@ impl<'a> Surroundings<'a> {
         let sun = Vec2::new(towards_sun.x, towards_sun.z);
         let facing_sun = if sun.length() > 1e-3 { along.dot(sun.normalize()) } else { 0.0 };
         // Light from the side or from behind models the land; into a sun above the picture, all is flat.
-        let shade = if [5.0, 12.0, 30.0].iter().all(|d| self.is_lit(spot + along * *d, towards_sun)) {
-            0.0
-        } else {
-            -0.5
-        };
+        let lit = [5.0, 12.0, 30.0].iter().all(|d| self.is_lit(spot + along * *d, towards_sun));
+        let shade = if lit { 0.0 } else { -0.5 };
         shade - 0.7 * (facing_sun + 0.1).max(0.0) - 0.15 * (-facing_sun - 0.7).max(0.0)
     }
 

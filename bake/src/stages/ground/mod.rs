@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::math::lerp_array;
 use crate::model::{GroundMaps, Image8, Landform};
-use crate::raster::raster;
+use crate::raster::square;
 use cover::{Climate, Noise};
 pub use foreground::foreground;
 use grain::Grain;
@@ -80,7 +80,8 @@ pub fn apron_colors(params: &GroundParams, land: &Landform) -> Vec<[u8; 4]> {
     let apron = &land.apron;
     let half_m = 0.5 * land.field.extent_m();
     let place = |k: u32| (k as f32 - 0.5 * (apron.side - 1) as f32) * apron.spacing_m;
-    let color = |i: u32, j: u32| {
+    square(apron.side as usize, |i, j| {
+        let (i, j) = (i as u32, j as u32);
         let (x, z) = (place(i), place(j));
         let (inner_x, inner_z) = (x.clamp(-half_m, half_m), z.clamp(-half_m, half_m));
         let away_m = (x - inner_x).abs().max((z - inner_z).abs());
@@ -103,11 +104,6 @@ pub fn apron_colors(params: &GroundParams, land: &Landform) -> Vec<[u8; 4]> {
         };
         let [r, g, b] = linear.map(|c| (c * 255.0 + 0.5) as u8);
         [r, g, b, 255]
-    };
-    let side = apron.side as usize;
-    raster(side, side, |j| {
-        let color = &color;
-        move |i| color(i as u32, j as u32)
     })
 }
 

@@ -35,10 +35,9 @@ pub(super) fn heights(shape: &Shape, params: &LandParams) -> Grid {
 /// Carries what erosion did to the border on into the apron, fading out over `FOLLOW_M`.
 pub(super) fn follow(apron: &mut Grid, raw: &Grid, worn: &Grid) {
     let half = 0.5 * FIELD_M;
-    let place = |i: u32| (i as f32 - 0.5 * (SIDE - 1) as f32) * SPACING_M;
     for j in 0..SIDE {
         for i in 0..SIDE {
-            let (x, z) = (place(i), place(j));
+            let (x, z) = (apron.place_m(i as usize), apron.place_m(j as usize));
             let away_m = distance_to_field_m(x, z);
             if away_m > FOLLOW_M {
                 continue;

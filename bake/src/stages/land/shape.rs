@@ -10,7 +10,7 @@ use super::grid::Grid;
 use super::{FIELD_M, LandParams};
 use crate::math::{lerp, smoothstep};
 use crate::noise::gradient2;
-use crate::raster::raster;
+use crate::raster::square;
 use crate::seed::noise_seed;
 
 /// Wavelength in metres of the finest octave.
@@ -132,16 +132,12 @@ impl Shape {
 
     /// Fits the land to its relief over the field and lifts a middle that would drown; the raw heights in metres.
     pub fn fit(&mut self, side: u32) -> Grid {
-        let mut grid = self.multifractal_grid(side);
-        self.range = grid.range();
+        let raw = self.multifractal_grid(side);
+        self.range = raw.range();
         self.lift = self.needed_lift();
-        let n = side as usize;
-        let place = |i: usize| (i as f32 - 0.5 * (side - 1) as f32) * grid.spacing_m;
-        grid.values = raster(n, n, |j| {
-            let (shape, row, place, z) = (&*self, &grid.values[j * n..], &place, place(j));
-            move |i| shape.finish(row[i], place(i), z)
-        });
-        grid
+        let (n, shape) = (side as usize, &*self);
+        let values = square(n, |i, j| shape.finish(raw.values[j * n + i], raw.place_m(i), raw.place_m(j)));
+        Grid { values, ..raw }
     }
 
     /// The fitted land on a grid of the field, of which `known` is a part or that is part of `known`.
@@ -161,25 +157,18 @@ impl Shape {
     /// The multifractal over the field: its broad octaves at half the resolution, cubic between.
     fn multifractal_grid(&self, side: u32) -> Grid {
         let fine = self.octaves.iter().take_while(|o| o.wavelength_m >= BROAD_M).count();
-        let half = side / 2 + 1;
-        let spacing_m = FIELD_M / (half - 1) as f32;
-        let place = |k: usize| (k as f32 - 0.5 * (half - 1) as f32) * spacing_m;
-        let sums: Vec<Sum> = raster(half as usize, half as usize, |j| {
-            let (place, z) = (&place, place(j));
-            move |i| self.sum(place(i), z, 0..fine, 0.0)
-        });
-        let layer = |f: fn(&Sum) -> f32| {
-            Grid { side: half, spacing_m, values: sums.iter().map(f).collect() }.resized(side).values
-        };
-        let (u, v) = (layer(|s| s.u), layer(|s| s.v));
-        let (height, weight, massif) = (layer(|s| s.height), layer(|s| s.weight), layer(|s| s.massif));
-        let mut values = vec![0.0; height.len()];
-        values.par_iter_mut().enumerate().for_each(|(k, out)| {
-            let mut sum = Sum { u: u[k], v: v[k], height: height[k], weight: weight[k], massif: massif[k] };
+        let sums = Grid::from_field(side / 2 + 1, |x, z| self.sum(x, z, 0..fine, 0.0));
+        let layer = |f: fn(Sum) -> f32| sums.map(f).resized(side);
+        let (u, v, weight, massif) =
+            (layer(|s| s.u), layer(|s| s.v), layer(|s| s.weight), layer(|s| s.massif));
+        let mut grid = layer(|s| s.height);
+        grid.values.par_iter_mut().enumerate().for_each(|(k, out)| {
+            let [u, v, weight, massif] = [&u, &v, &weight, &massif].map(|layer| layer.values[k]);
+            let mut sum = Sum { u, v, height: *out, weight, massif };
             self.add(&mut sum, fine..self.octaves.len(), 0.0);
             *out = self.total(&sum);
         });
-        Grid { side, spacing_m: 0.5 * spacing_m, values }
+        grid
     }
 
     /// A sum of octaves, each weaker where the land so far is low (Musgrave's hybrid multifractal).

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use crate::math::{cell, lerp};
 use crate::model::Heightfield;
-use crate::raster::raster;
+use crate::raster::square;
 
 /// Horizon where all land ends: level.
 const OPEN: f32 = 0.0;
@@ -32,7 +32,7 @@ pub(super) fn slopes(field: &Heightfield, beyond: &Beyond, towards: [f32; 2]) ->
         hull.clear();
         lines.sweep(beyond, lines.first + line as i32, hull, slopes);
     });
-    let slope = |i: usize, j: usize| {
+    square(side, |i, j| {
         let (along, across) = if lines.along_x { (i, j) } else { (j, i) };
         // The sample lies between two lines.
         let at = across as f32 - lines.drift * along as f32 - lines.first as f32;
@@ -40,10 +40,6 @@ pub(super) fn slopes(field: &Heightfield, beyond: &Beyond, towards: [f32; 2]) ->
         let near = swept[whole * side + along];
         let next = swept[(whole + 1).min(lines.count - 1) * side + along];
         lerp(near, next, at - whole as f32)
-    };
-    raster(side, side, |j| {
-        let slope = &slope;
-        move |i| slope(i, j)
     })
 }
 

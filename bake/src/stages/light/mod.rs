@@ -44,11 +44,10 @@ pub fn light_map(
     let sun = Sun::of(light);
     let samples = land.field.side as usize;
     let to_samples = Resampling::from_samples(side, samples);
-    let ground_m = to_samples.whole(side, &land.field.heights_m);
+    let ground_m = to_samples.whole(&land.field.heights_m);
     let sun_on_land = sun::on_land(&sun, land);
-    let sky_side = sky::side(land);
-    let sky_on_land = sky::on_land(light, land, sky_side);
-    let to_sky = Resampling::from_samples(side, sky_side);
+    let sky_on_land = sky::on_land(light, land);
+    let to_sky = Resampling::from_samples(side, sky_on_land.len().isqrt());
     let shade = trees::shade(&sun, land, trees, &casters, &ground_m, side);
     let to_crowns = Resampling::from_texels(side, shade.crown_side);
     let image = square_image(side, |j| {
@@ -125,10 +124,8 @@ impl Resampling {
     }
 
     /// All texels.
-    fn whole(&self, texels: usize, grid: &[f32]) -> Vec<f32> {
-        let mut whole = vec![0.0; texels * texels];
-        let rows = whole.par_chunks_mut(texels).enumerate();
-        rows.for_each(|(j, row)| row.copy_from_slice(self.row(j, grid.as_chunks::<1>().0).as_flattened()));
-        whole
+    fn whole(&self, grid: &[f32]) -> Vec<f32> {
+        let rows = (0..self.places.len()).into_par_iter();
+        rows.flat_map_iter(|j| self.row(j, grid.as_chunks::<1>().0).into_flattened()).collect()
     }
 }

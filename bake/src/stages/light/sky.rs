@@ -19,18 +19,10 @@ const MAX_SAMPLES: u32 = 257;
 /// How far hills beyond the field count, in metres.
 const REACH_M: f32 = 2500.0;
 
-/// Samples a side of what [`on_land`] gives.
-pub(super) fn side(land: &Landform) -> usize {
-    ((land.field.side - 1) / stride(land) + 1) as usize
-}
-
-fn stride(land: &Landform) -> u32 {
-    (land.field.side - 1).div_ceil(MAX_SAMPLES - 1).next_power_of_two()
-}
-
-/// The sky's part for `side`² samples over the field.
-pub(super) fn on_land(light: &SkyLight, land: &Landform, side: usize) -> Vec<f32> {
-    let field = smoothed(&land.field, stride(land), side);
+/// The sky's part for a square of samples over the field.
+pub(super) fn on_land(light: &SkyLight, land: &Landform) -> Vec<f32> {
+    let field = smoothed(&land.field);
+    let side = field.side as usize;
     let beyond = Beyond { apron: &land.apron, reach_m: REACH_M };
     let table = Table::of(light);
     let normals = normals(&field);
@@ -56,22 +48,24 @@ fn normals(field: &Heightfield) -> Vec<Vec3> {
     (0..field.side * field.side).into_par_iter().map(at).collect()
 }
 
-/// Every `stride`-th sample, each the mean of its neighbourhood by weights 1-2-1.
-fn smoothed(field: &Heightfield, stride: u32, side: usize) -> Heightfield {
+/// At most `MAX_SAMPLES` samples a side, each the mean of its neighbourhood by weights 1-2-1.
+fn smoothed(field: &Heightfield) -> Heightfield {
+    let last = field.side - 1;
+    let stride = last.div_ceil(MAX_SAMPLES - 1).next_power_of_two();
     if stride == 1 {
         return field.clone();
     }
-    let last = field.side - 1;
+    let side = last / stride + 1;
     let around = |k: usize| {
         let k = k as u32 * stride;
         [k.saturating_sub(stride / 2), k, (k + stride / 2).min(last)]
     };
     let mean = |[a, b, c]: [f32; 3]| 0.25 * a + 0.5 * b + 0.25 * c;
-    let heights_m = raster(side, side, |j| {
+    let heights_m = raster(side as usize, side as usize, |j| {
         let rows = around(j);
         move |i| mean(rows.map(|j| mean(around(i).map(|i| field.at(i, j)))))
     });
-    Heightfield { side: side as u32, spacing_m: field.spacing_m * stride as f32, heights_m }
+    Heightfield { side, spacing_m: field.spacing_m * stride as f32, heights_m }
 }
 
 /// Irradiance per azimuth from above a horizon, by the sine of its elevation: what falls on level ground, and what

@@ -232,12 +232,13 @@ impl<'a> PlacedShadow<'a> {
         let lines = [self.u[0], 0.5 * (self.u[0] + self.u[1]), self.u[1]];
         let mut away = step_m;
         while away < MAX_LENGTH_M {
-            let lit = |u: f32| {
-                let (x, z) = self.place(u, away);
-                let height = ground.height_m(x, z)?;
-                Some((height - self.foot.y) * self.sun.cos_elevation + away * self.sun.sin_elevation > top)
-            };
-            if lines.iter().all(|&u| lit(u).unwrap_or(true)) {
+            let rise_m = away * self.sun.sin_elevation;
+            let above = |height_m: f32| (height_m - self.foot.y) * self.sun.cos_elevation + rise_m > top;
+            if lines
+                .map(|u| self.place(u, away))
+                .iter()
+                .all(|&(x, z)| ground.height_m(x, z).is_none_or(above))
+            {
                 return away + step_m;
             }
             away += step_m;
@@ -253,13 +254,8 @@ impl<'a> PlacedShadow<'a> {
 
     /// First row and the one after the last that it may touch.
     fn rows(&self, ground: &Ground) -> [usize; 2] {
-        let (mut low, mut high) = (f32::MAX, f32::MIN);
-        for u in self.u {
-            for away in self.away {
-                let (_, z) = self.place(u, away);
-                (low, high) = (low.min(z), high.max(z));
-            }
-        }
+        let ends = self.u.iter().flat_map(|&u| self.away.map(|away| self.place(u, away).1));
+        let (low, high) = ends.fold((f32::MAX, f32::MIN), |(low, high), z| (low.min(z), high.max(z)));
         let row = |at: f32| at.clamp(0.0, ground.texels.side as f32) as usize;
         [row(ground.texels.texel(low).ceil()), row(ground.texels.texel(high).floor() + 1.0)]
     }

@@ -75,11 +75,8 @@ fn set_errors(snapshots: &mut [Snapshot], marks: &mut [Mark], half_way_m: f32) {
 }
 
 fn finish(snapshots: Vec<Snapshot>, state: &State) -> Vec<Level> {
-    let morphs: Vec<_> = snapshots
-        .iter()
-        .enumerate()
-        .map(|(index, level)| snapshots.get(index + 1).map(|next| morph(level, next, state)))
-        .collect();
+    let morph_to_next = |index: usize| Some(morph(&snapshots[index], snapshots.get(index + 1)?, state));
+    let morphs: Vec<_> = (0..snapshots.len()).map(morph_to_next).collect();
     let level = |(snapshot, morph): (Snapshot, Option<Morph>)| {
         let vertices = snapshot.mesh.positions.len();
         let strips = snapshot.mesh.parts.iter().map(|part| strip::strip(&part.triangles, vertices)).collect();

@@ -3,6 +3,7 @@
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+use std::ops::Range;
 
 use glam::{DVec3, Vec3};
 
@@ -115,10 +116,7 @@ impl Sequence {
         let piece = self.pieces.last().map(|&(cost, _)| (Next::Piece, cost));
         let elements = self.aggregates.iter().enumerate();
         let elements = elements.filter_map(|(index, part)| Some((Next::Element(index), part.next_cost_m()?)));
-        edge.into_iter()
-            .chain(piece)
-            .chain(elements)
-            .reduce(|best, next| if next.1 < best.1 { next } else { best })
+        edge.into_iter().chain(piece).chain(elements).min_by(|p, q| p.1.total_cmp(&q.1))
     }
 
     fn version(&self, a: u32, b: u32) -> u32 {
@@ -177,7 +175,7 @@ impl Sequence {
             return;
         }
         let triangles = piece.triangles.clone();
-        let axis = self.piece_axis(triangles.clone());
+        let shrunk = self.shrinking_piece(triangles.clone());
         for k in triangles {
             let t = self.surface.topology.piece_triangles[k];
             if !self.state.triangle_lives[t as usize] {
@@ -189,17 +187,17 @@ impl Sequence {
                 self.versions[point] = self.versions[point].wrapping_add(1);
                 if self.state.vertex_lives[v as usize] {
                     self.state.remove_vertex(v, NONE);
-                    self.state.collapsed_to[v as usize] =
-                        axis.nearest(self.surface.topology.positions[point]);
+                    self.state.collapsed_to[v as usize] = shrunk(self.surface.topology.positions[point]);
                 }
             }
         }
-        self.state.end_step();
+        self.state.log.finish_record();
         self.error_m = self.error_m.max(cost);
     }
 
-    /// The line that a removed piece shrinks to: through its middle along its longest extent.
-    fn piece_axis(&self, triangles: std::ops::Range<usize>) -> Axis {
+    /// Where a point of a removed piece goes: to the nearest place of the line through the piece's middle along its
+    /// longest extent.
+    fn shrinking_piece(&self, triangles: Range<usize>) -> impl Fn(DVec3) -> [f32; 3] + use<> {
         let topology = &self.surface.topology;
         let living = triangles.map(|k| topology.piece_triangles[k] as usize);
         let corners = living.filter(|&t| self.state.triangle_lives[t]).flat_map(|t| self.state.triangles[t]);
@@ -207,14 +205,13 @@ impl Sequence {
             corners.map(|v| topology.positions[topology.point_of[v as usize] as usize]).collect();
         let middle = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
         let farthest = |from: DVec3| {
-            let further = |best: DVec3, &p: &DVec3| {
-                if p.distance_squared(from) > best.distance_squared(from) { p } else { best }
-            };
-            points.iter().fold(from, further)
+            let squared = |p: DVec3| p.distance_squared(from);
+            points.iter().fold(from, |best, &p| if squared(p) > squared(best) { p } else { best })
         };
         let one_end = farthest(middle);
         let along = (farthest(one_end) - one_end).try_normalize().unwrap_or(DVec3::Y);
-        Axis { middle, along, origin: topology.origin }
+        let origin = topology.origin;
+        move |point| (middle + along * (point - middle).dot(along) + origin).as_vec3().to_array()
     }
 
     fn drop_element(&mut self, index: usize, cost_m: f64) {
@@ -225,9 +222,9 @@ impl Sequence {
         triangles.for_each(|t| self.state.remove_triangle(t as u32));
         for v in vertices {
             self.state.remove_vertex(v as u32, NONE);
-            self.state.collapsed_to[v] = centre;
+            self.state.collapsed_to[v] = centre.to_array();
         }
-        self.state.end_step();
+        self.state.log.finish_record();
         self.error_m = self.error_m.max(cost_m);
     }
 
@@ -236,21 +233,8 @@ impl Sequence {
         while self.state.vertex_count > target {
             let Some(vertex) = self.unused.pop() else { break };
             self.state.remove_vertex(vertex, NONE);
-            self.state.end_step();
+            self.state.log.finish_record();
         }
-    }
-}
-
-struct Axis {
-    middle: DVec3,
-    along: DVec3,
-    origin: DVec3,
-}
-
-impl Axis {
-    fn nearest(&self, point: DVec3) -> [f32; 3] {
-        let at = self.middle + self.along * (point - self.middle).dot(self.along);
-        (at + self.origin).to_array().map(|x| x as f32)
     }
 }
 

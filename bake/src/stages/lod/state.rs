@@ -6,6 +6,7 @@
 use std::ops::Range;
 
 use bytemuck::bytes_of;
+use glam::Vec3;
 
 use super::log::{Log, Vertex};
 use crate::model::{Material, Mesh, Part, PartKind};
@@ -154,11 +155,6 @@ impl State {
         self.triangles[corner as usize / 3][corner as usize % 3] = vertex;
     }
 
-    /// Ends a step: its changes become one record of the log.
-    pub fn end_step(&mut self) {
-        self.log.finish_record();
-    }
-
     /// What lives, in the original order, with aggregates' elements scaled about their centres by one factor a
     /// part; and which vertex of the mesh each original vertex became (`NONE` if removed).
     pub fn to_mesh(&self, scales: &[f32]) -> (Mesh, Vec<u32>) {
@@ -196,19 +192,15 @@ impl State {
             }
             let centre = self.centre(ids.clone());
             for id in ids {
-                let p = self.vertices[id].position;
-                mesh.positions[now[id] as usize] =
-                    std::array::from_fn(|k| centre[k] + (p[k] - centre[k]) * scale);
+                let scaled = centre + (Vec3::from_array(self.vertices[id].position) - centre) * scale;
+                mesh.positions[now[id] as usize] = scaled.to_array();
             }
         }
     }
 
     /// The mean of consecutive vertices' positions.
-    pub fn centre(&self, ids: Range<usize>) -> [f32; 3] {
-        let mut sum = [0.0_f32; 3];
-        for vertex in &self.vertices[ids.clone()] {
-            (0..3).for_each(|k| sum[k] += vertex.position[k]);
-        }
-        sum.map(|s| s / ids.len().max(1) as f32)
+    pub fn centre(&self, ids: Range<usize>) -> Vec3 {
+        let positions = self.vertices[ids.clone()].iter().map(|vertex| Vec3::from_array(vertex.position));
+        positions.sum::<Vec3>() / ids.len().max(1) as f32
     }
 }

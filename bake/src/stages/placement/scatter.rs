@@ -5,6 +5,7 @@
 //! at least so much that trees spread evenly (about 0.7 of the widest spacing that dart throwing reaches).
 
 use crate::model::Instance;
+use crate::raster::square;
 use crate::seed::Dice;
 
 use super::site::Site;
@@ -89,18 +90,15 @@ impl WeightMap {
     fn new(site: &Site) -> Self {
         let half_m = site.half_m;
         let cell_m = 2.0 * half_m / MAP_SIDE as f32;
-        let centre = |k: u32| (k as f32 + 0.5) * cell_m - half_m;
-        let mut weights = Vec::with_capacity((MAP_SIDE * MAP_SIDE) as usize);
-        let mut sums = Vec::with_capacity(weights.capacity());
+        let centre = |k: usize| (k as f32 + 0.5) * cell_m - half_m;
+        let weight = |i: usize, j: usize| site.at(centre(i), centre(j)).map_or(0.0, |spot| spot.weight);
+        let weights = square(MAP_SIDE as usize, weight);
         let mut sum = 0.0;
-        for j in 0..MAP_SIDE {
-            for i in 0..MAP_SIDE {
-                let weight = site.at(centre(i), centre(j)).map_or(0.0, |spot| spot.weight);
-                sum += f64::from(weight);
-                weights.push(weight);
-                sums.push(sum);
-            }
-        }
+        let add = |&weight: &f32| {
+            sum += f64::from(weight);
+            sum
+        };
+        let sums = weights.iter().map(add).collect();
         Self { half_m, cell_m, weights, sums, area_m2: sum as f32 * cell_m * cell_m }
     }
 

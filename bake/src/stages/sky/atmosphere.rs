@@ -52,15 +52,21 @@ fn rayleigh_phase(cos_angle: f32) -> f32 {
     3.0 / (16.0 * std::f32::consts::PI) * (1.0 + cos_angle * cos_angle)
 }
 
-/// Density of air, haze and ozone at a height, relative to their coefficients.
-fn densities(height_km: f32) -> (f32, f32, f32) {
-    let ozone = (1.0 - (height_km - 25.0).abs() / 15.0).max(0.0);
-    (exp(-height_km / RAYLEIGH_SCALE_KM), exp(-height_km / MIE_SCALE_KM), ozone)
+/// The air at a place: scattering by molecules and by haze, and extinction, per km.
+struct Local {
+    rayleigh: Vec3A,
+    mie: Vec3A,
+    extinction: Vec3A,
 }
 
-/// Distance along a ray of direction cosine `mu` from radius `r` to the sphere of radius `to`, outwards.
-fn distance_up(r: f32, mu: f32, to: f32) -> f32 {
-    -r * mu + (r * r * (mu * mu - 1.0) + to * to).max(0.0).sqrt()
+/// Distance from the Earth's centre after `t` km along a ray of direction cosine `mu` from radius `r`.
+fn radius_at(r: f32, mu: f32, t: f32) -> f32 {
+    (r * r + t * t + 2.0 * r * mu * t).sqrt()
+}
+
+/// Distance along a ray of direction cosine `mu` from radius `r` to where the air ends.
+fn distance_up(r: f32, mu: f32) -> f32 {
+    -r * mu + (r * r * (mu * mu - 1.0) + TOP_KM * TOP_KM).max(0.0).sqrt()
 }
 
 /// Distance to the ground, if the ray meets it.
@@ -150,8 +156,11 @@ impl Atmosphere {
         (RAYLEIGH_PER_KM, self.mie_extinction)
     }
 
-    fn extinction(&self, air: f32, haze: f32, ozone: f32) -> Vec3A {
-        RAYLEIGH_PER_KM * air + self.mie_extinction * haze + OZONE_PER_KM * ozone
+    fn local(&self, height_km: f32) -> Local {
+        let (air, haze) = (exp(-height_km / RAYLEIGH_SCALE_KM), exp(-height_km / MIE_SCALE_KM));
+        let ozone = (1.0 - (height_km - 25.0).abs() / 15.0).max(0.0);
+        let extinction = RAYLEIGH_PER_KM * air + self.mie_extinction * haze + OZONE_PER_KM * ozone;
+        Local { rayleigh: RAYLEIGH_PER_KM * air, mie: self.mie_scattering * haze, extinction }
     }
 
     /// Part of the sun's light that arrives at a height (km) when the sun stands at direction cosine `mu`.
@@ -161,10 +170,8 @@ impl Atmosphere {
             return Vec3A::ZERO;
         }
         let mut depth = Vec3A::ZERO;
-        for (t, dt) in steps(distance_up(r, mu, TOP_KM), count) {
-            let h = (r * r + t * t + 2.0 * r * mu * t).sqrt() - GROUND_KM;
-            let (air, haze, ozone) = densities(h);
-            depth += self.extinction(air, haze, ozone) * dt;
+        for (t, dt) in steps(distance_up(r, mu), count) {
+            depth += self.local(radius_at(r, mu, t) - GROUND_KM).extinction * dt;
         }
         exp3(-depth)
     }
@@ -190,13 +197,12 @@ impl Atmosphere {
     fn second_order(&self, height_km: f32, mu: f32, sun_mu: f32, cos_angle: f32) -> (Vec3A, Vec3A) {
         let r = GROUND_KM + height_km;
         let ground = distance_down(r, mu);
-        let length = ground.unwrap_or_else(|| distance_up(r, mu, TOP_KM));
+        let length = ground.unwrap_or_else(|| distance_up(r, mu));
         let (mut light, mut feedback, mut through) = (Vec3A::ZERO, Vec3A::ZERO, Vec3A::ONE);
         for (t, dt) in steps(length, 12) {
-            let radius = (r * r + t * t + 2.0 * r * mu * t).sqrt();
-            let (air, haze, ozone) = densities(radius - GROUND_KM);
-            let scattering = RAYLEIGH_PER_KM * air + self.mie_scattering * haze;
-            let extinction = self.extinction(air, haze, ozone);
+            let radius = radius_at(r, mu, t);
+            let Local { rayleigh, mie, extinction } = self.local(radius - GROUND_KM);
+            let scattering = rayleigh + mie;
             let passed = exp3(-extinction * dt);
             let gathered = scattering * through * (Vec3A::ONE - passed) / extinction.max(Vec3A::splat(1e-9));
             let mu_here = (r * sun_mu + t * cos_angle) / radius;
@@ -218,21 +224,18 @@ impl Atmosphere {
     /// of cosine `cos_angle`.
     pub fn gather(&self, height_km: f32, mu: f32, sun_mu: f32, cos_angle: f32) -> Gathered {
         let r = GROUND_KM + height_km;
-        let length = distance_up(r, mu, TOP_KM);
+        let length = distance_up(r, mu);
         let phase = rayleigh_phase(cos_angle);
         let mut sum = Gathered::default();
         let mut through = Vec3A::ONE;
         for (t, dt) in steps(length, 26) {
-            let radius = (r * r + t * t + 2.0 * r * mu * t).sqrt();
+            let radius = radius_at(r, mu, t);
             let height = radius - GROUND_KM;
-            let (air, haze, ozone) = densities(height);
-            let extinction = self.extinction(air, haze, ozone);
+            let Local { rayleigh, mie, extinction } = self.local(height);
             let passed = exp3(-extinction * dt);
             let weight = through * (Vec3A::ONE - passed) / extinction.max(Vec3A::splat(1e-9));
             let mu_here = (r * sun_mu + t * cos_angle) / radius;
             let sun = self.transmittance.at(height, mu_here);
-            let rayleigh = RAYLEIGH_PER_KM * air;
-            let mie = self.mie_scattering * haze;
             sum.smooth +=
                 weight * (rayleigh * sun * phase + (rayleigh + mie) * self.multiple.at(height, mu_here));
             sum.mie += weight * mie * sun;

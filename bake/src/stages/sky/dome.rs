@@ -58,11 +58,7 @@ impl Dome {
     /// Draws the clouds; `width` directions around, `height` from horizon to zenith. Rows near the zenith are
     /// drawn with fewer directions.
     pub fn new(layers: &Layers, sky: &ClearSky, width: usize, height: usize) -> Self {
-        let mut texels = vec![Vec4::new(0.0, 0.0, 0.0, 1.0); width * height];
         let row_of_sine = (0..=LOOKUP).map(|i| row_at(i as f32 / LOOKUP as f32, height)).collect();
-        if layers.is_empty() {
-            return Self { width, height, texels, row_of_sine };
-        }
         let around: Vec<(f32, f32)> = (0..width)
             .map(|column| {
                 let azimuth = (column as f32 + 0.5) / width as f32 * std::f32::consts::TAU;
@@ -84,6 +80,7 @@ impl Dome {
             }
             fill_between(texels, stride);
         });
+        let mut texels = vec![Vec4::ZERO; width * height];
         texels.par_chunks_exact_mut(width).enumerate().for_each(|(row_index, texels)| {
             let row = Row::new(row_index, width, height);
             let (low, high) = sparse[row_index / 2 * half..].split_at(half);

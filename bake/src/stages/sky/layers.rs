@@ -8,7 +8,7 @@ use super::clouds::Clouds;
 use super::math::exp;
 use crate::math::{lerp_array, srgb_from_linear};
 use crate::model::{CloudLayer, Image8};
-use crate::raster::{raster, square_image};
+use crate::raster::{square, square_image};
 
 /// Pixels a side.
 const SIDE: usize = 512;
@@ -47,15 +47,12 @@ fn cumulus_layer(clouds: &Clouds) -> CloudLayer<Image8> {
     let extent_m = clouds.field.tile_m;
     let tone = ToneMapping::new();
     let place = |i: usize| (i as f32 + 0.5) / RAYS as f32 * extent_m;
-    let rays = raster(RAYS, RAYS, |row| {
-        let tone = &tone;
-        move |column| {
-            let seen = clouds.march_vertical(place(column), place(row));
-            let alpha = 1.0 - seen.through;
-            // Unpremultiplied; where there is nothing, the colour of a thin edge.
-            let light = if alpha > 0.004 { seen.light / alpha } else { clouds.edge_light() };
-            tone.rgba(light, alpha)
-        }
+    let rays = square(RAYS, |column, row| {
+        let seen = clouds.march_vertical(place(column), place(row));
+        let alpha = 1.0 - seen.through;
+        // Unpremultiplied; where there is nothing, the colour of a thin edge.
+        let light = if alpha > 0.004 { seen.light / alpha } else { clouds.edge_light() };
+        tone.rgba(light, alpha)
     });
     CloudLayer { name: "cumulus".into(), altitude_m: clouds.field.base_m, extent_m, image: enlarged(&rays) }
 }

@@ -22,7 +22,7 @@ use glam::{Vec3, Vec3A};
 use serde::{Deserialize, Serialize};
 
 use crate::model::{SkyImages, SkyLight};
-use clear::{ClearSky, SunDisc};
+use clear::{ClearSky, SunDisc, sum_around};
 use clouds::Clouds;
 use dome::{Dome, Layers};
 use paint::Painter;
@@ -94,11 +94,10 @@ pub fn light(params: &SkyParams) -> SkyLight {
     let zonal: Vec<Vec3A> = (0..ZONES)
         .map(|zone| {
             let elevation = zone as f32 / (ZONES - 1) as f32 * std::f32::consts::FRAC_PI_2;
-            clear.zonal(libm::sinf(elevation), |_, d| sky.radiance(d), spokes)
+            sum_around(libm::sinf(elevation), 0.0, spokes, |d| sky.radiance(d)) / spokes as f32
         })
         .collect();
-    let irradiance =
-        if sky.layers.is_empty() { clear.irradiance(|s, d| s.radiance(d)) } else { zonal_irradiance(&zonal) };
+    let irradiance = if sky.layers.is_empty() { clear.irradiance() } else { zonal_irradiance(&zonal) };
     SkyLight {
         sun_direction: Vec3::from(clear.sun),
         sun_angular_radius_rad: 0.5 * params.sun_size_deg.to_radians(),

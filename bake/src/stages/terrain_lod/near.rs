@@ -32,10 +32,7 @@ const GOOD_AFTER: u8 = 4;
 pub fn mesh(land: &Landform, max_error_m: f32, block_m: f32, apron_colors: &[[u8; 4]]) -> TerrainMesh {
     let field = &land.field;
     let mut refiner = Refiner::new(field, max_error_m);
-    for sample in apron::border_samples(land) {
-        refiner.use_sample(sample);
-    }
-    for sample in block_corners(field, block_m) {
+    for sample in apron::border_samples(land).into_iter().chain(block_corners(field, block_m)) {
         refiner.use_sample(sample);
     }
     refiner.refine_all();
@@ -140,15 +137,14 @@ impl<'a> Refiner<'a> {
     /// The finished mesh.
     fn triangles(&self) -> Mesh {
         let used = self.marks.iter().filter(|&&mark| mark & USED != 0).count();
-        let (numbers, mesh) = (vec![u32::MAX; self.marks.len()], Mesh::default());
-        let mut walk = Walk { refiner: self, numbers, mesh };
-        let mut triangles = Vec::with_capacity(2 * used);
+        let (numbers, triangles) = (vec![u32::MAX; self.marks.len()], Vec::with_capacity(2 * used));
+        let mut walk = Walk { refiner: self, numbers, mesh: Mesh::default(), triangles };
         for root in Triangle::roots(self.field.side) {
-            walk.emit(root, true, &mut triangles);
+            walk.emit(root, true);
         }
-        let mut mesh = walk.mesh;
-        mesh.parts = vec![Part { material: Material::Ground, kind: PartKind::Surface, triangles }];
-        mesh
+        let parts =
+            vec![Part { material: Material::Ground, kind: PartKind::Surface, triangles: walk.triangles }];
+        Mesh { parts, ..walk.mesh }
     }
 }
 
@@ -201,21 +197,23 @@ struct Walk<'a> {
     refiner: &'a Refiner<'a>,
     numbers: Vec<u32>,
     mesh: Mesh,
+    triangles: Vec<[u32; 3]>,
 }
 
 impl Walk<'_> {
     /// `forward`: from the hypotenuse's end a to b, so that each triangle shares an edge with the next.
-    fn emit(&mut self, triangle: Triangle, forward: bool, triangles: &mut Vec<[u32; 3]>) {
+    fn emit(&mut self, triangle: Triangle, forward: bool) {
         let middle = triangle.middle().filter(|&m| self.refiner.marks[self.refiner.index(m)] & USED != 0);
         let Some(middle) = middle else {
-            triangles.push([triangle.a, triangle.b, triangle.apex].map(|sample| self.number(sample)));
+            let corners = [triangle.a, triangle.b, triangle.apex].map(|sample| self.number(sample));
+            self.triangles.push(corners);
             return;
         };
         let mut children = triangle.children(middle);
         if !forward {
             children.reverse();
         }
-        children.into_iter().for_each(|child| self.emit(child, !forward, triangles));
+        children.into_iter().for_each(|child| self.emit(child, !forward));
     }
 
     fn number(&mut self, sample: Sample) -> u32 {

@@ -11,7 +11,7 @@ use super::params::TreeTextureParams;
 use crate::math::{hermite as smooth, lerp, split};
 use crate::model::Image8;
 use crate::noise::{cellular2, gradient2, hash};
-use crate::raster::{raster, square_image};
+use crate::raster::{square, square_image};
 use crate::seed;
 
 /// Texels a side.
@@ -24,10 +24,7 @@ pub(super) fn paint(params: &TreeTextureParams) -> (Image8, Image8) {
     let seed = seed::noise_seed(u64::from(params.tree_seed), "bark", 0);
     let bark = Bark { seed, tone: params.bark_tone.clamp(0.0, 1.0) };
     let place = |i: usize| i as f32 / COARSE as f32;
-    let coarse = raster(COARSE, COARSE, |y| {
-        let bark = &bark;
-        move |x| bark.texel(place(x), place(y))
-    });
+    let coarse = square(COARSE, |x, y| bark.texel(place(x), place(y)));
     (colors(&coarse, seed.wrapping_add(40)), normals(&coarse))
 }
 
