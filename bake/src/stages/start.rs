@@ -77,7 +77,7 @@ pub fn start_view(land: &Landform, placement: &Placement, towards_sun: Vec3) -> 
     let score = |azimuth| scene.view(spot, azimuth, &trees) + scene.light(spot, azimuth, towards_sun);
     // Of equal ones the first.
     let best = (0..AZIMUTHS).rev().max_by(|&a, &b| score(a).total_cmp(&score(b))).unwrap_or(0);
-    let ground_m = land.field.height_m(spot.x, spot.y).max(scene.water_m);
+    let ground_m = scene.surface_m(spot);
     let along = heading(best);
     let direction = Vec3::new(along.x, scene.pitch(spot, along), along.y).normalize();
     StartView { position_m: Vec3::new(spot.x, ground_m + EYE_M, spot.y), direction }
@@ -98,6 +98,11 @@ struct Surroundings<'a> {
 impl<'a> Surroundings<'a> {
     fn new(land: &'a Landform, trees: &'a [Instance]) -> Self {
         Self { land: &land.field, water_m: land.water_level_m.unwrap_or(f32::MIN), trees }
+    }
+
+    /// Height of the land or of the water on it.
+    fn surface_m(&self, p: Vec2) -> f32 {
+        self.land.height_m(p.x, p.y).max(self.water_m)
     }
 
     /// How good a spot is to stand on: `None` in water and on a steep slope.
@@ -169,7 +174,7 @@ impl<'a> Surroundings<'a> {
             if p.abs().max_element() > 0.5 * self.land.extent_m() {
                 break;
             }
-            let ground = self.land.height_m(p.x, p.y).max(self.water_m);
+            let ground = self.surface_m(p);
             let slope = (ground - eye_m) / distance;
             steps += 1.0;
             if slope >= steepest {
@@ -204,11 +209,8 @@ impl<'a> Surroundings<'a> {
 
     /// Slope of the look: towards the middle of what is to be seen, within ±10°.
     fn pitch(&self, spot: Vec2, along: Vec2) -> f32 {
-        let eye_m = self.land.height_m(spot.x, spot.y).max(self.water_m) + EYE_M;
-        let slope = |distance: f32| {
-            let p = spot + along * distance;
-            (self.land.height_m(p.x, p.y).max(self.water_m) - eye_m) / distance
-        };
+        let eye_m = self.surface_m(spot) + EYE_M;
+        let slope = |distance: f32| (self.surface_m(spot + along * distance) - eye_m) / distance;
         let mean = (slope(60.0) + slope(150.0) + slope(400.0)) / 3.0;
         (0.6 * mean + 0.03).clamp(-0.17, 0.17)
     }

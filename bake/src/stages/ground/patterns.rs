@@ -154,25 +154,17 @@ impl Stone {
         let dice = |salt: i32| hash01(33, k, salt, 0);
         let turn = dice(0) * std::f32::consts::TAU;
         let stretch = 0.62 + 0.38 * dice(1);
-        let mut sides = [[0.0; 3]; 7];
-        for (s, side) in sides.iter_mut().enumerate() {
-            let angle = turn + (s as f32 + 0.7 * (dice(10 + s as i32) - 0.5)) * 0.8976;
-            let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
+        let sides = [0, 1, 2, 3, 4, 5, 6].map(|s| {
+            let angle = turn + (s as f32 + 0.7 * (dice(10 + s) - 0.5)) * 0.8976;
             let long = libm::cosf(angle - turn * 1.7).abs();
-            *side =
-                [cos, sin, radius * (0.8 + 0.2 * dice(20 + s as i32)) * (stretch + (1.0 - stretch) * long)];
-        }
+            let reach = radius * (0.8 + 0.2 * dice(20 + s)) * (stretch + (1.0 - stretch) * long);
+            [libm::cosf(angle), libm::sinf(angle), reach]
+        });
         let shade = 105.0 + 80.0 * dice(2);
         let warm = 0.10 * (dice(3) - 0.5);
-        Self {
-            x,
-            y,
-            radius,
-            base,
-            sides,
-            tilt: [(dice(4) - 0.5) * 0.5, (dice(5) - 0.5) * 0.5],
-            tone: [shade * (1.0 + warm), shade, shade * (1.0 - warm)],
-        }
+        let tone = [shade * (1.0 + warm), shade, shade * (1.0 - warm)];
+        let tilt = [(dice(4) - 0.5) * 0.5, (dice(5) - 0.5) * 0.5];
+        Self { x, y, radius, base, sides, tilt, tone }
     }
 
     /// Lays it over what is lower; what it just fails to cover lies in its shade.
@@ -240,11 +232,9 @@ pub(super) fn mud() -> Pattern {
     from_texels(noise, |u, v, [a, b, silt]| {
         let plate_here = plate(53, u + 0.03 * a, v + 0.03 * b, 13);
         // Only some plates split again, and cracks close here and there.
-        let split = if plate_here.shade > 0.45 {
-            0.45 + 0.55 * plate(54, u - 0.016 * b, v + 0.016 * a, 31).crack
-        } else {
-            1.0
-        };
+        let splits = plate_here.shade > 0.45;
+        let fine = || 0.45 + 0.55 * plate(54, u - 0.016 * b, v + 0.016 * a, 31).crack;
+        let split = if splits { fine() } else { 1.0 };
         let open = 0.55 + 0.45 * (2.5 * a).clamp(-1.0, 1.0);
         let crack = (1.0 - (1.0 - plate_here.crack) * open).min(split);
         let height = crack * (0.62 + 0.16 * plate_here.shade + 0.10 * silt + 0.12 * a);

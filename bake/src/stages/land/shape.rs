@@ -21,17 +21,15 @@ const BROAD_M: f32 = 40.0;
 const STEEPNESS: f32 = 0.21;
 
 /// The raw land as a function of position.
-pub(super) struct Shape {
+pub(super) struct Shape<'a> {
+    genes: &'a LandParams,
     octaves: Vec<Octave>,
     massif: [Octave; 2],
     fold: [Octave; 4],
     fold_m: f32,
     /// Part of the relief that the landforms have; the massif has the rest.
     share: f32,
-    offset: f32,
     terraces: Terraces,
-    relief_m: f32,
-    water_level: f32,
     /// Raw values that become the lowest and highest point of the field.
     range: (f32, f32),
     /// How far, as part of the relief, the middle is lifted so that one does not start under water.
@@ -89,9 +87,9 @@ struct Terraces {
     patches: Octave,
 }
 
-impl Shape {
+impl<'a> Shape<'a> {
     /// The land of these genes, not yet fitted to its relief.
-    pub fn new(p: &LandParams) -> Self {
+    pub fn new(p: &'a LandParams) -> Self {
         let seed = |item| noise_seed(p.terrain_seed.into(), "land", item);
         let gain = libm::powf(p.lacunarity, -p.hurst);
         let share = (STEEPNESS * p.wavelength_m / p.relief_m).min(1.0);
@@ -111,20 +109,18 @@ impl Shape {
         let broad_m = p.wavelength_m.max(1500.0);
         let fold = |i, scale, amplitude| Octave::new(seed(2), i, p.wavelength_m * scale, amplitude);
         Self {
+            genes: p,
             octaves,
             massif: [Octave::new(seed(1), 0, broad_m, 1.0), Octave::new(seed(1), 1, broad_m * 0.45, 0.4)],
             fold: [fold(0, 0.9, 1.0), fold(1, 0.9, 1.0), fold(2, 0.4, 0.4), fold(3, 0.4, 0.4)],
             fold_m: 0.32 * p.domain_warp * p.wavelength_m,
             share,
-            offset: p.offset,
             terraces: Terraces {
                 strength: p.terraces,
                 steps: (p.relief_m / 13.0).clamp(4.0, 14.0),
                 bend: Octave::new(seed(3), 0, 420.0, 0.5),
                 patches: Octave::new(seed(3), 1, 300.0, 1.0),
             },
-            relief_m: p.relief_m,
-            water_level: p.water_level,
             range: (0.0, 1.0),
             lift: 0.0,
         }
@@ -151,7 +147,7 @@ impl Shape {
 
     /// Raw height in metres at a place; waves shorter than twice `spacing_m` are left out.
     pub fn height_m(&self, x: f32, z: f32, spacing_m: f32) -> f32 {
-        self.finish(self.multifractal(x, z, spacing_m), x, z)
+        self.finish(self.total(&self.sum(x, z, 0..self.octaves.len(), spacing_m)), x, z)
     }
 
     /// The multifractal over the field: its broad octaves at half the resolution, cubic between.
@@ -172,10 +168,6 @@ impl Shape {
     }
 
     /// A sum of octaves, each weaker where the land so far is low (Musgrave's hybrid multifractal).
-    fn multifractal(&self, x: f32, z: f32, spacing_m: f32) -> f32 {
-        self.total(&self.sum(x, z, 0..self.octaves.len(), spacing_m))
-    }
-
     fn sum(&self, x: f32, z: f32, octaves: Range<usize>, spacing_m: f32) -> Sum {
         let mut sum = self.start(x, z);
         self.add(&mut sum, octaves, spacing_m);
@@ -207,7 +199,7 @@ impl Shape {
             // A ridge where the noise crosses zero, rounded just enough to be walked over.
             let ridge = 1.0 - 2.4 * (round * round + 0.0009).sqrt();
             sum.height += octave.amplitude * sum.weight * kept * lerp(round, ridge, octave.ridged);
-            sum.weight = lerp(1.0, smoothstep(-0.7, 0.6, sum.height), 0.35 + 0.6 * self.offset);
+            sum.weight = lerp(1.0, smoothstep(-0.7, 0.6, sum.height), 0.35 + 0.6 * self.genes.offset);
         }
     }
 
@@ -220,27 +212,27 @@ impl Shape {
         let (lo, hi) = self.range;
         let part = soften((value - lo) / (hi - lo).max(1e-6));
         let flattened = if part > 0.0 {
-            lerp(part, part * part, 0.75 * self.offset)
+            lerp(part, part * part, 0.75 * self.genes.offset)
         } else {
-            part * (1.0 - 0.75 * self.offset)
+            part * (1.0 - 0.75 * self.genes.offset)
         };
         let stepped = self.terraces.step(flattened, x, z);
         let r = (x * x + z * z) / (300.0 * 300.0);
         let bump = (1.0 - r.min(1.0)) * (1.0 - r.min(1.0));
-        (stepped + self.lift * bump) * self.relief_m
+        (stepped + self.lift * bump) * self.genes.relief_m
     }
 
     /// How far the middle lies below a height that is dry by a margin.
     fn needed_lift(&self) -> f32 {
-        if self.water_level <= 0.0 {
+        if self.genes.water_level <= 0.0 {
             return 0.0;
         }
         let samples = 7 * 7;
         let sum: f32 = (0..samples)
             .map(|k| ((k % 7 - 3) as f32 * 24.0, (k / 7 - 3) as f32 * 24.0))
-            .map(|(x, z)| self.height_m(x, z, 30.0) / self.relief_m)
+            .map(|(x, z)| self.height_m(x, z, 30.0) / self.genes.relief_m)
             .sum();
-        (self.water_level + 0.07 - sum / samples as f32).clamp(0.0, 0.5)
+        (self.genes.water_level + 0.07 - sum / samples as f32).clamp(0.0, 0.5)
     }
 }
 

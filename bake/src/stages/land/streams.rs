@@ -162,15 +162,11 @@ impl Drainage {
                 }
             }
             let to = self.receiver[k] as usize;
-            if total < 1e-9 {
-                if to != k {
-                    areas[to] += areas[k];
-                }
-                continue;
-            }
-            let share = areas[k] / total;
-            for (way, m) in neighbours(self.side, k) {
-                areas[m] += parts[way] * share;
+            if total >= 1e-9 {
+                let share = areas[k] / total;
+                neighbours(self.side, k).for_each(|(way, m)| areas[m] += parts[way] * share);
+            } else if to != k {
+                areas[to] += areas[k];
             }
         }
         areas
@@ -184,19 +180,18 @@ impl Drainage {
         for &k in &self.order {
             let k = k as usize;
             let to = self.receiver[k] as usize;
-            if to == k {
-                let power = STEP * areas[k].sqrt() / OUTSIDE_M;
-                h[k] = (h[k] + power * base_m) / (1.0 + power);
-                continue;
-            }
-            if h[k] <= h[to] {
-                h[k] += FILLING * (self.filled[k] - h[k]).max(0.0);
-                continue;
-            }
-            let diagonal = to % self.side != k % self.side && to / self.side != k / self.side;
-            let reach_m = self.spacing_m * if diagonal { std::f32::consts::SQRT_2 } else { 1.0 };
-            let power = STEP * areas[k].sqrt() / reach_m;
-            h[k] = (h[k] + power * h[to]) / (1.0 + power);
+            let lowered = |base_m: f32, reach_m: f32| {
+                let power = STEP * areas[k].sqrt() / reach_m;
+                (h[k] + power * base_m) / (1.0 + power)
+            };
+            h[k] = if to == k {
+                lowered(base_m, OUTSIDE_M)
+            } else if h[k] <= h[to] {
+                h[k] + FILLING * (self.filled[k] - h[k]).max(0.0)
+            } else {
+                let diagonal = to % self.side != k % self.side && to / self.side != k / self.side;
+                lowered(h[to], self.spacing_m * if diagonal { std::f32::consts::SQRT_2 } else { 1.0 })
+            };
         }
     }
 }

@@ -26,6 +26,7 @@ use crate::model::{Instance, Landform, LightMap, Mesh, SkyLight};
 use crate::raster::square_image;
 pub use stage::LightMapStage;
 use sun::Sun;
+use trees::{Ground, Texels};
 
 /// The light on the field of `land`, `side_px`² texels (at least one).
 ///
@@ -48,8 +49,9 @@ pub fn light_map(
     let sun_on_land = sun::on_land(&sun, land);
     let sky_on_land = sky::on_land(light, land);
     let to_sky = Resampling::from_samples(side, sky_on_land.len().isqrt());
-    let shade = trees::shade(&sun, land, trees, &casters, &ground_m, side);
-    let to_crowns = Resampling::from_texels(side, shade.crown_side);
+    let texels = Texels { side, extent_m: land.field.extent_m() };
+    let shade = trees::shade(&sun, trees, &casters, &Ground { heights_m: &ground_m, texels });
+    let to_crowns = Resampling::from_texels(side, shade.crowns.len().isqrt());
     let image = square_image(side, |j| {
         let struck = to_samples.row(j, &sun_on_land);
         let sky = to_sky.row(j, sky_on_land.as_chunks::<1>().0);

@@ -5,7 +5,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::horizon::{Beyond, slopes};
-use crate::math::interpolate;
+use crate::math::{cell, interpolate, lerp_array};
 use crate::model::{Heightfield, Landform, SkyLight};
 use crate::raster::raster;
 
@@ -38,7 +38,7 @@ pub(super) fn on_land(light: &SkyLight, land: &Landform) -> Vec<f32> {
             }
         });
     }
-    let whole = AZIMUTHS as f32 * table.upright[0];
+    let whole = AZIMUTHS as f32 * table.0[0][0];
     sums.iter_mut().for_each(|sum| *sum = (*sum / whole).min(1.0));
     sums
 }
@@ -70,15 +70,11 @@ fn smoothed(field: &Heightfield) -> Heightfield {
 
 /// Irradiance per azimuth from above a horizon, by the sine of its elevation: what falls on level ground, and what
 /// falls on a wall that faces the azimuth.
-struct Table {
-    upright: Vec<f32>,
-    sideways: Vec<f32>,
-}
+struct Table(Vec<[f32; 2]>);
 
 impl Table {
     fn of(light: &SkyLight) -> Self {
-        let mut upright = vec![0.0; TABLE_STEPS + 1];
-        let mut sideways = vec![0.0; TABLE_STEPS + 1];
+        let mut table = vec![[0.0; 2]; TABLE_STEPS + 1];
         let step = std::f32::consts::FRAC_PI_2 / ELEVATION_STEPS as f32;
         let (mut level, mut wall) = (0.0, 0.0);
         let mut entry = TABLE_STEPS;
@@ -88,17 +84,15 @@ impl Table {
             let elevation = (k as f32 + 0.5) * step;
             let (sin, cos) = libm::sincosf(elevation);
             while entry > 0 && sin * TABLE_STEPS as f32 <= entry as f32 - 1.0e-3 {
-                (upright[entry], sideways[entry]) = (level, wall);
+                table[entry] = [level, wall];
                 entry -= 1;
             }
             let radiance = radiance(elevation);
             level += radiance * sin * cos * step;
             wall += radiance * cos * cos * step;
         }
-        for rest in 0..=entry {
-            (upright[rest], sideways[rest]) = (level, wall);
-        }
-        Self { upright, sideways }
+        table[..=entry].fill([level, wall]);
+        Self(table)
     }
 
     #[inline]
@@ -106,7 +100,8 @@ impl Table {
         let slope = slope.max(0.0);
         let at = slope / (1.0 + slope * slope).sqrt() * TABLE_STEPS as f32;
         let facing = normal.x * towards[0] + normal.z * towards[1];
-        let (upright, sideways) = (interpolate(&self.upright, at), interpolate(&self.sideways, at));
+        let (k, part) = cell(at, self.0.len());
+        let [upright, sideways] = lerp_array(self.0[k], self.0[k + 1], part);
         (normal.y * upright + facing * sideways).max(0.0)
     }
 }

@@ -95,12 +95,12 @@ impl Edge {
             }
         }
         // On a closed piece no triangle may join the first point to both opposite ones: the last tetrahedron.
-        remains
-            && !self.stars[0].iter().any(|&corner| {
-                let [_, p, q] = topology.points_from(state, corner);
-                let b = self.points[1];
-                p != b && q != b && self.triangles.count == 2 && is_opposite(p) && is_opposite(q)
-            })
+        let b = self.points[1];
+        let joins_both = |&corner: &u32| {
+            let [_, p, q] = topology.points_from(state, corner);
+            p != b && q != b && is_opposite(p) && is_opposite(q)
+        };
+        remains && !(self.triangles.count == 2 && self.stars[0].iter().any(joins_both))
     }
 
     /// A point moved along the mean normal of both stars until their volume is as before, but not far.

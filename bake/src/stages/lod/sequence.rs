@@ -35,7 +35,6 @@ pub struct Sequence {
     /// Pieces by falling cost, and those put off because they are too large for the level.
     pieces: Vec<(f64, u32)>,
     put_off: Vec<(f64, u32)>,
-    found: Vec<(f64, u32)>,
     unused: Vec<u32>,
 }
 
@@ -66,7 +65,6 @@ impl Sequence {
             refused: Vec::new(),
             retry_above_m: 0.0,
             max_cost_m: MAX_COST * diagonal_m(&state),
-            found: Vec::new(),
             error_m: 0.0,
             aggregates,
             surface,
@@ -104,7 +102,7 @@ impl Sequence {
     /// Queues refused collapses again: what made them impossible may have been removed.
     fn retry(&mut self) {
         for (a, b, version) in std::mem::take(&mut self.refused) {
-            if self.version(a, b) == version {
+            if current_version(&self.versions, a, b) == version {
                 self.queue_edge(a, b);
             }
         }
@@ -119,39 +117,28 @@ impl Sequence {
         edge.into_iter().chain(piece).chain(elements).min_by(|p, q| p.1.total_cmp(&q.1))
     }
 
-    fn version(&self, a: u32, b: u32) -> u32 {
-        // Versions only grow, so the sum stays the same only if both do.
-        self.versions[a as usize].wrapping_add(self.versions[b as usize])
-    }
-
     fn queue_all(&mut self) {
-        let mut found = Vec::new();
         let mut entries = Vec::with_capacity(4 * self.versions.len());
         for a in 0..self.versions.len() as u32 {
-            self.surface.candidates(&self.state, a, &mut found);
-            let forward = found.iter().filter(|&&(_, b)| a < b);
-            entries.extend(forward.map(|&(cost, b)| Reverse(((cost as f32).to_bits(), a, b, 0))));
+            let forward = self.surface.candidates(&self.state, a).filter(|&(_, b)| a < b);
+            entries.extend(forward.map(|(cost, b)| entry(&self.versions, cost, a, b)));
         }
         self.queue = BinaryHeap::from(entries);
     }
 
     fn queue_edge(&mut self, a: u32, b: u32) {
         if let Some(candidate) = self.surface.candidate(&self.state, a, b) {
-            self.push(candidate.cost, a, b);
+            self.queue.push(entry(&self.versions, candidate.cost, a, b));
         }
-    }
-
-    fn push(&mut self, cost: f64, a: u32, b: u32) {
-        self.queue.push(Reverse(((cost as f32).to_bits(), a, b, self.version(a, b))));
     }
 
     fn collapse_next(&mut self) {
         let Some(Reverse((_, a, b, version))) = self.queue.pop() else { return };
-        if self.version(a, b) != version {
+        if current_version(&self.versions, a, b) != version {
             return;
         }
         let Some(candidate) = self.surface.candidate(&self.state, a, b) else { return };
-        let Some(done) = self.surface.collapse(&mut self.state, [a, b], candidate) else {
+        let Some(done) = self.surface.collapse(&mut self.state, [a, b], candidate.freedom) else {
             self.refused.push((a, b, version));
             return;
         };
@@ -159,12 +146,8 @@ impl Sequence {
         for point in [a, b] {
             self.versions[point as usize] = self.versions[point as usize].wrapping_add(1);
         }
-        let mut found = std::mem::take(&mut self.found);
-        self.surface.candidates(&self.state, done.point, &mut found);
-        for &(cost, other) in &found {
-            self.push(cost, done.point, other);
-        }
-        self.found = found;
+        let found = self.surface.candidates(&self.state, done.point);
+        self.queue.extend(found.map(|(cost, other)| entry(&self.versions, cost, done.point, other)));
     }
 
     fn drop_piece(&mut self, target: usize) {
@@ -236,6 +219,17 @@ impl Sequence {
             self.state.log.finish_record();
         }
     }
+}
+
+/// What tells whether an edge has changed since it was queued: versions only grow, so the sum stays the same only if
+/// both do.
+fn current_version(versions: &[u32], a: u32, b: u32) -> u32 {
+    versions[a as usize].wrapping_add(versions[b as usize])
+}
+
+/// An entry of the queue: cost, ends and version of an edge.
+fn entry(versions: &[u32], cost: f64, a: u32, b: u32) -> Reverse<(u32, u32, u32, u32)> {
+    Reverse(((cost as f32).to_bits(), a, b, current_version(versions, a, b)))
 }
 
 fn diagonal_m(state: &State) -> f64 {

@@ -10,9 +10,10 @@ use super::math::{exp, exp3, henyey_greenstein};
 use crate::math::cell;
 
 /// Radius of the Earth in km.
-pub const GROUND_KM: f32 = 6360.0;
+const GROUND_KM: f32 = 6360.0;
 const TOP_KM: f32 = 6440.0;
-const RAYLEIGH_PER_KM: Vec3A = Vec3A::new(5.802e-3, 13.558e-3, 33.1e-3);
+/// Scattering, and so extinction, by the molecules of the air at the ground.
+pub const RAYLEIGH_PER_KM: Vec3A = Vec3A::new(5.802e-3, 13.558e-3, 33.1e-3);
 const RAYLEIGH_SCALE_KM: f32 = 8.0;
 const OZONE_PER_KM: Vec3A = Vec3A::new(0.650e-3, 1.881e-3, 0.085e-3);
 const MIE_SCALE_KM: f32 = 1.2;
@@ -27,7 +28,8 @@ const MULTI_COSINES: usize = 20;
 /// Clear air, and what the sun's light suffers in it.
 pub struct Atmosphere {
     mie_scattering: Vec3A,
-    mie_extinction: Vec3A,
+    /// Extinction by haze at the ground, per km.
+    pub mie_extinction: Vec3A,
     transmittance: Table,
     multiple: Table,
 }
@@ -85,10 +87,6 @@ fn unit_to_cosine(unit: f32) -> f32 {
     0.1 * m / (1.0 - m.abs())
 }
 
-fn height_to_unit(height_km: f32) -> f32 {
-    (height_km / (TOP_KM - GROUND_KM)).clamp(0.0, 1.0).sqrt()
-}
-
 /// A table over height and the direction cosine of the sun.
 #[derive(Default)]
 struct Table {
@@ -108,7 +106,7 @@ impl Table {
     }
 
     fn at(&self, height_km: f32, mu: f32) -> Vec3A {
-        let (u, v) = (cosine_to_unit(mu), height_to_unit(height_km));
+        let (u, v) = (cosine_to_unit(mu), (height_km / (TOP_KM - GROUND_KM)).clamp(0.0, 1.0).sqrt());
         let (i, x) = cell(u * (self.columns - 1) as f32, self.columns);
         let (j, y) = cell(v * (self.rows - 1) as f32, self.rows);
         let row = |j: usize| {
@@ -149,11 +147,6 @@ impl Atmosphere {
             air.multiple_scattering(height.max(0.02), mu)
         });
         air
-    }
-
-    /// Extinction of clear air at the ground per km.
-    pub fn extinction_per_km(&self) -> (Vec3A, Vec3A) {
-        (RAYLEIGH_PER_KM, self.mie_extinction)
     }
 
     fn local(&self, height_km: f32) -> Local {

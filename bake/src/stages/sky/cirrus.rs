@@ -137,12 +137,7 @@ fn drawn_out(texels: &[f32], side: usize, wind: &[(f32, f32)], step: f32) -> Vec
 
 fn blurred(fine: &[f32], side: usize) -> Vec<f32> {
     square(side / 8, |i, j| {
-        let mut sum = 0.0;
-        for y in 0..8 {
-            for x in 0..8 {
-                sum += fine[(j * 8 + y) * side + i * 8 + x];
-            }
-        }
-        sum / 64.0
+        let block = (0..8).flat_map(|y| &fine[(j * 8 + y) * side + i * 8..][..8]);
+        block.sum::<f32>() / 64.0
     })
 }

@@ -5,7 +5,7 @@
 use glam::{Vec3, Vec3A};
 
 use super::SkyParams;
-use super::atmosphere::{Atmosphere, mie_phase};
+use super::atmosphere::{Atmosphere, RAYLEIGH_PER_KM, mie_phase};
 use super::math::{dot, exp, exp3, luminance};
 use crate::math::{cell, lerp, smoothstep};
 
@@ -153,13 +153,8 @@ impl ClearSky {
     #[inline]
     pub fn haze_towards(&self, direction: Vec3A) -> Vec3A {
         let flat = (direction.x * direction.x + direction.z * direction.z).sqrt();
-        let level = if flat > 1e-6 {
-            Vec3A::new(direction.x / flat, 0.0, direction.z / flat)
-        } else {
-            Vec3A::new(1.0, 0.0, 0.0)
-        };
-        let u = self.column_of(level);
-        let (i, f) = cell(u, COLUMNS);
+        let level = if flat > 1e-6 { direction.with_y(0.0) / flat } else { Vec3A::X };
+        let (i, f) = cell(self.column_of(level), COLUMNS);
         let smooth = self.horizon[i].0.lerp(self.horizon[i + 1].0, f);
         let mie = self.horizon[i].1.lerp(self.horizon[i + 1].1, f);
         smooth + mie * mie_phase(dot(direction, self.sun))
@@ -203,11 +198,10 @@ impl ClearSky {
     /// Part of light that crosses the air from `distance_km` away and `height_km` up in a direction of sine `sine`.
     #[inline]
     pub fn clearness(&self, sine: f32, distance_km: f32, height_km: f32) -> Vec3A {
-        let (rayleigh, mie) = self.air.extinction_per_km();
         let air = distance_km * (1.0 - 0.055 * height_km.min(6.0));
         let mie_path = distance_km / (1.0 + 0.45 * height_km);
         let haze = self.haze_per_km * HAZE_SCALE_KM / (sine + 0.0035);
-        let depth = rayleigh * air + mie * mie_path + Vec3A::splat(haze);
+        let depth = RAYLEIGH_PER_KM * air + self.air.mie_extinction * mie_path + Vec3A::splat(haze);
         exp3(-depth)
     }
 

@@ -13,7 +13,7 @@ use super::params::TreeParams;
 use super::shade::Shade;
 use super::skeleton::{Skeleton, Stem, perpendicular};
 use crate::math::{lerp, unit_to_byte};
-use crate::model::Mesh;
+use crate::model::{Material, Mesh, Part, PartKind};
 
 /// Metres of bark that one repeat of the texture covers on the trunk.
 const TILE_M: f32 = 0.9;
@@ -71,7 +71,7 @@ struct Frame {
 
 /// What is written to while tubes are made.
 struct Skin<'a> {
-    mesh: &'a mut Mesh,
+    mesh: Mesh,
     triangles: Vec<[u32; 3]>,
     shade: &'a Shade,
     roots: Roots,
@@ -79,14 +79,8 @@ struct Skin<'a> {
     circles: Vec<Vec<[f32; 2]>>,
 }
 
-/// Appends the vertices of all stems to `mesh` and returns their triangles.
-pub(super) fn skin(
-    params: &TreeParams,
-    budget: &Budget,
-    skeleton: &Skeleton,
-    shade: &Shade,
-    mesh: &mut Mesh,
-) -> Vec<[u32; 3]> {
+/// A mesh of one part: the bark of all stems.
+pub(super) fn skin(params: &TreeParams, budget: &Budget, skeleton: &Skeleton, shade: &Shade) -> Mesh {
     let trunk_m = skeleton.stems.first().map_or(0.1, |stem| stem.radius_m);
     let roots = Roots {
         flare: params.root_flare * 0.9,
@@ -97,25 +91,23 @@ pub(super) fn skin(
     let stations: Vec<Vec<Station>> =
         skeleton.stems.iter().enumerate().map(|(i, stem)| stations(skeleton, stem, i == 0, &roots)).collect();
     let sides = budgeted_sides(skeleton, &stations, budget.max_bark_triangles as usize);
-    let circles = (0..=ROOT_SIDES).map(circle).collect();
+    let circles = (0..=ROOT_SIDES).map(|sides| circle(sides.max(1))).collect();
     let moss = 0.5 * (1.0 - params.bark_tone);
-    let mut skin = Skin { mesh, triangles: Vec::new(), shade, roots, moss, circles };
+    let mut skin = Skin { mesh: Mesh::default(), triangles: Vec::new(), shade, roots, moss, circles };
     for (index, stem) in skeleton.stems.iter().enumerate() {
         skin.tube(stem, &stations[index], sides[index], index);
     }
-    skin.triangles
+    let parts = vec![Part { material: Material::Bark, kind: PartKind::Surface, triangles: skin.triangles }];
+    Mesh { parts, ..skin.mesh }
 }
 
 /// cos and sin around a circle of `sides`; the last is the first again, to the bit.
 fn circle(sides: usize) -> Vec<[f32; 2]> {
-    let mut points: Vec<[f32; 2]> = (0..sides)
-        .map(|k| {
-            let (sin, cos) = libm::sincosf(TAU * k as f32 / sides as f32);
-            [cos, sin]
-        })
-        .collect();
-    points.extend(points.first().copied());
-    points
+    let point = |k: usize| {
+        let (sin, cos) = libm::sincosf(TAU * (k % sides) as f32 / sides as f32);
+        [cos, sin]
+    };
+    (0..=sides).map(point).collect()
 }
 
 /// Sides of each stem's tube, fewer and fewer until the budget is met.
@@ -203,17 +195,12 @@ impl Skin<'_> {
     fn ring(&mut self, ring: &Station, frame: &Frame, light: f32, sides: usize) {
         let &Frame { x, along, slope, repeats, v } = frame;
         let z = along.cross(x);
-        let first = self.mesh.positions.len();
         for k in 0..=sides {
             let [cos, sin] = self.circles[sides][k];
             let out = x * cos + z * sin;
             let angle = TAU * (k % sides) as f32 / sides as f32;
             let swell = ring.root_m.map_or(1.0, |height_m| self.roots.factor(angle, height_m));
-            let position = if k == sides {
-                self.mesh.positions[first]
-            } else {
-                (ring.at + out * (ring.radius_m * swell)).to_array()
-            };
+            let position = (ring.at + out * (ring.radius_m * swell)).to_array();
             self.mesh.positions.push(position);
             self.mesh.normals.push((out - along * slope).normalize_or(out).to_array());
             self.mesh.uvs.push([repeats * k as f32 / sides as f32, v]);
@@ -258,8 +245,8 @@ impl Skin<'_> {
         for ring in 0..rings {
             let (below, above) = (ring.saturating_sub(1), (ring + 1).min(rings - 1));
             for k in 0..sides {
-                let around = at(self.mesh, ring, k + 1) - at(self.mesh, ring, (k + sides - 1) % sides);
-                let up = at(self.mesh, above, k) - at(self.mesh, below, k);
+                let around = at(&self.mesh, ring, k + 1) - at(&self.mesh, ring, (k + sides - 1) % sides);
+                let up = at(&self.mesh, above, k) - at(&self.mesh, below, k);
                 let normal = &mut self.mesh.normals[start + ring * row + k];
                 *normal = around.cross(up).normalize_or(Vec3::from_array(*normal)).to_array();
             }

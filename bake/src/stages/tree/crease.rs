@@ -64,14 +64,11 @@ fn corners(mesh: &Mesh, part: &Part, cos_threshold: f32) -> Vec<[Vec3; 3]> {
             .collect();
         for &(_, face, k) in around {
             let own = faces[face as usize];
-            let sum: Vec3 = around
-                .iter()
-                .zip(&weights)
-                .filter(|((_, other, _), _)| {
-                    own == Vec3::ZERO || *other == face || own.dot(faces[*other as usize]) > cos_threshold
-                })
-                .map(|((_, other, _), &weight)| faces[*other as usize] * weight)
-                .sum();
+            let joins = |other: u32| {
+                own == Vec3::ZERO || other == face || own.dot(faces[other as usize]) > cos_threshold
+            };
+            let joined = around.iter().zip(&weights).filter(|((_, other, _), _)| joins(*other));
+            let sum: Vec3 = joined.map(|((_, other, _), &weight)| faces[*other as usize] * weight).sum();
             normals[face as usize][k as usize] =
                 sum.try_normalize().unwrap_or(own).try_normalize().unwrap_or(Vec3::Y);
         }

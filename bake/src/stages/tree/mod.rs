@@ -24,7 +24,7 @@ mod tests;
 
 use rayon::join;
 
-use crate::model::{Image8, Material, Mesh, Part, PartKind, TreeTemplate, TreeTextures};
+use crate::model::{Image8, TreeTemplate, TreeTextures};
 use crate::seed::Dice;
 use budget::Budget;
 pub use stage::{TreeFiles, TreeStage, TreeTexturesStage};
@@ -48,14 +48,9 @@ pub fn template(params: &TreeParams, index: u32) -> TreeTemplate {
     let cards = cards::place(params, &budget, &skeleton, &mut dice);
     let shade = shade::Shade::new(&skeleton, &cards);
 
-    let mut mesh = Mesh::default();
-    let bark = bark::skin(params, &budget, &skeleton, &shade, &mut mesh);
-    mesh.parts.push(Part { material: Material::Bark, kind: PartKind::Surface, triangles: bark });
-    for (material, blossom) in [(Material::Leaf, false), (Material::Blossom, true)] {
-        let triangles = foliage::build(params, &cards, blossom, &shade, &mut mesh);
-        if !triangles.is_empty() {
-            mesh.parts.push(Part { material, kind: foliage::kind(params), triangles });
-        }
+    let mut mesh = bark::skin(params, &budget, &skeleton, &shade);
+    for blossom in [false, true] {
+        foliage::build(budget.habit, &cards, blossom, &shade, &mut mesh);
     }
     TreeTemplate {
         bounds: mesh.bounds(),

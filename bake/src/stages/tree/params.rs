@@ -101,9 +101,8 @@ impl Habit {
     pub fn card_aspect(self) -> f32 {
         match self {
             Self::Broad => 0.92,
-            Self::Willow => 0.42,
             Self::Needle => 0.78,
-            Self::Frond => 0.42,
+            Self::Willow | Self::Frond => 0.42,
         }
     }
 }

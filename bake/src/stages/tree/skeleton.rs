@@ -345,19 +345,18 @@ impl Grower<'_> {
 
     /// Grows all stems of `level` on those of the level below.
     fn branches(&mut self, level: u32) {
-        let parents: Vec<usize> =
-            (0..self.skeleton.stems.len()).filter(|&i| self.skeleton.stems[i].level == level - 1).collect();
+        let below = self.skeleton.stems.iter().filter(|stem| stem.level == level - 1);
+        let parents: Vec<Stem> = below.cloned().collect();
         let bare_part = if level == 1 { self.params.clear_trunk.max(0.02) } else { 0.14 };
         let bearing = |stem: &Stem| (0.97 - stem.from.max(bare_part)).max(0.0);
-        let whole: f32 = parents.iter().map(|&i| bearing(&self.skeleton.stems[i])).sum();
+        let whole: f32 = parents.iter().map(bearing).sum();
         let (mut error, mut azimuth) = (0.5, self.dice.unit() * TAU);
-        for index in parents {
-            let parent = self.skeleton.stems[index].clone();
-            let length = bearing(&parent);
+        for parent in &parents {
+            let length = bearing(parent);
             let wish = if level == 1 {
                 self.budget.primaries * length / whole.max(1e-3)
             } else {
-                self.wish(level, &parent) * length / 0.83
+                self.wish(level, parent) * length / 0.83
             };
             error += wish;
             let count = error.floor().max(0.0) as u32;
@@ -366,7 +365,7 @@ impl Grower<'_> {
                 let place = (k as f32 + 0.5 + 0.35 * self.dice.signed()) / count as f32;
                 let z = parent.from.max(bare_part) + length * place;
                 azimuth += self.params.rotation_deg.to_radians() + 0.18 * self.dice.signed();
-                self.branch(level, &parent, z, azimuth);
+                self.branch(level, parent, z, azimuth);
             }
         }
     }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use super::{TreeParams, TreeTextureParams, template, textures};
 use crate::gltf::{Picture, png, tree_glb};
 use crate::graph::{Context, File, Input, Stage, StageError, Stored};
-use crate::model::{Image8, LevelledMesh, Mesh, TreeTextures};
+use crate::model::{Image8, Level, Mesh, TreeTextures};
 use crate::stages::lod;
 use crate::stages::placement::TreeFootprint;
 
@@ -28,13 +28,10 @@ impl Stage for TreeTexturesStage {
             let kept = levels.par_iter().filter(|level| level.width >= MIN_MIP_PX);
             kept.map(|level| context.file("png", png::encode(level))).collect()
         };
+        let color = || context.file("png", png::encode(&textures.bark_color));
+        let normal = || context.file("png", png::encode_linear(&textures.bark_normal));
         let ((bark_color, bark_normal), (leaf, blossom)) = rayon::join(
-            || {
-                rayon::join(
-                    || context.file("png", png::encode(&textures.bark_color)),
-                    || context.file("png", png::encode_linear(&textures.bark_normal)),
-                )
-            },
+            || rayon::join(color, normal),
             || rayon::join(|| card(&textures.leaf), || card(&textures.blossom)),
         );
         Ok(TreeTextures { bark_color, bark_normal, leaf, blossom, alpha_cutoff: textures.alpha_cutoff })
@@ -87,7 +84,11 @@ impl Stage for TreeStage {
             crown_radius_m: template.crown_radius_m,
             root_depth_m: -template.bounds.min.y,
         };
-        Ok(TreeFiles { glb: context.file("glb", glb), footprint, caster: context.store(caster(levels)) })
+        Ok(TreeFiles {
+            glb: context.file("glb", glb),
+            footprint,
+            caster: context.store(caster(levels.levels)),
+        })
     }
 
     fn label(&self) -> String {
@@ -98,14 +99,9 @@ impl Stage for TreeStage {
 /// Triangles that are enough to cast a shadow onto a texel of a metre.
 const CASTER_TRIANGLES: usize = 2_000;
 
-/// The finest level that is small enough to be rasterised for every instance.
-fn caster(levels: LevelledMesh) -> Mesh {
-    let mut coarsest = Mesh::default();
-    for level in levels.levels {
-        coarsest = level.mesh;
-        if coarsest.triangle_count() <= CASTER_TRIANGLES {
-            break;
-        }
-    }
-    coarsest
+/// The finest level that is small enough to be rasterised for every instance, else the coarsest.
+fn caster(mut levels: Vec<Level>) -> Mesh {
+    let small = |level: &Level| level.mesh.triangle_count() <= CASTER_TRIANGLES;
+    let index = levels.iter().position(small).unwrap_or(levels.len() - 1);
+    levels.swap_remove(index).mesh
 }
