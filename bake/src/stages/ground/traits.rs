@@ -58,7 +58,7 @@ impl TraitsMap {
     pub fn new(patches: &Patches, land: &Landform, v: RangeInclusive<f32>) -> Self {
         let step = stride(land);
         let side = ((land.field.side - 1) / step + 1) as usize;
-        let values = rows_within(side, v, |j, row| {
+        let values = rows(side, v, |j, row| {
             for (i, out) in row.iter_mut().enumerate() {
                 *out = sample(patches, land, i as u32 * step, j as u32 * step, step);
             }
@@ -75,11 +75,7 @@ impl TraitsMap {
 }
 
 /// A grid of `side`² values of which `fill` makes only those rows that places between two v need.
-fn rows_within<T: Pod + Send>(
-    side: usize,
-    v: RangeInclusive<f32>,
-    fill: impl Fn(usize, &mut [T]) + Sync,
-) -> Vec<T> {
+fn rows<T: Pod + Send>(side: usize, v: RangeInclusive<f32>, fill: impl Fn(usize, &mut [T]) + Sync) -> Vec<T> {
     let mut values = vec![T::zeroed(); side * side];
     let (first, last) = (cell(*v.start(), side).0, cell(*v.end(), side).0 + 1);
     let rows = values.par_chunks_mut(side).enumerate().skip(first).take(last + 1 - first);
@@ -167,7 +163,7 @@ impl Patches {
         let layers = [(170.0, 4, 0.55, 1.8), (46.0, 3, 0.6, 1.6), (80.0, 3, 0.6, 1.6)];
         let place_m = |k: usize| k as f32 * spacing_m;
         let xs = layers.map(|layer| (0..Self::SIDE).map(|i| place_m(i) / layer.0).collect::<Vec<f32>>());
-        let values = rows_within(Self::SIDE, v, |j, row: &mut [[f32; 3]]| {
+        let values = rows(Self::SIDE, v, |j, row: &mut [[f32; 3]]| {
             let mut line = [0.0; Self::SIDE];
             for (k, (wavelength_m, octaves, gain, height)) in layers.into_iter().enumerate() {
                 fbm2_row(seeds[k], &xs[k], place_m(j) / wavelength_m, octaves, gain, 0, &mut line);

@@ -167,15 +167,9 @@ impl<'a> Shape<'a> {
         grid
     }
 
-    /// A sum of octaves, each weaker where the land so far is low (Musgrave's hybrid multifractal).
+    /// A sum of octaves, each weaker where the land so far is low (Musgrave's hybrid multifractal), read where folding
+    /// takes the place.
     fn sum(&self, x: f32, z: f32, octaves: Range<usize>, spacing_m: f32) -> Sum {
-        let mut sum = self.start(x, z);
-        self.add(&mut sum, octaves, spacing_m);
-        sum
-    }
-
-    /// Folds the plane: where the octaves are read for a place.
-    fn start(&self, x: f32, z: f32) -> Sum {
         let [a, b, c, d] = &self.fold;
         let (mut u, mut v) = (x, z);
         if self.fold_m > 0.0 {
@@ -184,7 +178,9 @@ impl<'a> Shape<'a> {
         }
         let massif =
             if self.share < 1.0 { self.massif[0].at(x, z) + 0.4 * self.massif[1].at(x, z) } else { 0.0 };
-        Sum { u, v, height: 0.0, weight: 1.0, massif }
+        let mut sum = Sum { u, v, height: 0.0, weight: 1.0, massif };
+        self.add(&mut sum, octaves, spacing_m);
+        sum
     }
 
     /// Adds some of the octaves.

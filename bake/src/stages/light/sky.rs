@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::horizon::{Beyond, slopes};
 use crate::math::{cell, interpolate, lerp_array};
 use crate::model::{Heightfield, Landform, SkyLight};
-use crate::raster::raster;
+use crate::raster::square;
 
 /// Azimuths in which the horizon is looked for.
 const AZIMUTHS: usize = 8;
@@ -61,10 +61,8 @@ fn smoothed(field: &Heightfield) -> Heightfield {
         [k.saturating_sub(stride / 2), k, (k + stride / 2).min(last)]
     };
     let mean = |[a, b, c]: [f32; 3]| 0.25 * a + 0.5 * b + 0.25 * c;
-    let heights_m = raster(side as usize, side as usize, |j| {
-        let rows = around(j);
-        move |i| mean(rows.map(|j| mean(around(i).map(|i| field.at(i, j)))))
-    });
+    let heights_m =
+        square(side as usize, |i, j| mean(around(j).map(|j| mean(around(i).map(|i| field.at(i, j))))));
     Heightfield { side, spacing_m: field.spacing_m * stride as f32, heights_m }
 }
 

@@ -53,8 +53,8 @@ impl Sequence {
         let mut used = vec![false; state.vertices.len()];
         state.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
         for span in &state.parts {
-            let elements = span.elements().map_or(0, |(elements, ..)| elements);
-            (0..elements).for_each(|element| used[span.element(element)[0].clone()].fill(true));
+            let (elements, each, _) = span.elements().unwrap_or_default();
+            used[span.first_vertex as usize..][..(elements * each) as usize].fill(true);
         }
         let mut sequence = Self {
             versions: vec![0; surface.topology.positions.len()],

@@ -57,11 +57,8 @@ impl<'a> Site<'a> {
         let altitude = |part: f32| base + part * (high - base);
         let tan = |degrees: f32| libm::tanf(degrees.clamp(0.0, 80.0).to_radians());
         let slope = params.steepest_slope_deg;
-        let tree_line_m = if limit < 1.0 {
-            [altitude(limit - TREE_LINE_EDGE * (1.0 - limit)), altitude(limit)]
-        } else {
-            [f32::MAX, f32::MAX]
-        };
+        let thinning = altitude(limit - TREE_LINE_EDGE * (1.0 - limit));
+        let tree_line_m = if limit < 1.0 { [thinning, altitude(limit)] } else { [f32::MAX; 2] };
         Self {
             land,
             half_m: 0.5 * land.field.extent_m() - EDGE_MARGIN_M,

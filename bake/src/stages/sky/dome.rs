@@ -59,12 +59,11 @@ impl Dome {
     /// drawn with fewer directions.
     pub fn new(layers: &Layers, sky: &ClearSky, width: usize, height: usize) -> Self {
         let row_of_sine = (0..=LOOKUP).map(|i| row_at(i as f32 / LOOKUP as f32, height)).collect();
-        let around: Vec<(f32, f32)> = (0..width)
-            .map(|column| {
-                let azimuth = (column as f32 + 0.5) / width as f32 * std::f32::consts::TAU;
-                (libm::sinf(azimuth), -libm::cosf(azimuth))
-            })
-            .collect();
+        let heading = |column: usize| {
+            let azimuth = (column as f32 + 0.5) / width as f32 * std::f32::consts::TAU;
+            (libm::sinf(azimuth), -libm::cosf(azimuth))
+        };
+        let around: Vec<(f32, f32)> = (0..width).map(heading).collect();
         let seen = |row: Row, column: usize| {
             let (x, z) = around[column];
             layers.seen(Vec3A::new(row.flat * x, row.sine, row.flat * z), sky)

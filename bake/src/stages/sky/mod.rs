@@ -91,12 +91,11 @@ pub fn light(params: &SkyParams) -> SkyLight {
     let sun_through =
         sky.layers.clouds.as_ref().map_or(1.0, Clouds::sun_through) * (1.0 - 0.25 * params.cirrus);
     let spokes = if sky.layers.is_empty() { 96 } else { 40 };
-    let zonal: Vec<Vec3A> = (0..ZONES)
-        .map(|zone| {
-            let elevation = zone as f32 / (ZONES - 1) as f32 * std::f32::consts::FRAC_PI_2;
-            sum_around(libm::sinf(elevation), 0.0, spokes, |d| sky.radiance(d)) / spokes as f32
-        })
-        .collect();
+    let zone = |zone: usize| {
+        let elevation = zone as f32 / (ZONES - 1) as f32 * std::f32::consts::FRAC_PI_2;
+        sum_around(libm::sinf(elevation), 0.0, spokes, |d| sky.radiance(d)) / spokes as f32
+    };
+    let zonal: Vec<Vec3A> = (0..ZONES).map(zone).collect();
     let irradiance = if sky.layers.is_empty() { clear.irradiance() } else { zonal_irradiance(&zonal) };
     SkyLight {
         sun_direction: Vec3::from(clear.sun),

@@ -129,20 +129,18 @@ impl Painter<'_> {
         let height = width / 2;
         let grid = Grid::new((width, height), (4, 2), |u, v| self.sky.radiance(equirect_direction(u, v)));
         let pixel_rad = std::f32::consts::TAU / width as f32;
-        let around: Vec<(f32, f32, f32)> = (0..width)
-            .map(|i| {
-                let d = equirect_direction((i as f32 + 0.5) / width as f32, 0.5);
-                (d.x, d.z, self.dome.map_or(0.0, |dome| dome.column(d.x, d.z)))
-            })
-            .collect();
-        let rows: Vec<(f32, f32, f32)> = (0..height)
-            .map(|j| {
-                let d = equirect_direction(0.5, (j as f32 + 0.5) / height as f32);
-                (d.y, -d.z, self.dome.map_or(0.0, |dome| dome.row(d.y)))
-            })
-            .collect();
+        let column = |i: usize| {
+            let d = equirect_direction((i as f32 + 0.5) / width as f32, 0.5);
+            (d.x, d.z, self.dome.map_or(0.0, |dome| dome.column(d.x, d.z)))
+        };
+        let row = |j: usize| {
+            let d = equirect_direction(0.5, (j as f32 + 0.5) / height as f32);
+            (d.y, -d.z, self.dome.map_or(0.0, |dome| dome.row(d.y)))
+        };
+        let (columns, rows): (Vec<_>, Vec<_>) =
+            ((0..width).map(column).collect(), (0..height).map(row).collect());
         grid.image(|i, j, color| {
-            let ((x, z, column), (y, flat, row)) = (around[i], rows[j]);
+            let ((x, z, column), (y, flat, row)) = (columns[i], rows[j]);
             let clouds = self.dome.filter(|_| y > 0.0).map(|dome| dome.at(column, row));
             self.pixel(Vec3A::new(flat * x, y, flat * z), color, clouds, pixel_rad)
         })

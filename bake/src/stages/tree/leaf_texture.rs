@@ -250,11 +250,10 @@ impl Brush {
             for sign in [-1.0, 1.0] {
                 let shape = libm::powf((t + 0.06).min(1.0), 0.35) * (1.04 - t * t * 0.8);
                 let angle = sign * (1.12 - 0.75 * t + 0.07 * self.dice.signed());
-                let length = if feather {
-                    (half * 1.12 * shape).min((half - 0.004) / libm::sinf(angle.abs()).max(0.2))
-                } else {
-                    half * 0.92 * shape
-                };
+                let mut length = half * if feather { 1.12 } else { 0.92 } * shape;
+                if feather {
+                    length = length.min((half - 0.004) / libm::sinf(angle.abs()).max(0.2));
+                }
                 let base = Vec2::new(0.0, 0.03 + 0.93 * t);
                 let length = length.min((0.995 - base.y) / libm::cosf(angle).max(0.1)).max(0.015);
                 let mut paint = self.paint(0.84 + 0.25 * t);
