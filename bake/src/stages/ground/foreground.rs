@@ -1,5 +1,5 @@
-//! The near mesh and where one stands → a finer mesh of the ground around, whose vertices carry the colour of the
-//! map and whose parts carry tiling textures: what is within some 50 m needs centimetres, the map has metres.
+//! Near mesh and start view → a finer mesh of the ground around the eye, whose vertices carry the colour of the map
+//! and whose parts carry tiling textures: within some 50 m the ground needs centimetres, the map has metres.
 //!
 //! The piece is a square of the blocks that no triangle of the near mesh crosses. Its border has the vertices of the
 //! near mesh, bit by bit, so there is no crack; colour, relief and grain of its own fade towards the border, so
@@ -82,7 +82,7 @@ impl Patch<'_> {
         (color, parts)
     }
 
-    /// The grid's points but those of its border, row by row.
+    /// The grid's points except those of its border, row by row.
     fn points(&self, window: &MapWindow) -> Vec<Point> {
         square(CELLS - 1, |i, j| {
             let p = self.corner + Vec2::new((i + 1) as f32, (j + 1) as f32) * CELL_M;
@@ -115,8 +115,8 @@ impl Patch<'_> {
         sides
     }
 
-    /// A vertex of the near mesh, with that mesh's normal and the colour of the nearest point of the grid, which has
-    /// hardly left the map's.
+    /// A vertex of the near mesh, with that mesh's normal and the colour of the nearest point of the grid, which is
+    /// close to the map's there.
     fn border_point(&self, position: [f32; 3], points: &[Point]) -> Point {
         let field = &self.land.field;
         let p = plan(position);

@@ -2,7 +2,7 @@
 //! texture, no alpha, so any viewer draws them well. Metres.
 //!
 //! Tufts stand on a jittered grid, the fewer the farther away, while their blades get wider; none where the ground is
-//! anything else than grass. They shrink towards the edge, so there is none to be seen.
+//! not grass. They shrink towards the edge, so that no edge shows.
 
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -15,7 +15,7 @@ use crate::noise::{gradient2, hash01};
 
 /// Metres between tufts where they stand closest.
 const TUFT_M: f32 = 0.3;
-/// Metres from the eye up to which they do.
+/// Metres from the eye up to which they stand that close.
 const DENSE_M: f32 = 5.0;
 /// Metres from the eye to the last tufts.
 const REACH_M: f32 = 42.0;

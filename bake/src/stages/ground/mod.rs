@@ -1,8 +1,8 @@
-//! Turns the landform into what the ground looks like: an albedo map and blend weights over the field (one texel a
+//! Landform → the look of the ground: an albedo map and blend weights over the field (one texel a
 //! metre at 1024²), colours for the apron, and five tiling detail textures. Albedo holds no light: linear
 //! reflectances of grass, rock, scree, snow, mud and sand as measured outdoors, written as sRGB where 8-bit.
 //!
-//! What grows or lies where follows slope, drained area, deposits, altitude and distance to water, as in
+//! Cover follows slope, drained area, deposits, altitude and distance to water, as in
 //! Hammes, "Modeling of ecosystems as a data source for real-time terrain rendering" (2001), with borders broken
 //! up by noise of several sizes.
 
@@ -107,7 +107,7 @@ pub fn apron_colors(params: &GroundParams, land: &Landform) -> Vec<[u8; 4]> {
     })
 }
 
-/// The mean of what sixteen texels with different grain would show.
+/// The mean colour of sixteen texels that differ in grain.
 fn mean_color(climate: &Climate, traits: impl Fn(u32) -> Traits) -> [f32; 3] {
     let mut sum = [0.0; 3];
     for s in 0..16 {

@@ -31,7 +31,7 @@ pub(super) fn grass() -> Pattern {
     for k in 0..7500 {
         let dice = |salt: i32| hash01(12, k, salt, 0);
         let (u, v) = (dice(0), dice(1));
-        // Tufts: more blades, leaning apart from their middle; nothing so large that the eye finds it again.
+        // Tufts: more blades, leaning apart from their middle; no feature large enough to show that the tile repeats.
         let lean = gradient2(13, u * 9.0, v * 9.0, 9) * 4.0 + dice(2) * 3.2;
         let lush = 0.5 + 0.5 * gradient2(14, u * 7.0, v * 7.0, 7);
         let shade = 62.0 + 95.0 * dice(3) + 40.0 * lush;
@@ -64,7 +64,7 @@ struct Blade {
 }
 
 impl Blade {
-    /// Lays it over what is lower.
+    /// Lays it over lower texels.
     fn lay(&self, pattern: &mut Pattern) {
         let steps = (self.length / 1.2) as i32;
         let (mut x, mut y) = (self.x, self.y);
@@ -167,7 +167,7 @@ impl Stone {
         Self { x, y, radius, base, sides, tilt, tone }
     }
 
-    /// Lays it over what is lower; what it just fails to cover lies in its shade.
+    /// Lays it over lower texels; those just outside its edge are in its shade.
     fn lay(&self, pattern: &mut Pattern) {
         let reach = self.radius as i32 + 2;
         for dy in -reach..=reach {

@@ -1,5 +1,5 @@
-//! What about a place decides its cover: height, slope, water, deposits and the patch it belongs to. Precomputed on
-//! the grid of the field (at most 513², 2 m apart) and read between samples.
+//! Landform → the traits of a place that decide its cover: height, slope, water, deposits and the patch it belongs
+//! to. Precomputed on the grid of the field (at most 513², 2 m apart) and read between samples.
 
 use std::ops::RangeInclusive;
 
@@ -11,7 +11,7 @@ use crate::model::{Heightfield, Landform};
 use crate::noise::{fbm2, fbm2_row};
 use crate::seed::noise_seed;
 
-/// Greatest number of samples a side that traits are kept for.
+/// The most samples a side for which traits are kept.
 const MAX_SIDE: u32 = 513;
 
 /// The traits of one place.
@@ -48,7 +48,7 @@ pub(super) struct TraitsMap {
     values: Vec<Traits>,
 }
 
-/// Samples of the field between those that traits are kept for.
+/// Steps of the field's samples between those for which traits are kept.
 fn stride(land: &Landform) -> u32 {
     ((land.field.side - 1) / (MAX_SIDE - 1)).max(1)
 }
@@ -74,7 +74,7 @@ impl TraitsMap {
     }
 }
 
-/// A grid of `side`² values of which `fill` makes only those rows that places between two v need.
+/// A grid of `side`² values; `fill` makes only the rows that places between two v need.
 fn rows<T: Pod + Send>(side: usize, v: RangeInclusive<f32>, fill: impl Fn(usize, &mut [T]) + Sync) -> Vec<T> {
     let mut values = vec![T::zeroed(); side * side];
     let (first, last) = (cell(*v.start(), side).0, cell(*v.end(), side).0 + 1);

@@ -1,4 +1,5 @@
-//! The part of the ground map around the foreground, painted again → colour, parts and grass at any point, in metres.
+//! Landform → the part of the ground map around the foreground, painted again: colour, parts and grass at any point, in
+//! metres.
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec2;

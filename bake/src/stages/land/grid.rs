@@ -1,4 +1,4 @@
-//! Square grids of numbers over the field, and how they pass from one resolution to another.
+//! Square grids of values over the field → the same at another resolution.
 
 use bytemuck::Zeroable;
 use rayon::prelude::*;
@@ -99,7 +99,7 @@ impl Grid {
         Self { side: m as u32, spacing_m: 0.5 * self.spacing_m, values }
     }
 
-    /// Smoothed once by the binomial kernel 1-2-1 both ways; beyond the edge lies what lies on it.
+    /// Smoothed once by the binomial kernel 1-2-1 both ways; beyond the edge, its own samples repeat.
     pub fn smoothed(&self) -> Self {
         let n = self.side as usize;
         let mut out = self.clone();

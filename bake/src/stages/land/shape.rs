@@ -15,7 +15,7 @@ use crate::seed::noise_seed;
 
 /// Wavelength in metres of the finest octave.
 const MIN_WAVELENGTH_M: f32 = 6.0;
-/// Wavelength in metres from which on octaves are computed on every second sample only.
+/// Octaves of this wavelength in metres or more are computed on every second sample only.
 const BROAD_M: f32 = 40.0;
 /// Greatest part of its wavelength that a landform may rise before a massif carries the rest of the relief.
 const STEEPNESS: f32 = 0.21;
@@ -32,7 +32,7 @@ pub(super) struct Shape<'a> {
     terraces: Terraces,
     /// Raw values that become the lowest and highest point of the field.
     range: (f32, f32),
-    /// How far, as part of the relief, the middle is lifted so that one does not start under water.
+    /// How far, as part of the relief, the middle is lifted so that the walk does not start under water.
     lift: f32,
 }
 
@@ -167,8 +167,8 @@ impl<'a> Shape<'a> {
         grid
     }
 
-    /// A sum of octaves, each weaker where the land so far is low (Musgrave's hybrid multifractal), read where folding
-    /// takes the place.
+    /// A sum of octaves, each weaker where the land so far is low (Musgrave's hybrid multifractal), at the place after
+    /// domain warping.
     fn sum(&self, x: f32, z: f32, octaves: Range<usize>, spacing_m: f32) -> Sum {
         let [a, b, c, d] = &self.fold;
         let (mut u, mut v) = (x, z);
@@ -232,7 +232,7 @@ impl<'a> Shape<'a> {
     }
 }
 
-/// Greatest amplitude in metres of an octave: landforms may be steep, what one steps over may not.
+/// Greatest amplitude in metres of an octave: landforms may be steep, but not bumps underfoot.
 fn walkable_amplitude_m(wavelength_m: f32) -> f32 {
     0.34 * wavelength_m * libm::powf((wavelength_m / 400.0).min(1.0), 0.75)
 }
@@ -252,7 +252,7 @@ impl Terraces {
     }
 }
 
-/// Leaves 0 to 1 as it is and draws what lies beyond (as it may outside the field) slowly towards −0.4 and 1.6.
+/// Leaves 0 to 1 as it is and compresses values beyond (outside the field) towards −0.4 and 1.6.
 fn soften(part: f32) -> f32 {
     let over = (part - 1.0).max(0.0);
     let under = (-part).max(0.0);

@@ -1,6 +1,7 @@
-//! Rivers: they cut valleys by the stream power law, solved implicitly from mouth to spring (Braun & Willett, "A very
-//! efficient O(n), implicit and parallel method to solve the stream power equation", 2013), over drainage that
-//! leaves every hollow (priority flood, Barnes et al. 2014). Heights in metres, drained areas in square metres.
+//! Land → land with valleys, and the drained area of each place. Rivers cut by the stream power law, solved implicitly
+//! from mouth to spring (Braun & Willett, "A very efficient O(n), implicit and parallel method to solve the stream
+//! power equation", 2013), over drainage that leaves every hollow (priority flood, Barnes et al. 2014). Heights in
+//! metres, drained areas in square metres.
 
 use super::LandParams;
 use super::grid::{self, Grid};
@@ -112,7 +113,7 @@ impl Drainage {
         }
     }
 
-    /// Turns each sample to its steepest way down, with a little chance so that no direction of the grid is favoured.
+    /// Turns each sample to its steepest descent, with some randomness so that no direction of the grid is favoured.
     fn steer(&mut self, seed: u32) {
         for k in 0..self.filled.len() {
             if self.receiver[k] as usize == k {

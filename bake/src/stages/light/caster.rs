@@ -23,7 +23,7 @@ const CELLS_PER_TEXEL: f32 = 4.0;
 /// Triangles wholly below this height are roots in the ground.
 const MIN_HEIGHT_M: f32 = -0.25;
 
-/// What a crown hides of the sky, as a sphere squashed to its height.
+/// A crown as it hides the sky: a sphere squashed to its height.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Crown {
     /// Height of its middle and horizontal radius in metres.

@@ -2,8 +2,8 @@
 //! field self-shadowing" (2010). Slopes are rise over run (the tangent of the elevation), heights in metres.
 //!
 //! Lines parallel to the azimuth cross the grid, one per sample along the side they cross. Along each, from the far
-//! end to the near, the upper convex hull of what has been passed is kept on a stack; the tangent from a point to
-//! that hull is its horizon, and whatever lies below the tangent can never be a horizon again. So the whole field
+//! end to the near, the upper convex hull of the points passed is kept on a stack; the tangent from a point to that
+//! hull is its horizon, and a point below the tangent can never be a horizon again. So the whole field
 //! takes time in proportion to its samples, however far shadows reach.
 
 use rayon::prelude::*;
@@ -43,7 +43,7 @@ pub(super) fn slopes(field: &Heightfield, beyond: &Beyond, towards: [f32; 2]) ->
     })
 }
 
-/// A point of the hull: metres along the line, away from where the horizon is looked for, and its height.
+/// A point of the hull: metres along the line, against the azimuth, and its height.
 type Point = [f32; 2];
 
 /// The family of lines. Line k passes column (or row) `along` at `across` = k + drift·along.
@@ -51,7 +51,7 @@ struct Lines<'a> {
     field: &'a Heightfield,
     towards: [f32; 2],
     along_x: bool,
-    /// Whether the looked-at horizon lies at the greater end of `along`.
+    /// Whether the azimuth points to the greater end of `along`.
     ahead: bool,
     drift: f32,
     first: i32,

@@ -68,8 +68,8 @@ pub fn light_map(
     LightMap { image }
 }
 
-/// Interleaved gradient noise (Jimenez 2014) in [0, 1): even over any 3×3 texels, so that it cannot be seen. The
-/// inner fraction is kept as an integer of 32 bits, which wraps by itself.
+/// Interleaved gradient noise (Jimenez 2014) in [0, 1): even over any 3×3 texels, so that it stays invisible. The
+/// inner fraction is a 32-bit integer, which wraps by itself.
 #[inline]
 fn dither(i: usize, j: usize) -> f32 {
     const UNIT: f64 = 4_294_967_296.0;

@@ -9,14 +9,14 @@ use crate::math::{cell, interpolate, lerp_array};
 use crate::model::{Heightfield, Landform, SkyLight};
 use crate::raster::square;
 
-/// Azimuths in which the horizon is looked for.
+/// Azimuths for which the horizon is found.
 const AZIMUTHS: usize = 8;
 /// Steps of the tables over the sine of the horizon's elevation, and of their integration over elevation.
 const TABLE_STEPS: usize = 128;
 const ELEVATION_STEPS: usize = 1024;
 /// Samples a side at which the sky is computed, at most: it changes slowly.
 const MAX_SAMPLES: u32 = 257;
-/// How far hills beyond the field count, in metres.
+/// Metres beyond the field within which hills count.
 const REACH_M: f32 = 2500.0;
 
 /// The sky's part for a square of samples over the field.
@@ -104,7 +104,7 @@ impl Table {
     }
 }
 
-/// Luminance of the sky at an elevation in radians; a sky that says nothing or is black is taken as even.
+/// Luminance of the sky at an elevation in radians; a sky without zones or a black one counts as uniform.
 fn radiance_by_elevation(light: &SkyLight) -> impl Fn(f32) -> f32 + use<> {
     let zones = &light.zonal_radiance_linear;
     let even = zones.len() < 2 || zones.iter().flatten().all(|&radiance| radiance <= 0.0);

@@ -24,7 +24,7 @@ pub(super) struct Sun {
     pub cos_elevation: f32,
     /// Sine of half its angular diameter.
     pub sin_radius: f32,
-    /// What a flat horizon leaves of its disc.
+    /// The part of its disc above a flat horizon.
     open: f32,
     disc: Disc,
 }
@@ -40,7 +40,7 @@ impl Sun {
         Self { direction, towards, sin_elevation: direction.y, cos_elevation: level, sin_radius, open, disc }
     }
 
-    /// Whether any of it is to be seen from level ground.
+    /// Whether its middle is above a level horizon.
     pub fn is_up(&self) -> bool {
         self.sin_elevation > 0.0
     }
@@ -81,7 +81,7 @@ impl Disc {
 }
 
 /// The sun at every sample of the field: how far the disc's middle stands above the land, in radii; a third of how
-/// much that changes across the sample's neighbours; n·l, negative on what is turned away; and 0.
+/// much that changes across the sample's neighbours; n·l, negative where the ground is turned away; and 0.
 pub(super) fn on_land(sun: &Sun, land: &Landform) -> Vec<[f32; 4]> {
     let field = &land.field;
     let side = field.side as usize;

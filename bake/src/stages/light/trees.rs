@@ -1,11 +1,11 @@
-//! Where trees stand and what their shadows look like → the part of the sun and of the sky that trees let through,
-//! per texel of the light map, 0–1.
+//! Trees and their shadows → the part of the sun and of the sky that trees let through, per texel of the light map,
+//! 0–1.
 //!
 //! A shadow is drawn once per template and direction from which the sun strikes it ([`Shadow`]), and laid onto the
-//! ground for each instance by its affine transform: affine maps keep parallel projections, so this is exact but
-//! for the rounding of the direction, and the trunk's base and axis are exact always. Each texel of the ground is
-//! looked up where it really lies, along the ray from the sun: on the land, not on a plane. Trees are multiplied
-//! in their order, within bands of rows, so the number of threads changes nothing.
+//! ground for each instance by its affine transform: affine maps keep parallel projections, so this is exact except for
+//! the rounding of the direction, and the trunk's base and axis are always exact. Each texel of the ground is looked up
+//! where it really lies, along the ray from the sun: on the land, not on a plane. Trees are multiplied in their order,
+//! within bands of rows, so the number of threads changes nothing.
 
 use glam::{Mat3, Vec2, Vec3};
 use rayon::prelude::*;
@@ -23,7 +23,7 @@ const MAX_LENGTH_M: f32 = 1000.0;
 /// A crown that hides less of the sky than this is left out.
 const MIN_CROWN: f32 = 0.008;
 
-/// What trees leave of sun and sky.
+/// The part of sun and sky that trees let through.
 pub(super) struct Shade {
     /// Sun, a value per texel of the light map.
     pub sun: Vec<f32>,
@@ -152,8 +152,8 @@ impl Pose {
     }
 }
 
-/// A shadow in its place on the ground. `u` and `v` are world metres in the plane across the light from the tree's foot,
-/// to the right as the sun sees it and up; `away` is metres in plan from the foot away from the sun.
+/// A shadow in its place on the ground. `u` and `v` are world metres in the plane across the light from the tree's
+/// foot, to the right as the sun sees it and up; `away` is metres in plan from the foot away from the sun.
 struct PlacedShadow<'a> {
     shadow: &'a Shadow,
     sun: &'a Sun,
@@ -302,7 +302,7 @@ fn narrow(span: &mut [f32; 2], slope: f32, offset: f32, range: [f32; 2]) {
     span[1] = span[1].min(ends[0].max(ends[1]));
 }
 
-/// What a crown hides of the sky around its foot.
+/// How a crown hides the sky around its foot.
 struct CrownShade {
     foot: Vec3,
     crown: Crown,
@@ -333,7 +333,7 @@ impl CrownShade {
                 let dx = (column as f32 - i) * texel_m;
                 let square = level + dx * dx;
                 let hidden = (strength / (square * square.sqrt())).min(0.95) * opacity;
-                // Less what it is at the end of its reach, so that no edge shows there.
+                // Reduced by its value at the end of its reach, so that no edge shows there.
                 let hidden = (hidden - MIN_CROWN).max(0.0);
                 band[(row - first) * side + column] *= 1.0 - hidden;
             }

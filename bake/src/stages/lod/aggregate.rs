@@ -1,4 +1,4 @@
-//! Leaf cards and the like: the order in which elements are removed, what that costs in metres, and how much the rest
+//! Leaf cards and other aggregates → the order in which elements are removed, its cost in metres, and how much the rest
 //! grow.
 //!
 //! Cook, Halstead, Planck, Ryu, "Stochastic simplification of aggregate detail" (2007). The order is stratified:

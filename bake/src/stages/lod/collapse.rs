@@ -17,7 +17,7 @@ const SEAM_PENALTY: f64 = 3.0;
 /// Weights of the planes that hold boundaries and seams in place, relative to the surface's own.
 const BOUNDARY_WEIGHT: f64 = 2.0;
 const SEAM_WEIGHT: f64 = 0.25;
-/// Keeping the volume may make the error so much larger.
+/// Keeping the volume may make the error larger by this factor.
 const VOLUME_SLACK: f64 = 1.2;
 
 /// A possible collapse of the edge between two points.
@@ -93,7 +93,7 @@ impl Surface {
 
     /// Collapses edge (a, b) and logs how to undo it; `None` if that would tear or fold the surface.
     pub fn collapse(&mut self, state: &mut State, [a, b]: [u32; 2], freedom: Freedom) -> Option<Collapsed> {
-        // What stays in place is kept; so `a` does unless the new vertex lies at `b`.
+        // The first point is kept: `a`, unless the new vertex lies at `b`.
         let (a, b, freedom) = if freedom == Freedom::End { (b, a, Freedom::Start) } else { (a, b, freedom) };
         let mut stars = std::mem::take(&mut self.stars);
         self.topology.star(state, a, &mut stars[0]);

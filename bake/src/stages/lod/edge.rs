@@ -108,7 +108,7 @@ impl Edge {
         let (mut normal, mut volume) = (DVec3::ZERO, 0.0);
         for corner in self.stars[0].iter().copied().chain(self.surviving(topology, state)) {
             let points = topology.points_from(state, corner);
-            // Relative to the edge, for the sake of precision.
+            // Relative to the edge, for precision.
             let [p, q, r] = points.map(|p| topology.positions[p as usize] - on_edge);
             normal += (q - p).cross(r - p);
             volume += p.dot(q.cross(r));

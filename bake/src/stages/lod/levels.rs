@@ -12,7 +12,7 @@ use super::sequence::Sequence;
 use super::state::{NONE, State};
 use super::{LodOptions, strip};
 
-/// A level may miss its number of vertices by one in so many; otherwise there is no such level.
+/// A level may miss its number of vertices by one in this many; otherwise there is no such level.
 const TOLERANCE: usize = 50;
 /// An error may not be less than this part of the mesh's diagonal, and must grow by `MIN_GROWTH` a level.
 const MIN_ERROR: f32 = 1e-7;
@@ -85,7 +85,7 @@ fn finish(snapshots: Vec<Snapshot>, state: &State) -> Vec<Level> {
     snapshots.into_iter().zip(morphs).map(level).collect()
 }
 
-/// What takes one level's vertices to their places in the next.
+/// The offsets of one level's vertices to their places in the next.
 fn morph(level: &Snapshot, next: &Snapshot, state: &State) -> Morph {
     let mut morph = Morph::default();
     for (id, &here) in level.now.iter().enumerate().filter(|(_, here)| **here != NONE) {

@@ -1,5 +1,5 @@
 //! The order of simplification: edge collapses, removal of whole pieces (twigs) and of elements of aggregates, by one
-//! cost in metres, until a mesh has at most so many vertices.
+//! cost in metres, until a mesh has few enough vertices.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -74,8 +74,8 @@ impl Sequence {
         sequence
     }
 
-    /// Simplifies until at most `target` vertices live or nothing more can be removed. `watch` sees the number of vertices
-    /// and the error after every step.
+    /// Simplifies until at most `target` vertices live or nothing more can be removed. `watch` sees the number of
+    /// vertices and the error after every step.
     pub fn reduce_to(&mut self, target: usize, mut watch: impl FnMut(usize, f64)) {
         self.pieces.append(&mut self.put_off);
         self.pieces.sort_by(|p, q| q.0.total_cmp(&p.0).then(q.1.cmp(&p.1)));
@@ -221,8 +221,8 @@ impl Sequence {
     }
 }
 
-/// What tells whether an edge has changed since it was queued: versions only grow, so the sum stays the same only if
-/// both do.
+/// The version of an edge, which changes when the edge does: those of points only grow, so the sum stays the same only
+/// if both do.
 fn current_version(versions: &[u32], a: u32, b: u32) -> u32 {
     versions[a as usize].wrapping_add(versions[b as usize])
 }
@@ -238,7 +238,7 @@ fn diagonal_m(state: &State) -> f64 {
     (high - low).max(DVec3::ZERO).length()
 }
 
-/// Pieces and the error in metres of doing without them, the cheapest last. The largest piece stays.
+/// Pieces and the error in metres of their removal, the cheapest last. The largest piece stays.
 fn pieces_by_cost(surface: &Surface, weight: f64) -> Vec<(f64, u32)> {
     let pieces = &surface.topology.pieces;
     let largest = (0..pieces.len()).max_by(|&p, &q| pieces[p].extent_m.total_cmp(&pieces[q].extent_m));

@@ -1,7 +1,7 @@
 //! A mesh whose vertices and triangles can be removed, with a log of every step.
 //!
-//! Vertices and triangles keep the numbers that they have in the original mesh; what is removed is only marked. So the
-//! log read backwards gives the original back bit for bit, in its own order. Metres.
+//! Vertices and triangles keep the numbers that they have in the original mesh; removal only marks them. So the
+//! log read backwards restores the original bit for bit, in its own order. Metres.
 
 use std::ops::Range;
 
@@ -72,7 +72,8 @@ pub struct State {
     /// Living vertices.
     pub vertex_count: usize,
     pub log: Log,
-    /// For each removed vertex the one that it merged into; `NONE` for living ones and those that went with their piece.
+    /// For each removed vertex the one that it merged into; `NONE` for living ones and those that went with their
+    /// piece.
     pub merged_into: Vec<u32>,
     /// Where each removed vertex that merged into no other shrank to.
     pub collapsed_to: Vec<[f32; 3]>,

@@ -1,6 +1,6 @@
 //! Triangles → one generalised triangle strip (thesis 4.4.1, after the local algorithm of Evans et al. 1996).
 //!
-//! A strip goes on as a pure strip as far as it can, turns a corner by a degenerate triangle, and when it is stuck
+//! A strip continues as a pure strip as far as it can, turns a corner by a degenerate triangle, and when it is stuck
 //! the next one starts beside the last triangle drawn that has a neighbour left; degenerate triangles join them.
 //! Triangle n of a strip s is `(s[n], s[n+1], s[n+2])`, the other way round where n is odd.
 
@@ -63,7 +63,7 @@ impl<'a> Walker<'a> {
         })
     }
 
-    /// The triangle to start from, turned so that the strip can go on.
+    /// The triangle to start from, turned so that the strip can continue.
     fn start(&mut self) -> Option<[u32; 3]> {
         let mut beside_drawn = None;
         while let Some(&last) = self.drawn.last()

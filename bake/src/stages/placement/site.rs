@@ -22,13 +22,13 @@ const TREE_LINE_EDGE: f32 = 0.2;
 /// Metres: the size of groves, and of the bays in their edges.
 const GROVE_M: f32 = 130.0;
 const BAY_M: f32 = 47.0;
-/// How many trees stand alone in a clearing, as part of those in a grove.
+/// Density of single trees in a clearing, as a part of that in a grove.
 const SOLITARY: f32 = 0.012;
 
 /// A point where trees grow.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spot {
-    /// How many trees grow there, as part of the most that do anywhere.
+    /// Density there, as a part of the greatest anywhere.
     pub weight: f32,
     /// How large they grow: less at the tree line and at the edge of a grove.
     pub vigour: f32,

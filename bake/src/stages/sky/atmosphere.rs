@@ -25,7 +25,7 @@ const COSINES: usize = 96;
 const MULTI_HEIGHTS: usize = 8;
 const MULTI_COSINES: usize = 20;
 
-/// Clear air, and what the sun's light suffers in it.
+/// Clear air, with tables of the sun's light in it.
 pub struct Atmosphere {
     mie_scattering: Vec3A,
     /// Extinction by haze at the ground, per km.
@@ -34,7 +34,7 @@ pub struct Atmosphere {
     multiple: Table,
 }
 
-/// What a view ray gathers: light whose angular shape is already in it, and Mie light still to be multiplied by
+/// Light gathered along a view ray: with its phase function applied, and Mie light still to be multiplied by
 /// [`mie_phase`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Gathered {
@@ -130,8 +130,8 @@ fn steps(length: f32, count: usize) -> impl Iterator<Item = (f32, f32)> {
 impl Atmosphere {
     /// Air of a turbidity (Linke's and Preetham's: optical thickness of haze and molecules over that of molecules).
     ///
-    /// Haze scatters so much forward that most of what it scatters may count as not scattered (the delta scaling of
-    /// Joseph, Wiscombe and Weinman 1976); what remains is 0.42 of its thickness.
+    /// Haze scatters so strongly forwards that most of its scattered light counts as not scattered (the delta scaling
+    /// of Joseph, Wiscombe and Weinman 1976); 0.42 of its thickness remains.
     pub fn new(turbidity: f32) -> Self {
         let thickness = 0.108 * (turbidity - 1.0).max(0.05) * 0.42;
         let spectrum = Vec3A::new(0.84, 1.0, 1.18);

@@ -13,7 +13,7 @@ use crate::noise;
 use crate::raster::square;
 use crate::seed::noise_seed;
 
-/// Texels a side of the layer in images; a power of two, as any other side must be.
+/// Texels a side of the layer in images; a power of two, as for any other side.
 pub const SIDE: usize = 512;
 /// Height above the ground in metres.
 pub const ALTITUDE_M: f32 = 9000.0;

@@ -28,7 +28,7 @@ pub struct ClearSky {
     pub sun_above: f32,
     /// The sun's irradiance at the ground on a surface that faces it.
     pub sun_ground: Vec3A,
-    /// What the ground sends up, as radiance.
+    /// Radiance of the ground.
     pub ground: Vec3A,
     /// Colour that distant land fades to: the mean around the horizon.
     pub haze: Vec3A,
@@ -73,7 +73,7 @@ impl ClearSky {
             horizon: vec![(Vec3A::ZERO, Vec3A::ZERO); COLUMNS],
             air,
         };
-        // Half of what haze takes from the beam it sends on nearly unturned.
+        // Half of the light that haze takes from the beam goes on nearly straight.
         sky.sun_ground *= exp(-0.5 * haze_per_km * HAZE_SCALE_KM / (sun.y + 0.06));
         sky.fill_table();
         sky.adapt(dimming);
@@ -94,13 +94,13 @@ impl ClearSky {
         self.table = (0..ROWS * COLUMNS).map(entry).collect();
     }
 
-    /// Scales all light to what an adapted eye sees: a bright noon stays as it is, dusk and overcast are lifted most
+    /// Scales all light as an adapted eye sees it: a bright noon stays as it is, dusk and overcast are lifted most
     /// of the way.
     fn adapt(&mut self, dimming: f32) {
         self.fill_horizon();
         let sky = self.irradiance();
         let open = self.sun_ground * self.sun.y + sky;
-        // What the eye rests on: mostly the sky itself.
+        // The eye rests mostly on the sky itself.
         let key = luminance(sky).max(1e-6) + 0.03 * luminance(self.sun_ground) * self.sun.y;
         let scale = NOON_SUN * libm::powf(NOON_KEY / key, 0.85) * libm::powf(dimming, -0.45);
         self.sun_above = scale;
@@ -178,7 +178,7 @@ impl ClearSky {
         haze + (above - haze) * through
     }
 
-    /// Light of the air in front of clouds: under a deck, dimmer and without the sun's glow.
+    /// Aerial perspective, the light of the air in front of clouds: under a deck, dimmer and without the sun's glow.
     #[inline]
     pub fn air(&self, direction: Vec3A) -> Vec3A {
         let lit = self.radiance(direction);
@@ -259,14 +259,14 @@ pub struct SunDisc {
 }
 
 impl SunDisc {
-    /// The disc of an angular diameter in degrees; `feather_rad` is the size of a pixel.
+    /// The disc of an angular diameter in degrees.
     pub fn new(sky: &ClearSky, size_deg: f32) -> Self {
         let radius_rad = 0.5 * size_deg.to_radians();
         let solid_angle = std::f32::consts::PI * radius_rad * radius_rad;
         // Limb darkening 0.4 + 0.6 cos has the mean 0.8.
         let real = sky.sun_ground / (solid_angle * 0.8);
         let aureole = luminance(sky.radiance(sky.sun)).max(1e-3);
-        // A large disc shines less, so that its share of the sky's light stays under some two per cent.
+        // A large disc shines less, so that its share of the sky's light stays below about two per cent.
         let share = 0.02 * luminance(sky.irradiance()) / (solid_angle * 0.8 * sky.sun.y.max(0.1));
         let cap = (20.0 * aureole).min(share.max(3.0 * aureole)).min(6e4);
         let bright = luminance(real).max(1e-6);

@@ -33,9 +33,9 @@ pub struct Clouds {
 /// Light and transparency along a ray.
 #[derive(Clone, Copy)]
 pub struct Marched {
-    /// Light towards the eye, before the air between takes its part.
+    /// Light towards the eye, without the air in between.
     pub light: Vec3A,
-    /// Part of what lies behind that is seen.
+    /// Transparency, 0 to 1.
     pub through: f32,
     /// Mean distance of the cloud seen in metres.
     pub distance_m: f32,
@@ -154,7 +154,7 @@ impl Clouds {
     fn source(&self, shape: Shape, point: Vec3A, soft: f32, phases: &Phases) -> Vec3A {
         let field = &self.field;
         let near_depth = self.depth_to_sun(point, soft);
-        // In a deck all that lies above counts; a single cloud is lit from its sides as well.
+        // In a deck, all the cloud above counts; a single cloud is lit from its sides as well.
         let above = (shape.top_m - point.y).max(0.0) * EXTINCTION_PER_M / self.sun.y.max(0.3);
         let sun_depth = near_depth.max(above * (0.35 + 0.65 * field.deck));
         let inside = smoothstep(-0.5 * field.billow_m, 0.6 * field.billow_m, shape.depth_m);
@@ -169,7 +169,7 @@ impl Clouds {
         self.sun_light * (first + second + many) + ambient * 0.75
     }
 
-    /// Colour of a thin edge: where nothing is seen, textures still need one to blend with.
+    /// Colour of a thin edge: transparent texels need one, too, to blend with.
     pub fn edge_light(&self) -> Vec3A {
         self.sun_light * 0.1 + self.sky_light * 0.5
     }
@@ -205,13 +205,13 @@ struct Inside {
     source: Vec3A,
     light: Vec3A,
     through: f32,
-    /// Sums of distances, weighted by what was gathered there, and of the weights.
+    /// Sum of distances, weighted by the opacity there, and sum of the weights.
     distance: f32,
     weight: f32,
 }
 
 impl Inside {
-    /// A step at a distance, of which the part `passed` of the light comes through. Next to nothing counts as nothing.
+    /// A step at a distance that lets the part `passed` of the light through. A transparency below 2 % counts as 0.
     fn gather(&mut self, distance: f32, passed: f32) {
         let gathered = self.through * (1.0 - passed);
         self.steps += 1;

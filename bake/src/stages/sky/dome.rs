@@ -1,5 +1,5 @@
 //! Clouds and clear sky → a map of what clouds add to the upper half of the sky: light (RGB) and transparency, over
-//! azimuth and elevation, with rows crowded towards the horizon where a person looks.
+//! azimuth and elevation, with rows crowded towards the horizon, where most looks go.
 
 use glam::{Vec3A, Vec4};
 use rayon::prelude::*;
@@ -15,7 +15,7 @@ use crate::raster::raster;
 const CROWDING: f32 = 1.4;
 const LOOKUP: usize = 2048;
 
-/// What clouds add: per texel their light in RGB and, in w, the part of the clear sky that shines through.
+/// Per texel the clouds' light in RGB and, in w, their transparency.
 pub struct Dome {
     width: usize,
     height: usize,
@@ -169,7 +169,7 @@ fn from_neighbours(texels: &[Vec4], width: usize, make: impl Fn([[Vec4; 3]; 3]) 
 }
 
 /// A ray that grazes a cloud's lit edge gives a texel that outshines its surroundings, and glitters where it is a few
-/// pixels large. Without two neighbours of its kind, as those in a silver lining have, it becomes like the others.
+/// pixels large. Unless two neighbours are like it, as in a silver lining, it becomes like the others.
 fn without_glints(texels: &[Vec4], width: usize) -> Vec<Vec4> {
     let light = |texel: Vec4| texel.x + texel.y + texel.z;
     from_neighbours(texels, width, |[above, here, below]| {

@@ -166,7 +166,7 @@ impl CloudField {
         ((min + rough * 0.26 * small) / ramp).clamp(0.0, 1.0)
     }
 
-    /// Density without billows, for shadows: what counts there is the mean.
+    /// Density without billows, for shadows, where only the mean counts.
     #[inline]
     pub fn smooth_density(&self, shape: Shape) -> f32 {
         ((shape.depth_m + 0.1 * self.billow_m) / (0.5 * self.billow_m)).clamp(0.0, 1.0)

@@ -1,5 +1,5 @@
-//! Clouds and cirrus → horizontal cloud layers with alpha that tile and can drift (thesis 5.1): what one sees of them
-//! looking straight up, tone-mapped to sRGB.
+//! Clouds and cirrus → horizontal cloud layers with alpha that tile and can drift (thesis 5.1): as seen
+//! straight up, tone-mapped to sRGB.
 
 use glam::Vec3A;
 
@@ -15,7 +15,7 @@ const SIDE: usize = 512;
 /// Rays of the cumulus layer a side; the image is interpolated between.
 const RAYS: usize = 160;
 
-/// The layers that there are, lowest first.
+/// All layers, lowest first.
 pub fn layers(clouds: Option<Clouds>, cirrus: Option<&Cirrus>) -> Vec<CloudLayer<Image8>> {
     let cumulus = clouds.map(|clouds| cumulus_layer(&clouds.into_tiling()));
     let high = cirrus.map(cirrus_layer);

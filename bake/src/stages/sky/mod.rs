@@ -1,7 +1,7 @@
-//! Parameters → sun, sky and clouds.
+//! Sky genes → sun, sky and clouds.
 //!
-//! The air is Hillaire's (2020), clouds are ray-marched in a field of billows, cirrus is a thin layer. `light` gives
-//! the few numbers that other stages need; `images` paints the same sky. Both are linear sRGB in the
+//! The atmosphere is Hillaire's (2020), clouds are ray-marched in a field of billows, cirrus is a thin layer. `light`
+//! gives the few numbers that other stages need; `images` paints the same sky. Both are linear sRGB in the
 //! relative units of [`SkyLight`], for an eye adapted to the scene.
 
 mod atmosphere;
@@ -30,7 +30,7 @@ pub use stage::{SkyImagesStage, SkyLightStage};
 
 /// Pixels a side of the cloudless cube faces.
 const CLEAR_FACE_PX: usize = 128;
-/// Directions around and up that the clouds are drawn in.
+/// Directions around and up in which the clouds are drawn.
 const DOME_PX: (usize, usize) = (1088, 184);
 /// Steps of elevation in `zonal_radiance_linear`.
 const ZONES: usize = 32;
@@ -77,7 +77,7 @@ impl Sky {
     }
 }
 
-/// About how much of the clear sky's light is left under these clouds; only the eye's adaptation depends on it.
+/// The approximate part of the clear sky's light that passes these clouds; only the eye's adaptation depends on it.
 fn cloud_dimming(params: &SkyParams) -> f32 {
     let cover = params.cloud_cover.clamp(0.0, 1.0);
     let opacity = params.cloud_thickness_m / (params.cloud_thickness_m + 250.0);

@@ -1,3 +1,5 @@
+//! The sky as stages: genes → light, and light → images, as files.
+
 use genescape_schema::scene::{CloudLayer, SkyImages};
 use rayon::prelude::*;
 use serde::Serialize;

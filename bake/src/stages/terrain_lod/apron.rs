@@ -86,7 +86,7 @@ impl Hole {
     fn of(land: &Landform) -> Option<Self> {
         let half = 0.5 * land.field.extent_m();
         let side = land.apron.side;
-        // A line that differs from the border by rounding only counts as on it.
+        // A line that differs from the border only by rounding counts as on it.
         let outside = half + 1.0e-3 * land.apron.spacing_m;
         let first = (0..side).rev().find(|&line| land.apron.place_m(line) < -outside)?;
         let last = (0..side).find(|&line| land.apron.place_m(line) > outside)?;

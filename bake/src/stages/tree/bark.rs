@@ -69,7 +69,7 @@ struct Frame {
     v: f32,
 }
 
-/// What is written to while tubes are made.
+/// The mesh being made, and what all its tubes share.
 struct Skin<'a> {
     mesh: Mesh,
     triangles: Vec<[u32; 3]>,

@@ -31,7 +31,7 @@ pub(super) struct Budget {
     pub max_arms: [u32; 4],
     /// Primary branches of the whole tree.
     pub primaries: f32,
-    /// Greatest numbers of secondary branches on a primary one and of tertiary ones on a secondary one.
+    /// The most secondary branches on a primary one, and tertiary ones on a secondary one.
     pub max_children: [f32; 2],
     pub max_cards: u32,
     pub max_bark_triangles: u32,
@@ -73,7 +73,7 @@ impl Budget {
         budget
     }
 
-    /// Greatest numbers of children of primary and of secondary branches that `left` triangles pay for.
+    /// `max_children`, as many as `left` triangles pay for.
     fn children(&self, wish: f32, arms: f32, left: f32) -> [f32; 2] {
         let wish = wish.max(if self.bare { 8.0 } else { 1.0 });
         // By Weber & Penn's rule a branch bears about two thirds of the greatest number.

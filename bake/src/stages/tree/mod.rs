@@ -32,7 +32,7 @@ pub use stage::{TreeFiles, TreeStage, TreeTexturesStage};
 pub use crease::crease_normals;
 pub use params::{TreeParams, TreeTextureParams};
 
-/// Alpha below this is cut away from leaf and blossom cards.
+/// Texels of leaf and blossom cards with less alpha than this are not drawn.
 pub const ALPHA_CUTOFF: f32 = 0.5;
 
 /// Grows the `index`th template: a closed `Bark` surface, then `Leaf` and `Blossom` aggregates if it

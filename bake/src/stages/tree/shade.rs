@@ -15,7 +15,7 @@ const SIDE: usize = 14;
 /// The smallest factor on colours inside a crown.
 const MIN_LIGHT: f32 = 0.62;
 
-/// Light in [`MIN_LIGHT`]..1 on a grid over the crown, and the crown's own shape.
+/// Light in [`MIN_LIGHT`]..1 on a grid over the crown.
 pub(super) struct Shade {
     low: Vec3,
     cell_m: Vec3,

@@ -34,7 +34,7 @@ pub(super) struct Stem {
     pub nodes: Range<usize>,
     /// Where its first node lies along the stem before it forked, 0 to 1; its last lies at 1.
     pub from: f32,
-    /// Length in metres that the stem has with the part below a fork.
+    /// Length in metres, including the part below a fork.
     pub length_m: f32,
     /// Radius in metres at its start, below any fork.
     pub radius_m: f32,
@@ -65,7 +65,7 @@ impl Skeleton {
         (a.at.lerp(b.at, f), direction, lerp(a.radius_m, b.radius_m, f))
     }
 
-    /// Leaves out evenly chosen stems of the last level until tubes of three sides fit the budget.
+    /// Drops stems of the last level, evenly chosen, until three-sided tubes fit the budget.
     fn prune(&mut self, budget: &Budget) {
         let cost = |stem: &Stem| 6 * (stem.nodes.len() - 1);
         let last = budget.levels - 1;
@@ -248,8 +248,8 @@ impl Grower<'_> {
         self.finish(first, sprout);
     }
 
-    /// Spreads arms evenly around a stem: the first goes on with the stem, in the direction that is returned, the
-    /// others are left in `waiting`.
+    /// Spreads arms evenly around a stem. The first continues it in the returned direction; the others are left in
+    /// `waiting`.
     fn fork(&mut self, along: Vec3, arms: u32, arm: Sprout, waiting: &mut Vec<Sprout>) -> Vec3 {
         let wide = if arm.level == 0 && arms > 2 { 0.75 } else { 0.5 };
         let half_rad = (self.params.split_angle_deg * wide).max(8.0).to_radians();
@@ -434,7 +434,7 @@ impl Grower<'_> {
         let ratio = (length_m / parent.length_m.max(0.01)).min(1.0);
         let radius_m = parent.radius_m * libm::powf(ratio, self.params.radius_power);
         let thin = [0.0, 0.007, 0.0055, 0.005][level as usize];
-        // Without leaves, twigs are what there is to see.
+        // Without leaves, only twigs are seen.
         let min_m = if self.budget.bare { 0.005 + 0.0003 * self.params.height_m } else { 0.0025 };
         radius_m.clamp(thin * length_m, (0.045 * length_m).max(0.004)).min(0.8 * parent_radius_m).max(min_m)
     }

@@ -1,3 +1,5 @@
+//! Trees as stages: genes → textures and templates, as files.
+
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +10,7 @@ use crate::model::{Image8, Level, Mesh, TreeTextures};
 use crate::stages::lod;
 use crate::stages::placement::TreeFootprint;
 
-/// Mip levels of a card smaller than this are left to the program that draws it: so far away, a crown is a few pixels.
+/// Mip levels of a card smaller than this are left to the viewer: at that distance a crown covers a few pixels.
 const MIN_MIP_PX: u32 = 16;
 
 /// Tree genes → bark, leaf and blossom.
@@ -39,7 +41,7 @@ impl Stage for TreeTexturesStage {
 }
 
 impl TreeTexturesStage {
-    /// What a template's own file embeds.
+    /// The textures that a template's own file embeds.
     pub fn without_mip_levels(textures: &TreeTextures<File>) -> TreeTextures<File> {
         let mut textures = textures.clone();
         textures.leaf.truncate(1);
@@ -63,7 +65,7 @@ pub struct TreeFiles {
     /// The template with all its levels, self-contained.
     pub glb: File,
     pub footprint: TreeFootprint,
-    /// What casts the template's shadow.
+    /// The mesh that casts the template's shadow.
     pub caster: Stored<Mesh>,
 }
 
