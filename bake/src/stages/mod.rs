@@ -7,7 +7,6 @@ pub mod light;
 pub mod lod;
 pub mod placement;
 pub mod scene;
-mod seam;
 pub mod sky;
 pub mod start;
 pub mod terrain_lod;

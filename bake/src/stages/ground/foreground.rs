@@ -14,11 +14,11 @@ use super::grass::grass;
 use super::patch::{Patch, SIDE_M, corner, plan};
 use super::textures::{TILE_M, TILE_MEAN};
 use super::window::MapWindow;
+use crate::math::triangles_between;
 use crate::model::{Foreground, Landform, Material, Mesh, Part, PartKind, StartView};
 use crate::noise::{fbm2, gradient2};
 use crate::raster::square;
 use crate::seed::noise_seed;
-use crate::stages::seam;
 
 /// Cells a side of the fine grid.
 const CELLS: usize = 128;
@@ -139,7 +139,7 @@ impl Patch<'_> {
             let (start, step) = [(0, 1), (n * (n - 1), 1), (0, n), (n - 1, n)][side];
             let inner: Vec<u32> = (0..n).map(|k| start + k * step).collect();
             let at = |v: u32| plan(points[v as usize].position);
-            for triangle in seam::fill(&inner, outer, |v| at(v)[side / 2]) {
+            for triangle in triangles_between(&inner, outer, |v| at(v)[side / 2]) {
                 let ([inner, outer, third], [a, b, c]) = (triangle, triangle.map(at));
                 let up = (b - a).perp_dot(c - a) < 0.0;
                 out.push(if up { triangle } else { [outer, inner, third] });

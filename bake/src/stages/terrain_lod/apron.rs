@@ -7,10 +7,8 @@ use glam::Vec3;
 
 use genescape_schema::scene::bintree::Sample;
 
-use crate::math::{cell, lerp_array};
+use crate::math::{cell, lerp_array, triangles_between};
 use crate::model::{Heightfield, Landform, Material, Mesh, Part, PartKind};
-use crate::stages::seam;
-use Place::{Inner, Outer};
 
 /// Metres of water that one unit of its texture coordinates covers.
 const WATER_TILE_M: f32 = 16.0;
@@ -44,7 +42,7 @@ pub(super) fn ring(land: &Landform, used: impl Fn(Sample) -> bool, colors: &[[u8
         // Sides in the order north, east, south, west; each from its lower to its higher coordinate.
         for (side, sample) in [[along, 0], [last, along], [along, last], [0, along]].into_iter().enumerate() {
             if used(sample) {
-                inner[side].push(ring.vertex(Inner(sample)));
+                inner[side].push(ring.vertex(Place::Inner(sample)));
             }
         }
     }
@@ -53,7 +51,7 @@ pub(super) fn ring(land: &Landform, used: impl Fn(Sample) -> bool, colors: &[[u8
             [[along, hole.first], [hole.last, along], [along, hole.last], [hole.first, along]][side]
         };
         let outer: Vec<u32> =
-            (hole.first..=hole.last).map(|along| ring.vertex(Outer(sample(along)))).collect();
+            (hole.first..=hole.last).map(|along| ring.vertex(Place::Outer(sample(along)))).collect();
         ring.zip(inner, &outer, if side % 2 == 0 { 0 } else { 2 });
     }
     ring.cells(&hole);
@@ -119,12 +117,12 @@ impl Ring<'_> {
         let Entry::Vacant(new) = self.numbers.entry(place) else { return self.numbers[&place] };
         new.insert(number);
         let (position, normal) = match place {
-            Inner(sample) => vertex(&self.land.field, sample),
-            Outer(sample) => vertex(&self.land.apron, sample),
+            Place::Inner(sample) => vertex(&self.land.field, sample),
+            Place::Outer(sample) => vertex(&self.land.apron, sample),
         };
         let color = match place {
-            Inner(_) => self.color_between(position[0], position[2]),
-            Outer([i, j]) => self.color((j * self.land.apron.side + i) as usize),
+            Place::Inner(_) => self.color_between(position[0], position[2]),
+            Place::Outer([i, j]) => self.color((j * self.land.apron.side + i) as usize),
         };
         self.mesh.positions.push(position);
         self.mesh.normals.push(normal);
@@ -153,7 +151,7 @@ impl Ring<'_> {
     /// Fills the strip between two rows of vertices that both ascend along `axis` (0 = x, 2 = z).
     fn zip(&mut self, inner: &[u32], outer: &[u32], axis: usize) {
         let along = |vertex: u32| self.mesh.positions[vertex as usize][axis];
-        for [outer, inner, third] in seam::fill(outer, inner, along) {
+        for [outer, inner, third] in triangles_between(outer, inner, along) {
             self.face_up([inner, outer, third]);
         }
     }
@@ -167,8 +165,8 @@ impl Ring<'_> {
                 if within.contains(&i) && within.contains(&j) {
                     continue;
                 }
-                let [nw, ne, sw, se] =
-                    [[i, j], [i + 1, j], [i, j + 1], [i + 1, j + 1]].map(|sample| self.vertex(Outer(sample)));
+                let [nw, ne, sw, se] = [[i, j], [i + 1, j], [i, j + 1], [i + 1, j + 1]]
+                    .map(|sample| self.vertex(Place::Outer(sample)));
                 let falls = (apron.at(i, j) - apron.at(i + 1, j + 1)).abs();
                 let rises = (apron.at(i + 1, j) - apron.at(i, j + 1)).abs();
                 if falls <= rises {
