@@ -19,6 +19,14 @@ where
     values
 }
 
+/// `side`² values, row by row: `value(i, j)` gives that of column i and row j.
+pub fn square<T: Zeroable + Copy + Send>(side: usize, value: impl Fn(usize, usize) -> T + Sync) -> Vec<T> {
+    raster(side, side, |j| {
+        let value = &value;
+        move |i| value(i, j)
+    })
+}
+
 /// A square image of N channels, `side` pixels wide, filled as by [`raster`].
 pub fn square_image<const N: usize, R>(side: usize, row: impl Fn(usize) -> R + Sync) -> Image8
 where

@@ -1,4 +1,4 @@
-//! All that a landscape is made of → `scene.gltf`.
+//! All parts of a landscape → `scene.gltf`.
 
 use genescape_schema::scene::{GroundSurface, Resource, SkyImages};
 use serde::Serialize;

@@ -1,8 +1,8 @@
-//! Where a walk starts, in metres: a dry, level, open spot not far from the middle with a long view over the land that
-//! has trees in it; and the direction of the first look, with the sun beside or behind.
+//! Land, trees, sun → where a walk starts, in metres: a dry, level, open spot not far from the middle with a long view
+//! that has trees in it; and the direction of the first look, with the sun beside or behind.
 //!
-//! The spot depends on land and trees alone, so that another sky shows the same place, and [`clear_around`] keeps trunks
-//! away from it. The direction depends on the sun, too.
+//! The spot depends on land and trees alone, so that another sky shows the same place, and [`clear_around`] keeps
+//! trunks away from it. The direction depends on the sun, too.
 
 use glam::{Vec2, Vec3};
 use serde::Serialize;
@@ -17,7 +17,7 @@ const EYE_M: f32 = StartView::EYE_HEIGHT_M;
 const SPOTS: i32 = 9;
 const AZIMUTHS: u32 = 24;
 
-/// Landform, placement, sun → where a person first stands and what they look at.
+/// Landform, placement, sun → where the walk starts, and the first look.
 #[derive(Serialize)]
 pub struct StartStage {
     pub landform: Input<Landform>,
@@ -61,7 +61,7 @@ pub fn clear_around(start_m: [f32; 2], trees: &mut Vec<Instance>) {
     trees.retain(|tree| clearance_m(Vec2::from(start_m), tree) >= CLEARING_M);
 }
 
-/// From a spot to a trunk.
+/// Metres from a spot to a trunk.
 fn clearance_m(spot: Vec2, tree: &Instance) -> f32 {
     let [x, z, radius] = tree.trunk_cylinder_m;
     spot.distance(Vec2::new(x, z)) - radius
@@ -75,9 +75,9 @@ pub fn start_view(land: &Landform, placement: &Placement, towards_sun: Vec3) -> 
     let spot = Vec2::from(placement.start_m);
     let trees = scene.trees_by_azimuth(spot);
     let score = |azimuth| scene.view(spot, azimuth, &trees) + scene.light(spot, azimuth, towards_sun);
-    // Of equal ones the first.
+    // The first of equal ones.
     let best = (0..AZIMUTHS).rev().max_by(|&a, &b| score(a).total_cmp(&score(b))).unwrap_or(0);
-    let ground_m = land.field.height_m(spot.x, spot.y).max(scene.water_m);
+    let ground_m = scene.surface_m(spot);
     let along = heading(best);
     let direction = Vec3::new(along.x, scene.pitch(spot, along), along.y).normalize();
     StartView { position_m: Vec3::new(spot.x, ground_m + EYE_M, spot.y), direction }
@@ -100,16 +100,16 @@ impl<'a> Surroundings<'a> {
         Self { land: &land.field, water_m: land.water_level_m.unwrap_or(f32::MIN), trees }
     }
 
+    /// Height of the land or of the water on it.
+    fn surface_m(&self, p: Vec2) -> f32 {
+        self.land.height_m(p.x, p.y).max(self.water_m)
+    }
+
     /// How good a spot is to stand on: `None` in water and on a steep slope.
     fn standing(&self, spot: Vec2) -> Option<f32> {
-        let at = |x, z| self.land.height_m(x, z);
-        let ground = at(spot.x, spot.y);
-        let rise = Vec2::new(
-            at(spot.x + 2.0, spot.y) - at(spot.x - 2.0, spot.y),
-            at(spot.x, spot.y + 2.0) - at(spot.x, spot.y - 2.0),
-        )
-        .length()
-            / 4.0;
+        let at = |x: f32, z: f32| self.land.height_m(spot.x + x, spot.y + z);
+        let rise = |x: f32, z: f32| at(x, z) - at(-x, -z);
+        let (ground, rise) = (at(0.0, 0.0), Vec2::new(rise(2.0, 0.0), rise(0.0, 2.0)).length() / 4.0);
         if ground < self.water_m + 0.3 || rise > 0.6 {
             return None;
         }
@@ -119,9 +119,10 @@ impl<'a> Surroundings<'a> {
         Some(-0.7 * rise - 0.4 * far - 0.4 * bare)
     }
 
-    /// For each azimuth, how many trees outside the clearing stand in a cone of ±30° around it: (in the way, in view).
-    fn trees_by_azimuth(&self, spot: Vec2) -> Vec<(f32, f32)> {
-        let mut bins = vec![(0.0f32, 0.0f32); AZIMUTHS as usize];
+    /// For each azimuth, how many trees outside the clearing stand in a cone of ±30° around it: x in the way, y in
+    /// view.
+    fn trees_by_azimuth(&self, spot: Vec2) -> Vec<Vec2> {
+        let mut bins = vec![Vec2::ZERO; AZIMUTHS as usize];
         let standing = self.trees.iter().filter(|tree| clearance_m(spot, tree) >= CLEARING_M);
         for tree in standing {
             let offset = Vec2::new(tree.trunk_cylinder_m[0], tree.trunk_cylinder_m[1]) - spot;
@@ -132,17 +133,14 @@ impl<'a> Surroundings<'a> {
             let turn = libm::atan2f(offset.x, -offset.y) / core::f32::consts::TAU;
             let bin = ((turn + 1.0) * AZIMUTHS as f32 + 0.5) as usize % AZIMUTHS as usize;
             if distance < 22.0 {
-                bins[bin].0 += 1.0 - distance / 22.0;
+                bins[bin].x += 1.0 - distance / 22.0;
             } else if self.sees(spot, tree) {
-                // One near enough to see its leaves counts for many that are a texture on a hill.
-                bins[bin].1 += 1.0 / (1.0 + distance * distance * 0.001);
+                // A tree near enough to show its leaves counts for many distant ones.
+                bins[bin].y += 1.0 / (1.0 + distance * distance * 0.001);
             }
         }
         let n = bins.len();
-        let near = |i: usize, j: usize| bins[(i + n + j - 2) % n];
-        (0..n)
-            .map(|i| (0..5).map(|j| near(i, j)).fold((0.0, 0.0), |sum, bin| (sum.0 + bin.0, sum.1 + bin.1)))
-            .collect()
+        (0..n).map(|i| (0..5).map(|j| bins[(i + n + j - 2) % n]).sum()).collect()
     }
 
     /// Whether the middle of a tree can be seen over the land between.
@@ -166,7 +164,7 @@ impl<'a> Surroundings<'a> {
     }
 
     /// How good a look is, whatever the light.
-    fn view(&self, spot: Vec2, azimuth: u32, trees: &[(f32, f32)]) -> f32 {
+    fn view(&self, spot: Vec2, azimuth: u32, trees: &[Vec2]) -> f32 {
         let along = heading(azimuth);
         let eye_m = self.land.height_m(spot.x, spot.y) + EYE_M;
         let (mut steepest, mut seen, mut steps, mut top) = (f32::MIN, 0.0, 0.0, f32::MIN);
@@ -177,7 +175,7 @@ impl<'a> Surroundings<'a> {
             if p.abs().max_element() > 0.5 * self.land.extent_m() {
                 break;
             }
-            let ground = self.land.height_m(p.x, p.y).max(self.water_m);
+            let ground = self.surface_m(p);
             let slope = (ground - eye_m) / distance;
             steps += 1.0;
             if slope >= steepest {
@@ -190,10 +188,10 @@ impl<'a> Surroundings<'a> {
             distance *= 1.15;
         }
         let open = seen / f32::max(steps, 1.0);
-        // Mountains are worth looking at, but not a wall before one's face.
+        // Mountains are worth looking at, but not a wall right ahead.
         let relief = top.clamp(0.0, 0.3) - 5.0 * (top - 0.4).max(0.0);
-        let (in_the_way, in_view) = trees[azimuth as usize];
-        // A landscape without a tree in it says nothing about its trees, and water doubles the sky.
+        let Vec2 { x: in_the_way, y: in_view } = trees[azimuth as usize];
+        // A view without trees says nothing about the trees, and water doubles the sky.
         let trees = in_view / (1.5 + in_view);
         let water = (4.0 * lake / f32::max(steps, 1.0)).min(1.0);
         0.8 * open + 1.2 * relief + 1.8 * trees + 0.6 * water - 1.2 * in_the_way.min(2.0)
@@ -204,22 +202,16 @@ impl<'a> Surroundings<'a> {
         let along = heading(azimuth);
         let sun = Vec2::new(towards_sun.x, towards_sun.z);
         let facing_sun = if sun.length() > 1e-3 { along.dot(sun.normalize()) } else { 0.0 };
-        // Light from the side or from behind models the land; into a sun above the picture, all is flat.
-        let shade = if [5.0, 12.0, 30.0].iter().all(|d| self.is_lit(spot + along * *d, towards_sun)) {
-            0.0
-        } else {
-            -0.5
-        };
+        // Light from the side or from behind models the land; against the sun, all is flat.
+        let lit = [5.0, 12.0, 30.0].iter().all(|d| self.is_lit(spot + along * *d, towards_sun));
+        let shade = if lit { 0.0 } else { -0.5 };
         shade - 0.7 * (facing_sun + 0.1).max(0.0) - 0.15 * (-facing_sun - 0.7).max(0.0)
     }
 
-    /// Slope of the look: towards the middle of what is to be seen, within ±10°.
+    /// Slope of the look: towards the middle of the view, within ±10°.
     fn pitch(&self, spot: Vec2, along: Vec2) -> f32 {
-        let eye_m = self.land.height_m(spot.x, spot.y).max(self.water_m) + EYE_M;
-        let slope = |distance: f32| {
-            let p = spot + along * distance;
-            (self.land.height_m(p.x, p.y).max(self.water_m) - eye_m) / distance
-        };
+        let eye_m = self.surface_m(spot) + EYE_M;
+        let slope = |distance: f32| (self.surface_m(spot + along * distance) - eye_m) / distance;
         let mean = (slope(60.0) + slope(150.0) + slope(400.0)) / 3.0;
         (0.6 * mean + 0.03).clamp(-0.17, 0.17)
     }

@@ -8,7 +8,7 @@ use crate::model::Landform;
 use crate::noise::hash01;
 use crate::seed::noise_seed;
 
-/// Noise at one texel, each about [-1, 1] but `grain`, which is even over [-0.5, 0.5].
+/// Noise at one texel, about [-1, 1], except `grain`, which is uniform in [-0.5, 0.5].
 pub(super) struct Noise {
     /// Features of 2 to 8 texels.
     pub fine: f32,
@@ -81,14 +81,14 @@ const ROCKS: [Rgb; 5] = [
     [0.150, 0.158, 0.165],
 ];
 
-/// What holds for the whole land.
+/// What all places of a land share.
 pub(super) struct Climate {
     water_m: f32,
     snow_line_m: f32,
     relief_m: f32,
     lowest_m: f32,
     talus: f32,
-    /// Tangent of the slope from which on grass finds no hold.
+    /// Tangent of the slope beyond which grass finds no hold.
     bare_slope: f32,
     /// 0 lush, 1 arid.
     dryness: f32,

@@ -1,5 +1,5 @@
-//! The near mesh and where one stands → a finer mesh of the ground around, whose vertices carry the colour of the
-//! map and whose parts carry tiling textures: what is within some 50 m needs centimetres, the map has metres.
+//! Near mesh and start view → a finer mesh of the ground around the eye, whose vertices carry the colour of the map
+//! and whose parts carry tiling textures: within some 50 m the ground needs centimetres, the map has metres.
 //!
 //! The piece is a square of the blocks that no triangle of the near mesh crosses. Its border has the vertices of the
 //! near mesh, bit by bit, so there is no crack; colour, relief and grain of its own fade towards the border, so
@@ -14,9 +14,10 @@ use super::grass::grass;
 use super::patch::{Patch, SIDE_M, corner, plan};
 use super::textures::{TILE_M, TILE_MEAN};
 use super::window::MapWindow;
+use crate::math::triangles_between;
 use crate::model::{Foreground, Landform, Material, Mesh, Part, PartKind, StartView};
 use crate::noise::{fbm2, gradient2};
-use crate::raster::raster;
+use crate::raster::square;
 use crate::seed::noise_seed;
 
 /// Cells a side of the fine grid.
@@ -69,33 +70,24 @@ impl Patch<'_> {
     /// Colour of the map, with growth that its texels are too large for.
     fn painted(&self, window: &MapWindow, p: Vec2) -> ([f32; 3], [f32; KINDS]) {
         let value = window.at(p);
-        let (inward, mut color, mut parts) = (self.inward(p), [0.0; 3], [0.0; KINDS]);
-        parts.copy_from_slice(&value[3..3 + KINDS]);
+        let (inward, mut parts) = (self.inward(p), value.parts);
         let tuft = fbm2(self.seed ^ 1, p.x / 1.9, p.y / 1.9, 2, 0.7, 0) * inward;
         let hue = gradient2(self.seed ^ 2, p.x / 3.7, p.y / 3.7, 0) * inward;
         // Snow is even; everything else is lush here and worn there.
         let strength = 1.0 - 0.85 * parts[3];
         let lush = [-0.16, 0.06, -0.30].map(|c| 1.0 + strength * parts[0] * c * hue * 1.6);
-        for c in 0..3 {
-            color[c] = value[c] * (1.0 + 0.42 * strength * tuft) * lush[c];
-        }
+        let color = [0, 1, 2].map(|c| value.color[c] * (1.0 + 0.42 * strength * tuft) * lush[c]);
         // Borders between kinds wander.
         parts[0] += 0.35 * tuft;
         (color, parts)
     }
 
-    fn point(&self, window: &MapWindow, p: Vec2) -> Point {
-        let (color, parts) = self.painted(window, p);
-        Point { position: [p.x, self.height_m(p), p.y], normal: self.normal(p).to_array(), color, parts }
-    }
-
-    /// The grid's points but those of its border, row by row.
+    /// The grid's points except those of its border, row by row.
     fn points(&self, window: &MapWindow) -> Vec<Point> {
-        raster(CELLS - 1, CELLS - 1, |j| {
-            move |i| {
-                let offset = Vec2::new((i + 1) as f32, (j + 1) as f32) * CELL_M;
-                self.point(window, self.corner + offset)
-            }
+        square(CELLS - 1, |i, j| {
+            let p = self.corner + Vec2::new((i + 1) as f32, (j + 1) as f32) * CELL_M;
+            let (color, parts) = self.painted(window, p);
+            Point { position: [p.x, self.height_m(p), p.y], normal: self.normal(p).to_array(), color, parts }
         })
     }
 
@@ -123,8 +115,8 @@ impl Patch<'_> {
         sides
     }
 
-    /// A vertex of the near mesh, with that mesh's normal and the colour of the nearest point of the grid, which has
-    /// hardly left the map's.
+    /// A vertex of the near mesh, with that mesh's normal and the colour of the nearest point of the grid, which is
+    /// close to the map's there.
     fn border_point(&self, position: [f32; 3], points: &[Point]) -> Point {
         let field = &self.land.field;
         let p = plan(position);
@@ -144,23 +136,13 @@ impl Patch<'_> {
             out.extend(if (i + j) % 2 == 0 { [[a, c, d], [a, d, b]] } else { [[a, c, b], [b, c, d]] });
         }
         for (side, outer) in border.iter().enumerate() {
-            let inner: Vec<u32> = match side {
-                0 => (0..n).collect(),
-                1 => (n * (n - 1)..n * n).collect(),
-                2 => (0..n).map(|j| j * n).collect(),
-                _ => (0..n).map(|j| j * n + n - 1).collect(),
-            };
-            let along = |v: u32| plan(points[v as usize].position)[side / 2];
-            let (mut i, mut o) = (0, 0);
-            while i + 1 < inner.len() || o + 1 < outer.len() {
-                // The next vertex on either line, whichever comes first.
-                let next_inner = inner.get(i + 1).map_or(f32::MAX, |&v| along(v));
-                let next_outer = outer.get(o + 1).map_or(f32::MAX, |&v| along(v));
-                let third = if next_inner <= next_outer { inner[i + 1] } else { outer[o + 1] };
-                let [a, b, c] = [inner[i], outer[o], third].map(|v| plan(points[v as usize].position));
+            let (start, step) = [(0, 1), (n * (n - 1), 1), (0, n), (n - 1, n)][side];
+            let inner: Vec<u32> = (0..n).map(|k| start + k * step).collect();
+            let at = |v: u32| plan(points[v as usize].position);
+            for triangle in triangles_between(&inner, outer, |v| at(v)[side / 2]) {
+                let ([inner, outer, third], [a, b, c]) = (triangle, triangle.map(at));
                 let up = (b - a).perp_dot(c - a) < 0.0;
-                out.push(if up { [inner[i], outer[o], third] } else { [outer[o], inner[i], third] });
-                if next_inner <= next_outer { i += 1 } else { o += 1 }
+                out.push(if up { triangle } else { [outer, inner, third] });
             }
         }
         out

@@ -1,4 +1,4 @@
-//! Noise for every texel at next to no cost: two tiles whose sizes share no factor, so that together they repeat
+//! Texel → noise, at next to no cost: two tiles whose sizes share no factor, so that together they repeat
 //! only far beyond the field, and a hash for the finest grain.
 
 use rayon::prelude::*;

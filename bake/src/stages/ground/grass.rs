@@ -2,7 +2,7 @@
 //! texture, no alpha, so any viewer draws them well. Metres.
 //!
 //! Tufts stand on a jittered grid, the fewer the farther away, while their blades get wider; none where the ground is
-//! anything else than grass. They shrink towards the edge, so there is none to be seen.
+//! not grass. They shrink towards the edge, so that no edge shows.
 
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -15,7 +15,7 @@ use crate::noise::{gradient2, hash01};
 
 /// Metres between tufts where they stand closest.
 const TUFT_M: f32 = 0.3;
-/// Metres from the eye up to which they do.
+/// Metres from the eye up to which they stand that close.
 const DENSE_M: f32 = 5.0;
 /// Metres from the eye to the last tufts.
 const REACH_M: f32 = 42.0;
@@ -29,20 +29,14 @@ pub(super) fn grass(patch: &Patch<'_>, window: &MapWindow, view: &StartView) -> 
     let eye = plan(view.position_m.to_array());
     let ahead = plan(view.direction.to_array()).normalize_or_zero();
     let across = (SIDE_M / TUFT_M) as i32;
-    let field = Meadow { patch, window, eye: view.position_m, ahead };
-    let rows: Vec<Vec<Blade>> = (0..across)
-        .into_par_iter()
-        .map(|j| {
-            let z = patch.corner.y + j as f32 * TUFT_M;
-            if (z - eye.y).abs() > REACH_M {
-                return Vec::new();
-            }
-            (0..across).flat_map(|i| field.tuft(i, j)).collect()
-        })
-        .collect();
+    let field = &Meadow { patch, window, eye: view.position_m, ahead };
+    let near = |j: &i32| (patch.corner.y + *j as f32 * TUFT_M - eye.y).abs() <= REACH_M;
+    let rows = (0..across).into_par_iter().filter(near);
+    let blades: Vec<Blade> =
+        rows.flat_map_iter(|j| (0..across).flat_map(move |i| field.tuft(i, j))).collect();
     let mut mesh = Mesh::default();
     let mut triangles = Vec::new();
-    for blade in rows.iter().flatten() {
+    for blade in &blades {
         let first = mesh.positions.len() as u32;
         for (point, color) in blade.points.iter().zip([blade.root, blade.root, blade.tip]) {
             mesh.positions.push(point.to_array());
@@ -87,8 +81,9 @@ impl Meadow<'_> {
         let here = self.window.at(place);
         let clump = gradient2(seed, place.x / 1.4, place.y / 1.4, 0)
             + 0.6 * gradient2(seed, place.x / 0.5, place.y / 0.5, 0);
-        let growth = (here[3] - 0.35) * 1.8 + 0.8 * clump + 0.3 * (dice(3) - 0.5);
-        if growth < 0.05 || here[3] < 0.3 {
+        let grassy = here.parts[0];
+        let growth = (grassy - 0.35) * 1.8 + 0.8 * clump + 0.3 * (dice(3) - 0.5);
+        if growth < 0.05 || grassy < 0.3 {
             return Vec::new();
         }
         let growth = growth.min(1.0);
@@ -96,9 +91,8 @@ impl Meadow<'_> {
         let tall = if dice(4) > 0.96 { 1.9 } else { 1.0 };
         let height = (0.05 + 0.13 * growth) * (0.7 + 0.6 * dice(5)) * tall * edge;
         let count = ((4.0 + 7.0 * growth) * (1.0 - 0.5 * (distance / REACH_M))) as i32;
-        let color = self.window.grass(place);
         let tone = 0.85 + 0.5 * dice(6);
-        let color = color.map(|c| c * tone);
+        let color = here.grass.map(|c| c * tone);
         (0..count).map(|b| self.blade(place, [i, j, b], height, distance, color)).collect()
     }
 

@@ -1,8 +1,8 @@
-//! Turns the landform into what the ground looks like: an albedo map and blend weights over the field (one texel a
+//! Landform → the look of the ground: an albedo map and blend weights over the field (one texel a
 //! metre at 1024²), colours for the apron, and five tiling detail textures. Albedo holds no light: linear
 //! reflectances of grass, rock, scree, snow, mud and sand as measured outdoors, written as sRGB where 8-bit.
 //!
-//! What grows or lies where follows slope, drained area, deposits, altitude and distance to water, as in
+//! Cover follows slope, drained area, deposits, altitude and distance to water, as in
 //! Hammes, "Modeling of ecosystems as a data source for real-time terrain rendering" (2001), with borders broken
 //! up by noise of several sizes.
 
@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::math::lerp_array;
 use crate::model::{GroundMaps, Image8, Landform};
-use crate::raster::raster;
+use crate::raster::square;
 use cover::{Climate, Noise};
 pub use foreground::foreground;
 use grain::Grain;
@@ -80,7 +80,8 @@ pub fn apron_colors(params: &GroundParams, land: &Landform) -> Vec<[u8; 4]> {
     let apron = &land.apron;
     let half_m = 0.5 * land.field.extent_m();
     let place = |k: u32| (k as f32 - 0.5 * (apron.side - 1) as f32) * apron.spacing_m;
-    let color = |i: u32, j: u32| {
+    square(apron.side as usize, |i, j| {
+        let (i, j) = (i as u32, j as u32);
         let (x, z) = (place(i), place(j));
         let (inner_x, inner_z) = (x.clamp(-half_m, half_m), z.clamp(-half_m, half_m));
         let away_m = (x - inner_x).abs().max((z - inner_z).abs());
@@ -103,15 +104,10 @@ pub fn apron_colors(params: &GroundParams, land: &Landform) -> Vec<[u8; 4]> {
         };
         let [r, g, b] = linear.map(|c| (c * 255.0 + 0.5) as u8);
         [r, g, b, 255]
-    };
-    let side = apron.side as usize;
-    raster(side, side, |j| {
-        let color = &color;
-        move |i| color(i as u32, j as u32)
     })
 }
 
-/// The mean of what sixteen texels with different grain would show.
+/// The mean colour of sixteen texels that differ in grain.
 fn mean_color(climate: &Climate, traits: impl Fn(u32) -> Traits) -> [f32; 3] {
     let mut sum = [0.0; 3];
     for s in 0..16 {

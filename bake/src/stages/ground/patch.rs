@@ -1,4 +1,4 @@
-//! Where one stands → the piece of land around that is meshed finely, and its height at any point, in metres.
+//! Start view → the piece of land around it that is meshed finely, and its height at any point, in metres.
 
 use glam::Vec2;
 
@@ -9,7 +9,7 @@ use crate::noise::fbm2;
 /// Metres a side of the blocks that the near mesh is made of; the piece is a whole number of them.
 pub const BLOCK_M: f32 = 16.0;
 pub(super) const SIDE_M: f32 = 6.0 * BLOCK_M;
-/// Metres ahead of the eye where the middle of the piece should lie: what lies behind is rarely seen.
+/// Metres ahead of the eye where the middle of the piece should lie: the ground behind is rarely seen.
 const AHEAD_M: f32 = 26.0;
 /// Metres over which the piece takes on the look of the land around it.
 const FADE_M: f32 = 14.0;

@@ -23,15 +23,15 @@ pub(super) struct Texel {
 
 /// Blades of grass that lean in tufts over moss.
 pub(super) fn grass() -> Pattern {
-    let mut pattern = from_texels([Waves(11, 24, 3, 0.6)], |_, _, [moss]| {
+    let mut pattern = paint([Waves(11, 24, 3, 0.6)], |_, _, [moss]| {
         let moss = 0.5 + 0.5 * moss;
         let tone = 30.0 + 34.0 * moss;
-        (0.16 * moss, [tone * 1.05, tone, tone * 0.9])
+        Texel { height: 0.16 * moss, tone: [tone * 1.05, tone, tone * 0.9] }
     });
     for k in 0..7500 {
         let dice = |salt: i32| hash01(12, k, salt, 0);
         let (u, v) = (dice(0), dice(1));
-        // Tufts: more blades, leaning apart from their middle; nothing so large that the eye finds it again.
+        // Tufts: more blades, leaning apart from their middle; no feature large enough to show that the tile repeats.
         let lean = gradient2(13, u * 9.0, v * 9.0, 9) * 4.0 + dice(2) * 3.2;
         let lush = 0.5 + 0.5 * gradient2(14, u * 7.0, v * 7.0, 7);
         let shade = 62.0 + 95.0 * dice(3) + 40.0 * lush;
@@ -64,7 +64,7 @@ struct Blade {
 }
 
 impl Blade {
-    /// Lays it over what is lower.
+    /// Lays it over lower texels.
     fn lay(&self, pattern: &mut Pattern) {
         let steps = (self.length / 1.2) as i32;
         let (mut x, mut y) = (self.x, self.y);
@@ -97,7 +97,7 @@ impl Blade {
 
 /// Fractured rock: folds of sharp creases within folds, ledges, and a few open cracks.
 pub(super) fn rock() -> Pattern {
-    from_texels([Waves(21, 5, 2, 0.5), Waves(27, 90, 2, 0.7)], |u, v, [a, rough]| {
+    paint([Waves(21, 5, 2, 0.5), Waves(27, 90, 2, 0.7)], |u, v, [a, rough]| {
         let (wu, wv) = (u + 0.05 * a, v - 0.04 * a);
         // Each octave shifts the next, so that creases break off where they meet.
         let (mut relief, mut shift, mut amplitude) = (0.0, 0.0, 0.5);
@@ -115,16 +115,16 @@ pub(super) fn rock() -> Pattern {
         let height = (0.1 + relief + 0.12 * ledge + 0.07 * rough) * (0.6 + 0.4 * crack);
         let tone = (52.0 + 130.0 * relief + 26.0 * ledge + 40.0 * rough) * (0.5 + 0.5 * crack);
         let rust = 0.06 * a;
-        (height, [tone * (1.0 + rust), tone, tone * (1.0 - rust)])
+        Texel { height, tone: [tone * (1.0 + rust), tone, tone * (1.0 - rust)] }
     })
 }
 
 /// Stones of all sizes, the larger on top.
 pub(super) fn scree() -> Pattern {
-    let mut pattern = from_texels([Waves(31, 64, 2, 0.7)], |_, _, [grit]| {
+    let mut pattern = paint([Waves(31, 64, 2, 0.7)], |_, _, [grit]| {
         let grit = 0.5 + 0.5 * grit;
         let tone = 34.0 + 40.0 * grit;
-        (0.10 * grit, [tone * 1.04, tone, tone * 0.95])
+        Texel { height: 0.10 * grit, tone: [tone * 1.04, tone, tone * 0.95] }
     });
     let count = 2300;
     for k in 0..count {
@@ -154,28 +154,20 @@ impl Stone {
         let dice = |salt: i32| hash01(33, k, salt, 0);
         let turn = dice(0) * std::f32::consts::TAU;
         let stretch = 0.62 + 0.38 * dice(1);
-        let mut sides = [[0.0; 3]; 7];
-        for (s, side) in sides.iter_mut().enumerate() {
-            let angle = turn + (s as f32 + 0.7 * (dice(10 + s as i32) - 0.5)) * 0.8976;
-            let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
+        let sides = [0, 1, 2, 3, 4, 5, 6].map(|s| {
+            let angle = turn + (s as f32 + 0.7 * (dice(10 + s) - 0.5)) * 0.8976;
             let long = libm::cosf(angle - turn * 1.7).abs();
-            *side =
-                [cos, sin, radius * (0.8 + 0.2 * dice(20 + s as i32)) * (stretch + (1.0 - stretch) * long)];
-        }
+            let reach = radius * (0.8 + 0.2 * dice(20 + s)) * (stretch + (1.0 - stretch) * long);
+            [libm::cosf(angle), libm::sinf(angle), reach]
+        });
         let shade = 105.0 + 80.0 * dice(2);
         let warm = 0.10 * (dice(3) - 0.5);
-        Self {
-            x,
-            y,
-            radius,
-            base,
-            sides,
-            tilt: [(dice(4) - 0.5) * 0.5, (dice(5) - 0.5) * 0.5],
-            tone: [shade * (1.0 + warm), shade, shade * (1.0 - warm)],
-        }
+        let tone = [shade * (1.0 + warm), shade, shade * (1.0 - warm)];
+        let tilt = [(dice(4) - 0.5) * 0.5, (dice(5) - 0.5) * 0.5];
+        Self { x, y, radius, base, sides, tilt, tone }
     }
 
-    /// Lays it over what is lower; what it just fails to cover lies in its shade.
+    /// Lays it over lower texels; those just outside its edge are in its shade.
     fn lay(&self, pattern: &mut Pattern) {
         let reach = self.radius as i32 + 2;
         for dy in -reach..=reach {
@@ -208,13 +200,13 @@ impl Stone {
 /// Soft drifts, ripples that the wind left, and grain.
 pub(super) fn snow() -> Pattern {
     let noise = [Waves(41, 6, 2, 0.5), Waves(42, 8, 3, 0.5), Waves(44, 5, 1, 0.5), Waves(45, 128, 2, 0.8)];
-    from_texels(noise, |u, v, [bend, drift, still, grain]| {
+    paint(noise, |u, v, [bend, drift, still, grain]| {
         // Ripples: the same noise drawn out across the wind, bent by it.
         let ripple = gradient2(43, u * 12.0 + 0.6 * bend, v * 48.0 + 3.0 * bend, 12);
         let ripple = ripple * (0.5 + 0.5 * still);
         let height = 0.5 + 0.55 * drift + 0.13 * ripple + 0.07 * grain;
         let tone = 128.0 * (1.0 + 0.08 * drift + 0.05 * ripple + 0.10 * grain);
-        (height, [tone * (1.0 - 0.02 * drift), tone, tone * (1.0 + 0.03 * drift)])
+        Texel { height, tone: [tone * (1.0 - 0.02 * drift), tone, tone * (1.0 + 0.03 * drift)] }
     })
 }
 
@@ -237,20 +229,18 @@ fn plate(seed: u32, u: f32, v: f32, cells: i32) -> Plate {
 /// Mud that dried and cracked, with finer cracks inside its plates.
 pub(super) fn mud() -> Pattern {
     let noise = [Waves(51, 9, 2, 0.55), Waves(52, 9, 2, 0.55), Waves(55, 70, 2, 0.65)];
-    from_texels(noise, |u, v, [a, b, silt]| {
+    paint(noise, |u, v, [a, b, silt]| {
         let plate_here = plate(53, u + 0.03 * a, v + 0.03 * b, 13);
         // Only some plates split again, and cracks close here and there.
-        let split = if plate_here.shade > 0.45 {
-            0.45 + 0.55 * plate(54, u - 0.016 * b, v + 0.016 * a, 31).crack
-        } else {
-            1.0
-        };
+        let splits = plate_here.shade > 0.45;
+        let fine = || 0.45 + 0.55 * plate(54, u - 0.016 * b, v + 0.016 * a, 31).crack;
+        let split = if splits { fine() } else { 1.0 };
         let open = 0.55 + 0.45 * (2.5 * a).clamp(-1.0, 1.0);
         let crack = (1.0 - (1.0 - plate_here.crack) * open).min(split);
         let height = crack * (0.62 + 0.16 * plate_here.shade + 0.10 * silt + 0.12 * a);
         let tone = (112.0 + 26.0 * plate_here.shade + 24.0 * a + 30.0 * silt) * (0.32 + 0.68 * crack);
         let warm = 0.03 * b;
-        (height, [tone * (1.0 + warm), tone, tone * (1.0 - warm)])
+        Texel { height, tone: [tone * (1.0 + warm), tone, tone * (1.0 - warm)] }
     })
 }
 
@@ -258,10 +248,7 @@ pub(super) fn mud() -> Pattern {
 struct Waves(u32, i32, u32, f32);
 
 /// A pattern from each texel's (u, v) in 0..1 and the noise there.
-fn from_texels<const N: usize>(
-    noise: [Waves; N],
-    texel: impl Fn(f32, f32, [f32; N]) -> (f32, [f32; 3]) + Sync,
-) -> Pattern {
+fn paint<const N: usize>(noise: [Waves; N], texel: impl Fn(f32, f32, [f32; N]) -> Texel + Sync) -> Pattern {
     let part = |i: usize| i as f32 / SIDE as f32;
     let xs: Vec<Vec<f32>> =
         noise.iter().map(|waves| (0..SIDE).map(|i| part(i) * waves.1 as f32).collect()).collect();
@@ -271,10 +258,7 @@ fn from_texels<const N: usize>(
         for ((&Waves(seed, cells, octaves, gain), xs), values) in noise.iter().zip(&xs).zip(&mut values) {
             fbm2_row(seed, xs, v * cells as f32, octaves, gain, cells, values);
         }
-        move |i| {
-            let (height, tone) = texel(part(i), v, std::array::from_fn(|k| values[k][i]));
-            Texel { height, tone }
-        }
+        move |i| texel(part(i), v, std::array::from_fn(|k| values[k][i]))
     })
 }
 

@@ -1,3 +1,5 @@
+//! The ground as stages: results of earlier stages → maps, textures and the foreground, as files.
+
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 

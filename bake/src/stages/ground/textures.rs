@@ -17,8 +17,8 @@ pub const TEXTURES: [&str; KINDS] = ["grass", "rock", "scree", "snow", "mud"];
 /// Metres that a tile of each covers.
 pub(super) const TILE_M: [f32; KINDS] = [3.0, 6.0, 4.0, 5.0, 4.0];
 
-/// Mean linear value of each kind's [`tile_srgb`]: as bright as leaves room for its highlights, and for the brightest
-/// ground of the kind as a factor of at most 1.
+/// Mean linear value of each kind's [`tile_srgb`]: as bright as possible without clipping its highlights, and bright
+/// enough that the kind's brightest ground is a factor of at most 1.
 pub(super) const TILE_MEAN: [f32; KINDS] = [0.45, 0.45, 0.45, 0.86, 0.45];
 
 /// The detail of the kth texture as a base colour for core glTF, whose factors cannot exceed 1: its linear mean is

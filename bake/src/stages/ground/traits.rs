@@ -1,8 +1,9 @@
-//! What about a place decides its cover: height, slope, water, deposits and the patch it belongs to. Precomputed on
-//! the grid of the field (at most 513², 2 m apart) and read between samples.
+//! Landform → the traits of a place that decide its cover: height, slope, water, deposits and the patch it belongs
+//! to. Precomputed on the grid of the field (at most 513², 2 m apart) and read between samples.
 
 use std::ops::RangeInclusive;
 
+use bytemuck::{Pod, Zeroable};
 use rayon::prelude::*;
 
 use crate::math::{self, lerp_array};
@@ -10,11 +11,12 @@ use crate::model::{Heightfield, Landform};
 use crate::noise::{fbm2, fbm2_row};
 use crate::seed::noise_seed;
 
-/// Greatest number of samples a side that traits are kept for.
+/// The most samples a side for which traits are kept.
 const MAX_SIDE: u32 = 513;
 
 /// The traits of one place.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
 pub(super) struct Traits {
     pub height_m: f32,
     /// Tangent of the slope.
@@ -33,22 +35,20 @@ pub(super) struct Traits {
     pub outcrop: f32,
 }
 
-const COUNT: usize = 8;
-
 impl Traits {
-    fn from_array(a: [f32; COUNT]) -> Self {
-        let [height_m, slope, flow, deposit, hollow, patch, tuft, outcrop] = a;
-        Self { height_m, slope, flow, deposit, hollow, patch, tuft, outcrop }
+    /// [`lerp_array`] of each.
+    fn lerp(self, other: Self, t: f32) -> Self {
+        bytemuck::cast(lerp_array::<8>(bytemuck::cast(self), bytemuck::cast(other), t))
     }
 }
 
 /// The traits of the whole field.
 pub(super) struct TraitsMap {
     side: usize,
-    values: Vec<[f32; COUNT]>,
+    values: Vec<Traits>,
 }
 
-/// Samples of the field between those that traits are kept for.
+/// Steps of the field's samples between those for which traits are kept.
 fn stride(land: &Landform) -> u32 {
     ((land.field.side - 1) / (MAX_SIDE - 1)).max(1)
 }
@@ -57,24 +57,30 @@ impl TraitsMap {
     /// Traits of the whole field, or only as far as rows between two v need them.
     pub fn new(patches: &Patches, land: &Landform, v: RangeInclusive<f32>) -> Self {
         let step = stride(land);
-        let side = (land.field.side - 1) / step + 1;
-        let mut values = vec![[0.0; COUNT]; (side * side) as usize];
-        let (first, last) = (cell(*v.start(), side as usize).0, cell(*v.end(), side as usize).0 + 1);
-        let rows = values.par_chunks_mut(side as usize).enumerate().skip(first).take(last + 1 - first);
-        rows.for_each(|(j, row)| {
-            for (i, v) in row.iter_mut().enumerate() {
-                *v = sample(patches, land, i as u32 * step, j as u32 * step, step);
+        let side = ((land.field.side - 1) / step + 1) as usize;
+        let values = rows(side, v, |j, row| {
+            for (i, out) in row.iter_mut().enumerate() {
+                *out = sample(patches, land, i as u32 * step, j as u32 * step, step);
             }
         });
-        Self { side: side as usize, values }
+        Self { side, values }
     }
 
     /// The traits along a row of constant v.
     pub fn row(&self, v: f32) -> TraitsRow {
         let (j, f) = cell(v, self.side);
         let row = |j: usize| &self.values[j * self.side..][..self.side];
-        TraitsRow { values: row(j).iter().zip(row(j + 1)).map(|(&a, &b)| lerp_array(a, b, f)).collect() }
+        TraitsRow(row(j).iter().zip(row(j + 1)).map(|(&a, &b)| a.lerp(b, f)).collect())
     }
+}
+
+/// A grid of `side`² values; `fill` makes only the rows that places between two v need.
+fn rows<T: Pod + Send>(side: usize, v: RangeInclusive<f32>, fill: impl Fn(usize, &mut [T]) + Sync) -> Vec<T> {
+    let mut values = vec![T::zeroed(); side * side];
+    let (first, last) = (cell(*v.start(), side).0, cell(*v.end(), side).0 + 1);
+    let rows = values.par_chunks_mut(side).enumerate().skip(first).take(last + 1 - first);
+    rows.for_each(|(j, row)| fill(j, row));
+    values
 }
 
 /// The cell of `side` samples that a place in 0..1 lies in.
@@ -83,32 +89,31 @@ fn cell(u: f32, side: usize) -> (usize, f32) {
 }
 
 /// The traits between two rows of samples.
-pub(super) struct TraitsRow {
-    values: Vec<[f32; COUNT]>,
-}
+pub(super) struct TraitsRow(Vec<Traits>);
 
 impl TraitsRow {
     /// Linear between the two samples around.
     #[inline]
     pub fn at(&self, u: f32) -> Traits {
-        let (i, f) = cell(u, self.values.len());
-        Traits::from_array(lerp_array(self.values[i], self.values[i + 1], f))
+        let (i, f) = cell(u, self.0.len());
+        self.0[i].lerp(self.0[i + 1], f)
     }
 }
 
 /// Traits of the sample of the field nearest to (u, v) in 0..1.
 pub(super) fn near(patches: &Patches, land: &Landform, u: f32, v: f32) -> Traits {
     let at = |u: f32| (u * (land.field.side - 1) as f32 + 0.5) as u32;
-    Traits::from_array(sample(patches, land, at(u), at(v), stride(land)))
+    sample(patches, land, at(u), at(v), stride(land))
 }
 
-/// Traits of sample (i, j) of the field, as an array.
-fn sample(patches: &Patches, land: &Landform, i: u32, j: u32, step: u32) -> [f32; COUNT] {
+/// Traits of sample (i, j) of the field.
+fn sample(patches: &Patches, land: &Landform, i: u32, j: u32, step: u32) -> Traits {
     let at = (j * land.field.side + i) as usize;
+    let [height_m, flow, deposit] = [&land.field.heights_m, &land.flow, &land.deposit].map(|grid| grid[at]);
     let (slope, hollow) = shape_at(&land.field, i, j, step);
     let last = (land.field.side - 1) as f32;
     let [patch, tuft, outcrop] = patches.at(i as f32 / last, j as f32 / last);
-    [land.field.heights_m[at], slope, land.flow[at], land.deposit[at], hollow, patch, tuft, outcrop]
+    Traits { height_m, slope, flow, deposit, hollow, patch, tuft, outcrop }
 }
 
 /// Traits of a sample of the apron, whose spacing hides much of the slope.
@@ -158,10 +163,7 @@ impl Patches {
         let layers = [(170.0, 4, 0.55, 1.8), (46.0, 3, 0.6, 1.6), (80.0, 3, 0.6, 1.6)];
         let place_m = |k: usize| k as f32 * spacing_m;
         let xs = layers.map(|layer| (0..Self::SIDE).map(|i| place_m(i) / layer.0).collect::<Vec<f32>>());
-        let mut values = vec![[0.0; 3]; Self::SIDE * Self::SIDE];
-        let (first, last) = (cell(*v.start(), Self::SIDE).0, cell(*v.end(), Self::SIDE).0 + 1);
-        let rows = values.par_chunks_mut(Self::SIDE).enumerate().skip(first).take(last + 1 - first);
-        rows.for_each(|(j, row)| {
+        let values = rows(Self::SIDE, v, |j, row: &mut [[f32; 3]]| {
             let mut line = [0.0; Self::SIDE];
             for (k, (wavelength_m, octaves, gain, height)) in layers.into_iter().enumerate() {
                 fbm2_row(seeds[k], &xs[k], place_m(j) / wavelength_m, octaves, gain, 0, &mut line);

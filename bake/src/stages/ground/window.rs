@@ -1,5 +1,7 @@
-//! The part of the ground map around the foreground, painted again → colour, parts and grass at any point, in metres.
+//! Landform → the part of the ground map around the foreground, painted again: colour, parts and grass at any point, in
+//! metres.
 
+use bytemuck::{Pod, Zeroable};
 use glam::Vec2;
 
 use super::GroundParams;
@@ -11,8 +13,16 @@ use crate::math;
 use crate::model::Landform;
 use crate::raster::raster;
 
-/// Values of a texel: colour, parts, and the colour that grass has there.
-const TRAITS: usize = 6 + KINDS;
+/// What a texel of the map shows.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct Look {
+    /// Albedo, linear.
+    pub color: [f32; 3],
+    pub parts: [f32; KINDS],
+    /// The colour that grass has there.
+    pub grass: [f32; 3],
+}
 
 /// The texels of the map around the piece.
 pub(super) struct MapWindow {
@@ -20,7 +30,7 @@ pub(super) struct MapWindow {
     across: usize,
     texel_m: f32,
     half_m: f32,
-    values: Vec<[f32; TRAITS]>,
+    values: Vec<[f32; size_of::<Look>() / 4]>,
 }
 
 impl MapWindow {
@@ -44,18 +54,15 @@ impl MapWindow {
                 let i = (first[0] + i as i32).clamp(0, map_px as i32 - 1);
                 let (here, noise) = (traits.at(place(i)), grain.at(i as usize, j as usize));
                 let cover = climate.cover(&here, &noise);
-                let mut value = [0.0; TRAITS];
-                value[..3].copy_from_slice(&climate.color(&here, &cover, &noise));
-                value[3..3 + KINDS].copy_from_slice(&cover.parts());
-                value[3 + KINDS..].copy_from_slice(&climate.grass(&here, &noise));
-                value
+                let (color, grass) = (climate.color(&here, &cover, &noise), climate.grass(&here, &noise));
+                bytemuck::cast(Look { color, parts: cover.parts(), grass })
             }
         });
         Self { first, across, texel_m, half_m: 0.5 * extent_m, values }
     }
 
-    /// Colour and parts at a point, as a viewer filters the map.
-    pub fn at(&self, p: Vec2) -> [f32; TRAITS] {
+    /// The map at a point, as a viewer filters it.
+    pub fn at(&self, p: Vec2) -> Look {
         let cell = |m: f32, first: i32| {
             let place = (m + self.half_m) / self.texel_m - 0.5 - first as f32;
             math::cell(place.clamp(0.0, (self.across - 1) as f32), self.across)
@@ -63,12 +70,8 @@ impl MapWindow {
         let ((i, u), (j, v)) = (cell(p.x, self.first[0]), cell(p.y, self.first[1]));
         let k = j * self.across + i;
         let [a, b, c, d] = [k, k + 1, k + self.across, k + self.across + 1].map(|k| &self.values[k]);
-        std::array::from_fn(|n| (a[n] * (1.0 - u) + b[n] * u) * (1.0 - v) + (c[n] * (1.0 - u) + d[n] * u) * v)
-    }
-
-    /// The colour of grass at a point.
-    pub fn grass(&self, p: Vec2) -> [f32; 3] {
-        let value = self.at(p);
-        [value[3 + KINDS], value[4 + KINDS], value[5 + KINDS]]
+        bytemuck::cast::<[f32; size_of::<Look>() / 4], _>(std::array::from_fn(|n| {
+            (a[n] * (1.0 - u) + b[n] * u) * (1.0 - v) + (c[n] * (1.0 - u) + d[n] * u) * v
+        }))
     }
 }

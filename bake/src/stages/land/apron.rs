@@ -1,5 +1,5 @@
-//! The land beyond the field: the same noise on a coarse grid out to the horizon, with hills that grow a little
-//! with distance, in metres.
+//! Raw land and erosion → the apron, the land beyond the field: the same noise on a coarse grid out to the horizon,
+//! with hills that grow a little with distance, in metres.
 
 use super::grid::Grid;
 use super::shape::{Shape, distance_to_field_m};
@@ -19,7 +19,7 @@ const FOLLOW_M: f32 = 900.0;
 /// Raw heights of the apron in metres.
 pub(super) fn heights(shape: &Shape, params: &LandParams) -> Grid {
     let seed = noise_seed(params.terrain_seed.into(), "land", 10);
-    // Far hills stand about as high as the land is, a little more over plains, so that these have a horizon too.
+    // Far hills are about as high as the land, a little higher around plains, so that these have a horizon too.
     let growth_m = 0.75 * params.relief_m + 25.0;
     Grid::from_square(SIDE, SPACING_M, |x, z| {
         let away_m = distance_to_field_m(x, z);
@@ -32,13 +32,12 @@ pub(super) fn heights(shape: &Shape, params: &LandParams) -> Grid {
     })
 }
 
-/// Carries what erosion did to the border on into the apron, fading out over `FOLLOW_M`.
+/// Continues the erosion of the border into the apron, fading out over `FOLLOW_M`.
 pub(super) fn follow(apron: &mut Grid, raw: &Grid, worn: &Grid) {
     let half = 0.5 * FIELD_M;
-    let place = |i: u32| (i as f32 - 0.5 * (SIDE - 1) as f32) * SPACING_M;
     for j in 0..SIDE {
         for i in 0..SIDE {
-            let (x, z) = (place(i), place(j));
+            let (x, z) = (apron.place_m(i as usize), apron.place_m(j as usize));
             let away_m = distance_to_field_m(x, z);
             if away_m > FOLLOW_M {
                 continue;

@@ -1,5 +1,6 @@
-//! Raindrops run downhill, pick up soil where they are fast and lay it down where they slow (Beyer,
-//! "Implementation of a method for hydraulic erosion", 2015). Heights in metres, positions in samples.
+//! Land → land with gullies and fans: raindrops run downhill, pick up soil where they are fast and lay it down where
+//! they slow (Beyer, "Implementation of a method for hydraulic erosion", 2015). Heights in metres, positions in
+//! samples.
 //!
 //! Drops fall one after another, each on land that those before it have changed; where they fall follows a
 //! shuffled lattice, so that their count changes their density and not their pattern.
@@ -10,7 +11,7 @@ use super::thermal::settle;
 use crate::noise::hash;
 use crate::seed::noise_seed;
 
-/// Longest way of a drop in steps of one sample.
+/// The longest path of a drop in steps of one sample.
 const LIFE: u32 = 32;
 /// Part of its direction that a drop keeps from step to step.
 const INERTIA: f32 = 0.25;
@@ -39,7 +40,7 @@ pub(super) fn rain(land: &mut Grid, loose: &mut Grid, guard: &Grid, params: &Lan
         let last = (ground.n - 1) as f32;
         ground.run(u * last, v * last);
     }
-    // What one drop does at one sample is noise; what many do along a gully is not. Fans are smoother than gullies.
+    // The effect of one drop at one sample is noise and is smoothed away; gullies remain. Fans are smoother still.
     let cut = land.zip(&before, |after, before| (after - before).min(0.0)).smoothed();
     let laid = land.zip(&before, |after, before| (after - before).max(0.0));
     let laid = laid.smoothed().smoothed().smoothed();

@@ -1,40 +1,49 @@
-//! Square grids of numbers over the field, and how they pass from one resolution to another.
+//! Square grids of values over the field → the same at another resolution.
 
+use bytemuck::Zeroable;
 use rayon::prelude::*;
 
 use super::FIELD_M;
 use crate::math::smoothstep;
-use crate::raster::raster;
+use crate::raster::square;
 
 /// side² values, row by row, `spacing_m` apart, centred on the origin as a `Heightfield` is.
 #[derive(Clone, Debug)]
-pub(super) struct Grid {
+pub(super) struct Grid<T = f32> {
     pub side: u32,
     pub spacing_m: f32,
-    pub values: Vec<f32>,
+    pub values: Vec<T>,
 }
 
-impl Grid {
+fn place_m(side: u32, spacing_m: f32, k: usize) -> f32 {
+    (k as f32 - 0.5 * (side - 1) as f32) * spacing_m
+}
+
+impl<T: Zeroable + Copy + Send> Grid<T> {
     /// A grid over the field, each value from its position (x, z) in metres; rows in parallel.
-    pub fn from_field(side: u32, value: impl Fn(f32, f32) -> f32 + Sync) -> Self {
+    pub fn from_field(side: u32, value: impl Fn(f32, f32) -> T + Sync) -> Self {
         Self::from_square(side, FIELD_M / (side - 1) as f32, value)
     }
 
     /// A grid of any spacing, centred on the origin.
-    pub fn from_square(side: u32, spacing_m: f32, value: impl Fn(f32, f32) -> f32 + Sync) -> Self {
-        let place = |i: usize| (i as f32 - 0.5 * (side - 1) as f32) * spacing_m;
-        let row = |j: usize| {
-            let (place, value, z) = (&place, &value, place(j));
-            move |i: usize| value(place(i), z)
-        };
-        Self { side, spacing_m, values: raster(side as usize, side as usize, row) }
+    pub fn from_square(side: u32, spacing_m: f32, value: impl Fn(f32, f32) -> T + Sync) -> Self {
+        let place_m = |k: usize| place_m(side, spacing_m, k);
+        Self { side, spacing_m, values: square(side as usize, |i, j| value(place_m(i), place_m(j))) }
     }
 
     /// The same grid with each value changed by itself.
-    pub fn map(&self, f: impl Fn(f32) -> f32) -> Self {
-        Self { values: self.values.iter().map(|&v| f(v)).collect(), ..*self }
+    pub fn map<U>(&self, f: impl Fn(T) -> U) -> Grid<U> {
+        let values = self.values.iter().map(|&v| f(v)).collect();
+        Grid { side: self.side, spacing_m: self.spacing_m, values }
     }
 
+    /// Coordinate in metres of sample `k` of a row or column.
+    pub fn place_m(&self, k: usize) -> f32 {
+        place_m(self.side, self.spacing_m, k)
+    }
+}
+
+impl Grid {
     /// The same grid with each value combined with that of another of the same size.
     pub fn zip(&self, other: &Self, f: impl Fn(f32, f32) -> f32) -> Self {
         let pairs = self.values.iter().zip(&other.values);
@@ -90,7 +99,7 @@ impl Grid {
         Self { side: m as u32, spacing_m: 0.5 * self.spacing_m, values }
     }
 
-    /// Smoothed once by the binomial kernel 1-2-1 both ways; beyond the edge lies what lies on it.
+    /// Smoothed once by the binomial kernel 1-2-1 both ways; beyond the edge, its own samples repeat.
     pub fn smoothed(&self) -> Self {
         let n = self.side as usize;
         let mut out = self.clone();

@@ -1,11 +1,11 @@
-//! Turns terrain genes into the shape of the land: heights in metres over 1024 m × 1024 m, where water gathers and
+//! Terrain genes → the shape of the land: heights in metres over 1024 m × 1024 m, where water gathers and
 //! loose stone lies, a lake, a snow line, and a coarse apron that carries the land to the horizon.
 //!
 //! A warped multifractal (Musgrave, "Texturing and Modeling", 2003) gives the raw land; rivers cut it by the stream
 //! power law (Braun & Willett 2013), raindrops carve gullies and lay down fans (Beyer 2015), and slopes slide to
 //! their angle of repose (Musgrave, Kolb & Mace 1989). All erosion works on fixed grids, whatever the size asked
-//! for, so that a valley keeps its place; finer sizes add finer noise. What erosion did along the border the apron
-//! follows, less and less with distance, so that valleys lead out of the field.
+//! for, so that a valley keeps its place; finer sizes add finer noise. The apron follows the erosion of the border,
+//! less and less with distance, so that valleys lead out of the field.
 
 mod apron;
 mod droplets;
@@ -91,7 +91,7 @@ fn erode(params: &LandParams, raw: &Grid) -> (Grid, Grid) {
     let guard = grid::border_guard(FINE);
     streams::carve_valleys(&mut land, &mut loose, params, COARSE);
     droplets::rain(&mut land, &mut loose, &guard, params);
-    // Before the slopes slide, so that stretching does not make them steeper than they hold; and what that took.
+    // Before the slopes slide, so that stretching makes none too steep; and again for the relief lost by sliding.
     rescale(&mut land, params.relief_m);
     thermal::slide(&mut land, &mut loose, params);
     rescale(&mut land, params.relief_m);

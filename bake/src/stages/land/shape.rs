@@ -10,31 +10,29 @@ use super::grid::Grid;
 use super::{FIELD_M, LandParams};
 use crate::math::{lerp, smoothstep};
 use crate::noise::gradient2;
-use crate::raster::raster;
+use crate::raster::square;
 use crate::seed::noise_seed;
 
 /// Wavelength in metres of the finest octave.
 const MIN_WAVELENGTH_M: f32 = 6.0;
-/// Wavelength in metres from which on octaves are computed on every second sample only.
+/// Octaves of this wavelength in metres or more are computed on every second sample only.
 const BROAD_M: f32 = 40.0;
 /// Greatest part of its wavelength that a landform may rise before a massif carries the rest of the relief.
 const STEEPNESS: f32 = 0.21;
 
 /// The raw land as a function of position.
-pub(super) struct Shape {
+pub(super) struct Shape<'a> {
+    genes: &'a LandParams,
     octaves: Vec<Octave>,
     massif: [Octave; 2],
     fold: [Octave; 4],
     fold_m: f32,
     /// Part of the relief that the landforms have; the massif has the rest.
     share: f32,
-    offset: f32,
     terraces: Terraces,
-    relief_m: f32,
-    water_level: f32,
     /// Raw values that become the lowest and highest point of the field.
     range: (f32, f32),
-    /// How far, as part of the relief, the middle is lifted so that one does not start under water.
+    /// How far, as part of the relief, the middle is lifted so that the walk does not start under water.
     lift: f32,
 }
 
@@ -89,9 +87,9 @@ struct Terraces {
     patches: Octave,
 }
 
-impl Shape {
+impl<'a> Shape<'a> {
     /// The land of these genes, not yet fitted to its relief.
-    pub fn new(p: &LandParams) -> Self {
+    pub fn new(p: &'a LandParams) -> Self {
         let seed = |item| noise_seed(p.terrain_seed.into(), "land", item);
         let gain = libm::powf(p.lacunarity, -p.hurst);
         let share = (STEEPNESS * p.wavelength_m / p.relief_m).min(1.0);
@@ -111,20 +109,18 @@ impl Shape {
         let broad_m = p.wavelength_m.max(1500.0);
         let fold = |i, scale, amplitude| Octave::new(seed(2), i, p.wavelength_m * scale, amplitude);
         Self {
+            genes: p,
             octaves,
             massif: [Octave::new(seed(1), 0, broad_m, 1.0), Octave::new(seed(1), 1, broad_m * 0.45, 0.4)],
             fold: [fold(0, 0.9, 1.0), fold(1, 0.9, 1.0), fold(2, 0.4, 0.4), fold(3, 0.4, 0.4)],
             fold_m: 0.32 * p.domain_warp * p.wavelength_m,
             share,
-            offset: p.offset,
             terraces: Terraces {
                 strength: p.terraces,
                 steps: (p.relief_m / 13.0).clamp(4.0, 14.0),
                 bend: Octave::new(seed(3), 0, 420.0, 0.5),
                 patches: Octave::new(seed(3), 1, 300.0, 1.0),
             },
-            relief_m: p.relief_m,
-            water_level: p.water_level,
             range: (0.0, 1.0),
             lift: 0.0,
         }
@@ -132,16 +128,12 @@ impl Shape {
 
     /// Fits the land to its relief over the field and lifts a middle that would drown; the raw heights in metres.
     pub fn fit(&mut self, side: u32) -> Grid {
-        let mut grid = self.multifractal_grid(side);
-        self.range = grid.range();
+        let raw = self.multifractal_grid(side);
+        self.range = raw.range();
         self.lift = self.needed_lift();
-        let n = side as usize;
-        let place = |i: usize| (i as f32 - 0.5 * (side - 1) as f32) * grid.spacing_m;
-        grid.values = raster(n, n, |j| {
-            let (shape, row, place, z) = (&*self, &grid.values[j * n..], &place, place(j));
-            move |i| shape.finish(row[i], place(i), z)
-        });
-        grid
+        let (n, shape) = (side as usize, &*self);
+        let values = square(n, |i, j| shape.finish(raw.values[j * n + i], raw.place_m(i), raw.place_m(j)));
+        Grid { values, ..raw }
     }
 
     /// The fitted land on a grid of the field, of which `known` is a part or that is part of `known`.
@@ -155,46 +147,29 @@ impl Shape {
 
     /// Raw height in metres at a place; waves shorter than twice `spacing_m` are left out.
     pub fn height_m(&self, x: f32, z: f32, spacing_m: f32) -> f32 {
-        self.finish(self.multifractal(x, z, spacing_m), x, z)
+        self.finish(self.total(&self.sum(x, z, 0..self.octaves.len(), spacing_m)), x, z)
     }
 
     /// The multifractal over the field: its broad octaves at half the resolution, cubic between.
     fn multifractal_grid(&self, side: u32) -> Grid {
         let fine = self.octaves.iter().take_while(|o| o.wavelength_m >= BROAD_M).count();
-        let half = side / 2 + 1;
-        let spacing_m = FIELD_M / (half - 1) as f32;
-        let place = |k: usize| (k as f32 - 0.5 * (half - 1) as f32) * spacing_m;
-        let sums: Vec<Sum> = raster(half as usize, half as usize, |j| {
-            let (place, z) = (&place, place(j));
-            move |i| self.sum(place(i), z, 0..fine, 0.0)
-        });
-        let layer = |f: fn(&Sum) -> f32| {
-            Grid { side: half, spacing_m, values: sums.iter().map(f).collect() }.resized(side).values
-        };
-        let (u, v) = (layer(|s| s.u), layer(|s| s.v));
-        let (height, weight, massif) = (layer(|s| s.height), layer(|s| s.weight), layer(|s| s.massif));
-        let mut values = vec![0.0; height.len()];
-        values.par_iter_mut().enumerate().for_each(|(k, out)| {
-            let mut sum = Sum { u: u[k], v: v[k], height: height[k], weight: weight[k], massif: massif[k] };
+        let sums = Grid::from_field(side / 2 + 1, |x, z| self.sum(x, z, 0..fine, 0.0));
+        let layer = |f: fn(Sum) -> f32| sums.map(f).resized(side);
+        let (u, v, weight, massif) =
+            (layer(|s| s.u), layer(|s| s.v), layer(|s| s.weight), layer(|s| s.massif));
+        let mut grid = layer(|s| s.height);
+        grid.values.par_iter_mut().enumerate().for_each(|(k, out)| {
+            let [u, v, weight, massif] = [&u, &v, &weight, &massif].map(|layer| layer.values[k]);
+            let mut sum = Sum { u, v, height: *out, weight, massif };
             self.add(&mut sum, fine..self.octaves.len(), 0.0);
             *out = self.total(&sum);
         });
-        Grid { side, spacing_m: 0.5 * spacing_m, values }
+        grid
     }
 
-    /// A sum of octaves, each weaker where the land so far is low (Musgrave's hybrid multifractal).
-    fn multifractal(&self, x: f32, z: f32, spacing_m: f32) -> f32 {
-        self.total(&self.sum(x, z, 0..self.octaves.len(), spacing_m))
-    }
-
+    /// A sum of octaves, each weaker where the land so far is low (Musgrave's hybrid multifractal), at the place after
+    /// domain warping.
     fn sum(&self, x: f32, z: f32, octaves: Range<usize>, spacing_m: f32) -> Sum {
-        let mut sum = self.start(x, z);
-        self.add(&mut sum, octaves, spacing_m);
-        sum
-    }
-
-    /// Folds the plane: where the octaves are read for a place.
-    fn start(&self, x: f32, z: f32) -> Sum {
         let [a, b, c, d] = &self.fold;
         let (mut u, mut v) = (x, z);
         if self.fold_m > 0.0 {
@@ -203,7 +178,9 @@ impl Shape {
         }
         let massif =
             if self.share < 1.0 { self.massif[0].at(x, z) + 0.4 * self.massif[1].at(x, z) } else { 0.0 };
-        Sum { u, v, height: 0.0, weight: 1.0, massif }
+        let mut sum = Sum { u, v, height: 0.0, weight: 1.0, massif };
+        self.add(&mut sum, octaves, spacing_m);
+        sum
     }
 
     /// Adds some of the octaves.
@@ -218,7 +195,7 @@ impl Shape {
             // A ridge where the noise crosses zero, rounded just enough to be walked over.
             let ridge = 1.0 - 2.4 * (round * round + 0.0009).sqrt();
             sum.height += octave.amplitude * sum.weight * kept * lerp(round, ridge, octave.ridged);
-            sum.weight = lerp(1.0, smoothstep(-0.7, 0.6, sum.height), 0.35 + 0.6 * self.offset);
+            sum.weight = lerp(1.0, smoothstep(-0.7, 0.6, sum.height), 0.35 + 0.6 * self.genes.offset);
         }
     }
 
@@ -231,31 +208,31 @@ impl Shape {
         let (lo, hi) = self.range;
         let part = soften((value - lo) / (hi - lo).max(1e-6));
         let flattened = if part > 0.0 {
-            lerp(part, part * part, 0.75 * self.offset)
+            lerp(part, part * part, 0.75 * self.genes.offset)
         } else {
-            part * (1.0 - 0.75 * self.offset)
+            part * (1.0 - 0.75 * self.genes.offset)
         };
         let stepped = self.terraces.step(flattened, x, z);
         let r = (x * x + z * z) / (300.0 * 300.0);
         let bump = (1.0 - r.min(1.0)) * (1.0 - r.min(1.0));
-        (stepped + self.lift * bump) * self.relief_m
+        (stepped + self.lift * bump) * self.genes.relief_m
     }
 
     /// How far the middle lies below a height that is dry by a margin.
     fn needed_lift(&self) -> f32 {
-        if self.water_level <= 0.0 {
+        if self.genes.water_level <= 0.0 {
             return 0.0;
         }
         let samples = 7 * 7;
         let sum: f32 = (0..samples)
             .map(|k| ((k % 7 - 3) as f32 * 24.0, (k / 7 - 3) as f32 * 24.0))
-            .map(|(x, z)| self.height_m(x, z, 30.0) / self.relief_m)
+            .map(|(x, z)| self.height_m(x, z, 30.0) / self.genes.relief_m)
             .sum();
-        (self.water_level + 0.07 - sum / samples as f32).clamp(0.0, 0.5)
+        (self.genes.water_level + 0.07 - sum / samples as f32).clamp(0.0, 0.5)
     }
 }
 
-/// Greatest amplitude in metres of an octave: landforms may be steep, what one steps over may not.
+/// Greatest amplitude in metres of an octave: landforms may be steep, but not bumps underfoot.
 fn walkable_amplitude_m(wavelength_m: f32) -> f32 {
     0.34 * wavelength_m * libm::powf((wavelength_m / 400.0).min(1.0), 0.75)
 }
@@ -275,7 +252,7 @@ impl Terraces {
     }
 }
 
-/// Leaves 0 to 1 as it is and draws what lies beyond (as it may outside the field) slowly towards −0.4 and 1.6.
+/// Leaves 0 to 1 as it is and compresses values beyond (outside the field) towards −0.4 and 1.6.
 fn soften(part: f32) -> f32 {
     let over = (part - 1.0).max(0.0);
     let under = (-part).max(0.0);

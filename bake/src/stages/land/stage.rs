@@ -1,3 +1,5 @@
+//! The landform as a stage: genes → heights, flow and deposits.
+
 use serde::Serialize;
 
 use super::{LandParams, landform};

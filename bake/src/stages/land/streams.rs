@@ -1,6 +1,7 @@
-//! Rivers: they cut valleys by the stream power law, solved implicitly from mouth to spring (Braun & Willett, "A very
-//! efficient O(n), implicit and parallel method to solve the stream power equation", 2013), over drainage that
-//! leaves every hollow (priority flood, Barnes et al. 2014). Heights in metres, drained areas in square metres.
+//! Land → land with valleys, and the drained area of each place. Rivers cut by the stream power law, solved implicitly
+//! from mouth to spring (Braun & Willett, "A very efficient O(n), implicit and parallel method to solve the stream
+//! power equation", 2013), over drainage that leaves every hollow (priority flood, Barnes et al. 2014). Heights in
+//! metres, drained areas in square metres.
 
 use super::LandParams;
 use super::grid::{self, Grid};
@@ -112,7 +113,7 @@ impl Drainage {
         }
     }
 
-    /// Turns each sample to its steepest way down, with a little chance so that no direction of the grid is favoured.
+    /// Turns each sample to its steepest descent, with some randomness so that no direction of the grid is favoured.
     fn steer(&mut self, seed: u32) {
         for k in 0..self.filled.len() {
             if self.receiver[k] as usize == k {
@@ -162,15 +163,11 @@ impl Drainage {
                 }
             }
             let to = self.receiver[k] as usize;
-            if total < 1e-9 {
-                if to != k {
-                    areas[to] += areas[k];
-                }
-                continue;
-            }
-            let share = areas[k] / total;
-            for (way, m) in neighbours(self.side, k) {
-                areas[m] += parts[way] * share;
+            if total >= 1e-9 {
+                let share = areas[k] / total;
+                neighbours(self.side, k).for_each(|(way, m)| areas[m] += parts[way] * share);
+            } else if to != k {
+                areas[to] += areas[k];
             }
         }
         areas
@@ -184,19 +181,18 @@ impl Drainage {
         for &k in &self.order {
             let k = k as usize;
             let to = self.receiver[k] as usize;
-            if to == k {
-                let power = STEP * areas[k].sqrt() / OUTSIDE_M;
-                h[k] = (h[k] + power * base_m) / (1.0 + power);
-                continue;
-            }
-            if h[k] <= h[to] {
-                h[k] += FILLING * (self.filled[k] - h[k]).max(0.0);
-                continue;
-            }
-            let diagonal = to % self.side != k % self.side && to / self.side != k / self.side;
-            let reach_m = self.spacing_m * if diagonal { std::f32::consts::SQRT_2 } else { 1.0 };
-            let power = STEP * areas[k].sqrt() / reach_m;
-            h[k] = (h[k] + power * h[to]) / (1.0 + power);
+            let lowered = |base_m: f32, reach_m: f32| {
+                let power = STEP * areas[k].sqrt() / reach_m;
+                (h[k] + power * base_m) / (1.0 + power)
+            };
+            h[k] = if to == k {
+                lowered(base_m, OUTSIDE_M)
+            } else if h[k] <= h[to] {
+                h[k] + FILLING * (self.filled[k] - h[k]).max(0.0)
+            } else {
+                let diagonal = to % self.side != k % self.side && to / self.side != k / self.side;
+                lowered(h[to], self.spacing_m * if diagonal { std::f32::consts::SQRT_2 } else { 1.0 })
+            };
         }
     }
 }

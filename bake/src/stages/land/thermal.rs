@@ -1,5 +1,6 @@
-//! Slopes slide until they hold (Musgrave, Kolb & Mace 1989): loose material to its angle of repose, bare rock to
-//! a steeper angle that varies from place to place, so that cliffs stand above their scree. Metres throughout.
+//! Land → land whose slopes hold: they slide until they do (Musgrave, Kolb & Mace 1989): loose material to its angle of
+//! repose, bare rock to a steeper angle that varies from place to place, so that cliffs stand above their scree. Metres
+//! throughout.
 
 use rayon::prelude::*;
 
@@ -12,7 +13,7 @@ use crate::seed::noise_seed;
 /// Height in metres of ledges and ribs in bare rock.
 const RIBS_M: f32 = 2.2;
 
-/// Slides the land and adds what came to rest to the `loose` layer.
+/// Slides the land and adds the material that came to rest to the `loose` layer.
 pub(super) fn slide(land: &mut Grid, loose: &mut Grid, params: &LandParams) {
     let hardness = hardness(land.side, params);
     for _ in 0..6 {
@@ -26,7 +27,7 @@ pub(super) fn slide(land: &mut Grid, loose: &mut Grid, params: &LandParams) {
     roughen(land, loose, params);
 }
 
-/// Adds to the loose layer what `after` has gained over `before`; what has gone is gone.
+/// Adds to the loose layer the height that `after` has gained over `before`, or takes away the height lost.
 pub(super) fn settle(loose: &mut Grid, before: &Grid, after: &Grid) {
     for ((l, b), a) in loose.values.iter_mut().zip(&before.values).zip(&after.values) {
         *l = (*l + a - b).max(0.0);
@@ -72,8 +73,8 @@ fn steepest_drops(hardness: &Grid, loose: &Grid, spacing_m: f32, talus_deg: f32)
     hardness.zip(loose, |h, l| lerp(lerp(soft, hard, h), talus, (l * 4.0).min(1.0))).values
 }
 
-/// One Jacobi sweep over four neighbours, the straight or the diagonal ones: what is steeper than it holds moves.
-/// Beyond the edge lies what lies on it.
+/// One Jacobi sweep over four neighbours, the straight or the diagonal ones: material that lies too steeply moves.
+/// Beyond the edge, its own samples repeat.
 fn relax(land: &mut Grid, steepest: &[f32], diagonal: bool) {
     let n = land.side as usize;
     let old = land.values.clone();
@@ -112,7 +113,7 @@ impl Row<'_> {
     }
 }
 
-/// How much of the rise to a neighbour is more than what the higher of the two holds, with its sign.
+/// How much the rise to a neighbour exceeds what the higher of the two holds, with its sign.
 #[inline]
 fn surplus(rise: f32, here_holds: f32, there_holds: f32) -> f32 {
     let above = rise - there_holds;

@@ -1,4 +1,4 @@
-//! The lake's surface in metres, chosen so that enough land stays dry, and gentle shores around it.
+//! Land → the lake's surface in metres, chosen so that enough land stays dry, and gentle shores around it.
 
 use super::LandParams;
 use super::grid::Grid;
@@ -8,7 +8,7 @@ use crate::math::lerp;
 const DRY: f32 = 0.5;
 /// Part of the land around the middle that stays dry.
 const DRY_MIDDLE: f32 = 0.62;
-/// Radius in metres of what counts as the middle, where one begins to walk.
+/// Radius in metres of the middle, where the walk begins.
 const MIDDLE_M: f32 = 90.0;
 
 /// The surface of the lake, if there is one.
@@ -29,11 +29,11 @@ impl Level {
         let asked_m = params.water_level * params.relief_m;
         let everywhere = quantile(land.values.iter().copied(), 1.0 - DRY);
         let middle = quantile(middle(land), 1.0 - DRY_MIDDLE);
-        // Never below the floor: what is called a lake covers something.
+        // Never below the lowest ground: a lake covers some land.
         Self { water_m: Some(asked_m.min(everywhere).min(middle)), shore_m }
     }
 
-    /// Flattens the slope of heights near the surface to a third, on both sides, and leaves far ones as they are.
+    /// Flattens the slope of heights near the surface to a third, on both sides, and leaves others as they are.
     pub fn settle(&self, heights_m: &mut [f32]) {
         let Some(water_m) = self.water_m else { return };
         for h in heights_m {

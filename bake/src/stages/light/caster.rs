@@ -23,7 +23,7 @@ const CELLS_PER_TEXEL: f32 = 4.0;
 /// Triangles wholly below this height are roots in the ground.
 const MIN_HEIGHT_M: f32 = -0.25;
 
-/// What a crown hides of the sky, as a sphere squashed to its height.
+/// A crown as it hides the sky: a sphere squashed to its height.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Crown {
     /// Height of its middle and horizontal radius in metres.
@@ -111,7 +111,7 @@ impl Shadow {
             let mut layer = vec![1.0; columns * rows];
             let widths = filter.widths(0.5 * (range[0] + range[1].min(top_m)));
             let range = [if slab == 0 { f32::MIN } else { range[0] }, range[1]];
-            if let Some(drawn) = shadow.draw_slab(mesh, &grid, range, &mut layer) {
+            if let Some(drawn) = shadow.slab(mesh, &grid, range, &mut layer) {
                 let blurred = shadow.blur(&mut layer, drawn, widths);
                 let cells = blurred.start * columns..blurred.end * columns;
                 let whole = &mut shadow.transmittance[cells.clone()];
@@ -122,13 +122,7 @@ impl Shadow {
     }
 
     /// Draws the triangles whose middle lies in a range of heights; the rows that it touched.
-    fn draw_slab(
-        &self,
-        mesh: &Mesh,
-        grid: &[Vec2],
-        range: [f32; 2],
-        layer: &mut [f32],
-    ) -> Option<Range<usize>> {
+    fn slab(&self, mesh: &Mesh, grid: &[Vec2], range: [f32; 2], layer: &mut [f32]) -> Option<Range<usize>> {
         let mut drawn: Option<Range<usize>> = None;
         for part in &mesh.parts {
             let left = 1.0 - opacity(part.material);

@@ -2,15 +2,15 @@
 //! field self-shadowing" (2010). Slopes are rise over run (the tangent of the elevation), heights in metres.
 //!
 //! Lines parallel to the azimuth cross the grid, one per sample along the side they cross. Along each, from the far
-//! end to the near, the upper convex hull of what has been passed is kept on a stack; the tangent from a point to
-//! that hull is its horizon, and whatever lies below the tangent can never be a horizon again. So the whole field
+//! end to the near, the upper convex hull of the points passed is kept on a stack; the tangent from a point to that
+//! hull is its horizon, and a point below the tangent can never be a horizon again. So the whole field
 //! takes time in proportion to its samples, however far shadows reach.
 
 use rayon::prelude::*;
 
 use crate::math::{cell, lerp};
 use crate::model::Heightfield;
-use crate::raster::raster;
+use crate::raster::square;
 
 /// Horizon where all land ends: level.
 const OPEN: f32 = 0.0;
@@ -32,7 +32,7 @@ pub(super) fn slopes(field: &Heightfield, beyond: &Beyond, towards: [f32; 2]) ->
         hull.clear();
         lines.sweep(beyond, lines.first + line as i32, hull, slopes);
     });
-    let slope = |i: usize, j: usize| {
+    square(side, |i, j| {
         let (along, across) = if lines.along_x { (i, j) } else { (j, i) };
         // The sample lies between two lines.
         let at = across as f32 - lines.drift * along as f32 - lines.first as f32;
@@ -40,14 +40,10 @@ pub(super) fn slopes(field: &Heightfield, beyond: &Beyond, towards: [f32; 2]) ->
         let near = swept[whole * side + along];
         let next = swept[(whole + 1).min(lines.count - 1) * side + along];
         lerp(near, next, at - whole as f32)
-    };
-    raster(side, side, |j| {
-        let slope = &slope;
-        move |i| slope(i, j)
     })
 }
 
-/// A point of the hull: metres along the line, away from where the horizon is looked for, and its height.
+/// A point of the hull: metres along the line, against the azimuth, and its height.
 type Point = [f32; 2];
 
 /// The family of lines. Line k passes column (or row) `along` at `across` = k + drift·along.
@@ -55,7 +51,7 @@ struct Lines<'a> {
     field: &'a Heightfield,
     towards: [f32; 2],
     along_x: bool,
-    /// Whether the looked-at horizon lies at the greater end of `along`.
+    /// Whether the azimuth points to the greater end of `along`.
     ahead: bool,
     drift: f32,
     first: i32,

@@ -26,6 +26,7 @@ use crate::model::{Instance, Landform, LightMap, Mesh, SkyLight};
 use crate::raster::square_image;
 pub use stage::LightMapStage;
 use sun::Sun;
+use trees::{Ground, Texels};
 
 /// The light on the field of `land`, `side_px`² texels (at least one).
 ///
@@ -44,13 +45,13 @@ pub fn light_map(
     let sun = Sun::of(light);
     let samples = land.field.side as usize;
     let to_samples = Resampling::from_samples(side, samples);
-    let ground_m = to_samples.whole(side, &land.field.heights_m);
+    let ground_m = to_samples.whole(&land.field.heights_m);
     let sun_on_land = sun::on_land(&sun, land);
-    let sky_side = sky::side(land);
-    let sky_on_land = sky::on_land(light, land, sky_side);
-    let to_sky = Resampling::from_samples(side, sky_side);
-    let shade = trees::shade(&sun, land, trees, &casters, &ground_m, side);
-    let to_crowns = Resampling::from_texels(side, shade.crown_side);
+    let sky_on_land = sky::on_land(light, land);
+    let to_sky = Resampling::from_samples(side, sky_on_land.len().isqrt());
+    let texels = Texels { side, extent_m: land.field.extent_m() };
+    let shade = trees::shade(&sun, trees, &casters, &Ground { heights_m: &ground_m, texels });
+    let to_crowns = Resampling::from_texels(side, shade.crowns.len().isqrt());
     let image = square_image(side, |j| {
         let struck = to_samples.row(j, &sun_on_land);
         let sky = to_sky.row(j, sky_on_land.as_chunks::<1>().0);
@@ -67,8 +68,8 @@ pub fn light_map(
     LightMap { image }
 }
 
-/// Interleaved gradient noise (Jimenez 2014) in [0, 1): even over any 3×3 texels, so that it cannot be seen. The
-/// inner fraction is kept as an integer of 32 bits, which wraps by itself.
+/// Interleaved gradient noise (Jimenez 2014) in [0, 1): even over any 3×3 texels, so that it stays invisible. The
+/// inner fraction is a 32-bit integer, which wraps by itself.
 #[inline]
 fn dither(i: usize, j: usize) -> f32 {
     const UNIT: f64 = 4_294_967_296.0;
@@ -125,10 +126,8 @@ impl Resampling {
     }
 
     /// All texels.
-    fn whole(&self, texels: usize, grid: &[f32]) -> Vec<f32> {
-        let mut whole = vec![0.0; texels * texels];
-        let rows = whole.par_chunks_mut(texels).enumerate();
-        rows.for_each(|(j, row)| row.copy_from_slice(self.row(j, grid.as_chunks::<1>().0).as_flattened()));
-        whole
+    fn whole(&self, grid: &[f32]) -> Vec<f32> {
+        let rows = (0..self.places.len()).into_par_iter();
+        rows.flat_map_iter(|j| self.row(j, grid.as_chunks::<1>().0).into_flattened()).collect()
     }
 }

@@ -5,32 +5,24 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::horizon::{Beyond, slopes};
-use crate::math::interpolate;
+use crate::math::{cell, interpolate, lerp_array};
 use crate::model::{Heightfield, Landform, SkyLight};
-use crate::raster::raster;
+use crate::raster::square;
 
-/// Azimuths in which the horizon is looked for.
+/// Azimuths for which the horizon is found.
 const AZIMUTHS: usize = 8;
 /// Steps of the tables over the sine of the horizon's elevation, and of their integration over elevation.
 const TABLE_STEPS: usize = 128;
 const ELEVATION_STEPS: usize = 1024;
 /// Samples a side at which the sky is computed, at most: it changes slowly.
 const MAX_SAMPLES: u32 = 257;
-/// How far hills beyond the field count, in metres.
+/// Metres beyond the field within which hills count.
 const REACH_M: f32 = 2500.0;
 
-/// Samples a side of what [`on_land`] gives.
-pub(super) fn side(land: &Landform) -> usize {
-    ((land.field.side - 1) / stride(land) + 1) as usize
-}
-
-fn stride(land: &Landform) -> u32 {
-    (land.field.side - 1).div_ceil(MAX_SAMPLES - 1).next_power_of_two()
-}
-
-/// The sky's part for `side`² samples over the field.
-pub(super) fn on_land(light: &SkyLight, land: &Landform, side: usize) -> Vec<f32> {
-    let field = smoothed(&land.field, stride(land), side);
+/// The sky's part for a square of samples over the field.
+pub(super) fn on_land(light: &SkyLight, land: &Landform) -> Vec<f32> {
+    let field = smoothed(&land.field);
+    let side = field.side as usize;
     let beyond = Beyond { apron: &land.apron, reach_m: REACH_M };
     let table = Table::of(light);
     let normals = normals(&field);
@@ -46,7 +38,7 @@ pub(super) fn on_land(light: &SkyLight, land: &Landform, side: usize) -> Vec<f32
             }
         });
     }
-    let whole = AZIMUTHS as f32 * table.upright[0];
+    let whole = AZIMUTHS as f32 * table.0[0][0];
     sums.iter_mut().for_each(|sum| *sum = (*sum / whole).min(1.0));
     sums
 }
@@ -56,35 +48,31 @@ fn normals(field: &Heightfield) -> Vec<Vec3> {
     (0..field.side * field.side).into_par_iter().map(at).collect()
 }
 
-/// Every `stride`-th sample, each the mean of its neighbourhood by weights 1-2-1.
-fn smoothed(field: &Heightfield, stride: u32, side: usize) -> Heightfield {
+/// At most `MAX_SAMPLES` samples a side, each the mean of its neighbourhood by weights 1-2-1.
+fn smoothed(field: &Heightfield) -> Heightfield {
+    let last = field.side - 1;
+    let stride = last.div_ceil(MAX_SAMPLES - 1).next_power_of_two();
     if stride == 1 {
         return field.clone();
     }
-    let last = field.side - 1;
+    let side = last / stride + 1;
     let around = |k: usize| {
         let k = k as u32 * stride;
         [k.saturating_sub(stride / 2), k, (k + stride / 2).min(last)]
     };
     let mean = |[a, b, c]: [f32; 3]| 0.25 * a + 0.5 * b + 0.25 * c;
-    let heights_m = raster(side, side, |j| {
-        let rows = around(j);
-        move |i| mean(rows.map(|j| mean(around(i).map(|i| field.at(i, j)))))
-    });
-    Heightfield { side: side as u32, spacing_m: field.spacing_m * stride as f32, heights_m }
+    let heights_m =
+        square(side as usize, |i, j| mean(around(j).map(|j| mean(around(i).map(|i| field.at(i, j))))));
+    Heightfield { side, spacing_m: field.spacing_m * stride as f32, heights_m }
 }
 
 /// Irradiance per azimuth from above a horizon, by the sine of its elevation: what falls on level ground, and what
 /// falls on a wall that faces the azimuth.
-struct Table {
-    upright: Vec<f32>,
-    sideways: Vec<f32>,
-}
+struct Table(Vec<[f32; 2]>);
 
 impl Table {
     fn of(light: &SkyLight) -> Self {
-        let mut upright = vec![0.0; TABLE_STEPS + 1];
-        let mut sideways = vec![0.0; TABLE_STEPS + 1];
+        let mut table = vec![[0.0; 2]; TABLE_STEPS + 1];
         let step = std::f32::consts::FRAC_PI_2 / ELEVATION_STEPS as f32;
         let (mut level, mut wall) = (0.0, 0.0);
         let mut entry = TABLE_STEPS;
@@ -94,17 +82,15 @@ impl Table {
             let elevation = (k as f32 + 0.5) * step;
             let (sin, cos) = libm::sincosf(elevation);
             while entry > 0 && sin * TABLE_STEPS as f32 <= entry as f32 - 1.0e-3 {
-                (upright[entry], sideways[entry]) = (level, wall);
+                table[entry] = [level, wall];
                 entry -= 1;
             }
             let radiance = radiance(elevation);
             level += radiance * sin * cos * step;
             wall += radiance * cos * cos * step;
         }
-        for rest in 0..=entry {
-            (upright[rest], sideways[rest]) = (level, wall);
-        }
-        Self { upright, sideways }
+        table[..=entry].fill([level, wall]);
+        Self(table)
     }
 
     #[inline]
@@ -112,12 +98,13 @@ impl Table {
         let slope = slope.max(0.0);
         let at = slope / (1.0 + slope * slope).sqrt() * TABLE_STEPS as f32;
         let facing = normal.x * towards[0] + normal.z * towards[1];
-        let (upright, sideways) = (interpolate(&self.upright, at), interpolate(&self.sideways, at));
+        let (k, part) = cell(at, self.0.len());
+        let [upright, sideways] = lerp_array(self.0[k], self.0[k + 1], part);
         (normal.y * upright + facing * sideways).max(0.0)
     }
 }
 
-/// Luminance of the sky at an elevation in radians; a sky that says nothing or is black is taken as even.
+/// Luminance of the sky at an elevation in radians; a sky without zones or a black one counts as uniform.
 fn radiance_by_elevation(light: &SkyLight) -> impl Fn(f32) -> f32 + use<> {
     let zones = &light.zonal_radiance_linear;
     let even = zones.len() < 2 || zones.iter().flatten().all(|&radiance| radiance <= 0.0);

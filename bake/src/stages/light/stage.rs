@@ -1,3 +1,5 @@
+//! The light map as a stage: results of earlier stages → a PNG.
+
 use serde::Serialize;
 
 use super::light_map;

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::horizon::{Beyond, slopes};
 use crate::math::interpolate;
 use crate::model::{Landform, SkyLight};
-use crate::raster::raster;
+use crate::raster::square;
 
 /// The smallest sine of the sun's angular radius, so that a point-like sun still has a defined edge (0.05°).
 const MIN_RADIUS: f32 = 0.000_87;
@@ -24,7 +24,7 @@ pub(super) struct Sun {
     pub cos_elevation: f32,
     /// Sine of half its angular diameter.
     pub sin_radius: f32,
-    /// What a flat horizon leaves of its disc.
+    /// The part of its disc above a flat horizon.
     open: f32,
     disc: Disc,
 }
@@ -40,7 +40,7 @@ impl Sun {
         Self { direction, towards, sin_elevation: direction.y, cos_elevation: level, sin_radius, open, disc }
     }
 
-    /// Whether any of it is to be seen from level ground.
+    /// Whether its middle is above a level horizon.
     pub fn is_up(&self) -> bool {
         self.sin_elevation > 0.0
     }
@@ -81,7 +81,7 @@ impl Disc {
 }
 
 /// The sun at every sample of the field: how far the disc's middle stands above the land, in radii; a third of how
-/// much that changes across the sample's neighbours; n·l, negative on what is turned away; and 0.
+/// much that changes across the sample's neighbours; n·l, negative where the ground is turned away; and 0.
 pub(super) fn on_land(sun: &Sun, land: &Landform) -> Vec<[f32; 4]> {
     let field = &land.field;
     let side = field.side as usize;
@@ -96,16 +96,13 @@ pub(super) fn on_land(sun: &Sun, land: &Landform) -> Vec<[f32; 4]> {
         let above = (sun.sin_elevation - sun.cos_elevation * *slope) / (1.0 + *slope * *slope).sqrt();
         *slope = above / sun.sin_radius;
     });
-    raster(side, side, |j| {
+    square(side, |i, j| {
         let (north, south) = (j.saturating_sub(1) * side, (j + 1).min(side - 1) * side);
-        let margin = &margin;
-        move |i| {
-            let (west, east) = (i.saturating_sub(1), (i + 1).min(side - 1));
-            let dx = margin[j * side + east] - margin[j * side + west];
-            let dz = margin[south + i] - margin[north + i];
-            let edge = 0.35 * (dx * dx + dz * dz).sqrt();
-            let cosine = field.normal_at(i as u32, j as u32).dot(sun.direction);
-            [margin[j * side + i], edge, cosine, 0.0]
-        }
+        let (west, east) = (i.saturating_sub(1), (i + 1).min(side - 1));
+        let dx = margin[j * side + east] - margin[j * side + west];
+        let dz = margin[south + i] - margin[north + i];
+        let edge = 0.35 * (dx * dx + dz * dz).sqrt();
+        let cosine = field.normal_at(i as u32, j as u32).dot(sun.direction);
+        [margin[j * side + i], edge, cosine, 0.0]
     })
 }

@@ -1,18 +1,18 @@
-//! Where trees stand and what their shadows look like → the part of the sun and of the sky that trees let through,
-//! per texel of the light map, 0–1.
+//! Trees and their shadows → the part of the sun and of the sky that trees let through, per texel of the light map,
+//! 0–1.
 //!
 //! A shadow is drawn once per template and direction from which the sun strikes it ([`Shadow`]), and laid onto the
-//! ground for each instance by its affine transform: affine maps keep parallel projections, so this is exact but
-//! for the rounding of the direction, and the trunk's base and axis are exact always. Each texel of the ground is
-//! looked up where it really lies, along the ray from the sun: on the land, not on a plane. Trees are multiplied
-//! in their order, within bands of rows, so the number of threads changes nothing.
+//! ground for each instance by its affine transform: affine maps keep parallel projections, so this is exact except for
+//! the rounding of the direction, and the trunk's base and axis are always exact. Each texel of the ground is looked up
+//! where it really lies, along the ray from the sun: on the land, not on a plane. Trees are multiplied in their order,
+//! within bands of rows, so the number of threads changes nothing.
 
 use glam::{Mat3, Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::caster::{Crown, Shadow};
 use super::sun::Sun;
-use crate::model::{Instance, Landform, Mesh};
+use crate::model::{Instance, Mesh};
 
 /// Directions around a template for which shadows are drawn.
 const DIRECTIONS: usize = 16;
@@ -23,32 +23,19 @@ const MAX_LENGTH_M: f32 = 1000.0;
 /// A crown that hides less of the sky than this is left out.
 const MIN_CROWN: f32 = 0.008;
 
-/// What trees leave of sun and sky.
+/// The part of sun and sky that trees let through.
 pub(super) struct Shade {
     /// Sun, a value per texel of the light map.
     pub sun: Vec<f32>,
-    /// Sky, `crown_side`² values.
+    /// Sky, a square of half as many values a side.
     pub crowns: Vec<f32>,
-    pub crown_side: usize,
 }
 
-/// Lays all trees' shadows on the ground, given as the height of each texel.
-pub(super) fn shade(
-    sun: &Sun,
-    land: &Landform,
-    trees: &[Instance],
-    casters: &[&Mesh],
-    ground_m: &[f32],
-    side: usize,
-) -> Shade {
-    let extent_m = land.field.extent_m();
-    let ground = Ground { heights_m: ground_m, texels: Texels { side, extent_m } };
+/// Lays all trees' shadows on the ground.
+pub(super) fn shade(sun: &Sun, trees: &[Instance], casters: &[&Mesh], ground: &Ground) -> Shade {
+    let Texels { side, extent_m } = ground.texels;
     let texels = Texels { side: side.div_ceil(2), extent_m };
-    let mut shade = Shade {
-        sun: vec![1.0; side * side],
-        crowns: vec![1.0; texels.side * texels.side],
-        crown_side: texels.side,
-    };
+    let mut shade = Shade { sun: vec![1.0; side * side], crowns: vec![1.0; texels.side * texels.side] };
     let crowns: Vec<Crown> = casters.iter().map(|caster| Crown::of(caster)).collect();
     let poses: Vec<Pose> = trees.iter().filter_map(|i| Pose::of(i, sun, casters)).collect();
     let crowns: Vec<_> =
@@ -60,11 +47,11 @@ pub(super) fn shade(
         let shadows = draw_shadows(sun, casters, &poses, ground.texels.texel_m());
         let placed = poses.par_iter().map(|pose| {
             let shadow = shadows[pose.template * DIRECTIONS + pose.direction].as_ref()?;
-            PlacedShadow::of(pose, shadow, sun, &ground)
+            PlacedShadow::of(pose, shadow, sun, ground)
         });
         let placed: Vec<Option<PlacedShadow>> = placed.collect();
         bands(&mut shade.sun, side, |first, rows| {
-            placed.iter().flatten().for_each(|shadow| shadow.darken(&ground, first, rows));
+            placed.iter().flatten().for_each(|shadow| shadow.darken(ground, first, rows));
         });
     }
     shade
@@ -94,9 +81,9 @@ fn front(direction: usize) -> [f32; 2] {
 }
 
 /// Where the texels of an image lie.
-struct Texels {
-    side: usize,
-    extent_m: f32,
+pub(super) struct Texels {
+    pub side: usize,
+    pub extent_m: f32,
 }
 
 impl Texels {
@@ -118,9 +105,9 @@ impl Texels {
 }
 
 /// The light map's texels and their heights.
-struct Ground<'a> {
-    heights_m: &'a [f32],
-    texels: Texels,
+pub(super) struct Ground<'a> {
+    pub heights_m: &'a [f32],
+    pub texels: Texels,
 }
 
 impl Ground<'_> {
@@ -135,11 +122,10 @@ impl Ground<'_> {
 /// An instance ready to cast a shadow.
 struct Pose {
     template: usize,
+    /// The one around the template that is nearest to the sun's.
     direction: usize,
     world_from_tree: Mat3,
     foot: Vec3,
-    /// The direction towards the sun that its template's shadow was drawn for, in plan.
-    front: [f32; 2],
 }
 
 impl Pose {
@@ -156,7 +142,7 @@ impl Pose {
         let to_sun = world_from_tree.inverse() * sun.direction;
         let turns = libm::atan2f(to_sun.z, to_sun.x) / std::f32::consts::TAU;
         let direction = ((turns + 1.0) * DIRECTIONS as f32 + 0.5) as usize % DIRECTIONS;
-        Some(Self { template, direction, world_from_tree, foot, front: front(direction) })
+        Some(Self { template, direction, world_from_tree, foot })
     }
 
     /// How much it is widened in plan.
@@ -166,8 +152,8 @@ impl Pose {
     }
 }
 
-/// A shadow in its place on the ground. `u` and `v` are world metres in the plane across the light from the tree's foot,
-/// to the right as the sun sees it and up; `away` is metres in plan from the foot away from the sun.
+/// A shadow in its place on the ground. `u` and `v` are world metres in the plane across the light from the tree's
+/// foot, to the right as the sun sees it and up; `away` is metres in plan from the foot away from the sun.
 struct PlacedShadow<'a> {
     shadow: &'a Shadow,
     sun: &'a Sun,
@@ -190,11 +176,12 @@ impl<'a> PlacedShadow<'a> {
         };
         // Directions of the tree's space that stand for the image's a and c: c is the trunk's direction while
         // the sun sees it from the side, and that away from the sun when it stands overhead.
-        let right = Vec3::new(-pose.front[1], 0.0, pose.front[0]);
+        let [ahead, aside] = front(pose.direction);
+        let right = Vec3::new(-aside, 0.0, ahead);
         let up = if sun.cos_elevation > 0.26 {
             Vec3::Y / sun.cos_elevation
         } else {
-            Vec3::new(-pose.front[0], 0.0, -pose.front[1]) / sun.sin_elevation
+            Vec3::new(-ahead, 0.0, -aside) / sun.sin_elevation
         };
         let (a, c) = (project(pose.world_from_tree * right), project(pose.world_from_tree * up));
         let area = a.perp_dot(c);
@@ -232,12 +219,13 @@ impl<'a> PlacedShadow<'a> {
         let lines = [self.u[0], 0.5 * (self.u[0] + self.u[1]), self.u[1]];
         let mut away = step_m;
         while away < MAX_LENGTH_M {
-            let lit = |u: f32| {
-                let (x, z) = self.place(u, away);
-                let height = ground.height_m(x, z)?;
-                Some((height - self.foot.y) * self.sun.cos_elevation + away * self.sun.sin_elevation > top)
-            };
-            if lines.iter().all(|&u| lit(u).unwrap_or(true)) {
+            let rise_m = away * self.sun.sin_elevation;
+            let above = |height_m: f32| (height_m - self.foot.y) * self.sun.cos_elevation + rise_m > top;
+            if lines
+                .map(|u| self.place(u, away))
+                .iter()
+                .all(|&(x, z)| ground.height_m(x, z).is_none_or(above))
+            {
                 return away + step_m;
             }
             away += step_m;
@@ -253,13 +241,8 @@ impl<'a> PlacedShadow<'a> {
 
     /// First row and the one after the last that it may touch.
     fn rows(&self, ground: &Ground) -> [usize; 2] {
-        let (mut low, mut high) = (f32::MAX, f32::MIN);
-        for u in self.u {
-            for away in self.away {
-                let (_, z) = self.place(u, away);
-                (low, high) = (low.min(z), high.max(z));
-            }
-        }
+        let ends = self.u.iter().flat_map(|&u| self.away.map(|away| self.place(u, away).1));
+        let (low, high) = ends.fold((f32::MAX, f32::MIN), |(low, high), z| (low.min(z), high.max(z)));
         let row = |at: f32| at.clamp(0.0, ground.texels.side as f32) as usize;
         [row(ground.texels.texel(low).ceil()), row(ground.texels.texel(high).floor() + 1.0)]
     }
@@ -319,23 +302,20 @@ fn narrow(span: &mut [f32; 2], slope: f32, offset: f32, range: [f32; 2]) {
     span[1] = span[1].min(ends[0].max(ends[1]));
 }
 
-/// What a crown hides of the sky around its foot.
+/// How a crown hides the sky around its foot.
 struct CrownShade {
     foot: Vec3,
-    height_m: f32,
-    radius_m: f32,
-    opacity: f32,
+    crown: Crown,
     reach_m: f32,
 }
 
 impl CrownShade {
-    fn of(pose: &Pose, crown: &Crown) -> Option<Self> {
-        let height_m = (crown.height_m * pose.world_from_tree.y_axis.y).max(0.1);
-        let radius_m = crown.radius_m * pose.widening();
-        let square = radius_m * radius_m * height_m * crown.opacity / MIN_CROWN;
+    fn of(pose: &Pose, template: &Crown) -> Option<Self> {
+        let height_m = (template.height_m * pose.world_from_tree.y_axis.y).max(0.1);
+        let crown = Crown { height_m, radius_m: template.radius_m * pose.widening(), ..*template };
+        let square = crown.radius_m * crown.radius_m * height_m * crown.opacity / MIN_CROWN;
         let reach_m = libm::cbrtf(square).min(40.0);
-        let (foot, opacity) = (pose.foot, crown.opacity);
-        (reach_m > height_m).then_some(Self { foot, height_m, radius_m, opacity, reach_m })
+        (reach_m > height_m).then_some(Self { foot: pose.foot, crown, reach_m })
     }
 
     /// Form factor of a sphere (radius R, h above, r aside) seen from level ground: R²h / (h²+r²)^{3/2}.
@@ -344,15 +324,16 @@ impl CrownShade {
         let from = |at: f32, min: usize| (at - self.reach_m / texel_m).ceil().max(min as f32) as usize;
         let to = |at: f32, max: usize| ((at + self.reach_m / texel_m + 1.0).max(0.0) as usize).min(max);
         let (i, j) = (texels.texel(self.foot.x), texels.texel(self.foot.z));
-        let strength = self.radius_m * self.radius_m * self.height_m;
+        let Crown { height_m, radius_m, opacity } = self.crown;
+        let strength = radius_m * radius_m * height_m;
         for row in from(j, first)..to(j, first + band.len() / side) {
             let dz = (row as f32 - j) * texel_m;
-            let level = self.height_m * self.height_m + dz * dz;
+            let level = height_m * height_m + dz * dz;
             for column in from(i, 0)..to(i, side) {
                 let dx = (column as f32 - i) * texel_m;
                 let square = level + dx * dx;
-                let hidden = (strength / (square * square.sqrt())).min(0.95) * self.opacity;
-                // Less what it is at the end of its reach, so that no edge shows there.
+                let hidden = (strength / (square * square.sqrt())).min(0.95) * opacity;
+                // Reduced by its value at the end of its reach, so that no edge shows there.
                 let hidden = (hidden - MIN_CROWN).max(0.0);
                 band[(row - first) * side + column] *= 1.0 - hidden;
             }

@@ -1,4 +1,4 @@
-//! Leaf cards and the like: the order in which elements are removed, what that costs in metres, and how much the rest
+//! Leaf cards and other aggregates → the order in which elements are removed, its cost in metres, and how much the rest
 //! grow.
 //!
 //! Cook, Halstead, Planck, Ryu, "Stochastic simplification of aggregate detail" (2007). The order is stratified:
@@ -8,7 +8,7 @@
 
 use glam::Vec3;
 
-use super::coverage::{Element, Silhouettes};
+use super::coverage::Silhouettes;
 use super::log::Vertex;
 use super::state::{PartSpan, State};
 
@@ -24,8 +24,6 @@ pub struct Aggregate {
     /// Elements in the order in which they are removed, without those that always stay.
     order: Vec<u32>,
     removed: usize,
-    /// Elements at full detail.
-    elements: usize,
     /// Error in metres per unit of growth.
     weight_m: f64,
     max_scale: f32,
@@ -46,28 +44,27 @@ impl Aggregate {
             (low.min(place.centre - place.radius), high.max(place.centre + place.radius))
         });
         let extent = (high - low).max_element();
-        let shapes = (0..count).map(|e| element(state, span, e, &places[e])).collect();
+        let centres: Vec<Vec3> = places.iter().map(|place| place.centre).collect();
         Some(Self {
             part,
             order: removal_order(&places, (low + high) * 0.5),
             removed: 0,
-            elements: count,
             weight_m: f64::from(weight) * radius,
             max_scale: (MAX_GROWN * extent / radius as f32).max(1.0),
-            silhouettes: Silhouettes::new(shapes, low, high, fill),
+            silhouettes: Silhouettes::new(state, span, &centres, [low, high], fill),
             lives: vec![true; count],
             last: (1.0, count),
         })
     }
 
     pub fn living(&self) -> usize {
-        self.elements - self.removed
+        self.lives.len() - self.removed
     }
 
     /// The error in metres once the next element is removed: by how much elements will have grown to keep the area.
     pub fn next_cost_m(&self) -> Option<f64> {
         (self.removed < self.order.len()).then(|| {
-            let ratio = self.elements as f64 / (self.living() - 1) as f64;
+            let ratio = self.lives.len() as f64 / (self.living() - 1) as f64;
             self.weight_m * (ratio.sqrt() - 1.0)
         })
     }
@@ -118,7 +115,7 @@ fn places(state: &State, span: &PartSpan) -> Option<Vec<Place>> {
     let (count, per, _) = span.elements()?;
     let place = |element: u32| {
         let [ids, _] = span.element(element);
-        let centre = Vec3::from_array(state.centre(ids.clone()));
+        let centre = state.centre(ids.clone());
         let square = |v: &Vertex| Vec3::from_array(v.position).distance_squared(centre);
         let sum: f32 = state.vertices[ids].iter().map(square).sum();
         Place { centre, radius: (sum / per as f32).sqrt() }
@@ -126,17 +123,6 @@ fn places(state: &State, span: &PartSpan) -> Option<Vec<Place>> {
     let places: Vec<_> = (0..count).map(place).collect();
     let sound = places.iter().all(|p| p.centre.is_finite() && p.radius.is_finite());
     (sound && places.iter().any(|p| p.radius > 0.0)).then_some(places)
-}
-
-fn element(state: &State, span: &PartSpan, element: usize, place: &Place) -> Element {
-    let [vertices, triangles] = span.element(element as u32);
-    let start = vertices.start as u32;
-    let offset = |v: &Vertex| Vec3::from_array(v.position) - place.centre;
-    Element {
-        centre: place.centre,
-        offsets: state.vertices[vertices].iter().map(offset).collect(),
-        triangles: state.triangles[triangles].iter().map(|t| t.map(|v| v - start)).collect(),
-    }
 }
 
 /// Elements in the order in which they are removed; the last few never are.

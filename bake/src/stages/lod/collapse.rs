@@ -17,7 +17,7 @@ const SEAM_PENALTY: f64 = 3.0;
 /// Weights of the planes that hold boundaries and seams in place, relative to the surface's own.
 const BOUNDARY_WEIGHT: f64 = 2.0;
 const SEAM_WEIGHT: f64 = 0.25;
-/// Keeping the volume may make the error so much larger.
+/// Keeping the volume may make the error larger by this factor.
 const VOLUME_SLACK: f64 = 1.2;
 
 /// A possible collapse of the edge between two points.
@@ -25,7 +25,8 @@ const VOLUME_SLACK: f64 = 1.2;
 pub struct Candidate {
     /// What orders collapses: the error in metres, and a little for length and for seams.
     pub cost: f64,
-    freedom: Freedom,
+    /// Where the new vertex may lie.
+    pub freedom: Freedom,
 }
 
 /// How far a collapse moved the surface, in metres.
@@ -67,25 +68,21 @@ impl Surface {
 
     /// The collapse of edge (a, b), if there can be one.
     pub fn candidate(&mut self, state: &State, a: u32, b: u32) -> Option<Candidate> {
-        let mut star = std::mem::take(&mut self.stars[0]);
-        self.topology.star(state, a, &mut star);
-        let candidate = self.judge(state, a, b, &star);
-        self.stars[0] = star;
-        candidate
+        self.topology.star(state, a, &mut self.stars[0]);
+        self.judge(state, a, b)
     }
 
     /// All collapses of a point's edges: what each costs, and the point at the edge's other end.
-    pub fn candidates(&mut self, state: &State, point: u32, found: &mut Vec<(f64, u32)>) {
-        let (mut star, mut ring) = (std::mem::take(&mut self.stars[0]), std::mem::take(&mut self.ring));
-        self.topology.star(state, point, &mut star);
-        self.topology.ring(state, point, &star, &mut self.seen, &mut ring);
-        found.clear();
-        found.extend(ring.iter().filter_map(|&b| Some((self.judge(state, point, b, &star)?.cost, b))));
-        (self.stars[0], self.ring) = (star, ring);
+    pub fn candidates(&mut self, state: &State, point: u32) -> impl Iterator<Item = (f64, u32)> {
+        self.topology.star(state, point, &mut self.stars[0]);
+        self.topology.ring(state, point, &self.stars[0], &mut self.seen, &mut self.ring);
+        let surface: &Self = self;
+        surface.ring.iter().filter_map(move |&b| Some((surface.judge(state, point, b)?.cost, b)))
     }
 
-    fn judge(&self, state: &State, a: u32, b: u32, star_a: &[u32]) -> Option<Candidate> {
-        let triangles = EdgeTriangles::new(&self.topology, state, b, star_a);
+    /// The collapse of edge (a, b), where `stars[0]` holds the corners at `a`.
+    fn judge(&self, state: &State, a: u32, b: u32) -> Option<Candidate> {
+        let triangles = EdgeTriangles::new(&self.topology, state, b, &self.stars[0]);
         let (freedom, penalty) = self.freedom(a, b, &triangles)?;
         let ends = self.ends(a, b);
         let placed = self.quadrics.place(a as usize, b as usize, ends, freedom);
@@ -95,17 +92,9 @@ impl Surface {
     }
 
     /// Collapses edge (a, b) and logs how to undo it; `None` if that would tear or fold the surface.
-    pub fn collapse(
-        &mut self,
-        state: &mut State,
-        [a, b]: [u32; 2],
-        candidate: Candidate,
-    ) -> Option<Collapsed> {
-        // What stays in place is kept; so `a` does unless the new vertex lies at `b`.
-        let (a, b, freedom) = match candidate.freedom {
-            Freedom::End => (b, a, Freedom::Start),
-            other => (a, b, other),
-        };
+    pub fn collapse(&mut self, state: &mut State, [a, b]: [u32; 2], freedom: Freedom) -> Option<Collapsed> {
+        // The first point is kept: `a`, unless the new vertex lies at `b`.
+        let (a, b, freedom) = if freedom == Freedom::End { (b, a, Freedom::Start) } else { (a, b, freedom) };
         let mut stars = std::mem::take(&mut self.stars);
         self.topology.star(state, a, &mut stars[0]);
         self.topology.star(state, b, &mut stars[1]);

@@ -4,70 +4,69 @@
 
 use glam::{Vec2, Vec3};
 
+use super::state::{PartSpan, State};
+
 const SIDE: usize = 64;
 /// Unit vectors to the right in each view; up is +y.
 const RIGHT: [Vec3; 3] =
     [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.5, 0.0, 0.866_025_4), Vec3::new(-0.5, 0.0, 0.866_025_4)];
 
-/// One element: its vertices relative to its centre.
-pub struct Element {
-    pub centre: Vec3,
-    pub offsets: Vec<Vec3>,
-    pub triangles: Vec<[u32; 3]>,
-}
-
 /// Elements as seen from the sides.
 pub struct Silhouettes {
-    elements: u32,
-    vertices_each: usize,
+    /// Triangles by element, their vertices counted from the part's first.
     triangles: Vec<[u32; 3]>,
-    /// For each view, each element's centre and the offsets of its vertices, in pixels.
+    /// Triangles of an element.
+    per_element: usize,
     views: Vec<View>,
     /// Pixels that all elements cover at their own size.
     pub full: u32,
 }
 
+/// Each element's centre, and the offset of each vertex from it, in pixels.
 struct View {
     centres: Vec<Vec2>,
     offsets: Vec<Vec2>,
 }
 
 impl Silhouettes {
-    /// Projects the elements, whose box is given, with their area reduced by the factor `fill`.
-    pub fn new(elements: Vec<Element>, low: Vec3, high: Vec3, fill: f32) -> Self {
+    /// Projects the elements of a part, whose centres and box are given, with their area reduced by the factor `fill`.
+    pub fn new(state: &State, span: &PartSpan, centres: &[Vec3], [low, high]: [Vec3; 2], fill: f32) -> Self {
         let middle = (low + high) * 0.5;
         // Room for elements to grow beyond the box.
         let extent = (high - low).length().max(f32::MIN_POSITIVE) * 1.1;
         let (pixels, shrink) = (SIDE as f32 / extent, fill.clamp(0.01, 1.0).sqrt());
+        let first = span.element(0);
+        let vertices = &state.vertices[first[0].start..][..centres.len() * first[0].len()];
         let view = |right: &Vec3| {
             let flat = |v: Vec3| Vec2::new(v.dot(*right), v.y) * pixels;
-            let to_pixels = |v: Vec3| flat(v - middle) + 0.5 * SIDE as f32;
+            let elements = vertices.chunks_exact(first[0].len()).zip(centres);
+            let offsets = elements.flat_map(|(vertices, &centre)| {
+                vertices.iter().map(move |v| flat(Vec3::from_array(v.position) - centre) * shrink)
+            });
             View {
-                centres: elements.iter().map(|e| to_pixels(e.centre)).collect(),
-                offsets: elements.iter().flat_map(|e| &e.offsets).map(|&v| flat(v) * shrink).collect(),
+                centres: centres.iter().map(|&v| flat(v - middle) + 0.5 * SIDE as f32).collect(),
+                offsets: offsets.collect(),
             }
         };
+        let triangles = state.triangles[span.range()].iter().map(|t| t.map(|v| v - span.first_vertex));
         let mut silhouettes = Self {
-            elements: elements.len() as u32,
-            vertices_each: elements.first().map_or(0, |e| e.offsets.len()),
+            triangles: triangles.collect(),
+            per_element: first[1].len(),
             views: RIGHT.iter().map(view).collect(),
-            triangles: elements.iter().flat_map(|e| &e.triangles).copied().collect(),
             full: 0,
         };
-        silhouettes.full = silhouettes.covered(&vec![true; elements.len()], 1.0);
+        silhouettes.full = silhouettes.covered(&vec![true; centres.len()], 1.0);
         silhouettes
     }
 
     /// Pixels that the living elements cover when each is scaled about its centre.
     pub fn covered(&self, lives: &[bool], scale: f32) -> u32 {
-        let per = self.triangles.len() / (self.elements as usize).max(1);
         let cover = |view: &View| {
             let mut rows = [0_u64; SIDE];
-            for element in (0..self.elements as usize).filter(|&e| lives[e]) {
-                let centre = view.centres[element];
-                let first = element * self.vertices_each;
-                for triangle in &self.triangles[element * per..(element + 1) * per] {
-                    fill(&mut rows, triangle.map(|v| centre + view.offsets[first + v as usize] * scale));
+            let elements = self.triangles.chunks_exact(self.per_element).zip(&view.centres).zip(lives);
+            for ((triangles, &centre), _) in elements.filter(|(_, lives)| **lives) {
+                for triangle in triangles {
+                    fill(&mut rows, triangle.map(|v| centre + view.offsets[v as usize] * scale));
                 }
             }
             rows.iter().map(|row| row.count_ones()).sum::<u32>()

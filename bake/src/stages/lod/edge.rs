@@ -95,12 +95,12 @@ impl Edge {
             }
         }
         // On a closed piece no triangle may join the first point to both opposite ones: the last tetrahedron.
-        remains
-            && !self.stars[0].iter().any(|&corner| {
-                let [_, p, q] = topology.points_from(state, corner);
-                let b = self.points[1];
-                p != b && q != b && self.triangles.count == 2 && is_opposite(p) && is_opposite(q)
-            })
+        let b = self.points[1];
+        let joins_both = |&corner: &u32| {
+            let [_, p, q] = topology.points_from(state, corner);
+            p != b && q != b && is_opposite(p) && is_opposite(q)
+        };
+        remains && !(self.triangles.count == 2 && self.stars[0].iter().any(joins_both))
     }
 
     /// A point moved along the mean normal of both stars until their volume is as before, but not far.
@@ -108,7 +108,7 @@ impl Edge {
         let (mut normal, mut volume) = (DVec3::ZERO, 0.0);
         for corner in self.stars[0].iter().copied().chain(self.surviving(topology, state)) {
             let points = topology.points_from(state, corner);
-            // Relative to the edge, for the sake of precision.
+            // Relative to the edge, for precision.
             let [p, q, r] = points.map(|p| topology.positions[p as usize] - on_edge);
             normal += (q - p).cross(r - p);
             volume += p.dot(q.cross(r));

@@ -12,7 +12,7 @@ use super::sequence::Sequence;
 use super::state::{NONE, State};
 use super::{LodOptions, strip};
 
-/// A level may miss its number of vertices by one in so many; otherwise there is no such level.
+/// A level may miss its number of vertices by one in this many; otherwise there is no such level.
 const TOLERANCE: usize = 50;
 /// An error may not be less than this part of the mesh's diagonal, and must grow by `MIN_GROWTH` a level.
 const MIN_ERROR: f32 = 1e-7;
@@ -75,11 +75,8 @@ fn set_errors(snapshots: &mut [Snapshot], marks: &mut [Mark], half_way_m: f32) {
 }
 
 fn finish(snapshots: Vec<Snapshot>, state: &State) -> Vec<Level> {
-    let morphs: Vec<_> = snapshots
-        .iter()
-        .enumerate()
-        .map(|(index, level)| snapshots.get(index + 1).map(|next| morph(level, next, state)))
-        .collect();
+    let morph_to_next = |index: usize| Some(morph(&snapshots[index], snapshots.get(index + 1)?, state));
+    let morphs: Vec<_> = (0..snapshots.len()).map(morph_to_next).collect();
     let level = |(snapshot, morph): (Snapshot, Option<Morph>)| {
         let vertices = snapshot.mesh.positions.len();
         let strips = snapshot.mesh.parts.iter().map(|part| strip::strip(&part.triangles, vertices)).collect();
@@ -88,7 +85,7 @@ fn finish(snapshots: Vec<Snapshot>, state: &State) -> Vec<Level> {
     snapshots.into_iter().zip(morphs).map(level).collect()
 }
 
-/// What takes one level's vertices to their places in the next.
+/// The offsets of one level's vertices to their places in the next.
 fn morph(level: &Snapshot, next: &Snapshot, state: &State) -> Morph {
     let mut morph = Morph::default();
     for (id, &here) in level.now.iter().enumerate().filter(|(_, here)| **here != NONE) {

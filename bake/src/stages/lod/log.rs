@@ -1,4 +1,4 @@
-//! The log of a simplification: for each step, what undoes it.
+//! Changes of a mesh → the log of a simplification: for each step, what undoes it.
 
 use bytemuck::NoUninit;
 

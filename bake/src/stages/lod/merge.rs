@@ -52,7 +52,7 @@ pub fn merge(topology: &mut Topology, state: &mut State, edge: &Edge, along: f32
     topology.flags[a as usize] |= topology.flags[b as usize];
     let piece = topology.piece_of[a as usize] as usize;
     topology.pieces[piece].living_vertices -= vertices_before - state.vertex_count;
-    state.end_step();
+    state.log.finish_record();
 }
 
 /// For a wedge at the edge's second point, the one at its first point that it merges into.
@@ -76,9 +76,10 @@ fn settle_wedges(
     let merged_into = merged_wedges(edge);
     let keeps_place = at == edge.ends[0];
     let keeper = wedges.iter().copied().find(|&w| topology.uses[w as usize] > 0).unwrap_or(NONE);
-    let position = match keeps_place {
-        true => state.vertices[edge.triangles.vertices[0].0 as usize].position,
-        false => (at + topology.origin).to_array().map(|x| x as f32),
+    let position = if keeps_place {
+        state.vertices[edge.triangles.vertices[0].0 as usize].position
+    } else {
+        (at + topology.origin).as_vec3().to_array()
     };
     let originals = [0, 1].map(|k| {
         let (wa, wb) = edge.triangles.vertices[k.min(edge.triangles.count - 1)];
@@ -86,12 +87,10 @@ fn settle_wedges(
     });
     let mut living = 0;
     for &wedge in wedges {
-        if let Some(kept) = merged_into(wedge) {
-            state.remove_vertex(wedge, if topology.uses[kept as usize] > 0 { kept } else { keeper });
-            continue;
-        }
-        if topology.uses[wedge as usize] == 0 {
-            state.remove_vertex(wedge, keeper);
+        let kept = merged_into(wedge);
+        if kept.is_some() || topology.uses[wedge as usize] == 0 {
+            let kept = kept.filter(|&kept| topology.uses[kept as usize] > 0);
+            state.remove_vertex(wedge, kept.unwrap_or(keeper));
             continue;
         }
         living += 1;

@@ -6,9 +6,9 @@
 //! (leaf cards) simplify stochastically: elements go, the rest grow (Cook, Halstead, Planck, Ryu 2007). One cost in
 //! metres orders both.
 //!
-//! Read `repair`, `state` and `log` (the mesh being simplified), `topology`, `quadric`, `edge`, `merge` and `collapse` (one
-//! edge), `coverage` and `aggregate` (leaf cards), `sequence` (the order of all steps), `levels`, `progressive` (the file
-//! format) and `strip`.
+//! Read `repair`, `state` and `log` (the mesh being simplified), `topology`, `quadric`, `edge`, `merge` and `collapse`
+//! (one edge), `coverage` and `aggregate` (leaf cards), `sequence` (the order of all steps), `levels`, `progressive`
+//! (the file format) and `strip`.
 
 mod aggregate;
 mod collapse;
@@ -32,19 +32,19 @@ mod tests;
 
 use crate::model::{LevelledMesh, Mesh};
 
-/// What may be chosen about levels of detail.
+/// Choices about levels of detail.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LodOptions {
-    /// At most so many levels after D_0.
+    /// The most levels after D_0.
     pub max_levels: u32,
     /// No level gets fewer vertices than this.
     pub min_vertices: u32,
     /// Metres of error for each metre by which an aggregate's elements grow: less removes leaves before bark.
     pub aggregate_weight: f32,
-    /// Metres of error for each metre of thickness of a whole piece (a twig) that is removed: less removes twigs sooner.
+    /// Metres of error for each metre of thickness of a whole piece (a twig) that is removed: less removes twigs
+    /// sooner.
     pub piece_weight: f32,
-    /// Part of an element's area that its texture leaves opaque, (0, 1]: coverage is kept for elements so much
-    /// smaller.
+    /// Part of an element's area that its texture leaves opaque, (0, 1]; coverage counts only this part.
     pub element_fill: f32,
 }
 
@@ -63,9 +63,10 @@ impl Default for LodOptions {
 /// Makes all levels of detail of a mesh.
 ///
 /// D_0 is `mesh` itself. Each further level has half the vertices of the one before, to within one element or two per
-/// cent, until one would have fewer than `min_vertices` or would be off by more than 6 % of the mesh's diagonal. Vertices
-/// keep their order. `normals`, `uvs` and `colors` may each be empty. A mesh that breaks the rules of [`Mesh`] is repaired
-/// first: a list of the wrong length is emptied, a triangle that names a vertex that does not exist is dropped.
+/// cent, until one would have fewer than `min_vertices` or would be off by more than 6 % of the mesh's diagonal.
+/// Vertices keep their order. `normals`, `uvs` and `colors` may each be empty. A mesh that breaks the rules of [`Mesh`]
+/// is repaired first: a list of the wrong length is emptied, a triangle that names a vertex that does not exist is
+/// dropped.
 pub fn levels(mesh: &Mesh, options: &LodOptions) -> LevelledMesh {
     levels::build(repair::repaired(mesh.clone()), options)
 }

@@ -1,4 +1,4 @@
-//! What a collapse costs and where its vertex goes, by area-weighted quadrics.
+//! Area-weighted quadrics → what a collapse costs and where its vertex goes.
 //!
 //! Garland and Heckbert, "Surface simplification using quadric error metrics" (1997); the new vertex is kept on the
 //! collapsed edge as in Merry's thesis, appendix A. Costs are metres: the square root of the quadric over the area
@@ -94,7 +94,7 @@ impl Quadrics {
     }
 
     /// Adds an edge of the original where the surface or its texture ends: points are kept on its line. The plane
-    /// through the edge with unit normal `across` lies athwart the surface.
+    /// through the edge with unit normal `across` is perpendicular to the surface.
     pub fn add_crease(&mut self, points: [usize; 2], [p, q]: [DVec3; 2], across: DVec3, weight: f64) {
         let plane = Quadric::plane(across, p, weight * (q - p).length_squared(), 0.0);
         self.add(&points, &plane);

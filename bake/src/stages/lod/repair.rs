@@ -1,10 +1,9 @@
 //! Any mesh → a sound one, as the rest of this folder expects it.
 
-use super::state::NONE;
 use crate::model::{Mesh, Part, PartKind};
 
-/// The mesh without what breaks the rules of [`Mesh`]: attribute lists of the wrong length, triangles that name a vertex
-/// that does not exist, and aggregates that are not laid out as they say.
+/// The mesh without violations of the rules of [`Mesh`]: attribute lists of the wrong length, triangles that name a
+/// vertex that does not exist, and aggregates that are not laid out as they say.
 pub fn repaired(mut mesh: Mesh) -> Mesh {
     fn clear_unless_complete<T>(list: &mut Vec<T>, count: usize) {
         if list.len() != count {
@@ -26,24 +25,20 @@ pub fn repaired(mut mesh: Mesh) -> Mesh {
 
 /// Whether aggregates are laid out as they say and share their vertices with no other part.
 fn kinds_hold(mesh: &Mesh) -> bool {
-    let mut owner = vec![NONE; mesh.positions.len()];
-    for (index, part) in mesh.parts.iter().enumerate() {
+    let mut taken = vec![false; mesh.positions.len()];
+    for part in &mesh.parts {
         let PartKind::Aggregate { vertices, triangles } = part.kind else { continue };
         let (vertices, triangles) = (vertices as usize, triangles as usize);
         let first = part.triangles.iter().flatten().copied().min().unwrap_or(0) as usize;
         if vertices == 0 || triangles == 0 || !elements_hold(part, first, vertices, triangles) {
             return false;
         }
-        let Some(own) = owner.get_mut(first..first + part.triangles.len() / triangles * vertices) else {
-            return false;
-        };
-        if own.iter().any(|&other| other != NONE) {
-            return false;
-        }
-        own.fill(index as u32);
+        let own = first..first + part.triangles.len() / triangles * vertices;
+        let Some(own) = taken.get_mut(own).filter(|own| !own.contains(&true)) else { return false };
+        own.fill(true);
     }
     let surfaces = mesh.parts.iter().filter(|part| part.kind == PartKind::Surface);
-    surfaces.flat_map(|part| part.triangles.iter().flatten()).all(|&v| owner[v as usize] == NONE)
+    surfaces.flat_map(|part| part.triangles.iter().flatten()).all(|&v| !taken[v as usize])
 }
 
 /// Whether the nth element has the nth run of vertices and of triangles.

@@ -1,8 +1,9 @@
 //! The order of simplification: edge collapses, removal of whole pieces (twigs) and of elements of aggregates, by one
-//! cost in metres, until a mesh has at most so many vertices.
+//! cost in metres, until a mesh has few enough vertices.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+use std::ops::Range;
 
 use glam::{DVec3, Vec3};
 
@@ -34,7 +35,6 @@ pub struct Sequence {
     /// Pieces by falling cost, and those put off because they are too large for the level.
     pieces: Vec<(f64, u32)>,
     put_off: Vec<(f64, u32)>,
-    found: Vec<(f64, u32)>,
     unused: Vec<u32>,
 }
 
@@ -53,8 +53,8 @@ impl Sequence {
         let mut used = vec![false; state.vertices.len()];
         state.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
         for span in &state.parts {
-            let elements = span.elements().map_or(0, |(elements, ..)| elements);
-            (0..elements).for_each(|element| used[span.element(element)[0].clone()].fill(true));
+            let (elements, each, _) = span.elements().unwrap_or_default();
+            used[span.first_vertex as usize..][..(elements * each) as usize].fill(true);
         }
         let mut sequence = Self {
             versions: vec![0; surface.topology.positions.len()],
@@ -65,7 +65,6 @@ impl Sequence {
             refused: Vec::new(),
             retry_above_m: 0.0,
             max_cost_m: MAX_COST * diagonal_m(&state),
-            found: Vec::new(),
             error_m: 0.0,
             aggregates,
             surface,
@@ -75,8 +74,8 @@ impl Sequence {
         sequence
     }
 
-    /// Simplifies until at most `target` vertices live or nothing more can be removed. `watch` sees the number of vertices
-    /// and the error after every step.
+    /// Simplifies until at most `target` vertices live or nothing more can be removed. `watch` sees the number of
+    /// vertices and the error after every step.
     pub fn reduce_to(&mut self, target: usize, mut watch: impl FnMut(usize, f64)) {
         self.pieces.append(&mut self.put_off);
         self.pieces.sort_by(|p, q| q.0.total_cmp(&p.0).then(q.1.cmp(&p.1)));
@@ -103,7 +102,7 @@ impl Sequence {
     /// Queues refused collapses again: what made them impossible may have been removed.
     fn retry(&mut self) {
         for (a, b, version) in std::mem::take(&mut self.refused) {
-            if self.version(a, b) == version {
+            if current_version(&self.versions, a, b) == version {
                 self.queue_edge(a, b);
             }
         }
@@ -115,45 +114,31 @@ impl Sequence {
         let piece = self.pieces.last().map(|&(cost, _)| (Next::Piece, cost));
         let elements = self.aggregates.iter().enumerate();
         let elements = elements.filter_map(|(index, part)| Some((Next::Element(index), part.next_cost_m()?)));
-        edge.into_iter()
-            .chain(piece)
-            .chain(elements)
-            .reduce(|best, next| if next.1 < best.1 { next } else { best })
-    }
-
-    fn version(&self, a: u32, b: u32) -> u32 {
-        // Versions only grow, so the sum stays the same only if both do.
-        self.versions[a as usize].wrapping_add(self.versions[b as usize])
+        edge.into_iter().chain(piece).chain(elements).min_by(|p, q| p.1.total_cmp(&q.1))
     }
 
     fn queue_all(&mut self) {
-        let mut found = Vec::new();
         let mut entries = Vec::with_capacity(4 * self.versions.len());
         for a in 0..self.versions.len() as u32 {
-            self.surface.candidates(&self.state, a, &mut found);
-            let forward = found.iter().filter(|&&(_, b)| a < b);
-            entries.extend(forward.map(|&(cost, b)| Reverse(((cost as f32).to_bits(), a, b, 0))));
+            let forward = self.surface.candidates(&self.state, a).filter(|&(_, b)| a < b);
+            entries.extend(forward.map(|(cost, b)| entry(&self.versions, cost, a, b)));
         }
         self.queue = BinaryHeap::from(entries);
     }
 
     fn queue_edge(&mut self, a: u32, b: u32) {
         if let Some(candidate) = self.surface.candidate(&self.state, a, b) {
-            self.push(candidate.cost, a, b);
+            self.queue.push(entry(&self.versions, candidate.cost, a, b));
         }
-    }
-
-    fn push(&mut self, cost: f64, a: u32, b: u32) {
-        self.queue.push(Reverse(((cost as f32).to_bits(), a, b, self.version(a, b))));
     }
 
     fn collapse_next(&mut self) {
         let Some(Reverse((_, a, b, version))) = self.queue.pop() else { return };
-        if self.version(a, b) != version {
+        if current_version(&self.versions, a, b) != version {
             return;
         }
         let Some(candidate) = self.surface.candidate(&self.state, a, b) else { return };
-        let Some(done) = self.surface.collapse(&mut self.state, [a, b], candidate) else {
+        let Some(done) = self.surface.collapse(&mut self.state, [a, b], candidate.freedom) else {
             self.refused.push((a, b, version));
             return;
         };
@@ -161,12 +146,8 @@ impl Sequence {
         for point in [a, b] {
             self.versions[point as usize] = self.versions[point as usize].wrapping_add(1);
         }
-        let mut found = std::mem::take(&mut self.found);
-        self.surface.candidates(&self.state, done.point, &mut found);
-        for &(cost, other) in &found {
-            self.push(cost, done.point, other);
-        }
-        self.found = found;
+        let found = self.surface.candidates(&self.state, done.point);
+        self.queue.extend(found.map(|(cost, other)| entry(&self.versions, cost, done.point, other)));
     }
 
     fn drop_piece(&mut self, target: usize) {
@@ -177,7 +158,7 @@ impl Sequence {
             return;
         }
         let triangles = piece.triangles.clone();
-        let axis = self.piece_axis(triangles.clone());
+        let shrunk = self.shrinking_piece(triangles.clone());
         for k in triangles {
             let t = self.surface.topology.piece_triangles[k];
             if !self.state.triangle_lives[t as usize] {
@@ -189,17 +170,17 @@ impl Sequence {
                 self.versions[point] = self.versions[point].wrapping_add(1);
                 if self.state.vertex_lives[v as usize] {
                     self.state.remove_vertex(v, NONE);
-                    self.state.collapsed_to[v as usize] =
-                        axis.nearest(self.surface.topology.positions[point]);
+                    self.state.collapsed_to[v as usize] = shrunk(self.surface.topology.positions[point]);
                 }
             }
         }
-        self.state.end_step();
+        self.state.log.finish_record();
         self.error_m = self.error_m.max(cost);
     }
 
-    /// The line that a removed piece shrinks to: through its middle along its longest extent.
-    fn piece_axis(&self, triangles: std::ops::Range<usize>) -> Axis {
+    /// Where a point of a removed piece goes: to the nearest place of the line through the piece's middle along its
+    /// longest extent.
+    fn shrinking_piece(&self, triangles: Range<usize>) -> impl Fn(DVec3) -> [f32; 3] + use<> {
         let topology = &self.surface.topology;
         let living = triangles.map(|k| topology.piece_triangles[k] as usize);
         let corners = living.filter(|&t| self.state.triangle_lives[t]).flat_map(|t| self.state.triangles[t]);
@@ -207,14 +188,13 @@ impl Sequence {
             corners.map(|v| topology.positions[topology.point_of[v as usize] as usize]).collect();
         let middle = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
         let farthest = |from: DVec3| {
-            let further = |best: DVec3, &p: &DVec3| {
-                if p.distance_squared(from) > best.distance_squared(from) { p } else { best }
-            };
-            points.iter().fold(from, further)
+            let squared = |p: DVec3| p.distance_squared(from);
+            points.iter().fold(from, |best, &p| if squared(p) > squared(best) { p } else { best })
         };
         let one_end = farthest(middle);
         let along = (farthest(one_end) - one_end).try_normalize().unwrap_or(DVec3::Y);
-        Axis { middle, along, origin: topology.origin }
+        let origin = topology.origin;
+        move |point| (middle + along * (point - middle).dot(along) + origin).as_vec3().to_array()
     }
 
     fn drop_element(&mut self, index: usize, cost_m: f64) {
@@ -225,9 +205,9 @@ impl Sequence {
         triangles.for_each(|t| self.state.remove_triangle(t as u32));
         for v in vertices {
             self.state.remove_vertex(v as u32, NONE);
-            self.state.collapsed_to[v] = centre;
+            self.state.collapsed_to[v] = centre.to_array();
         }
-        self.state.end_step();
+        self.state.log.finish_record();
         self.error_m = self.error_m.max(cost_m);
     }
 
@@ -236,22 +216,20 @@ impl Sequence {
         while self.state.vertex_count > target {
             let Some(vertex) = self.unused.pop() else { break };
             self.state.remove_vertex(vertex, NONE);
-            self.state.end_step();
+            self.state.log.finish_record();
         }
     }
 }
 
-struct Axis {
-    middle: DVec3,
-    along: DVec3,
-    origin: DVec3,
+/// The version of an edge, which changes when the edge does: those of points only grow, so the sum stays the same only
+/// if both do.
+fn current_version(versions: &[u32], a: u32, b: u32) -> u32 {
+    versions[a as usize].wrapping_add(versions[b as usize])
 }
 
-impl Axis {
-    fn nearest(&self, point: DVec3) -> [f32; 3] {
-        let at = self.middle + self.along * (point - self.middle).dot(self.along);
-        (at + self.origin).to_array().map(|x| x as f32)
-    }
+/// An entry of the queue: cost, ends and version of an edge.
+fn entry(versions: &[u32], cost: f64, a: u32, b: u32) -> Reverse<(u32, u32, u32, u32)> {
+    Reverse(((cost as f32).to_bits(), a, b, current_version(versions, a, b)))
 }
 
 fn diagonal_m(state: &State) -> f64 {
@@ -260,7 +238,7 @@ fn diagonal_m(state: &State) -> f64 {
     (high - low).max(DVec3::ZERO).length()
 }
 
-/// Pieces and the error in metres of doing without them, the cheapest last. The largest piece stays.
+/// Pieces and the error in metres of their removal, the cheapest last. The largest piece stays.
 fn pieces_by_cost(surface: &Surface, weight: f64) -> Vec<(f64, u32)> {
     let pieces = &surface.topology.pieces;
     let largest = (0..pieces.len()).max_by(|&p, &q| pieces[p].extent_m.total_cmp(&pieces[q].extent_m));

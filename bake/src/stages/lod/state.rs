@@ -1,11 +1,12 @@
 //! A mesh whose vertices and triangles can be removed, with a log of every step.
 //!
-//! Vertices and triangles keep the numbers that they have in the original mesh; what is removed is only marked. So the
-//! log read backwards gives the original back bit for bit, in its own order. Metres.
+//! Vertices and triangles keep the numbers that they have in the original mesh; removal only marks them. So the
+//! log read backwards restores the original bit for bit, in its own order. Metres.
 
 use std::ops::Range;
 
 use bytemuck::bytes_of;
+use glam::Vec3;
 
 use super::log::{Log, Vertex};
 use crate::model::{Material, Mesh, Part, PartKind};
@@ -71,7 +72,8 @@ pub struct State {
     /// Living vertices.
     pub vertex_count: usize,
     pub log: Log,
-    /// For each removed vertex the one that it merged into; `NONE` for living ones and those that went with their piece.
+    /// For each removed vertex the one that it merged into; `NONE` for living ones and those that went with their
+    /// piece.
     pub merged_into: Vec<u32>,
     /// Where each removed vertex that merged into no other shrank to.
     pub collapsed_to: Vec<[f32; 3]>,
@@ -154,11 +156,6 @@ impl State {
         self.triangles[corner as usize / 3][corner as usize % 3] = vertex;
     }
 
-    /// Ends a step: its changes become one record of the log.
-    pub fn end_step(&mut self) {
-        self.log.finish_record();
-    }
-
     /// What lives, in the original order, with aggregates' elements scaled about their centres by one factor a
     /// part; and which vertex of the mesh each original vertex became (`NONE` if removed).
     pub fn to_mesh(&self, scales: &[f32]) -> (Mesh, Vec<u32>) {
@@ -196,19 +193,15 @@ impl State {
             }
             let centre = self.centre(ids.clone());
             for id in ids {
-                let p = self.vertices[id].position;
-                mesh.positions[now[id] as usize] =
-                    std::array::from_fn(|k| centre[k] + (p[k] - centre[k]) * scale);
+                let scaled = centre + (Vec3::from_array(self.vertices[id].position) - centre) * scale;
+                mesh.positions[now[id] as usize] = scaled.to_array();
             }
         }
     }
 
     /// The mean of consecutive vertices' positions.
-    pub fn centre(&self, ids: Range<usize>) -> [f32; 3] {
-        let mut sum = [0.0_f32; 3];
-        for vertex in &self.vertices[ids.clone()] {
-            (0..3).for_each(|k| sum[k] += vertex.position[k]);
-        }
-        sum.map(|s| s / ids.len().max(1) as f32)
+    pub fn centre(&self, ids: Range<usize>) -> Vec3 {
+        let positions = self.vertices[ids.clone()].iter().map(|vertex| Vec3::from_array(vertex.position));
+        positions.sum::<Vec3>() / ids.len().max(1) as f32
     }
 }

@@ -1,6 +1,6 @@
 //! Triangles → one generalised triangle strip (thesis 4.4.1, after the local algorithm of Evans et al. 1996).
 //!
-//! A strip goes on as a pure strip as far as it can, turns a corner by a degenerate triangle, and when it is stuck
+//! A strip continues as a pure strip as far as it can, turns a corner by a degenerate triangle, and when it is stuck
 //! the next one starts beside the last triangle drawn that has a neighbour left; degenerate triangles join them.
 //! Triangle n of a strip s is `(s[n], s[n+1], s[n+2])`, the other way round where n is odd.
 
@@ -8,8 +8,7 @@
 /// are left out.
 pub fn strip(triangles: &[[u32; 3]], vertices: usize) -> Vec<u32> {
     let mut walker = Walker::new(triangles, vertices);
-    let mut unseen = 0;
-    while let Some(start) = walker.start(&mut unseen) {
+    while let Some(start) = walker.start() {
         walker.begin(start);
         while walker.go_on() || walker.turn() {}
     }
@@ -30,6 +29,8 @@ struct Walker<'a> {
     first: Vec<u32>,
     corners: Vec<u32>,
     done: Vec<bool>,
+    /// All triangles before this one are done.
+    unseen: usize,
     /// Triangles drawn that may have a neighbour left.
     drawn: Vec<u32>,
     strip: Vec<u32>,
@@ -48,7 +49,7 @@ impl<'a> Walker<'a> {
         }
         let done = triangles.iter().map(|t| t[0] == t[1] || t[1] == t[2] || t[2] == t[0]).collect();
         let strip = Vec::with_capacity(3 * triangles.len());
-        Self { triangles, first, corners, done, drawn: Vec::new(), strip }
+        Self { triangles, first, corners, done, unseen: 0, drawn: Vec::new(), strip }
     }
 
     /// The undrawn triangle that has the edge from `u` to `v` in this direction, and its third vertex.
@@ -62,25 +63,22 @@ impl<'a> Walker<'a> {
         })
     }
 
-    /// The triangle to start from, turned so that the strip can go on.
-    fn start(&mut self, unseen: &mut usize) -> Option<[u32; 3]> {
-        let neighbour = |walker: &Self, t: u32| {
-            let [a, b, c] = walker.triangles[t as usize];
-            [(b, a), (c, b), (a, c)].into_iter().find_map(|(u, v)| walker.beside(u, v))
-        };
-        let mut found = None;
-        while let Some(&last) = self.drawn.last() {
-            found = neighbour(self, last).map(|(t, _)| t);
-            if found.is_some() {
-                break;
+    /// The triangle to start from, turned so that the strip can continue.
+    fn start(&mut self) -> Option<[u32; 3]> {
+        let mut beside_drawn = None;
+        while let Some(&last) = self.drawn.last()
+            && beside_drawn.is_none()
+        {
+            let [a, b, c] = self.triangles[last as usize];
+            beside_drawn = [(b, a), (c, b), (a, c)].into_iter().find_map(|(u, v)| self.beside(u, v));
+            if beside_drawn.is_none() {
+                self.drawn.pop();
             }
-            self.drawn.pop();
         }
-        while found.is_none() && *unseen < self.triangles.len() {
-            found = (!self.done[*unseen]).then_some(*unseen as u32);
-            *unseen += 1;
+        while beside_drawn.is_none() && *self.done.get(self.unseen)? {
+            self.unseen += 1;
         }
-        let t = found?;
+        let t = beside_drawn.map_or(self.unseen as u32, |(t, _)| t);
         self.draw(t);
         let [a, b, c] = self.triangles[t as usize];
         let turns = [[a, b, c], [b, c, a], [c, a, b]];

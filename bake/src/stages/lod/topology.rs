@@ -2,6 +2,7 @@
 //! part are one point, and a point's triangles are a chain of corners that two points can join in constant time.
 
 use std::collections::HashMap;
+use std::mem::replace;
 use std::ops::Range;
 
 use glam::{DVec3, Vec3};
@@ -44,16 +45,17 @@ pub struct Topology {
     pub piece_of: Vec<u32>,
     pub pieces: Vec<Piece>,
     pub piece_triangles: Vec<u32>,
-    head: Vec<u32>,
-    tail: Vec<u32>,
+    /// What follows each corner in its point's chain; after all corners, what each point's chain starts with.
     next: Vec<u32>,
+    /// The last link of each point's chain: a corner or, if there is none, the chain's start.
+    tail: Vec<u32>,
 }
 
 impl Topology {
     /// Finds everything about the surface parts of a whole mesh.
     pub fn new(state: &State) -> Self {
         let (point_of, positions, origin) = number_points(state);
-        let points = positions.len();
+        let (points, corners) = (positions.len(), 3 * state.triangles.len());
         let mut topology = Self {
             origin,
             flags: vec![0; points],
@@ -62,9 +64,8 @@ impl Topology {
             piece_of: vec![NONE; points],
             pieces: Vec::new(),
             piece_triangles: Vec::new(),
-            head: vec![NONE; points],
-            tail: vec![NONE; points],
-            next: vec![NONE; 3 * state.triangles.len()],
+            next: vec![NONE; corners + points],
+            tail: (corners..corners + points).map(|start| start as u32).collect(),
             point_of,
             positions,
         };
@@ -94,37 +95,33 @@ impl Topology {
     /// The living corners at a point; forgets removed ones.
     pub fn star(&mut self, state: &State, point: u32, corners: &mut Vec<u32>) {
         corners.clear();
-        let (mut before, mut corner) = (NONE, self.head[point as usize]);
+        let mut last = self.chain_start(point);
+        let mut corner = self.next[last];
         while corner != NONE {
-            let after = self.next[corner as usize];
             if state.triangle_lives[corner as usize / 3] {
                 corners.push(corner);
-                match before {
-                    NONE => self.head[point as usize] = corner,
-                    _ => self.next[before as usize] = corner,
-                }
-                before = corner;
+                self.next[last] = corner;
+                last = corner as usize;
             }
-            corner = after;
+            corner = self.next[corner as usize];
         }
-        match before {
-            NONE => self.head[point as usize] = NONE,
-            _ => self.next[before as usize] = NONE,
-        }
-        self.tail[point as usize] = before;
+        self.next[last] = NONE;
+        self.tail[point as usize] = last as u32;
     }
 
     /// Gives all corners of `removed` to `kept`.
     pub fn join(&mut self, kept: u32, removed: u32) {
-        let (kept, removed) = (kept as usize, removed as usize);
-        match self.tail[kept] {
-            NONE => self.head[kept] = self.head[removed],
-            tail => self.next[tail as usize] = self.head[removed],
+        let start = self.chain_start(removed);
+        if self.next[start] != NONE {
+            let last = replace(&mut self.tail[removed as usize], start as u32);
+            let before = replace(&mut self.tail[kept as usize], last);
+            self.next[before as usize] = replace(&mut self.next[start], NONE);
         }
-        if self.tail[removed] != NONE {
-            self.tail[kept] = self.tail[removed];
-        }
-        (self.head[removed], self.tail[removed]) = (NONE, NONE);
+    }
+
+    #[inline]
+    fn chain_start(&self, point: u32) -> usize {
+        self.next.len() - self.tail.len() + point as usize
     }
 
     /// The points that share an edge with `point`, whose corners are `star`.
@@ -166,11 +163,8 @@ impl Topology {
                 let point = self.point_of[vertex] as usize;
                 self.wedges[point] += u32::from(self.uses[vertex] == 0);
                 self.uses[vertex] += 1;
-                match self.tail[point] {
-                    NONE => self.head[point] = corner,
-                    tail => self.next[tail as usize] = corner,
-                }
-                self.tail[point] = corner;
+                let before = replace(&mut self.tail[point], corner);
+                self.next[before as usize] = corner;
             }
         }
     }
@@ -198,39 +192,31 @@ impl Topology {
     }
 
     fn collect_piece_triangles(&mut self, state: &State) {
-        let piece = |t: usize| self.piece_of[self.point_of[state.triangles[t][0] as usize] as usize] as usize;
-        for t in surface_triangles(state) {
-            self.pieces[piece(t)].triangles.end += 1;
-        }
+        let piece = |&t: &u32| self.piece_of[self.point_of[state.triangles[t as usize][0] as usize] as usize];
+        let mut triangles: Vec<u32> = surface_triangles(state).map(|t| t as u32).collect();
+        triangles.sort_by_key(piece);
         let mut start = 0;
-        for piece in &mut self.pieces {
-            let count = piece.triangles.len();
-            piece.triangles = start..start;
-            start += count;
+        for run in triangles.chunk_by(|s, t| piece(s) == piece(t)) {
+            self.pieces[piece(&run[0]) as usize].triangles = start..start + run.len();
+            start += run.len();
         }
-        self.piece_triangles = vec![0; start];
-        for t in surface_triangles(state) {
-            let range = &mut self.pieces[piece(t)].triangles;
-            self.piece_triangles[range.end] = t as u32;
-            range.end += 1;
-        }
+        self.piece_triangles = triangles;
     }
 
     fn measure_pieces(&mut self, state: &State) {
-        for index in 0..self.pieces.len() {
+        for piece in &mut self.pieces {
             let (mut area, mut low, mut high) = (0.0, DVec3::MAX, DVec3::MIN);
-            for &t in &self.piece_triangles[self.pieces[index].triangles.clone()] {
+            for &t in &self.piece_triangles[piece.triangles.clone()] {
                 let at = |v: u32| self.positions[self.point_of[v as usize] as usize];
                 let [p, q, r] = state.triangles[t as usize].map(at);
                 area += 0.5 * (q - p).cross(r - p).length();
                 low = low.min(p).min(q).min(r);
                 high = high.max(p).max(q).max(r);
             }
-            let extent_m = if low.x <= high.x { (high - low).length() } else { 0.0 };
+            piece.extent_m = if low.x <= high.x { (high - low).length() } else { 0.0 };
             // A tube of diameter d and length l has the area πdl.
-            let thickness_m = area / (std::f64::consts::PI * extent_m.max(f64::MIN_POSITIVE));
-            self.pieces[index].thickness_m = thickness_m.min(extent_m);
-            self.pieces[index].extent_m = extent_m;
+            let thickness_m = area / (std::f64::consts::PI * piece.extent_m.max(f64::MIN_POSITIVE));
+            piece.thickness_m = thickness_m.min(piece.extent_m);
         }
     }
 }
@@ -253,7 +239,7 @@ impl PointSet {
     /// Whether the point is new.
     #[inline]
     pub fn insert(&mut self, point: u32) -> bool {
-        std::mem::replace(&mut self.stamps[point as usize], self.now) != self.now
+        replace(&mut self.stamps[point as usize], self.now) != self.now
     }
 
     #[inline]

@@ -6,7 +6,7 @@
 //! 3. `stand` gives each its transform: size, stretch, turn, lean, and a foot that is in the ground all around.
 //!
 //! A scene holds at most [`MAX_TREES`]. Where n trees would grow by density and area, n·M/(n+M) are planted: nearly
-//! all of a few, half of 4000, never more than M, and more wherever more were asked for.
+//! all of a few, half of 4000, never more than M, and more of them for a higher density.
 
 mod scatter;
 mod site;
@@ -44,7 +44,7 @@ pub struct PlacementParams {
     pub altitude_limit: f32,
 }
 
-/// What this stage has to know of a template, in metres at scale 1.
+/// The size of a template of trees, in metres at scale 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TreeFootprint {
     /// From the foot to the top.

@@ -1,10 +1,11 @@
-//! Weights → points, none too near to another, each with its tree.
+//! Weights → points that keep their distance, each with its tree.
 //!
 //! Darts are drawn from a coarse map of the weights, so that a dart costs the same whether trees grow everywhere or
 //! in one valley, and are then weighed where they fall. A tree claims a circle of three quarters of its crown, and
 //! at least so much that trees spread evenly (about 0.7 of the widest spacing that dart throwing reaches).
 
 use crate::model::Instance;
+use crate::raster::square;
 use crate::seed::Dice;
 
 use super::site::Site;
@@ -13,8 +14,8 @@ use super::{MAX_TREES, PlacementParams, TreeFootprint};
 
 /// Cells a side of the map of weights.
 const MAP_SIDE: u32 = 128;
-/// A scene with fewer trees has nothing to choose by: on land where few could stand at the asked density, they
-/// stand closer, up to `CROWDED_PER_HA`.
+/// With fewer trees, scenes could not be told apart: where little land bears trees, they stand closer than asked, up
+/// to `CROWDED_PER_HA`.
 const MIN_TREES: f32 = 150.0;
 const CROWDED_PER_HA: f32 = 100.0;
 /// Spacing of saturated dart throwing times √density (covering 0.547 of the plane), and how much of it we ask for.
@@ -25,7 +26,7 @@ const CROWN_CLAIM: f32 = 0.75;
 /// Misses in a row after which the land counts as full.
 const PATIENCE: u32 = 500;
 
-/// Up to so many instances of `trees` as grow at the asked density, in a fixed order.
+/// Plants `trees` at the asked density as far as there is room, in a fixed order.
 pub(super) fn scatter(params: &PlacementParams, site: &Site, trees: &[TreeFootprint]) -> Vec<Instance> {
     let map = WeightMap::new(site);
     let hectares = map.area_m2 / 10_000.0;
@@ -61,7 +62,7 @@ pub(super) fn scatter(params: &PlacementParams, site: &Site, trees: &[TreeFootpr
     instances
 }
 
-/// How many trees to plant on land worth so many hectares.
+/// How many trees to plant on land that counts as `hectares`.
 fn wanted(density_per_ha: f32, hectares: f32) -> u32 {
     let few = MIN_TREES.min(CROWDED_PER_HA * hectares);
     let n = (density_per_ha * hectares).max(few);
@@ -81,7 +82,7 @@ struct WeightMap {
     weights: Vec<f32>,
     /// Sum of weights up to and including each cell; f64, since 16,384 small numbers add up.
     sums: Vec<f64>,
-    /// Area in square metres that the weights are worth.
+    /// The area in square metres, weighted.
     area_m2: f32,
 }
 
@@ -89,18 +90,15 @@ impl WeightMap {
     fn new(site: &Site) -> Self {
         let half_m = site.half_m;
         let cell_m = 2.0 * half_m / MAP_SIDE as f32;
-        let centre = |k: u32| (k as f32 + 0.5) * cell_m - half_m;
-        let mut weights = Vec::with_capacity((MAP_SIDE * MAP_SIDE) as usize);
-        let mut sums = Vec::with_capacity(weights.capacity());
+        let centre = |k: usize| (k as f32 + 0.5) * cell_m - half_m;
+        let weight = |i: usize, j: usize| site.at(centre(i), centre(j)).map_or(0.0, |spot| spot.weight);
+        let weights = square(MAP_SIDE as usize, weight);
         let mut sum = 0.0;
-        for j in 0..MAP_SIDE {
-            for i in 0..MAP_SIDE {
-                let weight = site.at(centre(i), centre(j)).map_or(0.0, |spot| spot.weight);
-                sum += f64::from(weight);
-                weights.push(weight);
-                sums.push(sum);
-            }
-        }
+        let add = |&weight: &f32| {
+            sum += f64::from(weight);
+            sum
+        };
+        let sums = weights.iter().map(add).collect();
         Self { half_m, cell_m, weights, sums, area_m2: sum as f32 * cell_m * cell_m }
     }
 
@@ -126,7 +124,7 @@ struct Taken {
 }
 
 impl Taken {
-    /// For circles none of which is wider than `widest_m`.
+    /// For circles at most `widest_m` wide.
     fn new(half_m: f32, widest_m: f32) -> Self {
         let side = ((2.0 * half_m / widest_m.max(1.0)) as usize).clamp(1, 512);
         let cell_m = 2.0 * half_m / side as f32;

@@ -22,13 +22,13 @@ const TREE_LINE_EDGE: f32 = 0.2;
 /// Metres: the size of groves, and of the bays in their edges.
 const GROVE_M: f32 = 130.0;
 const BAY_M: f32 = 47.0;
-/// How many trees stand alone in a clearing, as part of those in a grove.
+/// Density of single trees in a clearing, as a part of that in a grove.
 const SOLITARY: f32 = 0.012;
 
 /// A point where trees grow.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spot {
-    /// How many trees grow there, as part of the most that do anywhere.
+    /// Density there, as a part of the greatest anywhere.
     pub weight: f32,
     /// How large they grow: less at the tree line and at the edge of a grove.
     pub vigour: f32,
@@ -57,11 +57,8 @@ impl<'a> Site<'a> {
         let altitude = |part: f32| base + part * (high - base);
         let tan = |degrees: f32| libm::tanf(degrees.clamp(0.0, 80.0).to_radians());
         let slope = params.steepest_slope_deg;
-        let tree_line_m = if limit < 1.0 {
-            [altitude(limit - TREE_LINE_EDGE * (1.0 - limit)), altitude(limit)]
-        } else {
-            [f32::MAX, f32::MAX]
-        };
+        let thinning = altitude(limit - TREE_LINE_EDGE * (1.0 - limit));
+        let tree_line_m = if limit < 1.0 { [thinning, altitude(limit)] } else { [f32::MAX; 2] };
         Self {
             land,
             half_m: 0.5 * land.field.extent_m() - EDGE_MARGIN_M,

@@ -1,3 +1,5 @@
+//! Placement as a stage: results of earlier stages → instances, as values and as a file.
+
 use genescape_schema::scene::write_instances;
 use serde::{Deserialize, Serialize};
 

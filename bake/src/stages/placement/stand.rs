@@ -30,7 +30,7 @@ const TAPER: f32 = 1.25;
 const SUNK_M: f32 = 0.03;
 /// Part of its height that a tree may be sunk on its uphill side, its roots not counted.
 const BURIED: f32 = 0.07;
-/// More than the lean moves a cylinder.
+/// More metres than the lean moves a cylinder.
 pub(super) const TRUNK_RESERVE_M: f32 = 0.25;
 
 /// Sixteen points of the ring around a trunk, in order.

@@ -10,9 +10,10 @@ use super::math::{exp, exp3, henyey_greenstein};
 use crate::math::cell;
 
 /// Radius of the Earth in km.
-pub const GROUND_KM: f32 = 6360.0;
+const GROUND_KM: f32 = 6360.0;
 const TOP_KM: f32 = 6440.0;
-const RAYLEIGH_PER_KM: Vec3A = Vec3A::new(5.802e-3, 13.558e-3, 33.1e-3);
+/// Scattering, and so extinction, by the molecules of the air at the ground.
+pub const RAYLEIGH_PER_KM: Vec3A = Vec3A::new(5.802e-3, 13.558e-3, 33.1e-3);
 const RAYLEIGH_SCALE_KM: f32 = 8.0;
 const OZONE_PER_KM: Vec3A = Vec3A::new(0.650e-3, 1.881e-3, 0.085e-3);
 const MIE_SCALE_KM: f32 = 1.2;
@@ -24,15 +25,16 @@ const COSINES: usize = 96;
 const MULTI_HEIGHTS: usize = 8;
 const MULTI_COSINES: usize = 20;
 
-/// Clear air, and what the sun's light suffers in it.
+/// Clear air, with tables of the sun's light in it.
 pub struct Atmosphere {
     mie_scattering: Vec3A,
-    mie_extinction: Vec3A,
+    /// Extinction by haze at the ground, per km.
+    pub mie_extinction: Vec3A,
     transmittance: Table,
     multiple: Table,
 }
 
-/// What a view ray gathers: light whose angular shape is already in it, and Mie light still to be multiplied by
+/// Light gathered along a view ray: with its phase function applied, and Mie light still to be multiplied by
 /// [`mie_phase`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Gathered {
@@ -52,15 +54,21 @@ fn rayleigh_phase(cos_angle: f32) -> f32 {
     3.0 / (16.0 * std::f32::consts::PI) * (1.0 + cos_angle * cos_angle)
 }
 
-/// Density of air, haze and ozone at a height, relative to their coefficients.
-fn densities(height_km: f32) -> (f32, f32, f32) {
-    let ozone = (1.0 - (height_km - 25.0).abs() / 15.0).max(0.0);
-    (exp(-height_km / RAYLEIGH_SCALE_KM), exp(-height_km / MIE_SCALE_KM), ozone)
+/// The air at a place: scattering by molecules and by haze, and extinction, per km.
+struct Local {
+    rayleigh: Vec3A,
+    mie: Vec3A,
+    extinction: Vec3A,
 }
 
-/// Distance along a ray of direction cosine `mu` from radius `r` to the sphere of radius `to`, outwards.
-fn distance_up(r: f32, mu: f32, to: f32) -> f32 {
-    -r * mu + (r * r * (mu * mu - 1.0) + to * to).max(0.0).sqrt()
+/// Distance from the Earth's centre after `t` km along a ray of direction cosine `mu` from radius `r`.
+fn radius_at(r: f32, mu: f32, t: f32) -> f32 {
+    (r * r + t * t + 2.0 * r * mu * t).sqrt()
+}
+
+/// Distance along a ray of direction cosine `mu` from radius `r` to where the air ends.
+fn distance_up(r: f32, mu: f32) -> f32 {
+    -r * mu + (r * r * (mu * mu - 1.0) + TOP_KM * TOP_KM).max(0.0).sqrt()
 }
 
 /// Distance to the ground, if the ray meets it.
@@ -77,10 +85,6 @@ fn cosine_to_unit(mu: f32) -> f32 {
 fn unit_to_cosine(unit: f32) -> f32 {
     let m = unit * 1.577 - 0.667;
     0.1 * m / (1.0 - m.abs())
-}
-
-fn height_to_unit(height_km: f32) -> f32 {
-    (height_km / (TOP_KM - GROUND_KM)).clamp(0.0, 1.0).sqrt()
 }
 
 /// A table over height and the direction cosine of the sun.
@@ -102,7 +106,7 @@ impl Table {
     }
 
     fn at(&self, height_km: f32, mu: f32) -> Vec3A {
-        let (u, v) = (cosine_to_unit(mu), height_to_unit(height_km));
+        let (u, v) = (cosine_to_unit(mu), (height_km / (TOP_KM - GROUND_KM)).clamp(0.0, 1.0).sqrt());
         let (i, x) = cell(u * (self.columns - 1) as f32, self.columns);
         let (j, y) = cell(v * (self.rows - 1) as f32, self.rows);
         let row = |j: usize| {
@@ -126,8 +130,8 @@ fn steps(length: f32, count: usize) -> impl Iterator<Item = (f32, f32)> {
 impl Atmosphere {
     /// Air of a turbidity (Linke's and Preetham's: optical thickness of haze and molecules over that of molecules).
     ///
-    /// Haze scatters so much forward that most of what it scatters may count as not scattered (the delta scaling of
-    /// Joseph, Wiscombe and Weinman 1976); what remains is 0.42 of its thickness.
+    /// Haze scatters so strongly forwards that most of its scattered light counts as not scattered (the delta scaling
+    /// of Joseph, Wiscombe and Weinman 1976); 0.42 of its thickness remains.
     pub fn new(turbidity: f32) -> Self {
         let thickness = 0.108 * (turbidity - 1.0).max(0.05) * 0.42;
         let spectrum = Vec3A::new(0.84, 1.0, 1.18);
@@ -145,13 +149,11 @@ impl Atmosphere {
         air
     }
 
-    /// Extinction of clear air at the ground per km.
-    pub fn extinction_per_km(&self) -> (Vec3A, Vec3A) {
-        (RAYLEIGH_PER_KM, self.mie_extinction)
-    }
-
-    fn extinction(&self, air: f32, haze: f32, ozone: f32) -> Vec3A {
-        RAYLEIGH_PER_KM * air + self.mie_extinction * haze + OZONE_PER_KM * ozone
+    fn local(&self, height_km: f32) -> Local {
+        let (air, haze) = (exp(-height_km / RAYLEIGH_SCALE_KM), exp(-height_km / MIE_SCALE_KM));
+        let ozone = (1.0 - (height_km - 25.0).abs() / 15.0).max(0.0);
+        let extinction = RAYLEIGH_PER_KM * air + self.mie_extinction * haze + OZONE_PER_KM * ozone;
+        Local { rayleigh: RAYLEIGH_PER_KM * air, mie: self.mie_scattering * haze, extinction }
     }
 
     /// Part of the sun's light that arrives at a height (km) when the sun stands at direction cosine `mu`.
@@ -161,10 +163,8 @@ impl Atmosphere {
             return Vec3A::ZERO;
         }
         let mut depth = Vec3A::ZERO;
-        for (t, dt) in steps(distance_up(r, mu, TOP_KM), count) {
-            let h = (r * r + t * t + 2.0 * r * mu * t).sqrt() - GROUND_KM;
-            let (air, haze, ozone) = densities(h);
-            depth += self.extinction(air, haze, ozone) * dt;
+        for (t, dt) in steps(distance_up(r, mu), count) {
+            depth += self.local(radius_at(r, mu, t) - GROUND_KM).extinction * dt;
         }
         exp3(-depth)
     }
@@ -190,13 +190,12 @@ impl Atmosphere {
     fn second_order(&self, height_km: f32, mu: f32, sun_mu: f32, cos_angle: f32) -> (Vec3A, Vec3A) {
         let r = GROUND_KM + height_km;
         let ground = distance_down(r, mu);
-        let length = ground.unwrap_or_else(|| distance_up(r, mu, TOP_KM));
+        let length = ground.unwrap_or_else(|| distance_up(r, mu));
         let (mut light, mut feedback, mut through) = (Vec3A::ZERO, Vec3A::ZERO, Vec3A::ONE);
         for (t, dt) in steps(length, 12) {
-            let radius = (r * r + t * t + 2.0 * r * mu * t).sqrt();
-            let (air, haze, ozone) = densities(radius - GROUND_KM);
-            let scattering = RAYLEIGH_PER_KM * air + self.mie_scattering * haze;
-            let extinction = self.extinction(air, haze, ozone);
+            let radius = radius_at(r, mu, t);
+            let Local { rayleigh, mie, extinction } = self.local(radius - GROUND_KM);
+            let scattering = rayleigh + mie;
             let passed = exp3(-extinction * dt);
             let gathered = scattering * through * (Vec3A::ONE - passed) / extinction.max(Vec3A::splat(1e-9));
             let mu_here = (r * sun_mu + t * cos_angle) / radius;
@@ -218,21 +217,18 @@ impl Atmosphere {
     /// of cosine `cos_angle`.
     pub fn gather(&self, height_km: f32, mu: f32, sun_mu: f32, cos_angle: f32) -> Gathered {
         let r = GROUND_KM + height_km;
-        let length = distance_up(r, mu, TOP_KM);
+        let length = distance_up(r, mu);
         let phase = rayleigh_phase(cos_angle);
         let mut sum = Gathered::default();
         let mut through = Vec3A::ONE;
         for (t, dt) in steps(length, 26) {
-            let radius = (r * r + t * t + 2.0 * r * mu * t).sqrt();
+            let radius = radius_at(r, mu, t);
             let height = radius - GROUND_KM;
-            let (air, haze, ozone) = densities(height);
-            let extinction = self.extinction(air, haze, ozone);
+            let Local { rayleigh, mie, extinction } = self.local(height);
             let passed = exp3(-extinction * dt);
             let weight = through * (Vec3A::ONE - passed) / extinction.max(Vec3A::splat(1e-9));
             let mu_here = (r * sun_mu + t * cos_angle) / radius;
             let sun = self.transmittance.at(height, mu_here);
-            let rayleigh = RAYLEIGH_PER_KM * air;
-            let mie = self.mie_scattering * haze;
             sum.smooth +=
                 weight * (rayleigh * sun * phase + (rayleigh + mie) * self.multiple.at(height, mu_here));
             sum.mie += weight * mie * sun;

@@ -52,21 +52,16 @@ fn add_cells(sum: &mut [f32], seed: u32, cells: i32, weight: f32) {
     let side = SIDE / cells as usize;
     let size = side as f32;
     let mut nearest = vec![0.0f32; side * side * side];
-    for cz in 0..cells {
-        for cy in 0..cells {
-            for cx in 0..cells {
-                nearest.fill(f32::MAX);
-                for point in neighbours(seed, cells, [cx, cy, cz]) {
-                    splat(&mut nearest, side, point.map(|p| p * size));
-                }
-                for (i, squared) in nearest.iter().enumerate() {
-                    let (x, y, z) = (i % side, i / side % side, i / (side * side));
-                    let at = ((cz as usize * side + z) * SIDE + cy as usize * side + y) * SIDE
-                        + cx as usize * side
-                        + x;
-                    sum[at] += weight * (1.0 - (squared.sqrt() / size).min(1.0));
-                }
-            }
+    for cell in 0..cells * cells * cells {
+        let cell = [cell % cells, cell / cells % cells, cell / (cells * cells)];
+        nearest.fill(f32::MAX);
+        for point in neighbours(seed, cells, cell) {
+            splat(&mut nearest, side, point.map(|p| p * size));
+        }
+        let [x0, y0, z0] = cell.map(|c| c as usize * side);
+        for (i, squared) in nearest.iter().enumerate() {
+            let (x, y, z) = (x0 + i % side, y0 + i / side % side, z0 + i / (side * side));
+            sum[(z * SIDE + y) * SIDE + x] += weight * (1.0 - (squared.sqrt() / size).min(1.0));
         }
     }
 }

@@ -10,10 +10,10 @@ use super::clouds::{Marched, distance_to_height, through_air};
 use super::math::{bilinear, dot, exp, henyey_greenstein};
 use crate::math::{lerp, smoothstep};
 use crate::noise;
-use crate::raster::raster;
+use crate::raster::square;
 use crate::seed::noise_seed;
 
-/// Texels a side of the layer in images; a power of two, as any other side must be.
+/// Texels a side of the layer in images; a power of two, as for any other side.
 pub const SIDE: usize = 512;
 /// Height above the ground in metres.
 pub const ALTITUDE_M: f32 = 9000.0;
@@ -42,7 +42,7 @@ impl Cirrus {
         }
         let seed = noise_seed(u64::from(params.sky_seed), "sky.cirrus", 0);
         let fine = optical_depths(seed, amount, side);
-        let sky_light = sky.irradiance(|s, d| s.radiance(d)) * std::f32::consts::FRAC_1_PI;
+        let sky_light = sky.irradiance() * std::f32::consts::FRAC_1_PI;
         let sun_light = sky.sun_at(ALTITUDE_M * 0.001);
         Some(Self { side, coarse: blurred(&fine, side), fine, sun: sky.sun, sun_light, sky_light })
     }
@@ -78,24 +78,16 @@ impl Cirrus {
     }
 }
 
-/// Every texel of a square.
-fn fill(side: usize, value: impl Fn(usize, usize) -> f32 + Sync) -> Vec<f32> {
-    raster(side, side, |j| {
-        let value = &value;
-        move |i| value(i, j)
-    })
-}
-
 fn optical_depths(seed: u32, amount: f32, side: usize) -> Vec<f32> {
     let unit = 1.0 / side as f32;
     let heading = noise::hash01(seed, 1, 2, 3) * std::f32::consts::TAU;
     // The wind on a coarse grid; its direction turns by up to a radian.
-    let bearing = fill(WIND, |i, j| {
+    let bearing = square(WIND, |i, j| {
         let (x, y) = (i as f32 / WIND as f32, j as f32 / WIND as f32);
         heading + 0.9 * noise::fbm2(seed, x * 2.0, y * 2.0, 2, 0.5, 2)
     });
     let wind: Vec<(f32, f32)> = bearing.iter().map(|&a| (libm::cosf(a), libm::sinf(a))).collect();
-    let grain = fill(side, |i, j| {
+    let grain = square(side, |i, j| {
         let (x, y) = (i as f32 * unit, j as f32 * unit);
         0.7 * noise::gradient2(seed ^ 0x55, x * 64.0, y * 64.0, 64)
             + 0.6 * (noise::hash01(seed ^ 0xAA, i as i32 / 2, j as i32 / 2, 5) - 0.5)
@@ -104,11 +96,11 @@ fn optical_depths(seed: u32, amount: f32, side: usize) -> Vec<f32> {
     let short = drawn_out(&grain, side, &wind, 3.0 * texel);
     let long = drawn_out(&short, side, &wind, 11.0 * texel);
     const PATCHES: usize = 64;
-    let patches = fill(PATCHES, |i, j| {
+    let patches = square(PATCHES, |i, j| {
         let (x, y) = (i as f32 / PATCHES as f32, j as f32 / PATCHES as f32);
         noise::fbm2(seed ^ 0x99, x * 3.0, y * 3.0, 3, 0.5, 3)
     });
-    fill(side, |i, j| {
+    square(side, |i, j| {
         let zoom = PATCHES as f32 * unit;
         let patch = bilinear(&patches, PATCHES, i as f32 * zoom, j as f32 * zoom);
         let at = j * side + i;
@@ -144,13 +136,8 @@ fn drawn_out(texels: &[f32], side: usize, wind: &[(f32, f32)], step: f32) -> Vec
 }
 
 fn blurred(fine: &[f32], side: usize) -> Vec<f32> {
-    fill(side / 8, |i, j| {
-        let mut sum = 0.0;
-        for y in 0..8 {
-            for x in 0..8 {
-                sum += fine[(j * 8 + y) * side + i * 8 + x];
-            }
-        }
-        sum / 64.0
+    square(side / 8, |i, j| {
+        let block = (0..8).flat_map(|y| &fine[(j * 8 + y) * side + i * 8..][..8]);
+        block.sum::<f32>() / 64.0
     })
 }

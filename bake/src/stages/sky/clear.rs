@@ -5,7 +5,7 @@
 use glam::{Vec3, Vec3A};
 
 use super::SkyParams;
-use super::atmosphere::{Atmosphere, mie_phase};
+use super::atmosphere::{Atmosphere, RAYLEIGH_PER_KM, mie_phase};
 use super::math::{dot, exp, exp3, luminance};
 use crate::math::{cell, lerp, smoothstep};
 
@@ -28,7 +28,7 @@ pub struct ClearSky {
     pub sun_above: f32,
     /// The sun's irradiance at the ground on a surface that faces it.
     pub sun_ground: Vec3A,
-    /// What the ground sends up, as radiance.
+    /// Radiance of the ground.
     pub ground: Vec3A,
     /// Colour that distant land fades to: the mean around the horizon.
     pub haze: Vec3A,
@@ -73,7 +73,7 @@ impl ClearSky {
             horizon: vec![(Vec3A::ZERO, Vec3A::ZERO); COLUMNS],
             air,
         };
-        // Half of what haze takes from the beam it sends on nearly unturned.
+        // Half of the light that haze takes from the beam goes on nearly straight.
         sky.sun_ground *= exp(-0.5 * haze_per_km * HAZE_SCALE_KM / (sun.y + 0.06));
         sky.fill_table();
         sky.adapt(dimming);
@@ -82,27 +82,25 @@ impl ClearSky {
 
     fn fill_table(&mut self) {
         let sun_sine = (1.0 - self.sun.y * self.sun.y).max(0.0).sqrt();
-        self.table = Vec::with_capacity(ROWS * COLUMNS);
-        for row in 0..ROWS {
-            let unit = row as f32 / (ROWS - 1) as f32;
+        let entry = |k: usize| {
+            let unit = (k / COLUMNS) as f32 / (ROWS - 1) as f32;
             let mu = unit * unit;
             let sine = (1.0 - mu * mu).max(0.0).sqrt();
-            for column in 0..COLUMNS {
-                let azimuth = 2.0 * column as f32 / (COLUMNS - 1) as f32 - 1.0;
-                let cos_angle = mu * self.sun.y + sine * sun_sine * azimuth;
-                let light = self.air.gather(EYE_KM, mu, self.sun.y, cos_angle.clamp(-1.0, 1.0));
-                self.table.push((light.smooth, light.mie));
-            }
-        }
+            let azimuth = 2.0 * (k % COLUMNS) as f32 / (COLUMNS - 1) as f32 - 1.0;
+            let cos_angle = mu * self.sun.y + sine * sun_sine * azimuth;
+            let light = self.air.gather(EYE_KM, mu, self.sun.y, cos_angle.clamp(-1.0, 1.0));
+            (light.smooth, light.mie)
+        };
+        self.table = (0..ROWS * COLUMNS).map(entry).collect();
     }
 
-    /// Scales all light to what an adapted eye sees: a bright noon stays as it is, dusk and overcast are lifted most
+    /// Scales all light as an adapted eye sees it: a bright noon stays as it is, dusk and overcast are lifted most
     /// of the way.
     fn adapt(&mut self, dimming: f32) {
         self.fill_horizon();
-        let sky = self.irradiance(|sky, direction| sky.radiance(direction));
+        let sky = self.irradiance();
         let open = self.sun_ground * self.sun.y + sky;
-        // What the eye rests on: mostly the sky itself.
+        // The eye rests mostly on the sky itself.
         let key = luminance(sky).max(1e-6) + 0.03 * luminance(self.sun_ground) * self.sun.y;
         let scale = NOON_SUN * libm::powf(NOON_KEY / key, 0.85) * libm::powf(dimming, -0.45);
         self.sun_above = scale;
@@ -136,12 +134,11 @@ impl ClearSky {
         for entry in &mut self.horizon {
             *entry = (entry.0.lerp(mean.0, alike), entry.1.lerp(mean.1, alike));
         }
-        let mut haze = Vec3A::ZERO;
-        for step in 0..64 {
+        let haze = |step: u32| {
             let azimuth = (step as f32 + 0.5) * std::f32::consts::TAU / 64.0;
-            haze += self.haze_towards(Vec3A::new(libm::sinf(azimuth), 0.0, libm::cosf(azimuth)));
-        }
-        self.haze = haze / 64.0;
+            self.haze_towards(Vec3A::new(libm::sinf(azimuth), 0.0, libm::cosf(azimuth)))
+        };
+        self.haze = (0..64).map(haze).sum::<Vec3A>() / 64.0;
     }
 
     /// Cosine of the azimuth from the sun, as a table column.
@@ -156,13 +153,8 @@ impl ClearSky {
     #[inline]
     pub fn haze_towards(&self, direction: Vec3A) -> Vec3A {
         let flat = (direction.x * direction.x + direction.z * direction.z).sqrt();
-        let level = if flat > 1e-6 {
-            Vec3A::new(direction.x / flat, 0.0, direction.z / flat)
-        } else {
-            Vec3A::new(1.0, 0.0, 0.0)
-        };
-        let u = self.column_of(level);
-        let (i, f) = cell(u, COLUMNS);
+        let level = if flat > 1e-6 { direction.with_y(0.0) / flat } else { Vec3A::X };
+        let (i, f) = cell(self.column_of(level), COLUMNS);
         let smooth = self.horizon[i].0.lerp(self.horizon[i + 1].0, f);
         let mie = self.horizon[i].1.lerp(self.horizon[i + 1].1, f);
         smooth + mie * mie_phase(dot(direction, self.sun))
@@ -186,7 +178,7 @@ impl ClearSky {
         haze + (above - haze) * through
     }
 
-    /// Light of the air in front of clouds: under a deck, dimmer and without the sun's glow.
+    /// Aerial perspective, the light of the air in front of clouds: under a deck, dimmer and without the sun's glow.
     #[inline]
     pub fn air(&self, direction: Vec3A) -> Vec3A {
         let lit = self.radiance(direction);
@@ -206,11 +198,10 @@ impl ClearSky {
     /// Part of light that crosses the air from `distance_km` away and `height_km` up in a direction of sine `sine`.
     #[inline]
     pub fn clearness(&self, sine: f32, distance_km: f32, height_km: f32) -> Vec3A {
-        let (rayleigh, mie) = self.air.extinction_per_km();
         let air = distance_km * (1.0 - 0.055 * height_km.min(6.0));
         let mie_path = distance_km / (1.0 + 0.45 * height_km);
         let haze = self.haze_per_km * HAZE_SCALE_KM / (sine + 0.0035);
-        let depth = rayleigh * air + mie * mie_path + Vec3A::splat(haze);
+        let depth = RAYLEIGH_PER_KM * air + self.air.mie_extinction * mie_path + Vec3A::splat(haze);
         exp3(-depth)
     }
 
@@ -219,41 +210,28 @@ impl ClearSky {
         self.air.sun_transmittance(EYE_KM + height_km, self.sun.y, 48) * self.sun_above
     }
 
-    /// Irradiance on open level ground from a radiance over the upper half, by a quadrature of even solid angles.
-    pub fn irradiance(&self, radiance: impl Fn(&Self, Vec3A) -> Vec3A) -> Vec3A {
+    /// Irradiance on open level ground, by a quadrature of even solid angles.
+    pub fn irradiance(&self) -> Vec3A {
         const RINGS: usize = 48;
         const SPOKES: usize = 96;
         let sun_azimuth = libm::atan2f(self.sun.x, -self.sun.z);
-        let mut sum = Vec3A::ZERO;
-        for ring in 0..RINGS {
+        let ring = |ring: usize| {
             // Even steps of sin² of the elevation weigh every sample alike under the cosine.
             let sine = ((ring as f32 + 0.5) / RINGS as f32).sqrt();
-            sum += self.sum_around(sine, sun_azimuth, &radiance, SPOKES);
-        }
-        sum * (std::f32::consts::PI / (RINGS * SPOKES) as f32)
+            sum_around(sine, sun_azimuth, SPOKES, |direction| self.radiance(direction))
+        };
+        (0..RINGS).map(ring).sum::<Vec3A>() * (std::f32::consts::PI / (RINGS * SPOKES) as f32)
     }
+}
 
-    /// Mean over azimuth at a sine of elevation.
-    pub fn zonal(&self, sine: f32, radiance: impl Fn(&Self, Vec3A) -> Vec3A, spokes: usize) -> Vec3A {
-        self.sum_around(sine, 0.0, radiance, spokes) / spokes as f32
-    }
-
-    /// Sum over evenly spaced azimuths, counted from `start_rad`, at a sine of elevation.
-    fn sum_around(
-        &self,
-        sine: f32,
-        start_rad: f32,
-        radiance: impl Fn(&Self, Vec3A) -> Vec3A,
-        spokes: usize,
-    ) -> Vec3A {
-        let flat = (1.0 - sine * sine).max(0.0).sqrt();
-        let mut sum = Vec3A::ZERO;
-        for spoke in 0..spokes {
-            let azimuth = start_rad + (spoke as f32 + 0.5) * std::f32::consts::TAU / spokes as f32;
-            sum += radiance(self, Vec3A::new(flat * libm::sinf(azimuth), sine, -flat * libm::cosf(azimuth)));
-        }
-        sum
-    }
+/// Sum of a radiance over evenly spaced azimuths, counted from `start_rad`, at a sine of elevation.
+pub fn sum_around(sine: f32, start_rad: f32, spokes: usize, radiance: impl Fn(Vec3A) -> Vec3A) -> Vec3A {
+    let flat = (1.0 - sine * sine).max(0.0).sqrt();
+    let spoke = |spoke: usize| {
+        let azimuth = start_rad + (spoke as f32 + 0.5) * std::f32::consts::TAU / spokes as f32;
+        radiance(Vec3A::new(flat * libm::sinf(azimuth), sine, -flat * libm::cosf(azimuth)))
+    };
+    (0..spokes).map(spoke).sum()
 }
 
 fn glow_left(shade: f32) -> f32 {
@@ -281,16 +259,15 @@ pub struct SunDisc {
 }
 
 impl SunDisc {
-    /// The disc of an angular diameter in degrees; `feather_rad` is the size of a pixel.
+    /// The disc of an angular diameter in degrees.
     pub fn new(sky: &ClearSky, size_deg: f32) -> Self {
         let radius_rad = 0.5 * size_deg.to_radians();
         let solid_angle = std::f32::consts::PI * radius_rad * radius_rad;
         // Limb darkening 0.4 + 0.6 cos has the mean 0.8.
         let real = sky.sun_ground / (solid_angle * 0.8);
         let aureole = luminance(sky.radiance(sky.sun)).max(1e-3);
-        // A large disc shines less, so that its share of the sky's light stays under some two per cent.
-        let share = 0.02 * luminance(sky.irradiance(|sky, d| sky.radiance(d)))
-            / (solid_angle * 0.8 * sky.sun.y.max(0.1));
+        // A large disc shines less, so that its share of the sky's light stays below about two per cent.
+        let share = 0.02 * luminance(sky.irradiance()) / (solid_angle * 0.8 * sky.sun.y.max(0.1));
         let cap = (20.0 * aureole).min(share.max(3.0 * aureole)).min(6e4);
         let bright = luminance(real).max(1e-6);
         let middle = real * (cap.min(bright) / bright);

@@ -3,6 +3,8 @@
 //! (SIGGRAPH 2015) and, deep inside, the two-stream approximation; steps as in Hillaire, "Physically Based Sky,
 //! Atmosphere and Cloud Rendering in Frostbite" (2016).
 
+use std::ops::Range;
+
 use glam::{Vec3A, Vec4};
 
 use super::SkyParams;
@@ -31,9 +33,9 @@ pub struct Clouds {
 /// Light and transparency along a ray.
 #[derive(Clone, Copy)]
 pub struct Marched {
-    /// Light towards the eye, before the air between takes its part.
+    /// Light towards the eye, without the air in between.
     pub light: Vec3A,
-    /// Part of what lies behind that is seen.
+    /// Transparency, 0 to 1.
     pub through: f32,
     /// Mean distance of the cloud seen in metres.
     pub distance_m: f32,
@@ -51,7 +53,7 @@ impl Clouds {
     pub fn new(params: &SkyParams, sky: &ClearSky) -> Option<Self> {
         let field = CloudField::new(params)?;
         let middle_km = 0.001 * (field.base_m + 0.6 * field.height_m);
-        let sky_light = sky.irradiance(|s, d| s.radiance(d)) * std::f32::consts::FRAC_1_PI;
+        let sky_light = sky.irradiance() * std::f32::consts::FRAC_1_PI;
         // Under a deck, light has been scattered so often that its colours have mixed.
         let sun_light = pale(sky.sun_at(middle_km), 0.5 * field.deck);
         Some(Self { field, sun: sky.sun, sun_light, sky_light, ground_light: sky.ground })
@@ -70,7 +72,7 @@ impl Clouds {
         let far = distance_to_height(direction.y, field.base_m + field.height_m + reach);
         let bend = (1.0 - direction.y * direction.y) / (2.0 * EARTH_M);
         let height = |t: f32| t * direction.y + t * t * bend - field.base_m;
-        self.walk(Vec3A::ZERO, direction, near, far, height)
+        self.walk(Vec3A::ZERO, direction, near..far, height)
     }
 
     /// Marches straight up or down through the whole layer at a place, as if the Earth were flat.
@@ -78,27 +80,20 @@ impl Clouds {
         let field = &self.field;
         let reach = field.reach_m();
         let origin = Vec3A::new(x, 0.0, z);
-        self.walk(origin, Vec3A::Y, 0.0, field.height_m + 1.3 * reach, |t| t - 0.3 * reach)
+        self.walk(origin, Vec3A::Y, 0.0..field.height_m + 1.3 * reach, |t| t - 0.3 * reach)
     }
 
     /// Marches along a ray, `height` metres above the base at a distance: long steps in clear air, short ones where a
     /// cloud may be, and back by one when a short step with all detail finds it.
-    fn walk(
-        &self,
-        origin: Vec3A,
-        direction: Vec3A,
-        near: f32,
-        far: f32,
-        height: impl Fn(f32) -> f32,
-    ) -> Marched {
+    fn walk(&self, origin: Vec3A, along: Vec3A, range: Range<f32>, height: impl Fn(f32) -> f32) -> Marched {
         let field = &self.field;
-        let phases = Phases::new(dot(direction, self.sun));
+        let phases = Phases::new(dot(along, self.sun));
         let mut inside = Inside { through: 1.0, ..Inside::default() };
-        let mut t = near;
+        let mut t = range.start;
         let mut empty = 2i32;
-        while t < far && inside.through > 0.0 {
-            let fine_step = (0.17 * field.billow_m).max(0.005 * t).max((far - near) / 128.0);
-            let point = Vec3A::new(origin.x + direction.x * t, height(t), origin.z + direction.z * t);
+        while t < range.end && inside.through > 0.0 {
+            let fine_step = (0.17 * field.billow_m).max(0.005 * t).max((range.end - range.start) / 128.0);
+            let point = Vec3A::new(origin.x + along.x * t, height(t), origin.z + along.z * t);
             let shape = field.shape(point.x, point.y, point.z);
             let outside = -shape.depth_m - field.reach_m();
             if outside > 0.0 {
@@ -126,7 +121,7 @@ impl Clouds {
                 t += fine_step;
             }
         }
-        let distance_m = if inside.weight > 0.0 { inside.distance / inside.weight } else { far };
+        let distance_m = if inside.weight > 0.0 { inside.distance / inside.weight } else { range.end };
         Marched { light: inside.light, through: inside.through, distance_m }
     }
 
@@ -159,7 +154,7 @@ impl Clouds {
     fn source(&self, shape: Shape, point: Vec3A, soft: f32, phases: &Phases) -> Vec3A {
         let field = &self.field;
         let near_depth = self.depth_to_sun(point, soft);
-        // In a deck all that lies above counts; a single cloud is lit from its sides as well.
+        // In a deck, all the cloud above counts; a single cloud is lit from its sides as well.
         let above = (shape.top_m - point.y).max(0.0) * EXTINCTION_PER_M / self.sun.y.max(0.3);
         let sun_depth = near_depth.max(above * (0.35 + 0.65 * field.deck));
         let inside = smoothstep(-0.5 * field.billow_m, 0.6 * field.billow_m, shape.depth_m);
@@ -174,7 +169,7 @@ impl Clouds {
         self.sun_light * (first + second + many) + ambient * 0.75
     }
 
-    /// Colour of a thin edge: where nothing is seen, textures still need one to blend with.
+    /// Colour of a thin edge: transparent texels need one, too, to blend with.
     pub fn edge_light(&self) -> Vec3A {
         self.sun_light * 0.1 + self.sky_light * 0.5
     }
@@ -210,13 +205,13 @@ struct Inside {
     source: Vec3A,
     light: Vec3A,
     through: f32,
-    /// Sums of distances, weighted by what was gathered there, and of the weights.
+    /// Sum of distances, weighted by the opacity there, and sum of the weights.
     distance: f32,
     weight: f32,
 }
 
 impl Inside {
-    /// A step at a distance, of which the part `passed` of the light comes through. Next to nothing counts as nothing.
+    /// A step at a distance that lets the part `passed` of the light through. A transparency below 2 % counts as 0.
     fn gather(&mut self, distance: f32, passed: f32) {
         let gathered = self.through * (1.0 - passed);
         self.steps += 1;

@@ -1,5 +1,5 @@
 //! Clouds and clear sky → a map of what clouds add to the upper half of the sky: light (RGB) and transparency, over
-//! azimuth and elevation, with rows crowded towards the horizon where a person looks.
+//! azimuth and elevation, with rows crowded towards the horizon, where most looks go.
 
 use glam::{Vec3A, Vec4};
 use rayon::prelude::*;
@@ -15,7 +15,7 @@ use crate::raster::raster;
 const CROWDING: f32 = 1.4;
 const LOOKUP: usize = 2048;
 
-/// What clouds add: per texel their light in RGB and, in w, the part of the clear sky that shines through.
+/// Per texel the clouds' light in RGB and, in w, their transparency.
 pub struct Dome {
     width: usize,
     height: usize,
@@ -58,17 +58,12 @@ impl Dome {
     /// Draws the clouds; `width` directions around, `height` from horizon to zenith. Rows near the zenith are
     /// drawn with fewer directions.
     pub fn new(layers: &Layers, sky: &ClearSky, width: usize, height: usize) -> Self {
-        let mut texels = vec![Vec4::new(0.0, 0.0, 0.0, 1.0); width * height];
         let row_of_sine = (0..=LOOKUP).map(|i| row_at(i as f32 / LOOKUP as f32, height)).collect();
-        if layers.is_empty() {
-            return Self { width, height, texels, row_of_sine };
-        }
-        let around: Vec<(f32, f32)> = (0..width)
-            .map(|column| {
-                let azimuth = (column as f32 + 0.5) / width as f32 * std::f32::consts::TAU;
-                (libm::sinf(azimuth), -libm::cosf(azimuth))
-            })
-            .collect();
+        let heading = |column: usize| {
+            let azimuth = (column as f32 + 0.5) / width as f32 * std::f32::consts::TAU;
+            (libm::sinf(azimuth), -libm::cosf(azimuth))
+        };
+        let around: Vec<(f32, f32)> = (0..width).map(heading).collect();
         let seen = |row: Row, column: usize| {
             let (x, z) = around[column];
             layers.seen(Vec3A::new(row.flat * x, row.sine, row.flat * z), sky)
@@ -84,6 +79,7 @@ impl Dome {
             }
             fill_between(texels, stride);
         });
+        let mut texels = vec![Vec4::ZERO; width * height];
         texels.par_chunks_exact_mut(width).enumerate().for_each(|(row_index, texels)| {
             let row = Row::new(row_index, width, height);
             let (low, high) = sparse[row_index / 2 * half..].split_at(half);
@@ -173,7 +169,7 @@ fn from_neighbours(texels: &[Vec4], width: usize, make: impl Fn([[Vec4; 3]; 3]) 
 }
 
 /// A ray that grazes a cloud's lit edge gives a texel that outshines its surroundings, and glitters where it is a few
-/// pixels large. Without two neighbours of its kind, as those in a silver lining have, it becomes like the others.
+/// pixels large. Unless two neighbours are like it, as in a silver lining, it becomes like the others.
 fn without_glints(texels: &[Vec4], width: usize) -> Vec<Vec4> {
     let light = |texel: Vec4| texel.x + texel.y + texel.z;
     from_neighbours(texels, width, |[above, here, below]| {

@@ -7,6 +7,7 @@ use super::billow::{BILLOWS, Billows};
 use super::math::{bilinear, range};
 use crate::math::{lerp, smoothstep};
 use crate::noise;
+use crate::raster::square;
 use crate::seed::noise_seed;
 
 const MAP: usize = 128;
@@ -165,7 +166,7 @@ impl CloudField {
         ((min + rough * 0.26 * small) / ramp).clamp(0.0, 1.0)
     }
 
-    /// Density without billows, for shadows: what counts there is the mean.
+    /// Density without billows, for shadows, where only the mean counts.
     #[inline]
     pub fn smooth_density(&self, shape: Shape) -> f32 {
         ((shape.depth_m + 0.1 * self.billow_m) / (0.5 * self.billow_m)).clamp(0.0, 1.0)
@@ -174,19 +175,16 @@ impl CloudField {
 
 /// How much cloud there is over each place, about [0, 1]: round cells of many sizes.
 fn cover_map(seed: u32) -> Vec<f32> {
-    let mut map = Vec::with_capacity(MAP * MAP);
-    for j in 0..MAP {
-        for i in 0..MAP {
-            let (x, z) = (i as f32 * CELLS as f32 / MAP as f32, j as f32 * CELLS as f32 / MAP as f32);
-            let bend = noise::gradient2(seed ^ 0x77, x * 2.0, z * 2.0, CELLS * 2) * 0.16;
-            let (near, _, _) = noise::cellular2(seed, x + bend, z - bend, CELLS);
-            let (small, _, _) = noise::cellular2(seed ^ 0x1234, x * 2.0 - bend, z * 2.0 + bend, CELLS * 2);
-            let broad = noise::gradient2(seed ^ 0xABCD, x * 0.5, z * 0.5, CELLS / 2);
-            let mid = noise::gradient2(seed ^ 0xBEEF, x * 1.5, z * 1.5, CELLS * 3 / 2);
-            let cells = 0.62 * (1.0 - near) + 0.2 * (1.0 - small);
-            map.push(cells + 0.22 * broad + 0.14 * mid);
-        }
-    }
+    let map = square(MAP, |i, j| {
+        let (x, z) = (i as f32 * CELLS as f32 / MAP as f32, j as f32 * CELLS as f32 / MAP as f32);
+        let bend = noise::gradient2(seed ^ 0x77, x * 2.0, z * 2.0, CELLS * 2) * 0.16;
+        let (near, _, _) = noise::cellular2(seed, x + bend, z - bend, CELLS);
+        let (small, _, _) = noise::cellular2(seed ^ 0x1234, x * 2.0 - bend, z * 2.0 + bend, CELLS * 2);
+        let broad = noise::gradient2(seed ^ 0xABCD, x * 0.5, z * 0.5, CELLS / 2);
+        let mid = noise::gradient2(seed ^ 0xBEEF, x * 1.5, z * 1.5, CELLS * 3 / 2);
+        let cells = 0.62 * (1.0 - near) + 0.2 * (1.0 - small);
+        cells + 0.22 * broad + 0.14 * mid
+    });
     let (low, high) = range(&map);
     map.iter().map(|v| (v - low) / (high - low)).collect()
 }

@@ -1,5 +1,5 @@
-//! Clouds and cirrus → horizontal cloud layers with alpha that tile and can drift (thesis 5.1): what one sees of them
-//! looking straight up, tone-mapped to sRGB.
+//! Clouds and cirrus → horizontal cloud layers with alpha that tile and can drift (thesis 5.1): as seen
+//! straight up, tone-mapped to sRGB.
 
 use glam::Vec3A;
 
@@ -8,14 +8,14 @@ use super::clouds::Clouds;
 use super::math::exp;
 use crate::math::{lerp_array, srgb_from_linear};
 use crate::model::{CloudLayer, Image8};
-use crate::raster::{raster, square_image};
+use crate::raster::{square, square_image};
 
 /// Pixels a side.
 const SIDE: usize = 512;
 /// Rays of the cumulus layer a side; the image is interpolated between.
 const RAYS: usize = 160;
 
-/// The layers that there are, lowest first.
+/// All layers, lowest first.
 pub fn layers(clouds: Option<Clouds>, cirrus: Option<&Cirrus>) -> Vec<CloudLayer<Image8>> {
     let cumulus = clouds.map(|clouds| cumulus_layer(&clouds.into_tiling()));
     let high = cirrus.map(cirrus_layer);
@@ -47,15 +47,12 @@ fn cumulus_layer(clouds: &Clouds) -> CloudLayer<Image8> {
     let extent_m = clouds.field.tile_m;
     let tone = ToneMapping::new();
     let place = |i: usize| (i as f32 + 0.5) / RAYS as f32 * extent_m;
-    let rays = raster(RAYS, RAYS, |row| {
-        let tone = &tone;
-        move |column| {
-            let seen = clouds.march_vertical(place(column), place(row));
-            let alpha = 1.0 - seen.through;
-            // Unpremultiplied; where there is nothing, the colour of a thin edge.
-            let light = if alpha > 0.004 { seen.light / alpha } else { clouds.edge_light() };
-            tone.rgba(light, alpha)
-        }
+    let rays = square(RAYS, |column, row| {
+        let seen = clouds.march_vertical(place(column), place(row));
+        let alpha = 1.0 - seen.through;
+        // Unpremultiplied; where there is nothing, the colour of a thin edge.
+        let light = if alpha > 0.004 { seen.light / alpha } else { clouds.edge_light() };
+        tone.rgba(light, alpha)
     });
     CloudLayer { name: "cumulus".into(), altitude_m: clouds.field.base_m, extent_m, image: enlarged(&rays) }
 }

@@ -1,7 +1,7 @@
-//! Parameters → sun, sky and clouds.
+//! Sky genes → sun, sky and clouds.
 //!
-//! The air is Hillaire's (2020), clouds are ray-marched in a field of billows, cirrus is a thin layer. `light` gives
-//! the few numbers that other stages need; `images` paints the same sky. Both are linear sRGB in the
+//! The atmosphere is Hillaire's (2020), clouds are ray-marched in a field of billows, cirrus is a thin layer. `light`
+//! gives the few numbers that other stages need; `images` paints the same sky. Both are linear sRGB in the
 //! relative units of [`SkyLight`], for an eye adapted to the scene.
 
 mod atmosphere;
@@ -22,7 +22,7 @@ use glam::{Vec3, Vec3A};
 use serde::{Deserialize, Serialize};
 
 use crate::model::{SkyImages, SkyLight};
-use clear::{ClearSky, SunDisc};
+use clear::{ClearSky, SunDisc, sum_around};
 use clouds::Clouds;
 use dome::{Dome, Layers};
 use paint::Painter;
@@ -30,7 +30,7 @@ pub use stage::{SkyImagesStage, SkyLightStage};
 
 /// Pixels a side of the cloudless cube faces.
 const CLEAR_FACE_PX: usize = 128;
-/// Directions around and up that the clouds are drawn in.
+/// Directions around and up in which the clouds are drawn.
 const DOME_PX: (usize, usize) = (1088, 184);
 /// Steps of elevation in `zonal_radiance_linear`.
 const ZONES: usize = 32;
@@ -77,7 +77,7 @@ impl Sky {
     }
 }
 
-/// About how much of the clear sky's light is left under these clouds; only the eye's adaptation depends on it.
+/// The approximate part of the clear sky's light that passes these clouds; only the eye's adaptation depends on it.
 fn cloud_dimming(params: &SkyParams) -> f32 {
     let cover = params.cloud_cover.clamp(0.0, 1.0);
     let opacity = params.cloud_thickness_m / (params.cloud_thickness_m + 250.0);
@@ -91,14 +91,12 @@ pub fn light(params: &SkyParams) -> SkyLight {
     let sun_through =
         sky.layers.clouds.as_ref().map_or(1.0, Clouds::sun_through) * (1.0 - 0.25 * params.cirrus);
     let spokes = if sky.layers.is_empty() { 96 } else { 40 };
-    let zonal: Vec<Vec3A> = (0..ZONES)
-        .map(|zone| {
-            let elevation = zone as f32 / (ZONES - 1) as f32 * std::f32::consts::FRAC_PI_2;
-            clear.zonal(libm::sinf(elevation), |_, d| sky.radiance(d), spokes)
-        })
-        .collect();
-    let irradiance =
-        if sky.layers.is_empty() { clear.irradiance(|s, d| s.radiance(d)) } else { zonal_irradiance(&zonal) };
+    let zone = |zone: usize| {
+        let elevation = zone as f32 / (ZONES - 1) as f32 * std::f32::consts::FRAC_PI_2;
+        sum_around(libm::sinf(elevation), 0.0, spokes, |d| sky.radiance(d)) / spokes as f32
+    };
+    let zonal: Vec<Vec3A> = (0..ZONES).map(zone).collect();
+    let irradiance = if sky.layers.is_empty() { clear.irradiance() } else { zonal_irradiance(&zonal) };
     SkyLight {
         sun_direction: Vec3::from(clear.sun),
         sun_angular_radius_rad: 0.5 * params.sun_size_deg.to_radians(),

@@ -44,6 +44,8 @@ pub struct Painter<'a> {
 
 /// The clear sky on a grid of nodes, `across` × `down` pixels apart: it changes most from row to row.
 struct Grid {
+    /// Width and height of the image in pixels.
+    size: (usize, usize),
     columns: usize,
     across: usize,
     down: usize,
@@ -58,7 +60,7 @@ impl Grid {
             let (radiance, v) = (&radiance, (row * down) as f32 / height as f32);
             move |column| radiance((column * across) as f32 / width as f32, v)
         });
-        Self { columns, across, down, nodes }
+        Self { size, columns, across, down, nodes }
     }
 
     /// Pixels of one row, interpolated between nodes.
@@ -74,6 +76,22 @@ impl Grid {
                 *pixel = a.lerp(b, (k as f32 + 0.5) / self.across as f32);
             }
         }
+    }
+
+    /// The whole image: `pixel` makes each of its column, its row and the clear sky there.
+    fn image(&self, pixel: impl Fn(usize, usize, Vec3A) -> Vec3A + Sync) -> ImageF16 {
+        let (width, height) = self.size;
+        let mut data = vec![0u16; width * height * 3];
+        data.par_chunks_exact_mut(width * 3).enumerate().for_each_init(
+            || vec![Vec3A::ZERO; width],
+            |colors, (j, data)| {
+                self.row(j, colors);
+                for (i, out) in data.chunks_exact_mut(3).enumerate() {
+                    out.copy_from_slice(&pixel(i, j, colors[i]).to_array().map(half_bits));
+                }
+            },
+        );
+        ImageF16 { width: width as u32, height: height as u32, data }
     }
 }
 
@@ -96,7 +114,7 @@ impl Painter<'_> {
                 .collect(),
             _ => Vec::new(),
         };
-        self.image(side, side, &grid, |i, j, color| {
+        grid.image(|i, j, color| {
             let direction = face_direction(face, place(i), place(j));
             let clouds = self.dome.filter(|_| direction.y > 0.0).map(|dome| {
                 let column = columns.get(i).copied().unwrap_or_else(|| dome.column(direction.x, direction.z));
@@ -111,20 +129,18 @@ impl Painter<'_> {
         let height = width / 2;
         let grid = Grid::new((width, height), (4, 2), |u, v| self.sky.radiance(equirect_direction(u, v)));
         let pixel_rad = std::f32::consts::TAU / width as f32;
-        let around: Vec<(f32, f32, f32)> = (0..width)
-            .map(|i| {
-                let d = equirect_direction((i as f32 + 0.5) / width as f32, 0.5);
-                (d.x, d.z, self.dome.map_or(0.0, |dome| dome.column(d.x, d.z)))
-            })
-            .collect();
-        let rows: Vec<(f32, f32, f32)> = (0..height)
-            .map(|j| {
-                let d = equirect_direction(0.5, (j as f32 + 0.5) / height as f32);
-                (d.y, -d.z, self.dome.map_or(0.0, |dome| dome.row(d.y)))
-            })
-            .collect();
-        self.image(width, height, &grid, |i, j, color| {
-            let ((x, z, column), (y, flat, row)) = (around[i], rows[j]);
+        let column = |i: usize| {
+            let d = equirect_direction((i as f32 + 0.5) / width as f32, 0.5);
+            (d.x, d.z, self.dome.map_or(0.0, |dome| dome.column(d.x, d.z)))
+        };
+        let row = |j: usize| {
+            let d = equirect_direction(0.5, (j as f32 + 0.5) / height as f32);
+            (d.y, -d.z, self.dome.map_or(0.0, |dome| dome.row(d.y)))
+        };
+        let (columns, rows): (Vec<_>, Vec<_>) =
+            ((0..width).map(column).collect(), (0..height).map(row).collect());
+        grid.image(|i, j, color| {
+            let ((x, z, column), (y, flat, row)) = (columns[i], rows[j]);
             let clouds = self.dome.filter(|_| y > 0.0).map(|dome| dome.at(column, row));
             self.pixel(Vec3A::new(flat * x, y, flat * z), color, clouds, pixel_rad)
         })
@@ -139,26 +155,5 @@ impl Painter<'_> {
         // A disc behind thin cloud is blotted out sooner than the sky around it.
         let through = clouds.map_or(1.0, |seen| seen.w * seen.w);
         color + self.disc.radiance(direction, pixel_rad) * through
-    }
-
-    fn image(
-        &self,
-        width: usize,
-        height: usize,
-        grid: &Grid,
-        pixel: impl Fn(usize, usize, Vec3A) -> Vec3A + Sync,
-    ) -> ImageF16 {
-        let mut data = vec![0u16; width * height * 3];
-        data.par_chunks_exact_mut(width * 3).enumerate().for_each_init(
-            || vec![Vec3A::ZERO; width],
-            |colors, (j, data)| {
-                grid.row(j, colors);
-                for (i, out) in data.chunks_exact_mut(3).enumerate() {
-                    let color = pixel(i, j, colors[i]);
-                    out.copy_from_slice(&color.to_array().map(half_bits));
-                }
-            },
-        );
-        ImageF16 { width: width as u32, height: height as u32, data }
     }
 }

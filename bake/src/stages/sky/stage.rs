@@ -1,3 +1,5 @@
+//! The sky as stages: genes → light, and light → images, as files.
+
 use genescape_schema::scene::{CloudLayer, SkyImages};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -5,7 +7,7 @@ use serde::Serialize;
 use super::{SkyParams, images, light};
 use crate::gltf::{exr, png};
 use crate::graph::{Context, File, Input, Stage, StageError};
-use crate::model::SkyLight;
+use crate::model::{ImageF16, SkyLight};
 
 /// Sky genes → sun and ambient light.
 #[derive(Serialize)]
@@ -41,19 +43,18 @@ impl Stage for SkyImagesStage {
 
     fn run(&self, context: &Context<'_>) -> Result<SkyImages<File>, StageError> {
         let images = images(&self.params, &*context.get(&self.light)?, self.face_px, self.equirect_px);
-        let exr = |image: &_| context.file("exr", exr::encode(image));
+        let exr = |image: &ImageF16| context.file("exr", exr::encode(image));
         let layer = |layer: &CloudLayer<_>| CloudLayer {
             name: layer.name.clone(),
             altitude_m: layer.altitude_m,
             extent_m: layer.extent_m,
             image: context.file("png", png::encode(&layer.image)),
         };
-        let radiance: Vec<_> =
-            std::iter::once(&images.equirect).chain(&images.faces).chain(&images.clear_faces).collect();
-        let mut files: Vec<File> = radiance.into_par_iter().map(exr).collect();
-        let clear_faces = files.split_off(1 + images.faces.len());
-        let faces = files.split_off(1);
-        let equirect = files.remove(0);
+        let faces = |faces: &[ImageF16]| faces.par_iter().map(exr).collect();
+        let (equirect, (faces, clear_faces)) = rayon::join(
+            || exr(&images.equirect),
+            || rayon::join(|| faces(&images.faces), || faces(&images.clear_faces)),
+        );
         let layers = images.layers.par_iter().map(layer).collect();
         Ok(SkyImages { equirect, faces, clear_faces, layers })
     }

@@ -1,12 +1,13 @@
 //! Landform → the ring of coarse land around the field, joined to it without a crack, and the water, in metres.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 use glam::Vec3;
 
 use genescape_schema::scene::bintree::Sample;
 
-use crate::math::{cell, lerp_array};
+use crate::math::{cell, lerp_array, triangles_between};
 use crate::model::{Heightfield, Landform, Material, Mesh, Part, PartKind};
 
 /// Metres of water that one unit of its texture coordinates covers.
@@ -33,14 +34,15 @@ pub(super) fn border_samples(land: &Landform) -> Vec<Sample> {
 /// a strip whose inner vertices are just those of the near mesh. Empty if the apron is no wider than the field.
 pub(super) fn ring(land: &Landform, used: impl Fn(Sample) -> bool, colors: &[[u8; 4]]) -> Mesh {
     let Some(hole) = Hole::of(land) else { return Mesh::default() };
-    let mut ring = Ring::new(land, colors);
+    let (mesh, numbers, triangles) = (Mesh::default(), BTreeMap::new(), Vec::new());
+    let mut ring = Ring { land, colors, mesh, numbers, triangles };
     let mut inner = [const { Vec::new() }; 4];
     let last = land.field.side - 1;
     for along in 0..=last {
         // Sides in the order north, east, south, west; each from its lower to its higher coordinate.
         for (side, sample) in [[along, 0], [last, along], [along, last], [0, along]].into_iter().enumerate() {
             if used(sample) {
-                inner[side].push(ring.inner_vertex(sample));
+                inner[side].push(ring.vertex(Place::Inner(sample)));
             }
         }
     }
@@ -49,11 +51,12 @@ pub(super) fn ring(land: &Landform, used: impl Fn(Sample) -> bool, colors: &[[u8
             [[along, hole.first], [hole.last, along], [along, hole.last], [hole.first, along]][side]
         };
         let outer: Vec<u32> =
-            (hole.first..=hole.last).map(|along| ring.outer_vertex(sample(along))).collect();
+            (hole.first..=hole.last).map(|along| ring.vertex(Place::Outer(sample(along)))).collect();
         ring.zip(inner, &outer, if side % 2 == 0 { 0 } else { 2 });
     }
     ring.cells(&hole);
-    ring.finish()
+    let parts = vec![Part { material: Material::Ground, kind: PartKind::Surface, triangles: ring.triangles }];
+    Mesh { parts, ..ring.mesh }
 }
 
 /// Two triangles as wide as the apron at the water's level; empty if the land is dry.
@@ -61,16 +64,13 @@ pub(super) fn water(land: &Landform) -> Mesh {
     let Some(level) = land.water_level_m else { return Mesh::default() };
     let half = 0.5 * land.apron.extent_m().max(land.field.extent_m());
     let corners = [[-half, -half], [-half, half], [half, half], [half, -half]];
+    let triangles = vec![[0, 1, 2], [0, 2, 3]];
     Mesh {
         positions: corners.map(|[x, z]| [x, level, z]).to_vec(),
         normals: vec![[0.0, 1.0, 0.0]; 4],
         uvs: corners.map(|[x, z]| [x / WATER_TILE_M, z / WATER_TILE_M]).to_vec(),
-        colors: Vec::new(),
-        parts: vec![Part {
-            material: Material::Water,
-            kind: PartKind::Surface,
-            triangles: vec![[0, 1, 2], [0, 2, 3]],
-        }],
+        parts: vec![Part { material: Material::Water, kind: PartKind::Surface, triangles }],
+        ..Mesh::default()
     }
 }
 
@@ -84,7 +84,7 @@ impl Hole {
     fn of(land: &Landform) -> Option<Self> {
         let half = 0.5 * land.field.extent_m();
         let side = land.apron.side;
-        // A line that differs from the border by rounding only counts as on it.
+        // A line that differs from the border only by rounding counts as on it.
         let outside = half + 1.0e-3 * land.apron.spacing_m;
         let first = (0..side).rev().find(|&line| land.apron.place_m(line) < -outside)?;
         let last = (0..side).find(|&line| land.apron.place_m(line) > outside)?;
@@ -92,53 +92,43 @@ impl Hole {
     }
 }
 
+/// What a vertex of the ring lies on.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Place {
+    /// A sample of the field, on its border, where the near mesh has a vertex.
+    Inner(Sample),
+    /// A sample of the apron.
+    Outer(Sample),
+}
+
 /// The ring while it grows.
 struct Ring<'a> {
     land: &'a Landform,
     colors: &'a [[u8; 4]],
     mesh: Mesh,
-    numbers: Vec<u32>,
-    inner: BTreeMap<Sample, u32>,
+    numbers: BTreeMap<Place, u32>,
     triangles: Vec<[u32; 3]>,
 }
 
-impl<'a> Ring<'a> {
-    fn new(land: &'a Landform, colors: &'a [[u8; 4]]) -> Self {
-        let numbers = vec![u32::MAX; land.apron.heights_m.len()];
-        let (mesh, inner, triangles) = (Mesh::default(), BTreeMap::new(), Vec::new());
-        Self { land, colors, mesh, numbers, inner, triangles }
-    }
-
-    fn push(&mut self, position: [f32; 3], normal: [f32; 3], color: [u8; 4]) -> u32 {
-        let extent_m = self.land.field.extent_m();
+impl Ring<'_> {
+    /// The number of a vertex, which is made when it is first needed.
+    fn vertex(&mut self, place: Place) -> u32 {
+        let (number, extent_m) = (self.mesh.positions.len() as u32, self.land.field.extent_m());
+        let Entry::Vacant(new) = self.numbers.entry(place) else { return self.numbers[&place] };
+        new.insert(number);
+        let (position, normal) = match place {
+            Place::Inner(sample) => vertex(&self.land.field, sample),
+            Place::Outer(sample) => vertex(&self.land.apron, sample),
+        };
+        let color = match place {
+            Place::Inner(_) => self.color_between(position[0], position[2]),
+            Place::Outer([i, j]) => self.color((j * self.land.apron.side + i) as usize),
+        };
         self.mesh.positions.push(position);
         self.mesh.normals.push(normal);
         self.mesh.uvs.push([position[0] / extent_m + 0.5, position[2] / extent_m + 0.5]);
         self.mesh.colors.push(color);
-        self.mesh.positions.len() as u32 - 1
-    }
-
-    /// A vertex of the near mesh on the field's border; corners belong to two sides.
-    fn inner_vertex(&mut self, sample: Sample) -> u32 {
-        if let Some(&number) = self.inner.get(&sample) {
-            return number;
-        }
-        let (position, normal) = vertex(&self.land.field, sample);
-        let color = self.color_between(position[0], position[2]);
-        let number = self.push(position, normal, color);
-        self.inner.insert(sample, number);
         number
-    }
-
-    fn outer_vertex(&mut self, [i, j]: Sample) -> u32 {
-        let apron = &self.land.apron;
-        let index = (j * apron.side + i) as usize;
-        if self.numbers[index] == u32::MAX {
-            let position = [apron.place_m(i), apron.at(i, j), apron.place_m(j)];
-            let normal = apron.normal_at(i, j).to_array();
-            self.numbers[index] = self.push(position, normal, self.color(index));
-        }
-        self.numbers[index]
     }
 
     /// The colours of the apron's four samples around a point, blended.
@@ -160,18 +150,9 @@ impl<'a> Ring<'a> {
 
     /// Fills the strip between two rows of vertices that both ascend along `axis` (0 = x, 2 = z).
     fn zip(&mut self, inner: &[u32], outer: &[u32], axis: usize) {
-        let (mut i, mut o) = (0, 0);
-        while i + 1 < inner.len() || o + 1 < outer.len() {
-            let along = |row: &[u32], at: usize| {
-                row.get(at).map_or(f32::INFINITY, |&vertex| self.mesh.positions[vertex as usize][axis])
-            };
-            if along(outer, o + 1) <= along(inner, i + 1) {
-                self.face_up([inner[i], outer[o], outer[o + 1]]);
-                o += 1;
-            } else {
-                self.face_up([inner[i], outer[o], inner[i + 1]]);
-                i += 1;
-            }
+        let along = |vertex: u32| self.mesh.positions[vertex as usize][axis];
+        for [outer, inner, third] in triangles_between(outer, inner, along) {
+            self.face_up([inner, outer, third]);
         }
     }
 
@@ -184,8 +165,8 @@ impl<'a> Ring<'a> {
                 if within.contains(&i) && within.contains(&j) {
                     continue;
                 }
-                let [nw, ne, sw, se] =
-                    [[i, j], [i + 1, j], [i, j + 1], [i + 1, j + 1]].map(|sample| self.outer_vertex(sample));
+                let [nw, ne, sw, se] = [[i, j], [i + 1, j], [i, j + 1], [i + 1, j + 1]]
+                    .map(|sample| self.vertex(Place::Outer(sample)));
                 let falls = (apron.at(i, j) - apron.at(i + 1, j + 1)).abs();
                 let rises = (apron.at(i + 1, j) - apron.at(i, j + 1)).abs();
                 if falls <= rises {
@@ -201,12 +182,6 @@ impl<'a> Ring<'a> {
         let [pa, pb, pc] = [a, b, c].map(|vertex| Vec3::from_array(self.mesh.positions[vertex as usize]));
         let up = (pb - pa).cross(pc - pa).y > 0.0;
         self.triangles.push(if up { [a, b, c] } else { [a, c, b] });
-    }
-
-    fn finish(mut self) -> Mesh {
-        let triangles = std::mem::take(&mut self.triangles);
-        self.mesh.parts = vec![Part { material: Material::Ground, kind: PartKind::Surface, triangles }];
-        self.mesh
     }
 }
 

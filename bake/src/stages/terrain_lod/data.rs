@@ -8,7 +8,7 @@ use std::sync::Arc;
 use genescape_schema::scene::bintree::parents;
 
 use crate::model::{Heightfield, TerrainLod};
-use crate::raster::raster;
+use crate::raster::square;
 
 /// What the run-time levels of detail of a heightfield of (2^k+1)² samples, k ≥ 1, need.
 pub fn lod(field: &Heightfield) -> TerrainLod {
@@ -25,16 +25,14 @@ pub fn lod(field: &Heightfield) -> TerrainLod {
 /// ½(h(a) + h(b)) − h in metres for each sample with parents a and b: from the sample to its place in the uniform
 /// triangulation of the next level, diagonals alternating as in the bintree. 0 for the four corners.
 pub(super) fn displacements_m(field: &Heightfield) -> Vec<f32> {
-    let (side, last) = (field.side as usize, field.side - 1);
-    raster(side, side, |j| {
-        move |i| {
-            let (i, j) = (i as u32, j as u32);
-            if i % last == 0 && j % last == 0 {
-                return 0.0;
-            }
-            let [a, b] = parents([i, j]);
-            0.5 * (field.at(a[0], a[1]) + field.at(b[0], b[1])) - field.at(i, j)
+    let last = field.side - 1;
+    square(field.side as usize, |i, j| {
+        let (i, j) = (i as u32, j as u32);
+        if i % last == 0 && j % last == 0 {
+            return 0.0;
         }
+        let [a, b] = parents([i, j]);
+        0.5 * (field.at(a[0], a[1]) + field.at(b[0], b[1])) - field.at(i, j)
     })
 }
 
@@ -85,19 +83,12 @@ fn greatest_around(values: &[f32], n: usize, i: usize, j: usize, by: usize, diag
 /// Ranges of all blocks, coarsest first; each block counts its border, and its corners also as morphed.
 fn block_ranges(field: &Heightfield, displacements_m: &[f32]) -> Vec<[f32; 2]> {
     let across = (field.side as usize - 1) / 2;
-    let finest =
-        raster(across, across, |row| move |column| cells_range(field, displacements_m, 2 * column, 2 * row));
-    let mut pyramid = vec![finest];
+    let mut pyramid = vec![square(across, |i, j| cells_range(field, displacements_m, 2 * i, 2 * j))];
     let mut across = across / 2;
     while across > 0 {
         let fine = &pyramid[pyramid.len() - 1];
-        let at = |i: usize, j: usize| fine[j * 2 * across + i];
-        let coarse = (0..across * across).map(|block| {
-            let (i, j) = (block % across * 2, block / across * 2);
-            union(union(at(i, j), at(i + 1, j)), union(at(i, j + 1), at(i + 1, j + 1)))
-        });
-        let coarse = coarse.collect();
-        pyramid.push(coarse);
+        let pair = |i: usize, j: usize| union(fine[j * 2 * across + i], fine[j * 2 * across + i + 1]);
+        pyramid.push(square(across, |i, j| union(pair(2 * i, 2 * j), pair(2 * i, 2 * j + 1))));
         across /= 2;
     }
     pyramid.into_iter().rev().flatten().collect()

@@ -1,11 +1,11 @@
 //! Heightfield → an adaptive, conforming mesh of right triangles within a vertical error bound in metres.
 //!
-//! Top-down as the thesis's ROAM (3.2.1): a triangle whose error exceeds the bound is split, and so is its
-//! neighbour across the hypotenuse, if need be after larger triangles (Lindstrom et al. 1996), so that no
-//! T-junction arises. The error is the greatest vertical distance over all samples that the triangle covers, not
-//! the deviation of its middle alone (which Martini takes, and so delivers twice the error it claims) nor the
-//! wedgie (a sum that overstates it). As the mesh's edges run along those of the uniform triangulation of all
-//! samples (see [`genescape_schema::scene::bintree`]), that distance bounds the one between the two surfaces everywhere.
+//! Top-down as the thesis's ROAM (3.2.1): a triangle whose error exceeds the bound is split, and so is its neighbour
+//! across the hypotenuse, if need be after larger triangles (Lindstrom et al. 1996), so that no T-junction arises. The
+//! error is the greatest vertical distance over all samples that the triangle covers, not the deviation of its middle
+//! alone (as in Martini, which delivers twice the error that it claims) nor the wedgie (a sum that overstates it). As
+//! the mesh's edges run along those of the uniform triangulation of all samples (see
+//! [`genescape_schema::scene::bintree`]), that distance bounds the one between the two surfaces everywhere.
 
 use genescape_schema::scene::bintree::{Sample, Triangle, requires};
 
@@ -28,14 +28,12 @@ const GOOD_AFTER: u8 = 4;
 /// with diagonals as in the bintree; 0 or less keeps every sample. The true maximum, measured afterwards on the
 /// finished mesh at every sample, is `error_m`. `apron_colors` holds a linear RGB factor for each sample of the
 /// apron (missing ones are white). No triangle crosses the lines every `block_m` metres from the north-west corner
-/// (rounded down to cells that a block can have), so that scenes can cut out squares. Triangles are in the order of Sierpiński's curve, so caches like them.
+/// (rounded down to a power of two in cells), so that scenes can cut out squares. Triangles are in the order of
+/// Sierpiński's curve, which suits vertex caches.
 pub fn mesh(land: &Landform, max_error_m: f32, block_m: f32, apron_colors: &[[u8; 4]]) -> TerrainMesh {
     let field = &land.field;
     let mut refiner = Refiner::new(field, max_error_m);
-    for sample in apron::border_samples(land) {
-        refiner.use_sample(sample);
-    }
-    for sample in block_corners(field, block_m) {
+    for sample in apron::border_samples(land).into_iter().chain(block_corners(field, block_m)) {
         refiner.use_sample(sample);
     }
     refiner.refine_all();
@@ -54,7 +52,7 @@ fn block_corners(field: &Heightfield, block_m: f32) -> impl Iterator<Item = Samp
     (0..=across).flat_map(move |j| (0..=across).map(move |i| [i * cells, j * cells]))
 }
 
-/// An error bound in metres that suits the land: 0.15 m, or on rough land more, namely the smallest that keeps the
+/// An error bound in metres that suits the land: 0.15 m, or on rough land more, the smallest that keeps the
 /// mesh at roughly 200·(side−1) triangles (100,000 at 513²).
 pub fn default_error_m(field: &Heightfield) -> f32 {
     let mut errors = nested(field.side, &displacements_m(field), f32::max);
@@ -140,15 +138,14 @@ impl<'a> Refiner<'a> {
     /// The finished mesh.
     fn triangles(&self) -> Mesh {
         let used = self.marks.iter().filter(|&&mark| mark & USED != 0).count();
-        let (numbers, mesh) = (vec![u32::MAX; self.marks.len()], Mesh::default());
-        let mut walk = Walk { refiner: self, numbers, mesh };
-        let mut triangles = Vec::with_capacity(2 * used);
+        let (numbers, triangles) = (vec![u32::MAX; self.marks.len()], Vec::with_capacity(2 * used));
+        let mut walk = Walk { refiner: self, numbers, mesh: Mesh::default(), triangles };
         for root in Triangle::roots(self.field.side) {
-            walk.emit(root, true, &mut triangles);
+            walk.emit(root, true);
         }
-        let mut mesh = walk.mesh;
-        mesh.parts = vec![Part { material: Material::Ground, kind: PartKind::Surface, triangles }];
-        mesh
+        let parts =
+            vec![Part { material: Material::Ground, kind: PartKind::Surface, triangles: walk.triangles }];
+        Mesh { parts, ..walk.mesh }
     }
 }
 
@@ -172,7 +169,7 @@ fn exceeds(field: &Heightfield, triangle: &Triangle, middle: Sample, bound_m: f3
         let start = (z * field.side as i32 + first) as usize;
         let heights = &field.heights_m[start..=start + (last - first) as usize];
         let plane = ha + (z - a[1]) as f32 * south + (first - a[0]) as f32 * east;
-        // As integers, because the maximum of floats keeps compilers from using vector instructions.
+        // As integers: the compiler does not vectorise the maximum of floats.
         let mut worst = 0;
         for (k, height) in heights.iter().enumerate() {
             worst = worst.max((height - (plane + k as i32 as f32 * east)).abs().to_bits() as i32);
@@ -201,21 +198,23 @@ struct Walk<'a> {
     refiner: &'a Refiner<'a>,
     numbers: Vec<u32>,
     mesh: Mesh,
+    triangles: Vec<[u32; 3]>,
 }
 
 impl Walk<'_> {
     /// `forward`: from the hypotenuse's end a to b, so that each triangle shares an edge with the next.
-    fn emit(&mut self, triangle: Triangle, forward: bool, triangles: &mut Vec<[u32; 3]>) {
+    fn emit(&mut self, triangle: Triangle, forward: bool) {
         let middle = triangle.middle().filter(|&m| self.refiner.marks[self.refiner.index(m)] & USED != 0);
         let Some(middle) = middle else {
-            triangles.push([triangle.a, triangle.b, triangle.apex].map(|sample| self.number(sample)));
+            let corners = [triangle.a, triangle.b, triangle.apex].map(|sample| self.number(sample));
+            self.triangles.push(corners);
             return;
         };
         let mut children = triangle.children(middle);
         if !forward {
             children.reverse();
         }
-        children.into_iter().for_each(|child| self.emit(child, !forward, triangles));
+        children.into_iter().for_each(|child| self.emit(child, !forward));
     }
 
     fn number(&mut self, sample: Sample) -> u32 {

@@ -1,3 +1,5 @@
+//! The terrain as a stage: landform → mesh, levels of detail and heights, as files.
+
 use rayon::join;
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! A finished mesh and its heightfield → how far apart they are, in metres. Knows nothing of how the mesh was made.
+//! A finished mesh and its heightfield → how far apart they are, in metres. Independent of how the mesh was made.
 
 use crate::model::{Heightfield, Mesh};
 

@@ -13,7 +13,7 @@ use super::params::TreeParams;
 use super::shade::Shade;
 use super::skeleton::{Skeleton, Stem, perpendicular};
 use crate::math::{lerp, unit_to_byte};
-use crate::model::Mesh;
+use crate::model::{Material, Mesh, Part, PartKind};
 
 /// Metres of bark that one repeat of the texture covers on the trunk.
 const TILE_M: f32 = 0.9;
@@ -25,12 +25,11 @@ const ROOT_SIDES: usize = 20;
 struct Station {
     at: Vec3,
     radius_m: f32,
-    /// Height above the ground for the flare of roots; `None` where there is none.
+    /// Height above the ground for the flare of roots; `None` on stems without roots.
     root_m: Option<f32>,
 }
 
 /// The shape of the roots.
-#[derive(Clone, Copy)]
 struct Roots {
     flare: f32,
     lobes: f32,
@@ -49,6 +48,13 @@ impl Roots {
         let flute = 1.0 + 0.035 * libm::cosf(wave);
         flute * (1.0 + self.flare * near * (0.16 + 0.9 * lobe))
     }
+
+    /// 2π times this is about the circumference of a ring.
+    fn round_m(&self, ring: &Station) -> f32 {
+        let swell =
+            |height_m: f32| 1.0 + 0.62 * self.flare * libm::expf(-(height_m / self.reach_m).max(-0.35));
+        ring.radius_m * ring.root_m.map_or(1.0, swell)
+    }
 }
 
 /// How a ring of vertices lies, and its place in the texture.
@@ -63,23 +69,18 @@ struct Frame {
     v: f32,
 }
 
-/// What is written to while tubes are made.
+/// The mesh being made, and what all its tubes share.
 struct Skin<'a> {
-    mesh: &'a mut Mesh,
+    mesh: Mesh,
     triangles: Vec<[u32; 3]>,
     shade: &'a Shade,
+    roots: Roots,
     moss: f32,
     circles: Vec<Vec<[f32; 2]>>,
 }
 
-/// Appends the vertices of all stems to `mesh` and returns their triangles.
-pub(super) fn skin(
-    params: &TreeParams,
-    budget: &Budget,
-    skeleton: &Skeleton,
-    shade: &Shade,
-    mesh: &mut Mesh,
-) -> Vec<[u32; 3]> {
+/// A mesh of one part: the bark of all stems.
+pub(super) fn skin(params: &TreeParams, budget: &Budget, skeleton: &Skeleton, shade: &Shade) -> Mesh {
     let trunk_m = skeleton.stems.first().map_or(0.1, |stem| stem.radius_m);
     let roots = Roots {
         flare: params.root_flare * 0.9,
@@ -90,28 +91,23 @@ pub(super) fn skin(
     let stations: Vec<Vec<Station>> =
         skeleton.stems.iter().enumerate().map(|(i, stem)| stations(skeleton, stem, i == 0, &roots)).collect();
     let sides = budgeted_sides(skeleton, &stations, budget.max_bark_triangles as usize);
-    let circles = (0..=ROOT_SIDES).map(circle).collect();
+    let circles = (0..=ROOT_SIDES).map(|sides| circle(sides.max(1))).collect();
     let moss = 0.5 * (1.0 - params.bark_tone);
-    let count: usize = stations.iter().zip(&sides).map(|(s, &n)| s.len() * (n + 1)).sum();
-    mesh.positions.reserve(count);
-    let mut skin = Skin { mesh, triangles: Vec::with_capacity(2 * count), shade, moss, circles };
+    let mut skin = Skin { mesh: Mesh::default(), triangles: Vec::new(), shade, roots, moss, circles };
     for (index, stem) in skeleton.stems.iter().enumerate() {
-        let roots = (index == 0).then_some(&roots);
-        skin.tube(stem, &stations[index], sides[index], roots, index as u32);
+        skin.tube(stem, &stations[index], sides[index], index);
     }
-    skin.triangles
+    let parts = vec![Part { material: Material::Bark, kind: PartKind::Surface, triangles: skin.triangles }];
+    Mesh { parts, ..skin.mesh }
 }
 
 /// cos and sin around a circle of `sides`; the last is the first again, to the bit.
 fn circle(sides: usize) -> Vec<[f32; 2]> {
-    let mut points: Vec<[f32; 2]> = (0..sides)
-        .map(|k| {
-            let (sin, cos) = libm::sincosf(TAU * k as f32 / sides as f32);
-            [cos, sin]
-        })
-        .collect();
-    points.extend(points.first().copied());
-    points
+    let point = |k: usize| {
+        let (sin, cos) = libm::sincosf(TAU * (k % sides) as f32 / sides as f32);
+        [cos, sin]
+    };
+    (0..=sides).map(point).collect()
 }
 
 /// Sides of each stem's tube, fewer and fewer until the budget is met.
@@ -139,28 +135,24 @@ fn stations(skeleton: &Skeleton, stem: &Stem, has_roots: bool, roots: &Roots) ->
     let nodes = &skeleton.nodes[stem.nodes.clone()];
     let (a, b) = (nodes[0], nodes[1]);
     let first_m = (b.at - a.at).length();
-    let on_first = |s_m: f32| {
+    let on_first = |s_m: f32, swell: f32, root_m: Option<f32>| {
         let f = s_m / first_m.max(1e-4);
-        (a.at.lerp(b.at, f), lerp(a.radius_m, b.radius_m, f))
+        Station { at: a.at.lerp(b.at, f), radius_m: lerp(a.radius_m, b.radius_m, f) * swell, root_m }
     };
     let mut rings = Vec::with_capacity(nodes.len() + 7);
     if has_roots {
         let deep_m = 0.3_f32.max(0.7 * a.radius_m);
         rings.push(Station { at: a.at - Vec3::Y * deep_m, radius_m: a.radius_m, root_m: Some(-deep_m) });
         let heights_m = [0.0, 0.25, 0.6, 1.1, 1.8, 2.8, 4.2].map(|part| part * roots.reach_m);
-        for s_m in heights_m.into_iter().filter(|&s_m| s_m < 0.9 * first_m) {
-            let (at, radius_m) = on_first(s_m);
-            rings.push(Station { at, radius_m, root_m: Some(s_m) });
-        }
+        let near = heights_m.into_iter().filter(|&s_m| s_m < 0.9 * first_m);
+        rings.extend(near.map(|s_m| on_first(s_m, 1.0, Some(s_m))));
     } else {
         rings.push(Station { at: a.at, radius_m: a.radius_m, root_m: None });
         let out_m = stem.parent_radius_m;
         if !stem.is_arm && a.radius_m > 0.02 && out_m + 2.2 * a.radius_m < 0.9 * first_m {
             // The collar: thickest where the branch comes out of its parent's bark.
-            for (s_m, swell) in [(0.9 * out_m, 1.45), (out_m + 1.6 * a.radius_m, 1.06)] {
-                let (at, radius_m) = on_first(s_m);
-                rings.push(Station { at, radius_m: radius_m * swell, root_m: None });
-            }
+            rings.push(on_first(0.9 * out_m, 1.45, None));
+            rings.push(on_first(out_m + 1.6 * a.radius_m, 1.06, None));
         }
     }
     let rooted = |at: Vec3| has_roots.then_some(at.y);
@@ -170,7 +162,7 @@ fn stations(skeleton: &Skeleton, stem: &Stem, has_roots: bool, roots: &Roots) ->
 
 impl Skin<'_> {
     /// One closed tube.
-    fn tube(&mut self, stem: &Stem, rings: &[Station], sides: usize, roots: Option<&Roots>, index: u32) {
+    fn tube(&mut self, stem: &Stem, rings: &[Station], sides: usize, index: usize) {
         let last = rings.len() - 1;
         let middle_m = rings[last / 3].radius_m;
         let repeats = (TAU * middle_m / TILE_M).round().max(1.0);
@@ -184,41 +176,31 @@ impl Skin<'_> {
             let along = (before + after).normalize_or(after);
             x = if i == 0 { perpendicular(along) } else { x };
             x = (x - along * x.dot(along)).normalize_or(perpendicular(along));
-            let round_m = ring_round_m(ring, roots);
             if i > 0 {
                 let step_m = (ring.at - rings[i - 1].at).length();
-                let mean_m = 0.5 * (round_m + ring_round_m(&rings[i - 1], roots));
+                let mean_m = 0.5 * (self.roots.round_m(ring) + self.roots.round_m(&rings[i - 1]));
                 v += step_m * repeats / (TAU * mean_m).max(1e-4);
             }
             let light = self.light(stem, ring, i);
             let frame = Frame { x, along, slope: slope_at(rings, i), repeats, v };
-            self.ring(ring, &frame, light, sides, roots);
+            self.ring(ring, &frame, light, sides);
         }
         self.tip(rings, sides, (repeats, v));
         self.triangles_of_tube(start, sides as u32, last as u32);
-        if roots.is_some() {
+        if rings[0].root_m.is_some() {
             self.smooth_root_normals(start as usize, sides, last);
         }
     }
 
-    fn ring(&mut self, ring: &Station, frame: &Frame, light: f32, sides: usize, roots: Option<&Roots>) {
+    fn ring(&mut self, ring: &Station, frame: &Frame, light: f32, sides: usize) {
         let &Frame { x, along, slope, repeats, v } = frame;
         let z = along.cross(x);
-        let first = self.mesh.positions.len();
         for k in 0..=sides {
             let [cos, sin] = self.circles[sides][k];
             let out = x * cos + z * sin;
-            let swell = match (roots, ring.root_m) {
-                (Some(roots), Some(height_m)) => {
-                    roots.factor(TAU * (k % sides) as f32 / sides as f32, height_m)
-                }
-                _ => 1.0,
-            };
-            let position = if k == sides {
-                self.mesh.positions[first]
-            } else {
-                (ring.at + out * (ring.radius_m * swell)).to_array()
-            };
+            let angle = TAU * (k % sides) as f32 / sides as f32;
+            let swell = ring.root_m.map_or(1.0, |height_m| self.roots.factor(angle, height_m));
+            let position = (ring.at + out * (ring.radius_m * swell)).to_array();
             self.mesh.positions.push(position);
             self.mesh.normals.push((out - along * slope).normalize_or(out).to_array());
             self.mesh.uvs.push([repeats * k as f32 / sides as f32, v]);
@@ -234,32 +216,25 @@ impl Skin<'_> {
         let v = v + length_m * repeats / (TAU * (0.6 * before.radius_m).max(0.001));
         let first = self.mesh.positions.len() - (sides + 1);
         for k in 0..sides {
-            let out = Vec3::from_array(self.mesh.normals[first + k])
-                + Vec3::from_array(self.mesh.normals[first + k + 1]);
+            let [a, b] = [k, k + 1].map(|k| Vec3::from_array(self.mesh.normals[first + k]));
+            let out = (a + b).normalize_or(along);
             self.mesh.positions.push(end.at.to_array());
-            self.mesh.normals.push((out.normalize_or(along) + along * 0.8).normalize_or(along).to_array());
+            self.mesh.normals.push((out + along * 0.8).normalize_or(along).to_array());
             self.mesh.uvs.push([repeats * (k as f32 + 0.5) / sides as f32, v]);
             self.mesh.colors.push(self.mesh.colors[first + k]);
         }
     }
 
-    /// Sides, tip and base cap of a tube of `rings` rings before its tip.
+    /// Base cap, sides and tip of a tube of `rings` rings before its tip.
     fn triangles_of_tube(&mut self, start: u32, sides: u32, rings: u32) {
         let row = sides + 1;
-        for k in 1..sides - 1 {
-            self.triangles.push([start, start + k + 1, start + k]);
-        }
-        for ring in 0..rings - 1 {
-            let a = start + ring * row;
-            for k in a..a + sides {
-                self.triangles.push([k, k + 1, k + row + 1]);
-                self.triangles.push([k, k + row + 1, k + row]);
-            }
+        self.triangles.extend((1..sides - 1).map(|k| [start, start + k + 1, start + k]));
+        for a in (0..rings - 1).map(|ring| start + ring * row) {
+            let side = |k: u32| [[k, k + 1, k + row + 1], [k, k + row + 1, k + row]];
+            self.triangles.extend((a..a + sides).flat_map(side));
         }
         let a = start + (rings - 1) * row;
-        for k in 0..sides {
-            self.triangles.push([a + k, a + k + 1, a + row + k]);
-        }
+        self.triangles.extend((a..a + sides).map(|k| [k, k + 1, k + row]));
     }
 
     /// Normals of lobed rings from their neighbours in the grid.
@@ -268,13 +243,12 @@ impl Skin<'_> {
         let at =
             |mesh: &Mesh, ring: usize, k: usize| Vec3::from_array(mesh.positions[start + ring * row + k]);
         for ring in 0..rings {
+            let (below, above) = (ring.saturating_sub(1), (ring + 1).min(rings - 1));
             for k in 0..sides {
-                let around = at(self.mesh, ring, k + 1) - at(self.mesh, ring, (k + sides - 1) % sides);
-                let up =
-                    at(self.mesh, (ring + 1).min(rings - 1), k) - at(self.mesh, ring.saturating_sub(1), k);
-                let old = Vec3::from_array(self.mesh.normals[start + ring * row + k]);
-                let normal = around.cross(up).normalize_or(old);
-                self.mesh.normals[start + ring * row + k] = normal.to_array();
+                let around = at(&self.mesh, ring, k + 1) - at(&self.mesh, ring, (k + sides - 1) % sides);
+                let up = at(&self.mesh, above, k) - at(&self.mesh, below, k);
+                let normal = &mut self.mesh.normals[start + ring * row + k];
+                *normal = around.cross(up).normalize_or(Vec3::from_array(*normal)).to_array();
             }
             self.mesh.normals[start + ring * row + sides] = self.mesh.normals[start + ring * row];
         }
@@ -299,17 +273,6 @@ impl Skin<'_> {
         let [r, g, b] = [0.55, 0.15, 0.7].map(|part| unit_to_byte(light * (1.0 - part * moss)));
         [r, g, b, 255]
     }
-}
-
-/// 2π times this is about the circumference of a ring.
-fn ring_round_m(ring: &Station, roots: Option<&Roots>) -> f32 {
-    let swell = match (roots, ring.root_m) {
-        (Some(roots), Some(height_m)) => {
-            1.0 + 0.62 * roots.flare * libm::expf(-(height_m / roots.reach_m).max(-0.35))
-        }
-        _ => 1.0,
-    };
-    ring.radius_m * swell
 }
 
 /// Change of radius per metre along the stem.

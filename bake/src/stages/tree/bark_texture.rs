@@ -11,7 +11,7 @@ use super::params::TreeTextureParams;
 use crate::math::{hermite as smooth, lerp, split};
 use crate::model::Image8;
 use crate::noise::{cellular2, gradient2, hash};
-use crate::raster::{raster, square_image};
+use crate::raster::{square, square_image};
 use crate::seed;
 
 /// Texels a side.
@@ -24,10 +24,7 @@ pub(super) fn paint(params: &TreeTextureParams) -> (Image8, Image8) {
     let seed = seed::noise_seed(u64::from(params.tree_seed), "bark", 0);
     let bark = Bark { seed, tone: params.bark_tone.clamp(0.0, 1.0) };
     let place = |i: usize| i as f32 / COARSE as f32;
-    let coarse = raster(COARSE, COARSE, |y| {
-        let bark = &bark;
-        move |x| bark.texel(place(x), place(y))
-    });
+    let coarse = square(COARSE, |x, y| bark.texel(place(x), place(y)));
     (colors(&coarse, seed.wrapping_add(40)), normals(&coarse))
 }
 
@@ -46,18 +43,16 @@ struct Bark {
 impl Bark {
     /// What a place of the bark is like; (u, v) in 0..1.
     fn texel(&self, u: f32, v: f32) -> Texel {
-        let tone = self.tone;
         let wear = gradient2(self.seed.wrapping_add(90), u * 4.0, v * 4.0, 4);
-        if tone <= 0.5 {
-            let part = smooth(tone * 2.0);
-            let furrows = (part < 0.98).then(|| self.furrows(u, v, wear));
-            let plates = (part > 0.02).then(|| self.plates(u, v, wear));
-            return mix(furrows, plates, part);
+        let barks = [Self::furrows as fn(&Self, f32, f32, f32) -> Texel, Self::plates, Self::birch];
+        let darker = usize::from(self.tone > 0.5);
+        let part = smooth(self.tone * 2.0 - darker as f32);
+        let bark = |k: usize| barks[k](self, u, v, wear);
+        match part {
+            0.98.. => bark(darker + 1),
+            ..=0.02 => bark(darker),
+            _ => mix(bark(darker), bark(darker + 1), part),
         }
-        let part = smooth((tone - 0.5) * 2.0);
-        let plates = (part < 0.98).then(|| self.plates(u, v, wear));
-        let birch = (part > 0.02).then(|| self.birch(u, v, wear));
-        mix(plates, birch, part)
     }
 
     /// Long ridges that join and part, with dark furrows between.
@@ -119,15 +114,8 @@ impl Bark {
     }
 }
 
-/// A blend of two barks; where one is missing, the other.
-fn mix(a: Option<Texel>, b: Option<Texel>, part: f32) -> Texel {
-    match (a, b) {
-        (Some(a), Some(b)) => {
-            Texel { height: lerp(a.height, b.height, part), color: a.color.lerp(b.color, part) }
-        }
-        (Some(one), None) | (None, Some(one)) => one,
-        (None, None) => Texel { height: 0.0, color: Vec3::splat(0.1) },
-    }
+fn mix(a: Texel, b: Texel, part: f32) -> Texel {
+    Texel { height: lerp(a.height, b.height, part), color: a.color.lerp(b.color, part) }
 }
 
 /// Colours at twice the size by wrapped bilinear interpolation, with fine grain added.

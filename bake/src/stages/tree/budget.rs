@@ -31,7 +31,7 @@ pub(super) struct Budget {
     pub max_arms: [u32; 4],
     /// Primary branches of the whole tree.
     pub primaries: f32,
-    /// Greatest numbers of secondary branches on a primary one and of tertiary ones on a secondary one.
+    /// The most secondary branches on a primary one, and tertiary ones on a secondary one.
     pub max_children: [f32; 2],
     pub max_cards: u32,
     pub max_bark_triangles: u32,
@@ -54,46 +54,40 @@ impl Budget {
         let arms = primaries * (1.0 + 0.5 * forks);
         let inner = ((300.0 / arms) as u32).clamp(4, 8);
         let trunk = 1_300.0 + 220.0 * params.base_splits as f32;
-        let budget = if bare { BARE_BUDGET } else { BARK_BUDGET };
-        let left = (budget - trunk - arms * inner as f32 * 11.0).max(1_200.0);
-        Self {
+        let bark = if bare { BARE_BUDGET } else { BARK_BUDGET };
+        let left = (bark - trunk - arms * inner as f32 * 11.0).max(1_200.0);
+        let mut budget = Self {
             habit,
             levels,
             bare,
             segments: [if palm { 14 } else { 12 }, inner, if levels == 4 { 3 } else { 4 }, 3],
             max_arms: [8, 3, 1, 1],
             primaries,
-            max_children: max_children(params, levels, bare, habit, arms, left),
+            max_children: [0.0, 0.0],
             max_cards: LEAF_BUDGET / habit.triangles(),
             max_bark_triangles: if bare { MAX_BARE_BARK } else { MAX_BARK },
+        };
+        if levels > 2 {
+            budget.max_children = budget.children(params.secondary_branches as f32, arms, left);
         }
+        budget
     }
-}
 
-/// Greatest numbers of children of primary and of secondary branches that `left` triangles pay for.
-fn max_children(
-    params: &TreeParams,
-    levels: u32,
-    bare: bool,
-    habit: Habit,
-    arms: f32,
-    left: f32,
-) -> [f32; 2] {
-    if levels < 3 {
-        return [0.0, 0.0];
+    /// `max_children`, as many as `left` triangles pay for.
+    fn children(&self, wish: f32, arms: f32, left: f32) -> [f32; 2] {
+        let wish = wish.max(if self.bare { 8.0 } else { 1.0 });
+        // By Weber & Penn's rule a branch bears about two thirds of the greatest number.
+        let borne = 0.66 * arms;
+        if self.habit == Habit::Frond {
+            return [wish.min(70.0 / borne), if self.levels == 4 { 1.0 } else { 0.0 }];
+        }
+        if self.levels == 3 {
+            return [wish.min(left / (borne * SECONDARY_COST)), 0.0];
+        }
+        let share = if self.bare { 0.36 } else { 0.55 };
+        let secondaries = wish.min(share * left / (borne * SECONDARY_COST));
+        let rest = left - secondaries * borne * SECONDARY_COST;
+        let tertiaries = (0.7 * wish + 2.0).min(rest / (secondaries * borne * 0.75 * TERTIARY_COST));
+        [secondaries, tertiaries]
     }
-    let wish = (params.secondary_branches as f32).max(if bare { 8.0 } else { 1.0 });
-    // By Weber & Penn's rule a branch bears about two thirds of the greatest number.
-    let borne = 0.66 * arms;
-    if habit == Habit::Frond {
-        return [wish.min(70.0 / borne), if levels == 4 { 1.0 } else { 0.0 }];
-    }
-    if levels == 3 {
-        return [wish.min(left / (borne * SECONDARY_COST)), 0.0];
-    }
-    let share = if bare { 0.36 } else { 0.55 };
-    let secondaries = wish.min(share * left / (borne * SECONDARY_COST));
-    let rest = left - secondaries * borne * SECONDARY_COST;
-    let tertiaries = (0.7 * wish + 2.0).min(rest / (secondaries * borne * 0.75 * TERTIARY_COST));
-    [secondaries, tertiaries]
 }

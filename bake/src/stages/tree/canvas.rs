@@ -11,7 +11,7 @@ use super::leaf_outline::Outline;
 pub(super) struct Canvas {
     /// Pixels a side.
     pub size: usize,
-    /// Width over height of what is shown.
+    /// Width over height of the image as shown.
     pub width: f32,
     /// Rows from the top.
     pub pixels: Vec<[f32; 4]>,

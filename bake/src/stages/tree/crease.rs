@@ -2,7 +2,7 @@
 //!
 //! The rule is that of section 4.1 of Merry's thesis: the normal of a face's corner averages the normals of those
 //! faces around the vertex that differ from the face's own by less than a threshold. Faces count by the angle of
-//! their corner there (Thürmer & Wüthrich 1998), so that how a flat side was cut into triangles does not show.
+//! their corner there (Thürmer & Wüthrich 1998), so that the triangulation of a flat side does not show.
 
 use glam::Vec3;
 
@@ -46,50 +46,39 @@ fn place(p: [f32; 3]) -> [u32; 3] {
 }
 
 /// The normal of each corner of each triangle of a part.
-fn corners(mesh: &Mesh, part: &Part, cos_threshold: f32) -> Vec<[Vec3; 3]> {
+fn corners(mesh: &Mesh, part: &Part, cos_threshold: f32) -> Vec<Vec3> {
     let faces: Vec<Vec3> = part.triangles.iter().map(|&t| face_normal(mesh, t)).collect();
     // All corners, sorted by place: each run is a vertex with the faces around it.
-    let mut incident: Vec<([u32; 3], u32, u8)> = Vec::with_capacity(3 * part.triangles.len());
-    for (face, triangle) in part.triangles.iter().enumerate() {
-        for (k, &vertex) in triangle.iter().enumerate() {
-            incident.push((place(mesh.positions[vertex as usize]), face as u32, k as u8));
-        }
-    }
+    let vertices = part.triangles.as_flattened();
+    let at = |(corner, &vertex): (usize, &u32)| (place(mesh.positions[vertex as usize]), corner);
+    let mut incident: Vec<([u32; 3], usize)> = vertices.iter().enumerate().map(at).collect();
     incident.sort_unstable();
-    let mut normals = vec![[Vec3::ZERO; 3]; faces.len()];
+    let mut normals = vec![Vec3::ZERO; vertices.len()];
     for around in incident.chunk_by(|a, b| a.0 == b.0) {
-        let weights: Vec<f32> = around
-            .iter()
-            .map(|&(_, face, k)| corner_angle(mesh, part.triangles[face as usize], k as usize))
-            .collect();
-        for &(_, face, k) in around {
-            let own = faces[face as usize];
-            let sum: Vec3 = around
-                .iter()
-                .zip(&weights)
-                .filter(|((_, other, _), _)| {
-                    own == Vec3::ZERO || *other == face || own.dot(faces[*other as usize]) > cos_threshold
-                })
-                .map(|((_, other, _), &weight)| faces[*other as usize] * weight)
-                .sum();
-            normals[face as usize][k as usize] =
-                sum.try_normalize().unwrap_or(own).try_normalize().unwrap_or(Vec3::Y);
+        let weight = |&(_, corner): &_| corner_angle(mesh, part.triangles[corner / 3], corner % 3);
+        let weights: Vec<f32> = around.iter().map(weight).collect();
+        for &(_, corner) in around {
+            let own = faces[corner / 3];
+            let joins = |other: usize| {
+                own == Vec3::ZERO || other == corner / 3 || own.dot(faces[other]) > cos_threshold
+            };
+            let joined = around.iter().zip(&weights).filter(|((_, other), _)| joins(other / 3));
+            let sum: Vec3 = joined.map(|((_, other), &weight)| faces[other / 3] * weight).sum();
+            normals[corner] = sum.try_normalize().unwrap_or(own).try_normalize().unwrap_or(Vec3::Y);
         }
     }
     normals
 }
 
 /// Appends a part to `out`: one vertex for each different pair of old vertex and normal.
-fn append(mesh: &Mesh, part: &Part, corners: &[[Vec3; 3]], out: &mut Mesh) {
-    let mut uses: Vec<(u32, [u32; 3], usize)> = Vec::with_capacity(3 * corners.len());
-    for (face, triangle) in part.triangles.iter().enumerate() {
-        for k in 0..3 {
-            let bits = corners[face][k].to_array().map(f32::to_bits);
-            uses.push((triangle[k], bits, 3 * face + k));
-        }
-    }
+fn append(mesh: &Mesh, part: &Part, normals: &[Vec3], out: &mut Mesh) {
+    let mut triangles = part.triangles.clone();
+    let corners = triangles.as_flattened_mut();
+    let bits = |normal: &Vec3| normal.to_array().map(f32::to_bits);
+    let uses = corners.iter().zip(normals).enumerate();
+    let mut uses: Vec<(u32, [u32; 3], usize)> =
+        uses.map(|(corner, (&vertex, normal))| (vertex, bits(normal), corner)).collect();
     uses.sort_unstable();
-    let mut triangles = vec![[0; 3]; part.triangles.len()];
     for same in uses.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
         let old = same[0].0 as usize;
         let new = out.positions.len() as u32;
@@ -100,7 +89,7 @@ fn append(mesh: &Mesh, part: &Part, corners: &[[Vec3; 3]], out: &mut Mesh) {
             out.colors.push(color);
         }
         for &(_, _, corner) in same {
-            triangles[corner / 3][corner % 3] = new;
+            corners[corner] = new;
         }
     }
     out.parts.push(Part { material: part.material, kind: part.kind, triangles });

@@ -6,38 +6,17 @@
 use glam::Vec3;
 
 use super::cards::Card;
-use super::params::{Habit, TreeParams};
+use super::params::Habit;
 use super::shade::Shade;
 use super::skeleton::perpendicular;
 use crate::math::unit_to_byte;
-use crate::model::{Mesh, PartKind};
+use crate::model::{Material, Mesh, Part, PartKind};
 
-/// How the cards are laid out in a mesh.
-pub(super) fn kind(params: &TreeParams) -> PartKind {
-    let habit = Habit::of(params.leaf_shape, params.levels);
+/// Appends the cards of leaves or of blossom to `mesh` as a part, if there are any.
+pub(super) fn build(habit: Habit, cards: &[Card], blossom: bool, shade: &Shade, mesh: &mut Mesh) {
     let (rows, columns) = habit.grid();
-    PartKind::Aggregate { vertices: rows * columns, triangles: habit.triangles() }
-}
-
-/// Appends leaf or blossom cards to `mesh` and returns their triangles.
-pub(super) fn build(
-    params: &TreeParams,
-    cards: &[Card],
-    blossom: bool,
-    shade: &Shade,
-    mesh: &mut Mesh,
-) -> Vec<[u32; 3]> {
-    let habit = Habit::of(params.leaf_shape, params.levels);
-    let (rows, columns) = habit.grid();
-    let chosen = || cards.iter().filter(|card| card.blossom == blossom);
-    let count = chosen().count();
-    let mut triangles = Vec::with_capacity(count * habit.triangles() as usize);
-    let vertices = count * (rows * columns) as usize;
-    mesh.positions.reserve(vertices);
-    mesh.normals.reserve(vertices);
-    mesh.uvs.reserve(vertices);
-    mesh.colors.reserve(vertices);
-    for card in chosen() {
+    let mut triangles = Vec::new();
+    for card in cards.iter().filter(|card| card.blossom == blossom) {
         let start = mesh.positions.len() as u32;
         if habit == Habit::Frond {
             arch(card, rows, shade, mesh);
@@ -53,7 +32,11 @@ pub(super) fn build(
             }
         }
     }
-    triangles
+    if !triangles.is_empty() {
+        let material = if blossom { Material::Blossom } else { Material::Leaf };
+        let kind = PartKind::Aggregate { vertices: rows * columns, triangles: habit.triangles() };
+        mesh.parts.push(Part { material, kind, triangles });
+    }
 }
 
 fn push(mesh: &mut Mesh, position: Vec3, normal: Vec3, uv: [f32; 2], color: Vec3) {

@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 use super::canvas::{Canvas, Paint};
 use super::leaf_outline::Outline;
 use super::mips;
-use super::params::{Habit, TreeTextureParams, card_length_m};
+use super::params::{Habit, TreeTextureParams, autumn, card_length_m};
 use crate::math::{cell, lerp};
 use crate::model::Image8;
 use crate::seed::Dice;
@@ -19,17 +19,11 @@ const TWIG: Vec3 = Vec3::new(0.10, 0.062, 0.033);
 
 /// The blossom card; one transparent texel if the template does not blossom.
 pub(super) fn paint_blossom(params: &TreeTextureParams) -> Vec<Image8> {
-    if params.blossom <= 0.0 || Habit::of(params.leaf_shape, params.levels) == Habit::Frond {
+    let habit = Habit::of(params.leaf_shape, params.levels);
+    if params.blossom <= 0.0 || habit == Habit::Frond {
         return vec![Image8::new(1, 1, 4)];
     }
-    let mut brush = Brush {
-        canvas: Canvas::new(SIZE, Habit::of(params.leaf_shape, params.levels).card_aspect()),
-        outline: Outline::petal(),
-        dice: Dice::new(params.tree_seed, "tree texture", 1),
-        hue_deg: 0.0,
-        autumn: 0.0,
-        pairs: 0.0,
-    };
+    let mut brush = Brush::new(params, habit, Outline::petal(), 1);
     brush.flowers();
     mips::chain(&brush.canvas)
 }
@@ -37,14 +31,7 @@ pub(super) fn paint_blossom(params: &TreeTextureParams) -> Vec<Image8> {
 /// The leaf card.
 pub(super) fn paint_leaves(params: &TreeTextureParams) -> Vec<Image8> {
     let habit = Habit::of(params.leaf_shape, params.levels);
-    let mut brush = Brush {
-        canvas: Canvas::new(SIZE, habit.card_aspect()),
-        outline: Outline::new(params.leaf_shape, params.leaf_aspect),
-        dice: Dice::new(params.tree_seed, "tree texture", 0),
-        hue_deg: params.leaf_hue_deg,
-        autumn: ((78.0 - params.leaf_hue_deg) / 25.0).clamp(0.0, 1.0),
-        pairs: [7.0, 8.0, 9.0, 8.0, 6.0, 6.0, 0.0, 0.0][params.leaf_shape.min(7) as usize],
-    };
+    let mut brush = Brush::new(params, habit, Outline::new(params.leaf_shape, params.leaf_aspect), 0);
     let card_m = card_length_m(habit, params.levels, params.height_m, params.leaf_size_m);
     let leaf = (params.leaf_size_m / card_m).clamp(0.16, 0.36);
     match habit {
@@ -79,7 +66,7 @@ struct Brush {
     outline: Outline,
     dice: Dice,
     hue_deg: f32,
-    autumn: f32,
+    /// Pairs of side veins of a leaf.
     pairs: f32,
 }
 
@@ -99,9 +86,19 @@ fn towards(angle: f32) -> Vec2 {
 }
 
 impl Brush {
+    fn new(params: &TreeTextureParams, habit: Habit, outline: Outline, card: u64) -> Self {
+        Self {
+            canvas: Canvas::new(SIZE, habit.card_aspect()),
+            outline,
+            dice: Dice::new(params.tree_seed, "tree texture", card),
+            hue_deg: params.leaf_hue_deg,
+            pairs: [7.0, 8.0, 9.0, 8.0, 6.0, 6.0, 0.0, 0.0][params.leaf_shape.min(7) as usize],
+        }
+    }
+
     /// One leaf's paint: no two are quite alike; those laid on later are lighter.
     fn paint(&mut self, light: f32) -> Paint {
-        let hue = self.hue_deg + (5.0 + 9.0 * self.autumn) * self.dice.signed();
+        let hue = self.hue_deg + (5.0 + 9.0 * autumn(self.hue_deg)) * self.dice.signed();
         let color = leaf_color(hue) * light * (1.0 + 0.13 * self.dice.signed());
         let fold = 0.13 * if self.dice.unit() < 0.5 { 1.0 } else { -1.0 };
         Paint { color, veins: 0.3, pairs: self.pairs, fold }
@@ -192,12 +189,11 @@ impl Brush {
         let sway = 0.16 * self.dice.signed();
         let main = self.twig(Vec2::ZERO, -0.5 * sway, 0.82, sway, 0.009);
         let mut spots = Vec::new();
-        let mut side_twigs = Vec::new();
-        for k in 0..4 {
+        let side_twigs = [0, 1, 2, 3].map(|k| {
             let sign = alternating(k);
             let (at, angle) = point(&main, 0.06 + 0.18 * k as f32);
-            side_twigs.push(self.twig(at, angle + 0.42 * sign, 0.34, -0.3 * sign, 0.005));
-        }
+            self.twig(at, angle + 0.42 * sign, 0.34, -0.3 * sign, 0.005)
+        });
         for twig in side_twigs.iter().chain([&main]) {
             let count = (length(twig) / 0.036) as usize;
             for k in 0..=count {
@@ -254,11 +250,10 @@ impl Brush {
             for sign in [-1.0, 1.0] {
                 let shape = libm::powf((t + 0.06).min(1.0), 0.35) * (1.04 - t * t * 0.8);
                 let angle = sign * (1.12 - 0.75 * t + 0.07 * self.dice.signed());
-                let length = if feather {
-                    (half * 1.12 * shape).min((half - 0.004) / libm::sinf(angle.abs()).max(0.2))
-                } else {
-                    half * 0.92 * shape
-                };
+                let mut length = half * if feather { 1.12 } else { 0.92 } * shape;
+                if feather {
+                    length = length.min((half - 0.004) / libm::sinf(angle.abs()).max(0.2));
+                }
                 let base = Vec2::new(0.0, 0.03 + 0.93 * t);
                 let length = length.min((0.995 - base.y) / libm::cosf(angle).max(0.1)).max(0.015);
                 let mut paint = self.paint(0.84 + 0.25 * t);

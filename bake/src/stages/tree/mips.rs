@@ -6,7 +6,7 @@
 
 use super::ALPHA_CUTOFF;
 use super::canvas::Canvas;
-use crate::math::linear_from_srgb;
+use crate::math::{linear_from_srgb, unit_to_byte};
 use crate::model::Image8;
 
 /// One level while it is made: linear RGB multiplied by alpha, and alpha.
@@ -22,7 +22,9 @@ pub(super) fn chain(canvas: &Canvas) -> Vec<Image8> {
     while let Some(last) = levels.last().filter(|level| level.size > 1) {
         levels.push(halved(last));
     }
-    let target = kept(&levels[0], 1.0);
+    let kept =
+        levels[0].pixels.iter().filter(|p| f32::from(unit_to_byte(p[3])) >= 255.0 * ALPHA_CUTOFF).count();
+    let target = kept as f32 / levels[0].pixels.len() as f32;
     let mut colors: Vec<[f32; 3]> = Vec::new();
     let mut images = Vec::with_capacity(levels.len());
     let encode = Encoder::new();
@@ -45,22 +47,6 @@ fn halved(level: &Level) -> Level {
         }
     }
     Level { size, pixels }
-}
-
-/// The byte that an alpha becomes.
-fn alpha_byte(alpha: f32, scale: f32) -> u8 {
-    (255.0 * (alpha * scale).min(1.0) + 0.5) as u8
-}
-
-/// Whether a texel of this alpha byte is kept.
-fn passes(byte: u8) -> bool {
-    f32::from(byte) >= 255.0 * ALPHA_CUTOFF
-}
-
-/// Part of the texels that are kept when alpha is scaled.
-fn kept(level: &Level, scale: f32) -> f32 {
-    let count = level.pixels.iter().filter(|p| passes(alpha_byte(p[3], scale))).count();
-    count as f32 / level.pixels.len() as f32
 }
 
 /// The factor on alpha that keeps the part `target` of the texels.
@@ -117,7 +103,7 @@ impl Encoder {
         let mut image = Image8::new(level.size as u32, level.size as u32, 4);
         for ((out, color), pixel) in image.data.chunks_exact_mut(4).zip(colors).zip(&level.pixels) {
             let [r, g, b] = color.map(|linear| self.byte(linear));
-            out.copy_from_slice(&[r, g, b, alpha_byte(pixel[3], scale)]);
+            out.copy_from_slice(&[r, g, b, unit_to_byte(pixel[3] * scale)]);
         }
         image
     }

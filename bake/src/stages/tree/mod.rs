@@ -24,7 +24,7 @@ mod tests;
 
 use rayon::join;
 
-use crate::model::{Image8, Material, Mesh, Part, PartKind, TreeTemplate, TreeTextures};
+use crate::model::{Image8, TreeTemplate, TreeTextures};
 use crate::seed::Dice;
 use budget::Budget;
 pub use stage::{TreeFiles, TreeStage, TreeTexturesStage};
@@ -32,7 +32,7 @@ pub use stage::{TreeFiles, TreeStage, TreeTexturesStage};
 pub use crease::crease_normals;
 pub use params::{TreeParams, TreeTextureParams};
 
-/// Alpha below this is cut away from leaf and blossom cards.
+/// Texels of leaf and blossom cards with less alpha than this are not drawn.
 pub const ALPHA_CUTOFF: f32 = 0.5;
 
 /// Grows the `index`th template: a closed `Bark` surface, then `Leaf` and `Blossom` aggregates if it
@@ -48,14 +48,9 @@ pub fn template(params: &TreeParams, index: u32) -> TreeTemplate {
     let cards = cards::place(params, &budget, &skeleton, &mut dice);
     let shade = shade::Shade::new(&skeleton, &cards);
 
-    let mut mesh = Mesh::default();
-    let bark = bark::skin(params, &budget, &skeleton, &shade, &mut mesh);
-    mesh.parts.push(Part { material: Material::Bark, kind: PartKind::Surface, triangles: bark });
-    for (material, blossom) in [(Material::Leaf, false), (Material::Blossom, true)] {
-        let triangles = foliage::build(params, &cards, blossom, &shade, &mut mesh);
-        if !triangles.is_empty() {
-            mesh.parts.push(Part { material, kind: foliage::kind(params), triangles });
-        }
+    let mut mesh = bark::skin(params, &budget, &skeleton, &shade);
+    for blossom in [false, true] {
+        foliage::build(budget.habit, &cards, blossom, &shade, &mut mesh);
     }
     TreeTemplate {
         bounds: mesh.bounds(),

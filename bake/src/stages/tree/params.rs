@@ -101,9 +101,8 @@ impl Habit {
     pub fn card_aspect(self) -> f32 {
         match self {
             Self::Broad => 0.92,
-            Self::Willow => 0.42,
             Self::Needle => 0.78,
-            Self::Frond => 0.42,
+            Self::Willow | Self::Frond => 0.42,
         }
     }
 }
@@ -120,4 +119,9 @@ pub(super) fn card_length_m(habit: Habit, levels: u32, height_m: f32, leaf_size_
         Habit::Frond if levels <= 1 => (1.1 + 0.17 * height_m + 3.5 * leaf_size_m).min(0.7 * height_m),
         Habit::Frond => 0.35 + 0.035 * height_m + 1.5 * leaf_size_m,
     }
+}
+
+/// How far the leaves have turned, from 0 (green) to 1.
+pub(super) fn autumn(leaf_hue_deg: f32) -> f32 {
+    ((78.0 - leaf_hue_deg) / 25.0).clamp(0.0, 1.0)
 }

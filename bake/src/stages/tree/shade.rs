@@ -15,7 +15,7 @@ const SIDE: usize = 14;
 /// The smallest factor on colours inside a crown.
 const MIN_LIGHT: f32 = 0.62;
 
-/// Light in [`MIN_LIGHT`]..1 on a grid over the crown, and the crown's own shape.
+/// Light in [`MIN_LIGHT`]..1 on a grid over the crown.
 pub(super) struct Shade {
     low: Vec3,
     cell_m: Vec3,
@@ -31,7 +31,8 @@ impl Shade {
         let cell_m = ((hi - lo) / SIDE as f32).max(Vec3::splat(0.02));
         let mut area = vec![0.0; SIDE * SIDE * SIDE];
         for card in cards {
-            let [x, y, z] = cell_of(lo, cell_m, card.middle());
+            let g = (card.middle() - lo) / cell_m;
+            let [x, y, z] = g.to_array().map(|v| (v.max(0.0) as usize).min(SIDE - 1));
             // Half of a card is gaps.
             area[(y * SIDE + z) * SIDE + x] += 0.5 * card.length_m * card.width_m;
         }
@@ -53,31 +54,28 @@ impl Shade {
     }
 }
 
-fn cell_of(low: Vec3, cell_m: Vec3, point: Vec3) -> [usize; 3] {
-    let g = (point - low) / cell_m;
-    [g.x, g.y, g.z].map(|v| (v.max(0.0) as usize).min(SIDE - 1))
-}
-
 /// Light in every cell from leaf area in square metres.
 fn fall(area: &[f32], cell_m: Vec3) -> Vec<f32> {
     let across = [cell_m.y * cell_m.z, cell_m.x * cell_m.z, cell_m.x * cell_m.y];
     let mut light = vec![0.0; area.len()];
-    // Strides of x, y, z, and the share of the light that comes along each, in both senses for x and z.
-    for (axis, stride, share) in [(1, SIDE * SIDE, 0.5), (0, 1, 0.25), (2, SIDE, 0.25)] {
+    // For y, x and z: the strides along the axis and along the other two, and the share of the light that comes from
+    // either end; none comes from below.
+    for (axis, stride, others, share) in [
+        (1, SIDE * SIDE, [1, SIDE], 0.5),
+        (0, 1, [SIDE * SIDE, SIDE], 0.125),
+        (2, SIDE, [SIDE * SIDE, 1], 0.125),
+    ] {
         let pass = |a: f32| libm::expf(-0.55 * a / across[axis]);
-        let others: [usize; 2] =
-            if axis == 1 { [1, SIDE] } else { [SIDE * SIDE, if axis == 0 { SIDE } else { 1 }] };
         for line in 0..SIDE * SIDE {
             let start = (line / SIDE) * others[0] + (line % SIDE) * others[1];
             let (mut down, mut up) = (1.0, 1.0);
             for k in 0..SIDE {
                 let (i, j) = (start + (SIDE - 1 - k) * stride, start + k * stride);
                 let (through_i, through_j) = (pass(area[i]), pass(area[j]));
-                let weight = if axis == 1 { share } else { 0.5 * share };
-                light[i] += weight * down * through_i.sqrt();
+                light[i] += share * down * through_i.sqrt();
                 down *= through_i;
                 if axis != 1 {
-                    light[j] += weight * up * through_j.sqrt();
+                    light[j] += share * up * through_j.sqrt();
                     up *= through_j;
                 }
             }

@@ -34,7 +34,7 @@ pub(super) struct Stem {
     pub nodes: Range<usize>,
     /// Where its first node lies along the stem before it forked, 0 to 1; its last lies at 1.
     pub from: f32,
-    /// Length in metres that the stem has with the part below a fork.
+    /// Length in metres, including the part below a fork.
     pub length_m: f32,
     /// Radius in metres at its start, below any fork.
     pub radius_m: f32,
@@ -65,7 +65,7 @@ impl Skeleton {
         (a.at.lerp(b.at, f), direction, lerp(a.radius_m, b.radius_m, f))
     }
 
-    /// Leaves out evenly chosen stems of the last level until tubes of three sides fit the budget.
+    /// Drops stems of the last level, evenly chosen, until three-sided tubes fit the budget.
     fn prune(&mut self, budget: &Budget) {
         let cost = |stem: &Stem| 6 * (stem.nodes.len() - 1);
         let last = budget.levels - 1;
@@ -127,12 +127,6 @@ struct Sprout {
     is_arm: bool,
 }
 
-/// What one family (a stem and the arms it forks into) still has to share.
-struct Family {
-    arms: u32,
-    fork_error: f32,
-}
-
 struct Grower<'a> {
     params: &'a TreeParams,
     budget: &'a Budget,
@@ -140,12 +134,17 @@ struct Grower<'a> {
     skeleton: Skeleton,
     /// The trunk's length in metres.
     trunk_m: f32,
+    /// How many more arms the stem that is growing may fork into.
+    arms_left: u32,
+    /// The forks that this stem owes (or, below 0, has too many of), by error diffusion.
+    fork_error: f32,
 }
 
 /// Grows the stems of one individual.
 pub(super) fn grow(params: &TreeParams, budget: &Budget, dice: &mut Dice) -> Skeleton {
     let trunk_m = params.height_m * (1.0 + params.height_variation * 0.7 * dice.signed());
-    let mut grower = Grower { params, budget, dice, skeleton: Skeleton::default(), trunk_m };
+    let skeleton = Skeleton::default();
+    let mut grower = Grower { params, budget, dice, skeleton, trunk_m, arms_left: 0, fork_error: 0.0 };
     grower.trunk();
     for level in 1..budget.levels {
         grower.branches(level);
@@ -157,17 +156,16 @@ pub(super) fn grow(params: &TreeParams, budget: &Budget, dice: &mut Dice) -> Ske
 /// The crown's envelope: length of a branch over the longest, at `ratio` = 1 at the crown's base and 0 at its top
 /// (Weber & Penn, ShapeRatio).
 fn envelope(shape: u32, ratio: f32) -> f32 {
+    let flame = if ratio <= 0.7 { ratio / 0.7 } else { (1.0 - ratio) / 0.3 };
     match shape {
         0 => 0.2 + 0.8 * ratio,
         1 => 0.2 + 0.8 * libm::sinf(PI * ratio),
         2 => 0.2 + 0.8 * libm::sinf(0.5 * PI * ratio),
         3 => 1.0,
         4 => 0.5 + 0.5 * ratio,
-        5 if ratio <= 0.7 => ratio / 0.7,
-        5 => (1.0 - ratio) / 0.3,
+        5 => flame,
         6 => 1.0 - 0.8 * ratio,
-        _ if ratio <= 0.7 => 0.5 + 0.5 * ratio / 0.7,
-        _ => 0.5 + 0.5 * (1.0 - ratio) / 0.3,
+        _ => 0.5 + 0.5 * flame,
     }
 }
 
@@ -197,14 +195,12 @@ impl Grower<'_> {
     }
 
     fn trunk(&mut self) {
-        let azimuth = self.dice.unit() * TAU;
-        let (sin, cos) = libm::sincosf(azimuth);
-        let radius_m = self.trunk_m * self.params.radius_ratio;
+        let (sin, cos) = libm::sincosf(self.dice.unit() * TAU);
         self.stem(Sprout {
             along: Vec3::Y,
             axis: Vec3::new(cos, 0.0, sin),
             length_m: self.trunk_m,
-            radius_m,
+            radius_m: self.trunk_m * self.params.radius_ratio,
             thickness: 1.0,
             ..Sprout::default()
         });
@@ -212,17 +208,16 @@ impl Grower<'_> {
 
     /// Grows a stem and all arms that it forks into.
     fn stem(&mut self, sprout: Sprout) {
-        let level = sprout.level;
-        let mut family =
-            Family { arms: self.budget.max_arms[level as usize] - 1, fork_error: self.dice.unit() - 0.5 };
+        self.arms_left = self.budget.max_arms[sprout.level as usize] - 1;
+        self.fork_error = self.dice.unit() - 0.5;
         let mut waiting = vec![sprout];
         while let Some(sprout) = waiting.pop() {
-            self.run(sprout, &mut family, &mut waiting);
+            self.run(sprout, &mut waiting);
         }
     }
 
     /// Grows one run to its tip; arms are left in `waiting`.
-    fn run(&mut self, sprout: Sprout, family: &mut Family, waiting: &mut Vec<Sprout>) {
+    fn run(&mut self, sprout: Sprout, waiting: &mut Vec<Sprout>) {
         let level = sprout.level as usize;
         let segments = self.budget.segments[level];
         let step_m = sprout.length_m / segments as f32;
@@ -231,58 +226,52 @@ impl Grower<'_> {
         let (mut at, mut along, mut thickness) = (sprout.at, sprout.along, sprout.thickness);
         for segment in sprout.segment..=segments {
             let z = segment as f32 / segments as f32;
-            let radius_m = (sprout.radius_m * thickness * taper_at(taper, z)).max(0.0015);
-            let radius_m =
-                if segment == sprout.segment { radius_m.min(self.start_limit(&sprout)) } else { radius_m };
+            let mut radius_m = (sprout.radius_m * thickness * taper_at(taper, z)).max(0.0015);
+            if segment == sprout.segment && sprout.parent_radius_m > 0.0 {
+                // A branch starts no thicker than what it grows from.
+                radius_m = radius_m.min(0.88 * sprout.parent_radius_m);
+            }
             self.skeleton.nodes.push(Node { at, radius_m });
             if segment == segments {
                 break;
             }
             along = self.bend(along, sprout.axis, level, z, segments);
-            let forks = self.forks(&sprout, segment, family);
+            let forks = self.forks(&sprout, segment);
             if forks > 0 {
-                let arms = forks + 1;
-                thickness *= 1.0 / (0.35 + 0.65 * arms as f32).sqrt();
-                let axes = self.fork_axes(along, arms);
-                let half_rad = self.fork_angle_rad(level, arms);
-                let before = along;
-                for (i, &axis) in axes.iter().enumerate() {
-                    let direction = turned(before, axis, half_rad * (0.8 + 0.4 * self.dice.unit()));
-                    if i == 0 {
-                        along = direction;
-                        continue;
-                    }
-                    let away = before.cross(direction).normalize_or(axis);
-                    let sunk_m = if level == 0 && segment == 0 { 0.2 } else { 0.0 };
-                    waiting.push(Sprout {
-                        at: at - direction * sunk_m,
-                        along: direction,
-                        axis: if level == 0 { away } else { sprout.axis },
-                        segment,
-                        thickness,
-                        is_arm: true,
-                        parent_radius_m: radius_m,
-                        ..sprout
-                    });
-                }
+                thickness *= 1.0 / (0.35 + 0.65 * (forks + 1) as f32).sqrt();
+                let arm =
+                    Sprout { at, segment, thickness, is_arm: true, parent_radius_m: radius_m, ..sprout };
+                along = self.fork(along, forks + 1, arm, waiting);
             }
             at += along * step_m;
         }
         self.finish(first, sprout);
     }
 
-    /// A branch starts no thicker than what it grows from.
-    fn start_limit(&self, sprout: &Sprout) -> f32 {
-        if sprout.parent_radius_m <= 0.0 { f32::MAX } else { 0.88 * sprout.parent_radius_m }
+    /// Spreads arms evenly around a stem. The first continues it in the returned direction; the others are left in
+    /// `waiting`.
+    fn fork(&mut self, along: Vec3, arms: u32, arm: Sprout, waiting: &mut Vec<Sprout>) -> Vec3 {
+        let wide = if arm.level == 0 && arms > 2 { 0.75 } else { 0.5 };
+        let half_rad = (self.params.split_angle_deg * wide).max(8.0).to_radians();
+        let (start, x) = (self.dice.unit() * TAU, perpendicular(along));
+        let mut direction = |i: u32| {
+            let axis = turned(x, along, start + TAU * i as f32 / arms as f32);
+            (axis, turned(along, axis, half_rad * (0.8 + 0.4 * self.dice.unit())))
+        };
+        let (_, first) = direction(0);
+        for i in 1..arms {
+            let (axis, direction) = direction(i);
+            let away = along.cross(direction).normalize_or(axis);
+            let sunk_m = if arm.level == 0 && arm.segment == 0 { 0.2 } else { 0.0 };
+            let axis = if arm.level == 0 { away } else { arm.axis };
+            waiting.push(Sprout { at: arm.at - direction * sunk_m, along: direction, axis, ..arm });
+        }
+        first
     }
 
     /// Keeps a stem above the ground by shrinking it about its start, or drops it.
     fn finish(&mut self, first: usize, sprout: Sprout) {
         let nodes = &mut self.skeleton.nodes[first..];
-        if nodes.len() < 2 {
-            self.skeleton.nodes.truncate(first);
-            return;
-        }
         let start = nodes[0].at;
         let lowest = nodes.iter().fold(f32::MAX, |low, node| low.min(node.at.y));
         let floor = GROUND_CLEARANCE_M.min(0.06 * self.trunk_m);
@@ -331,60 +320,43 @@ impl Grower<'_> {
     }
 
     /// How many arms fork off at the end of this segment (Weber & Penn's error diffusion).
-    fn forks(&mut self, sprout: &Sprout, segment: u32, family: &mut Family) -> u32 {
-        let level = sprout.level as usize;
+    fn forks(&mut self, sprout: &Sprout, segment: u32) -> u32 {
         let p = self.params;
-        let z = segment as f32 / self.budget.segments[level] as f32;
-        let wish = if level == 0 {
-            // A tree without a clear trunk, a bush, forks in the ground.
-            let low = u32::from(p.clear_trunk > 0.06);
-            let base = low + (p.clear_trunk * 0.35 * self.budget.segments[0] as f32) as u32;
-            if segment == base && !sprout.is_arm && p.base_splits > 0 {
-                let forks = p.base_splits.min(family.arms);
-                family.arms -= forks;
-                return forks;
-            }
-            let open = z >= p.clear_trunk.max(0.2) && z < 0.8 && !self.is_palm();
-            if open { 0.28 * p.segment_splits } else { 0.0 }
-        } else if level == 1 && segment > sprout.segment && z < 0.7 {
-            0.22 * p.segment_splits
+        let segments = self.budget.segments[sprout.level as usize];
+        let z = segment as f32 / segments as f32;
+        // A tree without a clear trunk, a bush, forks in the ground.
+        let base = u32::from(p.clear_trunk > 0.06) + (p.clear_trunk * 0.35 * segments as f32) as u32;
+        let forks = if sprout.level == 0 && segment == base && !sprout.is_arm && p.base_splits > 0 {
+            p.base_splits
         } else {
-            0.0
+            let wish = match sprout.level {
+                0 if z >= p.clear_trunk.max(0.2) && z < 0.8 && !self.is_palm() => 0.28 * p.segment_splits,
+                1 if segment > sprout.segment && z < 0.7 => 0.22 * p.segment_splits,
+                _ => 0.0,
+            };
+            let forks = (wish + self.fork_error + 0.5).floor().max(0.0);
+            self.fork_error += wish - forks;
+            forks as u32
         };
-        let forks = (wish + family.fork_error + 0.5).floor().max(0.0);
-        family.fork_error += wish - forks;
-        let forks = (forks as u32).min(family.arms);
-        family.arms -= forks;
+        let forks = forks.min(self.arms_left);
+        self.arms_left -= forks;
         forks
-    }
-
-    /// Axes to turn each arm of a fork around, spread evenly around the stem.
-    fn fork_axes(&mut self, along: Vec3, arms: u32) -> Vec<Vec3> {
-        let start = self.dice.unit() * TAU;
-        let x = perpendicular(along);
-        (0..arms).map(|i| turned(x, along, start + TAU * i as f32 / arms as f32)).collect()
-    }
-
-    fn fork_angle_rad(&self, level: usize, arms: u32) -> f32 {
-        let wide = if level == 0 && arms > 2 { 0.75 } else { 0.5 };
-        (self.params.split_angle_deg * wide).max(8.0).to_radians()
     }
 
     /// Grows all stems of `level` on those of the level below.
     fn branches(&mut self, level: u32) {
-        let parents: Vec<usize> =
-            (0..self.skeleton.stems.len()).filter(|&i| self.skeleton.stems[i].level == level - 1).collect();
+        let below = self.skeleton.stems.iter().filter(|stem| stem.level == level - 1);
+        let parents: Vec<Stem> = below.cloned().collect();
         let bare_part = if level == 1 { self.params.clear_trunk.max(0.02) } else { 0.14 };
         let bearing = |stem: &Stem| (0.97 - stem.from.max(bare_part)).max(0.0);
-        let whole: f32 = parents.iter().map(|&i| bearing(&self.skeleton.stems[i])).sum();
+        let whole: f32 = parents.iter().map(bearing).sum();
         let (mut error, mut azimuth) = (0.5, self.dice.unit() * TAU);
-        for index in parents {
-            let parent = self.skeleton.stems[index].clone();
-            let length = bearing(&parent);
+        for parent in &parents {
+            let length = bearing(parent);
             let wish = if level == 1 {
                 self.budget.primaries * length / whole.max(1e-3)
             } else {
-                self.wish(level, &parent) * length / 0.83
+                self.wish(level, parent) * length / 0.83
             };
             error += wish;
             let count = error.floor().max(0.0) as u32;
@@ -393,7 +365,7 @@ impl Grower<'_> {
                 let place = (k as f32 + 0.5 + 0.35 * self.dice.signed()) / count as f32;
                 let z = parent.from.max(bare_part) + length * place;
                 azimuth += self.params.rotation_deg.to_radians() + 0.18 * self.dice.signed();
-                self.branch(level, &parent, z, azimuth);
+                self.branch(level, parent, z, azimuth);
             }
         }
     }
@@ -462,7 +434,7 @@ impl Grower<'_> {
         let ratio = (length_m / parent.length_m.max(0.01)).min(1.0);
         let radius_m = parent.radius_m * libm::powf(ratio, self.params.radius_power);
         let thin = [0.0, 0.007, 0.0055, 0.005][level as usize];
-        // Without leaves, twigs are what there is to see.
+        // Without leaves, only twigs are seen.
         let min_m = if self.budget.bare { 0.005 + 0.0003 * self.params.height_m } else { 0.0025 };
         radius_m.clamp(thin * length_m, (0.045 * length_m).max(0.004)).min(0.8 * parent_radius_m).max(min_m)
     }

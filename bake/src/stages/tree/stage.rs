@@ -1,14 +1,16 @@
+//! Trees as stages: genes → textures and templates, as files.
+
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::{TreeParams, TreeTextureParams, template, textures};
 use crate::gltf::{Picture, png, tree_glb};
 use crate::graph::{Context, File, Input, Stage, StageError, Stored};
-use crate::model::{Image8, LevelledMesh, Mesh, TreeTextures};
+use crate::model::{Image8, Level, Mesh, TreeTextures};
 use crate::stages::lod;
 use crate::stages::placement::TreeFootprint;
 
-/// Mip levels of a card smaller than this are left to the program that draws it: so far away, a crown is a few pixels.
+/// Mip levels of a card smaller than this are left to the viewer: at that distance a crown covers a few pixels.
 const MIN_MIP_PX: u32 = 16;
 
 /// Tree genes → bark, leaf and blossom.
@@ -28,13 +30,10 @@ impl Stage for TreeTexturesStage {
             let kept = levels.par_iter().filter(|level| level.width >= MIN_MIP_PX);
             kept.map(|level| context.file("png", png::encode(level))).collect()
         };
+        let color = || context.file("png", png::encode(&textures.bark_color));
+        let normal = || context.file("png", png::encode_linear(&textures.bark_normal));
         let ((bark_color, bark_normal), (leaf, blossom)) = rayon::join(
-            || {
-                rayon::join(
-                    || context.file("png", png::encode(&textures.bark_color)),
-                    || context.file("png", png::encode_linear(&textures.bark_normal)),
-                )
-            },
+            || rayon::join(color, normal),
             || rayon::join(|| card(&textures.leaf), || card(&textures.blossom)),
         );
         Ok(TreeTextures { bark_color, bark_normal, leaf, blossom, alpha_cutoff: textures.alpha_cutoff })
@@ -42,7 +41,7 @@ impl Stage for TreeTexturesStage {
 }
 
 impl TreeTexturesStage {
-    /// What a template's own file embeds.
+    /// The textures that a template's own file embeds.
     pub fn without_mip_levels(textures: &TreeTextures<File>) -> TreeTextures<File> {
         let mut textures = textures.clone();
         textures.leaf.truncate(1);
@@ -66,7 +65,7 @@ pub struct TreeFiles {
     /// The template with all its levels, self-contained.
     pub glb: File,
     pub footprint: TreeFootprint,
-    /// What casts the template's shadow.
+    /// The mesh that casts the template's shadow.
     pub caster: Stored<Mesh>,
 }
 
@@ -87,7 +86,11 @@ impl Stage for TreeStage {
             crown_radius_m: template.crown_radius_m,
             root_depth_m: -template.bounds.min.y,
         };
-        Ok(TreeFiles { glb: context.file("glb", glb), footprint, caster: context.store(caster(levels)) })
+        Ok(TreeFiles {
+            glb: context.file("glb", glb),
+            footprint,
+            caster: context.store(caster(levels.levels)),
+        })
     }
 
     fn label(&self) -> String {
@@ -98,14 +101,9 @@ impl Stage for TreeStage {
 /// Triangles that are enough to cast a shadow onto a texel of a metre.
 const CASTER_TRIANGLES: usize = 2_000;
 
-/// The finest level that is small enough to be rasterised for every instance.
-fn caster(levels: LevelledMesh) -> Mesh {
-    let mut coarsest = Mesh::default();
-    for level in levels.levels {
-        coarsest = level.mesh;
-        if coarsest.triangle_count() <= CASTER_TRIANGLES {
-            break;
-        }
-    }
-    coarsest
+/// The finest level that is small enough to be rasterised for every instance, else the coarsest.
+fn caster(mut levels: Vec<Level>) -> Mesh {
+    let small = |level: &Level| level.mesh.triangle_count() <= CASTER_TRIANGLES;
+    let index = levels.iter().position(small).unwrap_or(levels.len() - 1);
+    levels.swap_remove(index).mesh
 }

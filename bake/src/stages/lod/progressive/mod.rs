@@ -65,18 +65,11 @@ pub fn encode(state: &State, marks: &[Mark]) -> Vec<u8> {
     let mut out = Writer { bytes: MAGIC.to_vec(), attributes: state.attributes, vertex: 0, triangle: 0 };
     out.bytes.reserve((log.removed.len() + log.changed.len()) * size_of::<Vertex>());
     let flags = [state.attributes.normals, state.attributes.uvs, state.attributes.colors];
-    out.words(&[
-        VERSION,
-        flags.iter().enumerate().map(|(bit, &flag)| u32::from(flag) << bit).sum(),
-        state.vertices.len() as u32,
-        state.triangles.len() as u32,
-        state.parts.len() as u32,
-        marks.len() as u32,
-        state.vertex_count as u32,
-        count(&state.triangle_lives),
-        log.len() as u32,
-        0,
-    ]);
+    let flags = flags.iter().enumerate().map(|(bit, &flag)| u32::from(flag) << bit).sum();
+    let whole = [state.vertices.len(), state.triangles.len(), state.parts.len(), marks.len()];
+    out.words(&[VERSION, flags]);
+    out.words(&whole.map(|count| count as u32));
+    out.words(&[state.vertex_count as u32, count(&state.triangle_lives), log.len() as u32, 0]);
     for span in &state.parts {
         let (_, per_vertices, per_triangles) = span.elements().unwrap_or((0, 0, 0));
         let kind = u32::from(span.kind != PartKind::Surface);
