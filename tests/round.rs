@@ -24,7 +24,7 @@ impl Round {
         let files = World::new(folder.path());
         let watch =
             Watch::start(Scope { scenes: true, ..Scope::of(files.clone()) }, false, || {}).expect("watched");
-        let options = BakerOptions { side: 65, ..BakerOptions::default() };
+        let options = BakerOptions { threads: None, heightfield: 65, poll: false };
         let baker = Baker::start(files.root(), options, || {}).expect("a thread");
         Self { _folder: folder, files, baker, watch, history: History::default(), changes: BTreeSet::new() }
     }
@@ -105,7 +105,7 @@ fn a_bake_ends_soon_after_its_baker_and_another_goes_on() {
     round.until(|event| matches!(event, Event::Started { .. }));
     let Round { _folder, files, baker, .. } = round;
     drop(baker);
-    let options = BakerOptions { side: 65, ..BakerOptions::default() };
+    let options = BakerOptions { threads: None, heightfield: 65, poll: false };
     let baker = Baker::start(files.root(), options, || {}).expect("a thread");
     let (mut done, start) = (false, Instant::now());
     while !done && start.elapsed() < Duration::from_secs(120) {
