@@ -102,7 +102,7 @@ impl BoundTrees {
     pub fn new(gpu: &Gpu, layouts: &Layouts, set: &TreeSet) -> Self {
         use wgpu::BufferUsages as Usage;
         let buckets = set.template_count * set.level_count;
-        let uniform = gpu.buffer("culling", &[CullUniform::default()], Usage::UNIFORM | Usage::COPY_DST);
+        let uniform = gpu.buffer("culling", &[CullUniform::default()], Usage::STORAGE | Usage::COPY_DST);
         let written = Usage::STORAGE | Usage::COPY_SRC;
         let counts = gpu.empty_buffer("counts", 4 * u64::from(buckets), written);
         let room = 8 * u64::from(set.list_capacity);

@@ -147,14 +147,13 @@ const WIND_M_PER_S: vec2f = vec2f(9.0, 4.0);
 const CYCLE_S: f32 = 200.0;
 
 fn drift() -> Drift {
-    if (view.drift_clouds == 0u) {
-        return Drift(vec2f(0.0), vec2f(0.0), 1.0);
-    }
     let first = fract(view.time_s / CYCLE_S + 0.5) - 0.5;
     let second = fract(view.time_s / CYCLE_S) - 0.5;
     // Most of the time only one of the two is seen.
     let share = smoothstep(0.4, 0.6, 1.0 - 2.0 * abs(first));
-    return Drift(WIND_M_PER_S * CYCLE_S * first, WIND_M_PER_S * CYCLE_S * second, share);
+    let still = view.drift_clouds == 0u;
+    let way = select(WIND_M_PER_S * CYCLE_S, vec2f(0.0), still);
+    return Drift(way * first, way * second, select(share, 1.0, still));
 }
 
 // Where a cloud that is seen in `direction` was painted before it drifted by `moved` metres.
@@ -176,22 +175,20 @@ fn sky_radiance(direction: vec3f) -> vec3f {
     let d = drift();
     let lift = smoothstep(0.005, 0.06, direction.y);
     var radiance = textureSampleLevel(clear_cube, clamped, direction, 0.0).rgb;
-    let first = select(0, 1, d.share <= 0.0);
-    let last = select(2, 1, d.share >= 1.0);
+    let first = select(0, 1, d.share <= 0.0 && lift > 0.0);
+    let last = select(2, 1, d.share >= 1.0 || lift <= 0.0);
     for (var copy = first; copy < last; copy++) {
         let moved = select(d.second, d.first, copy == 0) * lift;
-        let share = select(1.0 - d.share, d.share, copy == 0);
+        let share = select(select(1.0 - d.share, d.share, copy == 0), 1.0, lift <= 0.0);
         radiance += share * cloud_difference(before_drift(direction, moved));
     }
     return max(radiance, vec3f(0.0));
 }
 
 fn layer_alpha(image: texture_2d<f32>, direction: vec3f, altitude: f32, extent: f32, moved: vec2f) -> f32 {
-    if (extent <= 0.0) {
-        return 0.0;
-    }
     let place = direction.xz * altitude / max(direction.y, 0.02) - moved;
-    return textureSampleLevel(image, repeating, place / extent, 0.0).a;
+    let alpha = textureSampleLevel(image, repeating, place / max(extent, 1.0), 0.0).a;
+    return select(0.0, alpha, extent > 0.0);
 }
 
 // Share of the sun's disc that clouds let through.

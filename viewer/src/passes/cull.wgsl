@@ -57,7 +57,7 @@ struct Command {
     first_instance: u32,
 }
 
-@group(1) @binding(0) var<uniform> cull: Cull;
+@group(1) @binding(0) var<storage, read> cull: Cull;
 @group(1) @binding(1) var<storage, read> trees: array<Tree>;
 @group(1) @binding(2) var<storage, read> templates: array<Template>;
 @group(1) @binding(3) var<storage, read_write> counts: array<atomic<u32>>;

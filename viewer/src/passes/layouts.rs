@@ -70,7 +70,7 @@ impl Layouts {
             ground: all("ground", both, &[IMAGE, IMAGE, LAYERS, LAYERS]),
             trees: all("trees", ShaderStages::VERTEX, &[READ]),
             material: all("material", fragment, &[UNIFORM, IMAGE, IMAGE]),
-            cull: all("culling", ShaderStages::COMPUTE, &[UNIFORM, READ, READ, WRITE, WRITE, WRITE]),
+            cull: all("culling", ShaderStages::COMPUTE, &[READ, READ, READ, WRITE, WRITE, WRITE]),
             radiance: all("radiance", fragment, &[DATA]),
             repeating: sampler(gpu, repeat, anisotropy, None),
             clamped: sampler(gpu, clamp, 1, None),

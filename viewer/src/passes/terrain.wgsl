@@ -99,12 +99,7 @@ fn out_at(world: vec3f, normal: vec3f, level: f32) -> Out {
 @vertex
 fn block_vertex(block: Block, @builtin(vertex_index) index: u32) -> Out {
     let s = block.origin + (vec2u(index % BLOCK_VERTICES, index / BLOCK_VERTICES) << vec2u(block.level));
-    var world: vec3f;
-    if (view.morph_terrain != 0u) {
-        world = drawn_place(s);
-    } else {
-        world = sample_place(s);
-    }
+    let world = select(sample_place(s), drawn_place(s), view.morph_terrain != 0u);
     return out_at(world, normal_at(s), f32(block.level));
 }
 
@@ -238,9 +233,7 @@ fn ground(in: Out) -> @location(0) vec4f {
         relief = clamp(dot(bumped, view.sun_direction) / max(dot(normal, view.sun_direction), 0.2), 0.0, 2.0);
         normal = bumped;
     }
-    if (view.tint_levels != 0u) {
-        albedo = level_tint(in.level) * 0.5;
-    }
+    albedo = select(albedo, level_tint(in.level) * 0.5, view.tint_levels != 0u);
     let irradiance = view.sun_irradiance * light.g * relief + view.sky_irradiance * light.r * (0.6 + 0.4 * normal.y);
     return vec4f(aerial_perspective(albedo / PI * irradiance, away), 1.0);
 }

@@ -50,11 +50,8 @@ fn vertex(in: In) -> Out {
     out.normal = normalize(normal);
     out.tangent = vec4f(normalize(tangent), in.color.a * 2.0 - 1.0);
     out.uv = in.uv + alpha * in.uv_delta;
-    out.color = in.color.rgb;
+    out.color = select(in.color.rgb, level_tint(in.lambda) * 1.6, view.tint_levels != 0u);
     out.open = in.color.a;
-    if (view.tint_levels != 0u) {
-        out.color = level_tint(in.lambda) * 1.6;
-    }
     return out;
 }
 
@@ -69,15 +66,12 @@ fn ambient(normal: vec3f, albedo: vec3f) -> vec3f {
 fn bark(in: Out) -> @location(0) vec4f {
     var albedo = in.color * material.factor.rgb;
     var normal = normalize(in.normal);
-    if (material.has_color > 0.5) {
-        albedo *= textureSample(color_map, repeating, in.uv).rgb;
-    }
-    if (material.has_normal > 0.5) {
-        let bump = textureSample(normal_map, repeating, in.uv).xyz * 2.0 - 1.0;
-        let tangent = normalize(in.tangent.xyz - normal * dot(in.tangent.xyz, normal));
-        let bitangent = cross(normal, tangent) * in.tangent.w;
-        normal = normalize(tangent * bump.x + bitangent * bump.y + normal * bump.z);
-    }
+    albedo *= select(vec3f(1.0), textureSample(color_map, repeating, in.uv).rgb, material.has_color > 0.5);
+    let bump = textureSample(normal_map, repeating, in.uv).xyz * 2.0 - 1.0;
+    let tangent = normalize(in.tangent.xyz - normal * dot(in.tangent.xyz, normal));
+    let bitangent = cross(normal, tangent) * in.tangent.w;
+    let bumped = normalize(tangent * bump.x + bitangent * bump.y + normal * bump.z);
+    normal = select(normal, bumped, material.has_normal > 0.5);
     let facing = max(dot(normal, view.sun_direction), 0.0);
     var radiance = ambient(normal, albedo) * 0.8;
     if (facing > 0.0) {
@@ -89,9 +83,7 @@ fn bark(in: Out) -> @location(0) vec4f {
 @fragment
 fn leaf(in: Out, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     var albedo = vec4f(in.color, 1.0) * material.factor;
-    if (material.has_color > 0.5) {
-        albedo *= textureSample(color_map, clamped, in.uv);
-    }
+    albedo *= select(vec4f(1.0), textureSample(color_map, clamped, in.uv), material.has_color > 0.5);
     if (albedo.a < material.alpha_cutoff) {
         discard;
     }

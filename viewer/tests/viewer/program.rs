@@ -133,6 +133,15 @@ impl Viewer {
         self.lines.last().and_then(|line| line["frame"].as_u64()).unwrap_or(0)
     }
 
+    /// Resident memory.
+    pub fn memory_mib(&self) -> f64 {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.process.id()));
+        let status = status.expect("it runs, on a Linux");
+        let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).expect("a process has memory");
+        let kib: f64 = line.trim().trim_end_matches(" kB").parse().expect("a number");
+        kib / 1024.0
+    }
+
     /// A value of the last line of a kind.
     pub fn get(&self, what: &str, key: &str) -> &Value {
         self.now.get(what).map_or(&Value::Null, |line| &line[key])

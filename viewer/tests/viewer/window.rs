@@ -72,6 +72,7 @@ fn a_whole_round_in_a_window() {
     let stage = Stage::set();
     let mut viewer = stage.viewer(&["--size", "640x480", "--pictures", "pictures"]);
     the_first_landscapes_grow(&stage, &mut viewer);
+    drawing_takes_no_more_memory(&mut viewer);
     a_person_walks_and_looks_around(&stage, &mut viewer);
     a_person_votes_and_breeds(&stage, &mut viewer);
     a_person_goes_back(&stage, &mut viewer);
@@ -98,6 +99,15 @@ fn the_first_landscapes_grow(stage: &Stage, viewer: &mut Viewer) {
     assert_eq!(names.len(), 4, "{names:?}");
     viewer.frames(2);
     stage.look("1-start.png");
+}
+
+/// On Mesa's software driver it was 9 MiB a frame once.
+fn drawing_takes_no_more_memory(viewer: &mut Viewer) {
+    viewer.frames(20);
+    let before_mib = viewer.memory_mib();
+    viewer.frames(30);
+    let grown_mib = viewer.memory_mib() - before_mib;
+    assert!(grown_mib < 30.0, "30 frames took {grown_mib:.0} MiB more");
 }
 
 /// Where the camera is, and where it looks.
