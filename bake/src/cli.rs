@@ -32,8 +32,18 @@ pub struct Cli {
     pub command: Option<Command>,
     #[command(flatten)]
     pub run: RunArgs,
-    #[command(flatten)]
-    pub bake: BakeArgs,
+    /// The population file [default: the world's newest].
+    #[arg(value_name = "POPULATION.ron")]
+    pub population: Option<PathBuf>,
+    /// Stay, and bake again whenever a population file or space.ron changes, even in the midst of a bake.
+    ///
+    /// Votes written into any of the world's population files are answered with a new generation bred from them, as
+    /// `bake next` would, unless there is one already.
+    #[arg(long)]
+    pub watch: bool,
+    /// With --watch: look every half second, for network folders that send no events.
+    #[arg(long, requires = "watch")]
+    pub poll: bool,
 }
 
 /// Where and how to bake: options of all commands.
@@ -51,23 +61,6 @@ pub struct RunArgs {
     /// Print events as JSON, one a line, instead of a progress bar.
     #[arg(long, global = true)]
     pub json: bool,
-}
-
-/// `bake` without a command.
-#[derive(Debug, Clone, Args)]
-pub struct BakeArgs {
-    /// The population file [default: the world's newest].
-    #[arg(value_name = "POPULATION.ron")]
-    pub population: Option<PathBuf>,
-    /// Stay, and bake again whenever a population file or space.ron changes, even in the midst of a bake.
-    ///
-    /// Votes written into any of the world's population files are answered with a new generation bred from them, as
-    /// `bake next` would, unless there is one already.
-    #[arg(long)]
-    pub watch: bool,
-    /// With --watch: look every half second, for network folders that send no events.
-    #[arg(long, requires = "watch")]
-    pub poll: bool,
 }
 
 /// Everything else.

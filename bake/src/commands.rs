@@ -13,7 +13,7 @@ use genescape_world::{World, WorldError, atomic_write, names};
 use serde_json::Value;
 
 use crate::breed::NoVotes;
-use crate::cli::{BadInput, BakeArgs, CacheCommand, Cli, Command, RunArgs, meant_command};
+use crate::cli::{BadInput, CacheCommand, Cli, Command, RunArgs, meant_command};
 use crate::events::{Event, Listener};
 use crate::gltf::for_each_object;
 use crate::plan::Resolution;
@@ -62,9 +62,9 @@ fn exit_code(error: &anyhow::Error) -> u8 {
     if world || error.is::<NoVotes>() || error.is::<BadInput>() { BAD_INPUT } else { FAILED }
 }
 
-fn dispatch(Cli { command, run, bake: args }: &Cli) -> Result<()> {
-    let Some(command) = command else { return bake(args, run) };
-    if args.population.is_some() || args.watch {
+fn dispatch(cli: &Cli) -> Result<()> {
+    let Cli { command: Some(command), run, .. } = cli else { return bake(cli) };
+    if cli.population.is_some() || cli.watch {
         let text = "POPULATION.ron and --watch belong to `bake` without a command; see `bake --help`";
         return Err(BadInput(text.into()).into());
     }
@@ -172,8 +172,8 @@ fn summary(baked: &Baked) {
     );
 }
 
-fn bake(args: &BakeArgs, run: &RunArgs) -> Result<()> {
-    if let Some(path) = args.population.as_ref().filter(|path| !path.exists())
+fn bake(Cli { run, population, watch, poll, .. }: &Cli) -> Result<()> {
+    if let Some(path) = population.as_ref().filter(|path| !path.exists())
         && let Some(meant) = path.to_str().and_then(meant_command)
     {
         let word = path.display();
@@ -183,14 +183,14 @@ fn bake(args: &BakeArgs, run: &RunArgs) -> Result<()> {
         .into());
     }
     let (mut session, console) = (session(run)?, Console::new(run));
-    if args.population.is_none() && session.world().begin()? && !run.json {
+    if population.is_none() && session.world().begin()? && !run.json {
         say!("made {} from the starter landscapes", session.world().root().display());
     }
-    if args.watch {
-        let options = watch_loop::Options { population: args.population.clone(), poll: args.poll };
+    if *watch {
+        let options = watch_loop::Options { population: population.clone(), poll: *poll };
         return watch_loop::run(&mut session, &options, &console);
     }
-    let path = args.population.clone().map_or_else(|| session.world().newest_population(), Ok)?;
+    let path = population.clone().map_or_else(|| session.world().newest_population(), Ok)?;
     console.bake(&session, &path)
 }
 
