@@ -6,48 +6,23 @@ use serde::Serialize;
 #[serde(tag = "event", rename_all = "snake_case")]
 pub enum Event {
     /// The bake of a population begins; it has `stages` stages.
-    Planned {
-        generation: u32,
-        stages: usize,
-    },
+    Planned { generation: u32, stages: usize },
     /// A stage ("tree 3") that these scenes use is being computed.
-    Started {
-        stage: String,
-        scenes: Vec<usize>,
-    },
+    Started { stage: String, scenes: Vec<usize> },
     /// A stage has its results after `ms` of wall-clock time; `reused` from the cache, it takes 0.
-    Finished {
-        stage: String,
-        scenes: Vec<usize>,
-        reused: bool,
-        ms: f64,
-    },
+    Finished { stage: String, scenes: Vec<usize>, reused: bool, ms: f64 },
     /// Something was wrong and has been mended.
-    Notice {
-        message: String,
-    },
+    Notice { message: String },
     /// All files of a scene are in place; `path` is its scene.gltf, `name` its individual's.
-    SceneReady {
-        scene: usize,
-        name: String,
-        path: String,
-    },
+    SceneReady { scene: usize, name: String, path: String },
     /// The votes on a generation were answered with the new population file `path`.
-    Bred {
-        parent: u32,
-        path: String,
-    },
+    Bred { parent: u32, path: String },
     /// Something newer was saved: the bake that was going on ends early, and another one begins.
     Superseded,
     /// The bake has ended well.
-    Done {
-        built: usize,
-        reused: usize,
-        ms: f64,
-    },
-    Failed {
-        message: String,
-    },
+    Done { built: usize, reused: usize, ms: f64 },
+    /// It ended with an error.
+    Failed { message: String },
 }
 
 /// Where events go.

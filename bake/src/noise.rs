@@ -43,28 +43,23 @@ const GRADIENTS_2D: [[f32; 2]; 16] = {
     quarter_turns([[a, d], [b, c], [c, b], [d, a]])
 };
 
-/// The gradients at the corners of a cell whose lines are x0 and x1, y0 and y1.
 #[inline]
-fn corners(seed: u32, [x0, x1]: [i32; 2], [y0, y1]: [i32; 2]) -> [[f32; 2]; 4] {
-    [[x0, y0], [x1, y0], [x0, y1], [x1, y1]].map(|[x, y]| GRADIENTS_2D[(hash(seed, x, y, 0) >> 28) as usize])
-}
-
-/// Gradient noise at a place of a cell, from its corners; `v` is dy faded.
-#[inline]
-fn within([a, b, c, d]: [[f32; 2]; 4], dx: f32, dy: f32, v: f32) -> f32 {
-    let at = |g: [f32; 2], dx: f32, dy: f32| g[0] * dx + g[1] * dy;
-    let u = fade(dx);
-    let north = lerp(at(a, dx, dy), at(b, dx - 1.0, dy), u);
-    let south = lerp(at(c, dx, dy - 1.0), at(d, dx - 1.0, dy - 1.0), u);
-    lerp(north, south, v) * std::f32::consts::SQRT_2
+fn gradient_2d(h: u32, x: f32, y: f32) -> f32 {
+    let g = GRADIENTS_2D[(h >> 28) as usize];
+    g[0] * x + g[1] * y
 }
 
 /// Gradient noise, in about [-1, 1].
 #[inline]
 pub fn gradient2(seed: u32, x: f32, y: f32, period: i32) -> f32 {
     let ((ix, dx), (iy, dy)) = (split(x), split(y));
-    let lines = |i: i32| [wrap(i, period), wrap(i + 1, period)];
-    within(corners(seed, lines(ix), lines(iy)), dx, dy, fade(dy))
+    let (x0, x1, y0, y1) = (wrap(ix, period), wrap(ix + 1, period), wrap(iy, period), wrap(iy + 1, period));
+    let a = gradient_2d(hash(seed, x0, y0, 0), dx, dy);
+    let b = gradient_2d(hash(seed, x1, y0, 0), dx - 1.0, dy);
+    let c = gradient_2d(hash(seed, x0, y1, 0), dx, dy - 1.0);
+    let d = gradient_2d(hash(seed, x1, y1, 0), dx - 1.0, dy - 1.0);
+    let (u, v) = (fade(dx), fade(dy));
+    lerp(lerp(a, b, u), lerp(c, d, u), v) * std::f32::consts::SQRT_2
 }
 
 /// A fractal sum of `octaves` of [`gradient2`], each twice as fine and `gain` times as high as the one before,
@@ -99,17 +94,25 @@ pub fn fbm2_row(seed: u32, xs: &[f32], y: f32, octaves: u32, gain: f32, period: 
 /// Adds amplitude × [`gradient2`] at (x · frequency, y) to each point of a row.
 fn add_row(seed: u32, xs: &[f32], frequency: f32, y: f32, period: i32, amplitude: f32, out: &mut [f32]) {
     let (iy, dy) = split(y);
-    let lines = |i: i32| [wrap(i, period), wrap(i + 1, period)];
-    let (rows, v) = (lines(iy), fade(dy));
+    let (y0, y1, v) = (wrap(iy, period), wrap(iy + 1, period), fade(dy));
+    let corner = |x: i32, y: i32| GRADIENTS_2D[(hash(seed, x, y, 0) >> 28) as usize];
     let end = xs.len().min(out.len());
     let mut start = 0;
     while start < end {
         let ix = split(xs[start] * frequency).0;
         let same = |x: &&f32| split(**x * frequency).0 == ix;
         let stop = start + 1 + xs[start + 1..end].iter().take_while(same).count();
-        let corners = corners(seed, lines(ix), rows);
+        let (x0, x1) = (wrap(ix, period), wrap(ix + 1, period));
+        let (a, b, c, d) = (corner(x0, y0), corner(x1, y0), corner(x0, y1), corner(x1, y1));
         for (value, x) in out[start..stop].iter_mut().zip(&xs[start..stop]) {
-            *value += amplitude * within(corners, x * frequency - ix as f32, dy, v);
+            let dx = x * frequency - ix as f32;
+            let at = |g: [f32; 2], dx: f32, dy: f32| g[0] * dx + g[1] * dy;
+            let u = fade(dx);
+            let (north, south) = (
+                lerp(at(a, dx, dy), at(b, dx - 1.0, dy), u),
+                lerp(at(c, dx, dy - 1.0), at(d, dx - 1.0, dy - 1.0), u),
+            );
+            *value += amplitude * (lerp(north, south, v) * std::f32::consts::SQRT_2);
         }
         start = stop;
     }

@@ -153,14 +153,20 @@ impl Document {
 }
 
 fn entry(key: &str, value: &impl Serialize) -> Vec<u8> {
-    [format!("\"{key}\": ").into_bytes(), compact(value)].concat()
+    let mut out = format!("\"{key}\": ").into_bytes();
+    compact(value, &mut out);
+    out
 }
 
 /// Nothing for an empty list.
 fn list<T: Serialize>(key: &str, values: &[T]) -> Option<Vec<u8>> {
-    let lines: Vec<_> = values.iter().map(|value| [b"\n  ", &compact(value)[..]].concat()).collect();
-    let head = format!("\"{key}\": [").into_bytes();
-    (!values.is_empty()).then(|| [head, lines.join(&b','), b"\n]".to_vec()].concat())
+    let mut out = format!("\"{key}\": [").into_bytes();
+    for (i, value) in values.iter().enumerate() {
+        out.extend_from_slice(if i == 0 { b"\n  " } else { b",\n  " });
+        compact(value, &mut out);
+    }
+    out.extend_from_slice(b"\n]");
+    (!values.is_empty()).then_some(out)
 }
 
 /// Calls `f` with every object in a JSON value, outer ones first.
@@ -190,11 +196,9 @@ pub fn pad(bytes: &mut Vec<u8>, with: u8) {
 }
 
 /// JSON without spaces in which a number that is an f32 prints as one: 0.1 rather than 0.10000000149011612.
-pub fn compact(value: &impl Serialize) -> Vec<u8> {
-    let mut out = Vec::new();
-    let mut serializer = serde_json::Serializer::with_formatter(&mut out, ShortNumbers);
+pub fn compact(value: &impl Serialize, out: &mut Vec<u8>) {
+    let mut serializer = serde_json::Serializer::with_formatter(out, ShortNumbers);
     value.serialize(&mut serializer).expect("plain data always has a JSON form");
-    out
 }
 
 struct ShortNumbers;

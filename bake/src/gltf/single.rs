@@ -55,7 +55,9 @@ pub fn single_glb(
     pad(&mut document.bin, 0);
     root["bufferViews"] = document.buffer_views.into();
     root["buffers"] = json!([{ "byteLength": document.bin.len() }]);
-    Ok(write_glb(compact(&root), document.bin))
+    let mut text = Vec::new();
+    compact(&root, &mut text);
+    Ok(write_glb(text, document.bin))
 }
 
 fn take_list(root: &mut Value, key: &str) -> Vec<Value> {

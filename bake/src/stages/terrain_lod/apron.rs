@@ -1,8 +1,5 @@
 //! Landform → the ring of coarse land around the field, joined to it without a crack, and the water, in metres.
 
-use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
-
 use glam::Vec3;
 
 use genescape_schema::scene::bintree::Sample;
@@ -34,7 +31,8 @@ pub(super) fn border_samples(land: &Landform) -> Vec<Sample> {
 /// a strip whose inner vertices are just those of the near mesh. Empty if the apron is no wider than the field.
 pub(super) fn ring(land: &Landform, used: impl Fn(Sample) -> bool, colors: &[[u8; 4]]) -> Mesh {
     let Some(hole) = Hole::of(land) else { return Mesh::default() };
-    let (mesh, numbers, triangles) = (Mesh::default(), BTreeMap::new(), Vec::new());
+    let numbers = vec![u32::MAX; land.field.heights_m.len() + land.apron.heights_m.len()];
+    let (mesh, triangles) = (Mesh::default(), Vec::new());
     let mut ring = Ring { land, colors, mesh, numbers, triangles };
     let mut inner = [const { Vec::new() }; 4];
     let last = land.field.side - 1;
@@ -93,7 +91,7 @@ impl Hole {
 }
 
 /// What a vertex of the ring lies on.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy)]
 enum Place {
     /// A sample of the field, on its border, where the near mesh has a vertex.
     Inner(Sample),
@@ -106,7 +104,8 @@ struct Ring<'a> {
     land: &'a Landform,
     colors: &'a [[u8; 4]],
     mesh: Mesh,
-    numbers: BTreeMap<Place, u32>,
+    /// Of the vertices that are made, by the samples of the field and then of the apron.
+    numbers: Vec<u32>,
     triangles: Vec<[u32; 3]>,
 }
 
@@ -114,15 +113,22 @@ impl Ring<'_> {
     /// The number of a vertex, which is made when it is first needed.
     fn vertex(&mut self, place: Place) -> u32 {
         let (number, extent_m) = (self.mesh.positions.len() as u32, self.land.field.extent_m());
-        let Entry::Vacant(new) = self.numbers.entry(place) else { return self.numbers[&place] };
-        new.insert(number);
+        let Landform { field, apron, .. } = self.land;
+        let slot = match place {
+            Place::Inner([i, j]) => (j * field.side + i) as usize,
+            Place::Outer([i, j]) => field.heights_m.len() + (j * apron.side + i) as usize,
+        };
+        if self.numbers[slot] != u32::MAX {
+            return self.numbers[slot];
+        }
+        self.numbers[slot] = number;
         let (position, normal) = match place {
-            Place::Inner(sample) => vertex(&self.land.field, sample),
-            Place::Outer(sample) => vertex(&self.land.apron, sample),
+            Place::Inner(sample) => vertex(field, sample),
+            Place::Outer(sample) => vertex(apron, sample),
         };
         let color = match place {
             Place::Inner(_) => self.color_between(position[0], position[2]),
-            Place::Outer([i, j]) => self.color((j * self.land.apron.side + i) as usize),
+            Place::Outer(_) => self.color(slot - field.heights_m.len()),
         };
         self.mesh.positions.push(position);
         self.mesh.normals.push(normal);
