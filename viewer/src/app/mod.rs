@@ -271,7 +271,11 @@ impl App {
             self.editor.shaders(Some(error.to_string()));
         }
         ui::theme::follow(&screen.ctx, &model.comfort);
-        let input = screen.input.take_egui_input(&screen.window);
+        let mut input = screen.input.take_egui_input(&screen.window);
+        if !self.focus.typing {
+            // Else it would move the focus to a button, besides what it is bound to.
+            input.events.retain(|event| !matches!(event, egui::Event::Key { key: egui::Key::Tab, .. }));
+        }
         let ctx = screen.ctx.clone();
         let mut output = ui::Output::default();
         let full = ctx.run_ui(input, |ui| output = ui::show(ui, model, &mut self.ui));

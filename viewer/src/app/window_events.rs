@@ -53,8 +53,10 @@ impl ApplicationHandler<Wake> for App {
     fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         let Some(live) = &mut self.live else { return };
         let captured = self.camera.captured();
-        let taken = !(captured && is_pointer(&event))
-            && live.screen.input.on_window_event(&live.screen.window, &event).consumed;
+        if !(captured && is_pointer(&event)) {
+            // What it has use for is known a frame later, as `Focus`.
+            let _ = live.screen.input.on_window_event(&live.screen.window, &event);
+        }
         match event {
             WindowEvent::CloseRequested => self.dispatch(Command::Quit.into(), events),
             WindowEvent::Resized(size) => live.screen.resize(size.width, size.height),
@@ -63,7 +65,7 @@ impl ApplicationHandler<Wake> for App {
                 self.camera.held.focus_lost();
                 self.dispatch(Event::Capture(false), events);
             }
-            WindowEvent::KeyboardInput { event, .. } => self.key(&event, taken, events),
+            WindowEvent::KeyboardInput { event, .. } => self.key(&event, events),
             WindowEvent::MouseInput { state, button, .. } => {
                 self.button(Input::Mouse(button), state, captured, events);
             }
@@ -93,12 +95,10 @@ impl ApplicationHandler<Wake> for App {
 }
 
 impl App {
-    /// `taken`: the user interface has use for it.
-    fn key(&mut self, event: &KeyEvent, taken: bool, events: &ActiveEventLoop) {
+    fn key(&mut self, event: &KeyEvent, events: &ActiveEventLoop) {
         let PhysicalKey::Code(code) = event.physical_key else { return };
         let Some(input) = Input::from_code(code) else { return };
-        let moves_focus = taken && input == Input::Key(egui::Key::Tab);
-        self.button(input, event.state, !self.focus.typing && !moves_focus, events);
+        self.button(input, event.state, !self.focus.typing, events);
     }
 
     /// A key or button; one that was pressed while it was `ours` is released all the same when it no longer is.

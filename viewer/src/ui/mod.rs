@@ -111,7 +111,7 @@ pub fn show(ui: &mut Ui, model: &Model, state: &mut State) -> Output {
     dropped.into_iter().for_each(|file| ask(ui, Event::OpenFolder(file.path().to_path_buf())));
     state.toasts.show(ui.ctx());
     output.events = asked(ui);
-    output.typing = ui.ctx().egui_wants_keyboard_input();
+    output.typing = ui.ctx().text_edit_focused();
     output
 }
 

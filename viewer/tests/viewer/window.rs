@@ -119,6 +119,16 @@ fn a_person_walks_and_looks_around(stage: &Stage, viewer: &mut Viewer) {
     let display = &stage.display;
     let before = display.picture();
     let start = place(viewer);
+    // The first with each of the others, then all again; the keys that follow are still heard.
+    for shown in ["right: 1", "right: 2", "right: 3", "Grid"] {
+        display.tap(keys::TAB);
+        viewer.until("Tab compares", |viewer| {
+            viewer
+                .get("screen", "arrangement")
+                .as_str()
+                .is_some_and(|arrangement| arrangement.contains(shown))
+        });
+    }
     display.key(keys::W, true);
     viewer.until("the walker moves", |viewer| {
         let now = place(viewer);
