@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result};
+use bytesize::ByteSize;
 use genescape_world::atomic_write;
 
 use crate::cli::BadInput;
@@ -41,7 +42,7 @@ pub fn convert(input: &Path, out: &Path, crease_deg: f32) -> Result<()> {
         let (vertices, triangles) = (level.mesh.positions.len(), level.mesh.triangle_count());
         say!("D_{index:<4} {vertices:>10} {triangles:>10} {:>12.6}", level.error_m);
     }
-    say!("wrote {} ({:.1} MB)", out.display(), glb.len() as f64 / 1e6);
+    say!("wrote {} ({})", out.display(), ByteSize(glb.len() as u64).display().si());
     Ok(())
 }
 

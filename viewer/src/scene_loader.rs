@@ -1,5 +1,5 @@
-//! `scene.gltf` → a landscape on the device, with its shadows drawn, and the land to walk on. What two landscapes have in common is
-//! read and uploaded once.
+//! `scene.gltf` → a landscape on the device, with its shadows drawn, and the land to walk on. What two landscapes have in
+//! common is read and uploaded once.
 
 use std::path::Path;
 use std::sync::Arc;

@@ -10,7 +10,8 @@ use super::levels::{Surface, add_vertices};
 use crate::model::{Foreground, Material};
 
 /// Mesh 0: the foreground with a material for each of `kinds` of ground, `TEXCOORD_1` on the maps of the whole
-/// field. Mesh 1, if grass grows there: its blades; `white` is the albedo of a vertex colour of 1. The last accessor: indices of the rest of the near mesh.
+/// field. Mesh 1, if grass grows there: its blades; `white` is the albedo of a vertex colour of 1. The last accessor:
+/// indices of the rest of the near mesh.
 ///
 /// # Errors
 /// When a list is inconsistent or not finite, or there are no triangles.

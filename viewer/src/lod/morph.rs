@@ -1,6 +1,6 @@
-//! What a place's level of detail λ depends on, and with it where `terrain.wgsl` draws a sample. Metres. The rule of Vlietinck's "Trilinear
-//! displacement mapping of a flat surface with a v1.1 vertex shader" (2003; thesis 3.2), except that a vertex slides with
-//! its whole position to one parent instead of moving up or down to the middle of both.
+//! What a place's level of detail λ depends on, and with it where `terrain.wgsl` draws a sample. Metres. The rule of
+//! Vlietinck's "Trilinear displacement mapping of a flat surface with a v1.1 vertex shader" (2003; thesis 3.2), except
+//! that a vertex slides with its whole position to one parent instead of moving up or down to the middle of both.
 //!
 //! λ depends on the place alone: λ(x, z) = clamp(log₂(D/d₀), 0, top), D² = dx² + dz² + c², where c is how far the eye is
 //! above the highest land. So D is at most the true distance of any land at (x, z), D grows at most as fast as one

@@ -19,7 +19,8 @@ struct View {
     water_level: f32,
     // Pixels that one radian covers in the middle of the picture.
     focal_px: f32,
-    // 1 if it is so: colours say the level of detail, clouds drift, the terrain morphs.
+    // 1 if it is so: colours say the level of detail, clouds drift, the terrain morphs. For `select`: no `if` or loop may
+    // depend on a uniform buffer alone, or Mesa's software driver (22.3) compiles the shader for each draw and leaks it.
     tint_levels: u32,
     drift_clouds: u32,
     morph_terrain: u32,
@@ -66,9 +67,8 @@ struct Tree {
 struct Material {
     factor: vec4f,
     alpha_cutoff: f32,
-    unused: f32,
-    has_color: f32,
     has_normal: f32,
+    unused: vec2f,
 }
 
 // A point of a template in the world.

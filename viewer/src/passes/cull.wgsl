@@ -57,6 +57,7 @@ struct Command {
     first_instance: u32,
 }
 
+// No uniform buffer, because branches depend on it: see `View`.
 @group(1) @binding(0) var<storage, read> cull: Cull;
 @group(1) @binding(1) var<storage, read> trees: array<Tree>;
 @group(1) @binding(2) var<storage, read> templates: array<Template>;

@@ -66,7 +66,7 @@ fn ambient(normal: vec3f, albedo: vec3f) -> vec3f {
 fn bark(in: Out) -> @location(0) vec4f {
     var albedo = in.color * material.factor.rgb;
     var normal = normalize(in.normal);
-    albedo *= select(vec3f(1.0), textureSample(color_map, repeating, in.uv).rgb, material.has_color > 0.5);
+    albedo *= textureSample(color_map, repeating, in.uv).rgb;
     let bump = textureSample(normal_map, repeating, in.uv).xyz * 2.0 - 1.0;
     let tangent = normalize(in.tangent.xyz - normal * dot(in.tangent.xyz, normal));
     let bitangent = cross(normal, tangent) * in.tangent.w;
@@ -83,7 +83,7 @@ fn bark(in: Out) -> @location(0) vec4f {
 @fragment
 fn leaf(in: Out, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     var albedo = vec4f(in.color, 1.0) * material.factor;
-    albedo *= select(vec4f(1.0), textureSample(color_map, clamped, in.uv), material.has_color > 0.5);
+    albedo *= textureSample(color_map, clamped, in.uv);
     if (albedo.a < material.alpha_cutoff) {
         discard;
     }

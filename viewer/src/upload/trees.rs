@@ -1,4 +1,5 @@
-//! Trees: one vertex buffer and one index buffer for all templates and levels, instances, and the commands that draw them.
+//! Trees: one vertex buffer and one index buffer for all templates and levels, instances, and the commands that draw
+//! them.
 
 use std::sync::Arc;
 
@@ -67,12 +68,10 @@ pub struct MaterialUniform {
     pub factor: [f32; 4],
     /// Below this alpha nothing is drawn.
     pub alpha_cutoff: f32,
-    /// Unused.
-    pub unused: f32,
-    /// 1 if there is a colour texture.
-    pub has_color: f32,
     /// 1 if there is a normal texture.
     pub has_normal: f32,
+    /// Unused.
+    pub unused: [f32; 2],
 }
 
 /// All trees of a landscape on the device.
@@ -146,13 +145,11 @@ impl Uploader {
     }
 
     fn material(&self, material: &Material) -> TreeMaterial {
-        let flag = |present: bool| if present { 1.0 } else { 0.0 };
         let uniform = MaterialUniform {
             factor: material.color_factor,
             alpha_cutoff: material.alpha_cutoff.unwrap_or(0.0),
-            unused: 0.0,
-            has_color: flag(material.color.is_some()),
-            has_normal: flag(material.normal.is_some()),
+            has_normal: if material.normal.is_some() { 1.0 } else { 0.0 },
+            unused: [0.0; 2],
         };
         let image = |image: &Option<Image>, otherwise: [u8; 4], kind: ImageUse| match image {
             Some(image) => self.image(image, kind),

@@ -79,10 +79,9 @@ pub fn apron_colors(params: &GroundParams, land: &Landform) -> Vec<[u8; 4]> {
     let patches = Patches::new(params.terrain_seed, land.field.extent_m(), 0.0..=1.0);
     let apron = &land.apron;
     let half_m = 0.5 * land.field.extent_m();
-    let place = |k: u32| (k as f32 - 0.5 * (apron.side - 1) as f32) * apron.spacing_m;
     square(apron.side as usize, |i, j| {
         let (i, j) = (i as u32, j as u32);
-        let (x, z) = (place(i), place(j));
+        let (x, z) = (apron.place_m(i), apron.place_m(j));
         let (inner_x, inner_z) = (x.clamp(-half_m, half_m), z.clamp(-half_m, half_m));
         let away_m = (x - inner_x).abs().max((z - inner_z).abs());
         let own = || {

@@ -7,8 +7,7 @@
 #[cfg(test)]
 pub mod reader;
 
-use super::log::Record;
-use super::log::Vertex;
+use super::log::{Record, Vertex};
 use super::sequence::Sequence;
 use super::state::{Attributes, NONE, PartSpan, State};
 use crate::model::{Material, PartKind};

@@ -3,8 +3,7 @@
 
 use thiserror::Error;
 
-use super::super::log::Vertex;
-use super::super::log::{Log, Record};
+use super::super::log::{Log, Record, Vertex};
 use super::super::state::{Attributes, NONE, PartSpan, State};
 use super::{MAGIC, Mark, VERSION};
 use crate::model::{Material, Mesh, PartKind};
