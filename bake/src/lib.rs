@@ -4,6 +4,7 @@ mod say;
 
 pub mod bench;
 pub mod breed;
+mod cache_commands;
 pub mod cli;
 pub mod commands;
 pub mod events;

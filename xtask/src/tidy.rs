@@ -25,6 +25,7 @@ const RULES: &[Rule] = &[
             "world-folder/",
             "xtask/",
             "bake/src/bench.rs",
+            "bake/src/cache_commands.rs",
             "bake/src/commands.rs",
             "bake/src/lod_command.rs",
             "bake/src/session.rs",
