@@ -72,7 +72,7 @@ fn bake(
 ) -> Result<(f64, usize)> {
     let start = Instant::now();
     let plan = Plan::new(space, population, resolution)?;
-    let runner = Runner { cache, pool, listener, cancelled: &|| false, scene_ready: &|_, _| Ok(()) };
+    let runner = Runner { cache, pool, listener, cancelled: &|| false, scene_ready: &|_, _| Ok(true) };
     let done = runner.run(&plan)?;
     let built = done.iter().filter(|d| d.how == How::Built).count();
     Ok((start.elapsed().as_secs_f64() * 1e3, built))

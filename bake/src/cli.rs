@@ -134,11 +134,15 @@ pub enum Command {
 pub enum CacheCommand {
     /// Blobs, bytes and what each stage's results cost to make.
     Stats,
-    /// Read everything, check every digest, and set damaged blobs aside so that the next bake makes them anew.
-    Verify,
-    /// Remove what was used least recently, never what the current scenes use nor what was used in the last ten minutes.
+    /// Read everything, check every digest, and remove what is damaged, so that the next bake makes it anew.
     ///
-    /// A scene of an older generation that loses parts goes with them; baking its population brings it back.
+    /// A bake by itself reads again only what was written to since it was last verified. Bytes that a failing disk
+    /// changed, without a new time, are found here. Files that are none of ours are listed and left alone.
+    Verify,
+    /// Remove what was used least recently, never what the current scenes name or were made from.
+    ///
+    /// Waits while a bake of this world is running, for what that counts on stays, too. A scene of an older generation that
+    /// loses parts goes with them; baking its population brings it back.
     Gc {
         /// Size to shrink to, for example 500MB or 2GiB.
         #[arg(long, value_name = "SIZE")]

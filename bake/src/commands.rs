@@ -5,10 +5,12 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result};
+use genescape_cache::verified;
 use genescape_schema::{Current, INDIVIDUALS, Population, Space};
 use genescape_world::{World, WorldError, atomic_write, names};
 
 use crate::breed::NoVotes;
+use crate::cache_commands::GaveUp;
 use crate::cli::{BadInput, Cli, Command, RunArgs, meant_command};
 use crate::events::{Event, Listener};
 use crate::plan::Resolution;
@@ -49,8 +51,12 @@ pub fn run(cli: Cli) -> u8 {
     }
 }
 
+fn stopped() -> bool {
+    INTERRUPTED.load(Ordering::SeqCst)
+}
+
 fn exit_code(error: &anyhow::Error) -> u8 {
-    if matches!(error.downcast_ref(), Some(RunError::Cancelled)) {
+    if matches!(error.downcast_ref(), Some(RunError::Cancelled)) || error.is::<GaveUp>() {
         return INTERRUPTED_CODE;
     }
     let world = matches!(error.downcast_ref(), Some(WorldError::Faulty(_) | WorldError::LastGeneration(_)));
@@ -70,7 +76,7 @@ fn dispatch(cli: &Cli) -> Result<()> {
         Command::Explain { scene } => explain(&run.world, *scene),
         Command::Export { scene, out } => export(&run.world, scene, out),
         Command::Lod { input, out, crease_deg } => lod_command::convert(input, out, *crease_deg),
-        Command::Cache { action } => cache_commands::look_after(&run.world, action),
+        Command::Cache { action } => cache_commands::look_after(&run.world, action, &stopped),
         Command::Bench { runs } => bench::bench(*runs, &pool(run.threads)?, resolution(run.size)?),
     }
 }
@@ -113,7 +119,7 @@ impl Console {
 
     /// Bakes one population file and reports the outcome.
     fn bake(&self, session: &Session, path: &Path) -> Result<()> {
-        self.baked(&session.bake_file(path, Publish::AsCurrent, &*self.listener(), &|| self.stopped())?);
+        self.baked(&session.bake_file(path, Publish::AsCurrent, &*self.listener(), &stopped)?);
         Ok(())
     }
 }
@@ -124,7 +130,7 @@ impl Host for Console {
     }
 
     fn stopped(&self) -> bool {
-        INTERRUPTED.load(Ordering::SeqCst)
+        stopped()
     }
 
     fn baked(&self, baked: &Baked) {
@@ -219,21 +225,31 @@ fn params(world: &Path, markdown: bool) -> Result<()> {
 }
 
 fn export(world: &Path, scene: &str, out: &Path) -> Result<()> {
-    let path = match scene.parse::<usize>() {
+    let (path, json) = match scene.parse::<usize>() {
         Ok(index) => {
-            let world = World::open(world)?;
+            let (world, cache) = cache_commands::open(world)?;
             let current = current(&world)?;
             let file = current.scenes.get(index);
             let file = file.ok_or_else(|| BadInput(format!("scene {index}: there are scenes 0 to 3")))?;
-            world.root().join(file)
+            let path = world.root().join(file);
+            let json = cache_commands::read_scene(&path, &cache)
+                .context("there is nothing to export; bake again")?;
+            (path, json)
         }
-        Err(_) => PathBuf::from(scene),
+        Err(_) => {
+            let json = fs::read(scene).with_context(|| format!("cannot read {scene}"))?;
+            (PathBuf::from(scene), json)
+        }
     };
-    let json = fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
     let folder = path.parent().unwrap_or(Path::new("."));
-    let read = |uri: &str| fs::read(folder.join(uri)).map_err(|error| error.to_string());
+    let read = |uri: &str| {
+        let path = folder.join(uri);
+        let bytes = fs::read(&path).map_err(|error| error.to_string())?;
+        verified(&path, bytes).map_err(|error| error.to_string())
+    };
     let glb = crate::gltf::single_glb(&json, read).with_context(|| {
-        format!("{}: cannot be made one file; bake again if blobs are missing", path.display())
+        let scene = path.display();
+        format!("{scene} cannot be made one file; `bake cache verify`, then `bake` make again what it lacks")
     })?;
     atomic_write::replace(out, &glb).with_context(|| format!("cannot write {}", out.display()))?;
     say!("wrote {} ({})", out.display(), say::size(glb.len() as u64));

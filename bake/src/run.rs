@@ -26,8 +26,8 @@ pub struct Runner<'a> {
     pub listener: &'a dyn Listener,
     /// Whether to stop; asked before each stage.
     pub cancelled: &'a (dyn Fn() -> bool + Sync),
-    /// Called once for each scene, as soon as all of it is complete.
-    pub scene_ready: &'a (dyn Fn(usize, &BlobRef) -> anyhow::Result<()> + Sync),
+    /// Called for each scene, as soon as all of it is complete; `false` if the scene's blob turns out to be lost.
+    pub scene_ready: &'a (dyn Fn(usize, &BlobRef) -> anyhow::Result<bool> + Sync),
 }
 
 /// Why a run ended early.
@@ -55,27 +55,21 @@ pub enum RunError {
 impl Runner<'_> {
     /// Runs `plan`; the results in the order of its nodes.
     pub fn run(&self, plan: &Plan) -> Result<Vec<Arc<Done>>, RunError> {
-        // A blob that turns out damaged when a stage reads it is gone from the cache by then: the next attempt finds
-        // its action missing and builds it again. Each attempt mends one action at least, so there are no more
-        // attempts to make than there are actions.
+        // A blob that turns out damaged when it is read is gone from the cache by then: the next attempt finds its
+        // action missing and builds it again. Each attempt mends one action at least, so there are no more attempts to
+        // make than there are actions.
         let mut attempts = plan.nodes.len();
         loop {
             attempts -= 1;
             match self.attempt(plan) {
                 Err(RunError::Stage { source: StageError::InputLost, .. }) if attempts > 0 => {
-                    self.tell_notices()
+                    tell_notices(self.cache, self.listener)
                 }
                 result => {
-                    self.tell_notices();
+                    tell_notices(self.cache, self.listener);
                     return result;
                 }
             }
-        }
-    }
-
-    fn tell_notices(&self) {
-        for notice in self.cache.take_notices() {
-            self.listener.tell(&Event::Notice { message: notice.to_string() });
         }
     }
 
@@ -126,12 +120,21 @@ impl Runner<'_> {
         let reused = done.how == How::Reused;
         let ms = if reused { 0.0 } else { start.elapsed().as_secs_f64() * 1e3 };
         self.listener.tell(&Event::Finished { stage: stage(), scenes: scenes(), reused, ms });
+        let failed = |source| RunError::Stage { label: stage(), source };
         for (scene, _) in plan.scenes.iter().enumerate().filter(|&(_, &node)| node == id) {
-            let json: File =
-                done.reread(self.cache).map_err(|source| RunError::Stage { label: stage(), source })?;
-            (self.scene_ready)(scene, json.blob()).map_err(RunError::Publish)?;
+            let json: File = done.reread(self.cache).map_err(failed)?;
+            if !(self.scene_ready)(scene, json.blob()).map_err(RunError::Publish)? {
+                return Err(failed(StageError::InputLost));
+            }
         }
         Ok(Arc::new(done))
+    }
+}
+
+/// Tells what was found wrong in the cache since the last time.
+pub fn tell_notices(cache: &Cache, listener: &dyn Listener) {
+    for notice in cache.take_notices() {
+        listener.tell(&Event::Notice { message: notice.to_string() });
     }
 }
 
@@ -266,7 +269,7 @@ mod tests {
             pool: &pool,
             listener: &Clumsy::default(),
             cancelled: &|| false,
-            scene_ready: &|_, _| Ok(()),
+            scene_ready: &|_, _| Ok(true),
         };
         let panic = catch_unwind(AssertUnwindSafe(|| runner.run(&plan))).expect_err("it panics");
         assert_eq!(panic.downcast_ref::<&str>(), Some(&"fell over a stage"));

@@ -1,21 +1,20 @@
 //! Bakes of one world, for the command line, a watch, or the viewer's thread. Population file → scene files in place,
 //! `current.ron`, and a note for `bake explain` of what became of each stage.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-use anyhow::{Context, Result, anyhow};
-use genescape_cache::{BlobRef, Cache, Digest, How};
+use anyhow::Result;
+use genescape_cache::{BlobRef, Cache, How};
 use genescape_schema::{Population, Space};
-use genescape_world::{PopulationFile, World, atomic_write, names};
+use genescape_world::{PopulationFile, World, names};
 
 use crate::breed;
 use crate::events::{Event, Listener};
 use crate::graph::Done;
 use crate::plan::{Plan, Resolution};
-use crate::run::{RunError, Runner};
+use crate::run::{self, RunError, Runner};
 
 /// All that bakes of one world share.
 pub struct Session {
@@ -99,14 +98,17 @@ impl Session {
         let plan = Plan::new(&self.space, population, self.resolution)?;
         let generation = population.generation;
         listener.tell(&Event::Planned { generation, stages: plan.nodes.len() });
+        // Until current.ron says that it is in use, too.
+        let _nothing_is_evicted = self.cache.lease()?;
         let result = self.run(&plan, population, listener, cancelled);
         // The bar must not stand between the person and the message.
         listener.end();
         let done = result?;
         if publish == Publish::AsCurrent {
-            self.world.publish_current(&file)?;
+            self.cache.put_file(in_baked(names::CURRENT), World::current_after(&file).to_ron().as_bytes())?;
         }
         self.remember(&plan, &done, population)?;
+        run::tell_notices(&self.cache, listener);
 
         let built = done.iter().filter(|d| d.how == How::Built).count();
         let (reused, ms) = (done.len() - built, start.elapsed().as_secs_f64() * 1e3);
@@ -132,17 +134,15 @@ impl Session {
         listener: &dyn Listener,
         cancelled: &(dyn Fn() -> bool + Sync),
     ) -> Result<Vec<Arc<Done>>, RunError> {
-        let scene_ready = |scene: usize, blob: &BlobRef| -> Result<()> {
-            let path = self.world.scene_path(population.generation, scene);
-            if !fs::read(&path).is_ok_and(|there| Digest::of(&there) == blob.digest) {
-                let json = self.cache.get_blob(blob)?;
-                let json = json.ok_or_else(|| anyhow!("the scene vanished from the cache; bake again"))?;
-                let written = atomic_write::replace_unsynced(&path, &*json);
-                written.with_context(|| format!("cannot write {}", path.display()))?;
+        let generation = population.generation;
+        let scene_ready = |scene: usize, blob: &BlobRef| -> Result<bool> {
+            let is_there = self.cache.put_copy(in_baked(&names::scene(generation, scene)), blob)?;
+            if is_there {
+                let path = self.world.scene_path(generation, scene).display().to_string();
+                let name = population.individuals[scene].name.clone();
+                listener.tell(&Event::SceneReady { scene, name, path });
             }
-            let (name, path) = (population.individuals[scene].name.clone(), path.display().to_string());
-            listener.tell(&Event::SceneReady { scene, name, path });
-            Ok(())
+            Ok(is_there)
         };
         let (cache, pool) = (&self.cache, &self.pool);
         Runner { cache, pool, listener, cancelled, scene_ready: &scene_ready }.run(plan)
@@ -166,4 +166,9 @@ impl Session {
         }
         Ok(())
     }
+}
+
+/// A name in the world as one in the cache's folder.
+fn in_baked(name: &str) -> &str {
+    name.strip_prefix(names::BAKED).map_or(name, |name| name.trim_start_matches('/'))
 }

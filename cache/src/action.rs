@@ -65,25 +65,26 @@ pub(crate) fn record_path(key: Digest) -> String {
     format!("actions/{key}")
 }
 
+/// Whether that is the name of a record.
+pub(crate) fn is_record(name: &str) -> bool {
+    name.strip_prefix("actions/").is_some_and(|key| key.parse::<Digest>().is_ok())
+}
+
 impl Cache {
-    /// The record of an action if all its blobs exist with the right length; their bytes are not read. Marks it as
-    /// used.
+    /// The record of an action if all its blobs are there and whole; bytes are read only of files that somebody wrote to
+    /// since they were last verified. Marks it as used. While it counts on it, the caller holds a [`Lease`](crate::Lease).
     ///
     /// # Errors
-    /// If the record exists and cannot be read.
+    /// If a file exists and cannot be read.
     pub fn lookup(&self, key: &ActionKey) -> Result<Option<ActionRecord>> {
         let path = record_path(key.digest());
         let Some((record, modified)) = self.get_sealed::<ActionRecord>(&path)? else { return Ok(None) };
-        let old = modified.elapsed().unwrap_or(TOUCH_AFTER) >= TOUCH_AFTER;
-        // An old record may be about to go. While `gc` waits, mark it, then look whether all is there.
-        let gc_waits = if old { self.locks.publishing().ok() } else { None };
-        if gc_waits.is_some() {
-            if self.store.metadata(&path).is_none() {
-                return Ok(None);
-            }
-            self.store.touch(&path);
+        if modified.elapsed().unwrap_or(TOUCH_AFTER) >= TOUCH_AFTER {
+            self.store.set_modified(&path, SystemTime::now());
         }
-        Ok(self.has_outputs(&path, &record).then_some(record))
+        let lost = self.lost_outputs(&record, |blob| self.has_blob(blob))?;
+        self.tell_lost(&path, &lost);
+        Ok(lost.is_empty().then_some(record))
     }
 
     /// The results of an action: from the cache, or by running `build` and storing what it gives. Of all threads
@@ -123,11 +124,11 @@ impl Cache {
         let path = record_path(key.digest());
         self.store.remove(&path)?;
         let stage = key.fields().stage.clone();
-        self.notices.add(self.store.path_of(&path), Fault::Undecodable { stage });
+        self.notices().add(self.store.path_of(&path), Fault::Undecodable { stage });
         Ok(())
     }
 
-    /// Stores outputs, then the record that names them; `gc` waits.
+    /// Stores outputs, then the record that names them; nothing is removed meanwhile.
     fn publish(&self, key: &ActionKey, outputs: &[Output], cost: Duration) -> Result<ActionRecord> {
         let mut record = ActionRecord {
             fields: key.fields().clone(),
@@ -136,7 +137,7 @@ impl Cache {
             bytes: outputs.iter().map(|output| output.bytes.len() as u64).sum(),
             created_unix_s: SystemTime::UNIX_EPOCH.elapsed().map_or(0, |age| age.as_secs()),
         };
-        let _gc_waits = self.locks.publishing()?;
+        let _nothing_is_removed = self.locks.publishing()?;
         for output in outputs {
             let name = &output.name;
             if record.output(name).is_some() {
@@ -148,15 +149,26 @@ impl Cache {
         Ok(record)
     }
 
-    /// Whether the blobs that the record at `path` names exist with the right length.
-    pub(crate) fn has_outputs(&self, path: &str, record: &ActionRecord) -> bool {
-        let blobs = record.outputs.iter().map(|(_, blob)| blob);
-        let gone: Vec<&BlobRef> = blobs.filter(|blob| !self.has_blob(blob)).collect();
-        // `gc` removes the record before its blobs: if the record is there still, they were lost.
-        if !gone.is_empty() && self.store.metadata(path).is_some() {
-            let paths = gone.iter().map(|blob| self.store.path_of(&blob.path()));
-            paths.for_each(|path| self.notices.add(path, Fault::MissingBlob));
+    /// The blobs of a record that are not there, as far as `is_there` tells.
+    pub(crate) fn lost_outputs<'a>(
+        &self,
+        record: &'a ActionRecord,
+        is_there: impl Fn(&BlobRef) -> Result<bool>,
+    ) -> Result<Vec<&'a BlobRef>> {
+        let mut lost = Vec::new();
+        for (_, blob) in &record.outputs {
+            if !is_there(blob)? {
+                lost.push(blob);
+            }
         }
-        gone.is_empty()
+        Ok(lost)
+    }
+
+    /// Notes which blobs of the record at `path` are lost. Eviction is no loss: it removes the record before its blobs.
+    pub(crate) fn tell_lost(&self, path: &str, lost: &[&BlobRef]) {
+        if !lost.is_empty() && self.store.file(path).is_some() {
+            let paths = lost.iter().map(|blob| self.store.path_of(&blob.path()));
+            paths.for_each(|path| self.notices().add(path, Fault::MissingBlob));
+        }
     }
 }

@@ -5,13 +5,16 @@ use std::path::{Path, PathBuf};
 
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
+// Causes are part of each message, and so they are no `source`: a chain of errors would tell them twice.
 /// Why the cache could not do its work. Damaged and missing files are no errors but misses.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// The folder or a file in it could not be used; `verb` completes "cannot … PATH".
-    #[error("cannot {verb} {}: {source}{}", path.display(), advice(source.kind()))]
-    Storage { verb: &'static str, path: PathBuf, source: io::Error },
+    #[error("cannot {verb} {}: {error}{}", path.display(), advice(error.kind()))]
+    Storage { verb: &'static str, path: PathBuf, error: io::Error },
+    #[error("{} is damaged: its bytes are not those that its name promises", .0.display())]
+    Damaged(PathBuf),
     #[error("`{0}` is no file extension for a blob: use one to eight lower-case letters and digits")]
     Extension(String),
     #[error("stage `{stage}` has two outputs named `{output}`")]
@@ -19,8 +22,8 @@ pub enum Error {
 }
 
 impl Error {
-    pub(crate) fn at(verb: &'static str, path: &Path, source: io::Error) -> Self {
-        Self::Storage { verb, path: path.to_path_buf(), source }
+    pub(crate) fn at(verb: &'static str, path: &Path, error: io::Error) -> Self {
+        Self::Storage { verb, path: path.to_path_buf(), error }
     }
 }
 

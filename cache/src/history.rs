@@ -118,11 +118,6 @@ impl History {
         self.items.iter().map(|(name, item)| (name.as_str(), &item.explanation))
     }
 
-    /// The keys of the last run: what they produced is what the scope is made of.
-    pub(crate) fn keys(&self) -> impl Iterator<Item = Digest> {
-        self.items.values().map(|item| item.key)
-    }
-
     /// Forgets items that `keep` doesn't want: those that the scope no longer has.
     pub fn retain(&mut self, mut keep: impl FnMut(&str) -> bool) {
         self.items.retain(|name, _| keep(name));
@@ -175,6 +170,12 @@ fn path(scope: &str) -> String {
         _ => format!("%{b:02X}"),
     });
     format!("history/{}.keys", escaped.collect::<String>())
+}
+
+/// Whether that is the name of a scope's file.
+pub(crate) fn is_history(name: &str) -> bool {
+    let scope = name.strip_prefix("history/").and_then(|name| name.strip_suffix(".keys"));
+    scope.is_some_and(|scope| scope.bytes().all(|b| b.is_ascii_alphanumeric() || b"-_%".contains(&b)))
 }
 
 impl Cache {

@@ -13,21 +13,26 @@
 //! baked/blobs/ab/ab12….png     immutable, verified whenever it is read
 //! baked/actions/ab34…          one sealed record for each action key
 //! baked/history/SCOPE.keys     the keys of a scope's last run, from which `explain` says what changed
-//! baked/locks/                 empty files: who builds what, who cleans up
+//! baked/locks/                 empty files: who builds what, who counts on what is there, who cleans up
+//! baked/staged/                files being written
 //! ```
 //!
 //! All of it is one local folder. A store that machines share comes later, behind a feature, in the place of `store.rs`.
 //!
 //! What it promises:
 //!
-//! - *Nothing damaged is served.* A blob is hashed when read; records and histories carry a seal. What fails is
-//!   removed, rebuilt, and reported once ([`Cache::take_notices`]).
+//! - *Nothing damaged is served.* A blob is hashed when read, and when somebody wrote to its file since it was last
+//!   hashed: the file's modification time tells, which is a mark made of the digest as long as nobody did. (Bytes that
+//!   were changed under the old time and length are found when read, or by [`Cache::verify`].) Records and histories
+//!   carry a seal. What fails is removed, rebuilt, and reported once ([`Cache::take_notices`]).
 //! - *Nothing half-written is seen.* All files are published by rename. None is synced to disk: a power cut may
 //!   damage them, which is the case above.
 //! - *Work is done once.* Threads and processes that want the same action wait for the one that builds it
 //!   ([`Cache::get_or_build`]); if that one dies, another takes over.
-//! - *Nothing in use goes.* [`Cache::gc`] evicts the least recently used, never what the caller names as a root, and
-//!   never what was used a short while ago.
+//! - *Nothing in use goes.* [`Gc::evict`] removes the least recently used, never what the caller names as a root or what
+//!   that was made from, and only while nobody holds a [`Lease`].
+//! - *What is none of ours stays.* It is left alone, or moved aside if it stands where a file of ours must be; links are
+//!   not followed.
 
 mod action;
 mod blob;
@@ -36,6 +41,7 @@ mod error;
 mod gc;
 mod history;
 mod key;
+mod lease;
 mod lock;
 mod notice;
 mod sealed;
@@ -47,12 +53,13 @@ use std::sync::Arc;
 use std::time::Duration;
 
 pub use action::{ActionRecord, How, Outcome, Output};
-pub use blob::BlobRef;
+pub use blob::{BlobRef, verified};
 pub use digest::{Digest, ParseDigestError};
 pub use error::{Error, Result};
-pub use gc::{GcOptions, GcReport};
+pub use gc::{Gc, GcReport};
 pub use history::{Change, Explanation, History};
 pub use key::{ActionKey, KeyFields};
+pub use lease::Lease;
 pub use notice::{Fault, Notice};
 pub use upkeep::{StageStats, Stats, VerifyReport};
 
@@ -64,7 +71,6 @@ pub type Bytes = Arc<Vec<u8>>;
 pub struct Cache {
     store: store::Store,
     locks: lock::Locks,
-    notices: notice::Notices,
 }
 
 impl Cache {
@@ -75,8 +81,8 @@ impl Cache {
     /// If `root` is neither a folder nor can be made one.
     pub fn open(root: impl AsRef<Path>) -> Result<Self> {
         let store = store::Store::open(root.as_ref())?;
-        let locks = lock::Locks::new(store.path_of("locks"));
-        Ok(Self { store, locks, notices: notice::Notices::default() })
+        let locks = lock::Locks::new(store.clone());
+        Ok(Self { store, locks })
     }
 
     /// The same cache, but a thread that waits for another's build does it itself after `patience` (default: a
@@ -89,6 +95,10 @@ impl Cache {
 
     /// What was found missing or damaged since the last call: for the caller to print. Each is reported once.
     pub fn take_notices(&self) -> Vec<Notice> {
-        self.notices.take()
+        self.notices().take()
+    }
+
+    fn notices(&self) -> &notice::Notices {
+        &self.store.notices
     }
 }

@@ -17,13 +17,15 @@ pub struct Notice {
 pub enum Fault {
     /// A blob's bytes are not those that its name promises; it was removed.
     DamagedBlob,
+    /// The system cannot read a file, for this reason; nothing was done about it.
+    Unreadable(String),
     /// A record or history fails its seal; it was removed.
     DamagedRecord,
     /// A record promises a blob that is not there.
     MissingBlob,
     /// A stage's result is whole, but its reader cannot make sense of it; its record was removed.
     Undecodable { stage: String },
-    /// A folder stood where a file must be; it was moved to this path, not removed.
+    /// What is none of ours stood where a file or folder of ours must be; it was moved to this path, not removed.
     MovedAside,
 }
 
@@ -32,6 +34,7 @@ impl fmt::Display for Notice {
         write!(f, "{}: ", self.path.display())?;
         match &self.fault {
             Fault::DamagedBlob => f.write_str("damaged, removed; will be rebuilt"),
+            Fault::Unreadable(why) => write!(f, "cannot be read: {why}"),
             Fault::DamagedRecord => f.write_str("damaged record, removed"),
             Fault::MissingBlob => f.write_str("missing or cut short; will be rebuilt"),
             Fault::Undecodable { stage } => {

@@ -1,11 +1,18 @@
 //! Bytes → file by temporary file and rename, so that a crash, a full disk or a pulled plug leaves either the old file
 //! or the new one, whole. A missing folder is made.
 
-use std::fs;
+use std::fs::{self, File};
 use std::io::{Error, ErrorKind, Result, Write};
 use std::path::Path;
+use std::time::Duration;
 
 use tempfile::NamedTempFile;
+
+/// How the name of a draft begins, and how many characters follow.
+const DRAFT: &str = ".draft-";
+const RANDOM: usize = 6;
+/// A draft that was written to more recently is not swept.
+const GRACE: Duration = Duration::from_secs(600);
 
 /// Writes a file that must not exist yet, synced: what a person made.
 ///
@@ -37,13 +44,33 @@ pub fn replace(path: &Path, bytes: impl AsRef<[u8]>) -> Result<()> {
     Ok(())
 }
 
-/// Replaces or creates a file that can be made again: not synced.
+/// Removes the drafts in a folder that killed programs left there; how many.
 ///
 /// # Errors
-/// What the system says; the old file is then untouched.
-pub fn replace_unsynced(path: &Path, bytes: impl AsRef<[u8]>) -> Result<()> {
-    draft(path, bytes.as_ref())?.persist(path).map_err(|error| error.error)?;
-    Ok(())
+/// A folder that cannot be read, or a draft that cannot be removed.
+pub fn sweep(folder: &Path) -> Result<usize> {
+    let mut swept = 0;
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        if is_draft(&entry.file_name().to_string_lossy()) && is_abandoned(&entry)? {
+            fs::remove_file(entry.path())?;
+            swept += 1;
+        }
+    }
+    Ok(swept)
+}
+
+fn is_draft(name: &str) -> bool {
+    let random = name.strip_prefix(DRAFT).unwrap_or_default();
+    random.len() == RANDOM && random.bytes().all(|b| b.is_ascii_alphanumeric())
+}
+
+/// A writer locks its draft, and the system takes the lock back when it dies. A new draft is spared: it may not be locked
+/// yet.
+fn is_abandoned(draft: &fs::DirEntry) -> Result<bool> {
+    let meta = draft.metadata()?;
+    let is_old = meta.modified()?.elapsed().is_ok_and(|age| age >= GRACE);
+    Ok(meta.is_file() && is_old && File::options().append(true).open(draft.path())?.try_lock().is_ok())
 }
 
 fn draft(path: &Path, bytes: &[u8]) -> Result<NamedTempFile> {
@@ -56,13 +83,17 @@ fn draft(path: &Path, bytes: &[u8]) -> Result<NamedTempFile> {
     // A temporary file is private by default; what is renamed into place is for everyone to read.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o644));
-    let mut draft = builder.prefix(".draft-").tempfile_in(folder)?;
+    let mut draft = builder.prefix(DRAFT).rand_bytes(RANDOM).tempfile_in(folder)?;
+    // Some network folders have no locks; there no draft is ever swept.
+    let _ = draft.as_file().lock();
     draft.write_all(bytes)?;
     Ok(draft)
 }
 
 #[cfg(test)]
 mod tests {
+    use std::time::SystemTime;
+
     use super::*;
 
     #[test]
@@ -78,9 +109,30 @@ mod tests {
         fs::set_permissions(&path, locked).expect("locked");
         replace(&path, "three").expect_err("read-only");
         assert_eq!(fs::read_to_string(&path).expect("there"), "two");
-        replace_unsynced(&folder.path().join("baked/scene.gltf"), "{}").expect("created with its folder");
         let left = fs::read_dir(path.parent().expect("a folder")).expect("a folder").count();
         assert_eq!(left, 1, "no draft is left behind");
+    }
+
+    #[test]
+    fn drafts_of_the_dead_are_swept_and_nothing_else() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = |name: &str| folder.path().join(name);
+        let living = draft(&path("g0000.ron"), b"half").expect("written");
+        for name in [".draft-Ab3xYz", ".draft-Young1", ".draft-notes of mine", "g0000.ron"] {
+            fs::write(path(name), "half").expect("written");
+        }
+        fs::create_dir(path(".draft-folder")).expect("made");
+        let age = |path: &Path| {
+            let file = File::options().append(true).open(path).expect("there");
+            file.set_modified(SystemTime::now() - 2 * GRACE).expect("set");
+        };
+        for name in [".draft-Ab3xYz", ".draft-notes of mine", "g0000.ron"] {
+            age(&path(name));
+        }
+        age(living.path());
+        assert_eq!(sweep(folder.path()).expect("swept"), 1);
+        assert!(!path(".draft-Ab3xYz").exists() && path(".draft-Young1").exists() && living.path().exists());
+        assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 5);
     }
 
     #[cfg(unix)]

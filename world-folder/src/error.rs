@@ -21,6 +21,8 @@ pub enum WorldError {
     Read { path: PathBuf, error: io::Error },
     #[error("cannot write {}: {error}", path.display())]
     Write { path: PathBuf, error: io::Error },
+    #[error("cannot remove the drafts that a killed program left in {}: {error}", path.display())]
+    Sweep { path: PathBuf, error: io::Error },
     /// What a file says is wrong: everything at once, with lines.
     #[error(transparent)]
     Faulty(#[from] Report),

@@ -2,7 +2,7 @@
 //! program. A person's files are only ever created, or replaced by a text made from what they say now.
 
 use std::fs;
-use std::io::ErrorKind;
+use std::io::{Error, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -214,19 +214,23 @@ impl World {
         Ok(Some(Current::load(&path.display().to_string(), &text)?))
     }
 
-    /// Says in `current.ron` that all scenes of a population are ready.
-    ///
-    /// # Errors
-    /// A file that cannot be written.
-    pub fn publish_current(&self, file: &PopulationFile) -> Result<(), WorldError> {
+    /// What `current.ron` is to say when all scenes of a population are ready.
+    pub fn current_after(file: &PopulationFile) -> Current {
         let generation = file.population.generation;
         let scenes = std::array::from_fn(|scene| names::scene(generation, scene));
-        let current = Current { generation, population: file.digest.to_string(), scenes };
-        let (path, text) = (self.root.join(names::CURRENT), current.to_ron());
-        if fs::read_to_string(&path).is_ok_and(|there| there == text) {
-            return Ok(());
-        }
-        atomic_write::replace_unsynced(&path, text).map_err(|error| WorldError::Write { path, error })
+        Current { generation, population: file.digest.to_string(), scenes }
+    }
+
+    /// Removes what programs that were killed while they wrote left among the person's files; how many files.
+    ///
+    /// # Errors
+    /// A folder that cannot be read, or a file that cannot be removed.
+    pub fn sweep_drafts(&self) -> Result<usize, WorldError> {
+        let folders = [self.root.clone(), self.root.join(names::POPULATIONS)];
+        let swept = folders
+            .into_iter()
+            .map(|path| atomic_write::sweep(&path).map_err(|error| WorldError::Sweep { path, error }));
+        swept.sum()
     }
 
     /// The scenes of all generations that are still in the folder: generation, number and file.
@@ -259,7 +263,12 @@ pub(crate) fn list<T>(path: &Path, meaning: impl Fn(&str) -> Option<T>) -> Resul
 }
 
 fn read(path: &Path) -> Result<String, WorldError> {
-    fs::read_to_string(path).map_err(|error| WorldError::Read { path: path.to_owned(), error })
+    let read = || match fs::metadata(path)?.is_file() {
+        true => fs::read_to_string(path),
+        // A pipe would be waited for.
+        false => Err(Error::new(ErrorKind::InvalidInput, "it is no file")),
+    };
+    read().map_err(|error| WorldError::Read { path: path.to_owned(), error })
 }
 
 fn read_if_there(path: &Path) -> Result<Option<String>, WorldError> {
@@ -384,7 +393,8 @@ mod tests {
         let (_folder, world) = world();
         put(&world, 3, None);
         let file = world.population(&Space::builtin(), 3).expect("valid");
-        world.publish_current(&file).expect("written");
+        let text = World::current_after(&file).to_ron();
+        atomic_write::replace(&world.root().join(names::CURRENT), text).expect("written");
         let current = world.current().expect("valid").expect("there");
         assert_eq!((current.generation, &current.scenes[1]), (3, &names::scene(3, 1)));
         let bytes = fs::read(world.population_path(3)).expect("there");

@@ -28,7 +28,6 @@ const RULES: &[Rule] = &[
             "bake/src/cache_commands.rs",
             "bake/src/commands.rs",
             "bake/src/lod_command.rs",
-            "bake/src/session.rs",
             "viewer/src/app/",
             "viewer/src/load/",
             "viewer/src/bench/",

@@ -46,9 +46,11 @@ pub trait Stage: Serialize + Send + Sync + 'static {
 /// Why a stage gave no result.
 #[derive(Debug, thiserror::Error)]
 pub enum StageError {
-    /// A result that it reads was damaged or is not what this program writes; the cache has forgotten it, and a new run
-    /// makes it again.
-    #[error("a cached result was damaged while it was needed")]
+    /// A result that it reads was lost, damaged, or is not what this program writes; the cache has forgotten it, and
+    /// another attempt makes it again.
+    #[error(
+        "what it reads from the cache was lost or damaged again and again; does another program write to baked/?"
+    )]
     InputLost,
     #[error(transparent)]
     Gltf(#[from] ExportError),

@@ -11,6 +11,9 @@ use crate::gltf::{Blob, GlbBlob, Picture, SceneParts, scene_gltf};
 use crate::graph::{Context, File, Input, Stage, StageError};
 use crate::model::{GroundMaps, Landform, SkyLight, StartView, TreeTextures};
 
+/// Extension of the blobs that `scene.gltf` files are copies of.
+pub const SCENE_EXT: &str = "json";
+
 /// Everything → the text of `scene.gltf`.
 #[derive(Serialize)]
 pub struct SceneStage {
@@ -75,7 +78,7 @@ impl Stage for SceneStage {
             light: &*context.get(&self.light)?,
             sky: context.get(&self.sky)?.try_map(resource, resource)?,
         };
-        Ok(context.file("json", scene_gltf(&parts)?))
+        Ok(context.file(SCENE_EXT, scene_gltf(&parts)?))
     }
 }
 

@@ -1,8 +1,7 @@
 //! What may go wrong around a bake: damage, interruption, a full or forbidden disk, two at once.
 
 use std::fs;
-use std::io::{BufRead, BufReader};
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::world::{Baked, World, damage};
@@ -24,7 +23,7 @@ fn a_missing_or_shortened_blob_is_made_again() {
 }
 
 /// Same length, one bit different: only reading it tells.
-fn flip_a_bit(mut bytes: Vec<u8>) -> Vec<u8> {
+pub fn flip_a_bit(mut bytes: Vec<u8>) -> Vec<u8> {
     let middle = bytes.len() / 2;
     bytes[middle] ^= 1;
     bytes
@@ -60,20 +59,12 @@ fn a_damaged_blob_that_a_stage_reads_is_never_used() {
     assert!(world.files()[scene] != good[scene]);
 }
 
-/// A bake whose events are read as they come.
-fn spawn(world: &World) -> (Child, impl Iterator<Item = String>) {
-    let mut command = world.command(&["--size", "65", "--json"]);
-    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("bake runs");
-    let lines = BufReader::new(child.stdout.take().expect("piped")).lines();
-    (child, lines.map(|line| line.expect("text")))
-}
-
 #[test]
 fn a_killed_bake_leaves_a_usable_folder() {
     let world = World::new();
     // One bake after the other gets a little further.
     for finished in [0, 1, 4, 20] {
-        let (mut child, lines) = spawn(&world);
+        let (mut child, lines) = world.spawn(&[]);
         let is_computed = |line: &String| line.contains("\"finished\"") && line.contains("\"reused\":false");
         match finished {
             0 => assert!({ lines }.any(|line| line.contains("\"started\"")), "it begins"),
@@ -93,7 +84,7 @@ fn a_killed_bake_leaves_a_usable_folder() {
 #[test]
 fn ctrl_c_keeps_what_was_finished() {
     let world = World::new();
-    let (mut child, mut lines) = spawn(&world);
+    let (mut child, mut lines) = world.spawn(&[]);
     // Only once the first stage has begun is there anything to interrupt.
     assert!(lines.any(|line| line.contains("\"finished\"")), "a stage");
     let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill runs");

@@ -43,7 +43,7 @@ pub fn run(population: &Population, baked: &Path, threads: usize) -> Result<Vec<
         cancelled: &|| false,
         scene_ready: &|_, _| {
             scenes.fetch_add(1, Ordering::SeqCst);
-            Ok(())
+            Ok(true)
         },
     };
     let done = runner.run(&plan)?;

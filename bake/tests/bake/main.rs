@@ -1,7 +1,9 @@
 //! Whole bakes, by the program as a person runs it and by the library that it is made of.
 
 mod bad_input;
+mod eviction;
 mod faults;
+mod healing;
 mod library;
 mod random_genomes;
 mod stage_digests;

@@ -2,9 +2,11 @@
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Child, Command, Output, Stdio};
 use std::sync::LazyLock;
+use std::time::{Duration, SystemTime};
 
 /// Temporary folders, on the disk that holds the baked starters.
 const TEMPORARY: &str = env!("CARGO_TARGET_TMPDIR");
@@ -69,6 +71,15 @@ impl World {
         bake(&self.path(), words)
     }
 
+    /// A bake at the smallest size, whose events are read as they come.
+    pub fn spawn(&self, words: &[&str]) -> (Child, impl Iterator<Item = String> + use<>) {
+        let mut command = self.command(words);
+        command.args(["--size", "65", "--json"]);
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("bake runs");
+        let lines = BufReader::new(child.stdout.take().expect("piped")).lines();
+        (child, lines.map(|line| line.expect("text")))
+    }
+
     pub fn run(&self, words: &[&str]) -> Output {
         self.command(words).output().expect("bake runs")
     }
@@ -88,13 +99,46 @@ impl World {
         fs::write(path, change(text)).expect("written");
     }
 
-    /// Digests of all files under `baked/` that other programs read, by relative path.
+    /// Digests of all files under `baked/` that other programs read, by relative path; not of what was moved aside.
     pub fn files(&self) -> BTreeMap<String, blake3::Hash> {
         let mut files = BTreeMap::new();
         for folder in ["baked/blobs", "baked/g0000"] {
             collect(&self.path(), &self.file(folder), &mut files);
         }
         files
+    }
+
+    /// The files that a current scene names and that are missing or damaged; none before the first bake is done.
+    pub fn holes(&self) -> Vec<PathBuf> {
+        let scenes =
+            (0..4).map(|scene| self.scene(scene)).filter(|_| self.file("baked/current.ron").exists());
+        let named = scenes.flat_map(|scene| {
+            let text = fs::read_to_string(&scene).unwrap_or_else(|_| panic!("{} is there", scene.display()));
+            let uris = text.split("\"uri\":\"").skip(1).filter_map(|rest| rest.split('"').next());
+            let files: Vec<PathBuf> = uris.map(|uri| scene.with_file_name(uri)).collect();
+            assert!(files.len() > 20, "it names its blobs");
+            files
+        });
+        let is_whole = |file: &PathBuf| {
+            let promised = file.file_stem().expect("a name").to_string_lossy().into_owned();
+            fs::read(file).is_ok_and(|bytes| blake3::hash(&bytes).to_hex().to_string() == promised)
+        };
+        named.filter(|file| !is_whole(file)).collect()
+    }
+
+    /// Every file of the cache looks as if nobody had used it for an hour, as after a jump of the clock. Blobs, whose
+    /// files are shared and whose times are no dates, are left out.
+    pub fn age(&self) {
+        let old = SystemTime::now() - Duration::from_secs(3600);
+        for folder in ["baked/actions", "baked/history", "baked/g0000"] {
+            let mut files = BTreeMap::new();
+            collect(&self.path(), &self.file(folder), &mut files);
+            for name in files.keys() {
+                let file = File::options().append(true).open(self.file(name));
+                // It may have gone since.
+                let _ = file.and_then(|file| file.set_modified(old));
+            }
+        }
     }
 
     pub fn blobs(&self) -> Vec<PathBuf> {
@@ -139,6 +183,9 @@ fn copy(from: &Path, to: &Path, by_link: bool) {
 fn collect(root: &Path, folder: &Path, into: &mut BTreeMap<String, blake3::Hash>) {
     for entry in fs::read_dir(folder).into_iter().flatten() {
         let path = entry.expect("an entry").path();
+        if path.to_string_lossy().contains(".aside-") {
+            continue;
+        }
         if path.is_dir() {
             collect(root, &path, into);
         } else {

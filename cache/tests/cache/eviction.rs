@@ -1,4 +1,4 @@
-//! Eviction: the least recently used goes first, roots and young things never, and the cap holds in a crowd.
+//! Eviction: the least recently used goes first, what is in use or held never, and the cap holds in a crowd.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -6,15 +6,16 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, SystemTime};
 
-use genescape_cache::{BlobRef, Cache, Digest, GcOptions, How};
+use genescape_cache::{ActionKey, BlobRef, Cache, Digest, Error, GcReport, How, KeyFields, Output};
 use proptest::prelude::*;
 
 use crate::{build, is_right, key, put};
 
 const LEN: usize = 1000;
 
-fn at_once(max_bytes: u64) -> GcOptions {
-    GcOptions { max_bytes, grace: Duration::ZERO }
+fn gc(cache: &Cache, max_bytes: u64, roots: &BTreeSet<Digest>) -> GcReport {
+    let gc = cache.begin_gc(|| true).expect("locked").expect("it waits");
+    gc.evict(max_bytes, roots).expect("collects")
 }
 
 /// Makes a file look as if last written that many minutes ago.
@@ -46,11 +47,11 @@ proptest! {
                 keep.extend(outcome.record.outputs.iter().map(|(_, blob)| blob.digest));
             }
         }
-        let report = cache.gc(at_once(cap), &keep).expect("collects");
+        let report = gc(&cache, cap, &keep);
         let stats = cache.stats().expect("counts");
         prop_assert_eq!(report.bytes_left, stats.blob_bytes + stats.action_bytes);
         let of_roots = roots.iter().filter(|&&n| n < actions).count();
-        prop_assert_eq!(report.bytes_of_roots, (of_roots * 2 * LEN) as u64);
+        prop_assert_eq!(report.bytes_in_use, (of_roots * 2 * LEN) as u64);
         prop_assert!(report.bytes_left <= cap || stats.actions == of_roots, "{:?}", report);
         builds.store(0, Ordering::SeqCst);
         for n in 0..actions {
@@ -72,7 +73,7 @@ fn the_least_recently_used_goes_first() {
         age(&record(world.path(), n), 100 - u64::from(n));
     }
     assert!(cache.lookup(&key(0)).expect("read").is_some(), "used again: now the youngest");
-    cache.gc(at_once(2 * 2500), &BTreeSet::new()).expect("collects");
+    gc(&cache, 2 * 2500, &BTreeSet::new());
     let left: Vec<u32> = (0..4).filter(|&n| record(world.path(), n).exists()).collect();
     assert_eq!(left, [0, 3]);
 }
@@ -84,50 +85,94 @@ fn a_root_whose_record_is_lost_stays() {
     let root = put(&cache, b"in use", "bin").expect("stored");
     let other = put(&cache, b"not in use", "bin").expect("stored");
     fs::remove_dir_all(world.path().join("actions")).expect("removed");
-    cache.gc(at_once(0), &BTreeSet::from([root.digest])).expect("collects");
+    gc(&cache, 0, &BTreeSet::from([root.digest]));
     let exists = |blob: &BlobRef| world.path().join(blob.path()).exists();
     assert_eq!((exists(&root), exists(&other)), (true, false));
 }
 
-#[test]
-fn the_young_and_the_just_used_stay() {
-    let world = tempfile::tempdir().expect("a temporary folder");
-    let cache = Cache::open(world.path()).expect("opens");
-    let builds = AtomicUsize::new(0);
-    for n in 0..3 {
-        let outcome = build(&cache, n, LEN, &builds).expect("builds");
-        if n > 0 {
-            age(&record(world.path(), n), 60);
-            outcome.record.outputs.iter().for_each(|(_, blob)| age(&world.path().join(blob.path()), 60));
-        }
-    }
-    cache.lookup(&key(1)).expect("read").expect("a hit");
-    let report = cache.gc(GcOptions::to(0), &BTreeSet::new()).expect("collects");
-    assert_eq!((report.actions_removed, report.blobs_removed), (1, 2));
-    assert!(
-        record(world.path(), 0).exists()
-            && record(world.path(), 1).exists()
-            && !record(world.path(), 2).exists()
-    );
-    assert!(cache.lookup(&key(1)).expect("read").is_some(), "its old blobs are kept by its record");
+/// An action that reads these blobs and gives one more.
+fn derive(cache: &Cache, stage: &str, inputs: &[&BlobRef]) -> BlobRef {
+    let inputs = inputs.iter().map(|blob| ("input".to_owned(), blob.digest)).collect();
+    let key = ActionKey::new(KeyFields { stage: stage.to_owned(), inputs, ..KeyFields::default() });
+    let outputs = || Ok::<_, Error>(vec![Output::new("output", "bin", stage.as_bytes().to_vec())]);
+    cache.get_or_build(&key, outputs).expect("builds").record.outputs[0].1.clone()
 }
 
 #[test]
-fn what_killed_writers_left_is_swept_when_old() {
+fn what_a_root_was_made_from_stays() {
+    let world = tempfile::tempdir().expect("a temporary folder");
+    let cache = Cache::open(world.path()).expect("opens");
+    let made = |stage: &str, inputs: &[&BlobRef]| derive(&cache, stage, inputs);
+    let (land, tree) = (made("land", &[]), made("tree", &[]));
+    let trees = made("trees", &[&land, &tree]);
+    let scene = made("scene", &[&trees]);
+    let (other, sibling) = (made("other", &[]), made("sibling", &[&trees]));
+    gc(&cache, 0, &BTreeSet::from([scene.digest]));
+    let stays =
+        [&land, &tree, &trees, &scene, &other, &sibling].map(|blob| world.path().join(blob.path()).exists());
+    assert_eq!(stays, [true, true, true, true, false, false]);
+    assert_eq!(
+        cache.stats().expect("counts").actions,
+        4,
+        "and so do the records: nothing is to be done again"
+    );
+}
+
+#[test]
+fn an_action_that_lost_one_output_keeps_the_others() {
+    let world = tempfile::tempdir().expect("a temporary folder");
+    let cache = Cache::open(world.path()).expect("opens");
+    let outputs = build(&cache, 1, LEN, &AtomicUsize::new(0)).expect("builds").record.outputs;
+    let [mesh, picture] = [0, 1].map(|n: usize| world.path().join(outputs[n].1.path()));
+    fs::remove_file(&mesh).expect("removed");
+    assert_eq!(cache.verify().expect("verifies").faults.len(), 1);
+    let roots = outputs.iter().map(|(_, blob)| blob.digest).collect();
+    gc(&cache, 0, &roots);
+    assert!(picture.exists(), "it is in use");
+}
+
+/// However long the run takes and whatever the clock says: a bake may be suspended for a week.
+#[test]
+fn nothing_goes_while_a_lease_is_held() {
+    let world = tempfile::tempdir().expect("a temporary folder");
+    let cache = Cache::open(world.path()).expect("opens");
+    let leases = [cache.lease().expect("a lease"), cache.lease().expect("one more")];
+    let made = build(&cache, 1, LEN, &AtomicUsize::new(0)).expect("builds");
+    age(&record(world.path(), 1), 60 * 24 * 7);
+    let other = Cache::open(world.path()).expect("opens");
+    for lease in leases {
+        let mut asked = 0;
+        let patient = || {
+            asked += 1;
+            asked < 3
+        };
+        assert!(other.begin_gc(patient).expect("locked").is_none(), "it waits, until it is told not to");
+        assert_eq!(asked, 3);
+        drop(lease);
+    }
+    let gc = other.begin_gc(|| false).expect("locked").expect("nobody holds a lease");
+    assert_eq!(gc.evict(0, &BTreeSet::new()).expect("collects").actions_removed, 1);
+    assert!(!world.path().join(made.record.outputs[0].1.path()).exists());
+    std::thread::scope(|scope| {
+        let lessee = scope.spawn(|| drop(cache.lease()));
+        std::thread::sleep(Duration::from_millis(30));
+        assert!(!lessee.is_finished(), "who comes while things go waits");
+        drop(gc);
+    });
+}
+
+#[test]
+fn what_killed_writers_left_is_swept() {
     let world = tempfile::tempdir().expect("a temporary folder");
     let cache = Cache::open(world.path()).expect("opens");
     let blob = put(&cache, b"unnamed", "bin").expect("stored");
-    let blob = world.path().join(blob.path());
     fs::remove_dir_all(world.path().join("actions")).expect("removed");
-    let staged = ["bin#1", "bin#Ab3xYz"].map(|extension| blob.with_extension(extension));
-    staged.iter().for_each(|path| fs::write(path, "half").expect("written"));
+    let half = world.path().join("staged/file-Ab3xYz");
+    fs::write(&half, "half").expect("written");
     assert_eq!(cache.stats().expect("counts").blobs, 1, "what is half-written is no blob");
-    assert_eq!(cache.gc(GcOptions::to(0), &BTreeSet::new()).expect("collects").abandoned_removed, 0);
-    assert!(staged.iter().all(|path| path.exists()) && blob.exists(), "their writer may be alive");
-    staged.iter().chain([&blob]).for_each(|path| age(path, 60));
-    let report = cache.gc(GcOptions::to(u64::MAX), &BTreeSet::new()).expect("collects");
-    assert_eq!((report.abandoned_removed, report.blobs_removed), (2, 1));
-    assert!(!staged.iter().any(|path| path.exists()) && !blob.exists());
+    let report = gc(&cache, u64::MAX, &BTreeSet::new());
+    assert_eq!((report.abandoned_removed, report.blobs_removed), (1, 1));
+    assert!(!half.exists() && !world.path().join(blob.path()).exists());
 }
 
 #[test]
@@ -145,7 +190,10 @@ fn the_cap_holds_while_others_put() {
                 scope.spawn(move || {
                     let cache = Cache::open(path).expect("opens");
                     for n in 0..40 {
+                        // With a breath between, for the other.
+                        std::thread::sleep(Duration::from_micros(300));
                         let n = (n * 7 + putter) % 40;
+                        let _lease = cache.lease().expect("a lease");
                         assert!(is_right(&build(&cache, n, LEN, builds).expect("builds"), n, LEN));
                     }
                     let notices = cache.take_notices();
@@ -156,8 +204,9 @@ fn the_cap_holds_while_others_put() {
         let collector = scope.spawn(|| {
             let cache = Cache::open(world.path()).expect("opens");
             while !done.load(Ordering::SeqCst) {
-                let left = cache.gc(at_once(CAP), &keep).expect("collects").bytes_left;
-                assert!(left <= CAP, "{left}");
+                let gc = cache.begin_gc(|| !done.load(Ordering::SeqCst)).expect("locked");
+                let report = gc.map(|gc| gc.evict(CAP, &keep).expect("collects"));
+                assert!(report.is_none_or(|report| report.bytes_left <= CAP), "{report:?}");
             }
         });
         let ends: Vec<_> = putters.into_iter().map(|putter| putter.join()).collect();
@@ -165,7 +214,7 @@ fn the_cap_holds_while_others_put() {
         collector.join().expect("no panic");
         assert!(ends.iter().all(Result::is_ok));
     });
-    root.gc(at_once(CAP), &keep).expect("collects");
+    gc(&root, CAP, &keep);
     let stats = root.stats().expect("counts");
     assert!(stats.blob_bytes + stats.action_bytes <= CAP);
     assert!(root.lookup(&key(1_000_000)).expect("read").is_some(), "the root is whole");

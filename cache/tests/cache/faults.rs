@@ -5,7 +5,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::sync::atomic::AtomicUsize;
 
-use genescape_cache::{Cache, Error, How};
+use genescape_cache::{Cache, Error, Fault, How, Notice};
 
 use crate::{build, is_right, key, outputs, put};
 
@@ -22,16 +22,16 @@ fn a_folder_below_a_file_cannot_be_opened() {
 }
 
 #[test]
-fn a_file_in_place_of_a_folder_is_an_error_that_names_it() {
-    for blocked in ["blobs", "actions", "locks"] {
+fn a_file_in_place_of_a_folder_is_moved_aside() {
+    for blocked in ["blobs", "actions", "locks", "staged"] {
         let world = tempfile::tempdir().expect("a temporary folder");
         fs::write(world.path().join(blocked), "someone's").expect("written");
         let cache = Cache::open(world.path()).expect("opens");
-        let error = build(&cache, 1, 10, &AtomicUsize::new(0)).expect_err("nowhere to write");
-        let message = error.to_string();
-        assert!(message.contains(&world.path().join(blocked).display().to_string()), "{message}");
-        assert!(message.contains("A file stands where a folder must be"), "{message}");
-        assert_eq!(fs::read_to_string(world.path().join(blocked)).expect("kept"), "someone's");
+        let built = build(&cache, 1, 10, &AtomicUsize::new(0)).expect("builds");
+        assert!(is_right(&built, 1, 10));
+        let aside = world.path().join(format!("{blocked}.aside-1"));
+        assert_eq!(fs::read_to_string(&aside).expect("kept"), "someone's");
+        assert_eq!(cache.take_notices(), [Notice { path: aside, fault: Fault::MovedAside }], "{blocked}");
     }
 }
 
@@ -65,9 +65,10 @@ fn two_outputs_of_one_name_are_refused() {
 #[test]
 fn a_full_disk_is_told_as_such() {
     let full = std::io::Error::from(ErrorKind::StorageFull);
-    let error = Error::Storage { verb: "write", path: "baked/blobs/ab".into(), source: full };
+    let error = Error::Storage { verb: "write", path: "baked/blobs/ab".into(), error: full };
     let message = error.to_string();
     assert!(message.contains("baked/blobs/ab") && message.contains("free some space"), "{message}");
+    assert!(std::error::Error::source(&error).is_none(), "a chain would say the system's words twice");
 }
 
 #[cfg(unix)]

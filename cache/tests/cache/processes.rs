@@ -89,6 +89,24 @@ fn a_killed_builder_is_replaced() {
 }
 
 #[test]
+fn a_killed_process_has_no_lease() {
+    if let Ok(folder) = std::env::var("GENESCAPE_TEST_FOLDER") {
+        let folder = Path::new(&folder);
+        let _lease = Cache::open(folder.join("baked")).expect("opens").lease().expect("a lease");
+        std::fs::write(folder.join("started-now"), "").expect("written");
+        return std::thread::sleep(Duration::from_secs(60));
+    }
+    let world = tempfile::tempdir().expect("a temporary folder");
+    let mut victim = child("processes::a_killed_process_has_no_lease", world.path(), 0);
+    until("the child has a lease", || started(world.path()) == 1);
+    let cache = Cache::open(world.path().join("baked")).expect("opens");
+    assert!(cache.begin_gc(|| false).expect("locked").is_none());
+    victim.kill().expect("killed");
+    victim.wait().expect("ends");
+    assert!(cache.begin_gc(|| false).expect("locked").is_some());
+}
+
+#[test]
 fn of_several_threads_one_builds() {
     let world = tempfile::tempdir().expect("a temporary folder");
     let (builds, reused, gate) = (AtomicUsize::new(0), AtomicUsize::new(0), Barrier::new(8));

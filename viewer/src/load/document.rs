@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use genescape_cache::verified;
 use genescape_schema::scene::Resource;
 use serde::de::DeserializeOwned;
 
@@ -24,6 +25,7 @@ impl<'a> Document<'a> {
     pub fn open(path: &Path, store: &'a Store) -> Result<Self> {
         let bytes =
             std::fs::read(path).map_err(|source| LoadError::Unreadable { path: path.to_owned(), source })?;
+        let bytes = verified(path, bytes).map_err(|_| LoadError::Damaged { path: path.to_owned() })?;
         let parsed = gltf::Gltf::from_slice(&bytes)
             .map_err(|source| LoadError::NoGltf { path: path.to_owned(), source: Box::new(source) })?;
         let buffers = RefCell::new(vec![None; parsed.document.buffers().len()]);

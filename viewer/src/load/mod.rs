@@ -23,7 +23,10 @@ use document::Document;
 pub enum LoadError {
     #[error("cannot read {path}: {source}; `bake` makes it again")]
     Unreadable { path: PathBuf, source: std::io::Error },
-    #[error("{path} is damaged: its bytes are not those that its name promises; `bake` makes it again")]
+    #[error(
+        "{path} is damaged: its bytes are not those that its name promises; \
+         `bake cache verify`, then `bake` make it again"
+    )]
     Damaged { path: PathBuf },
     #[error("{path} is no glTF file: {source}")]
     NoGltf { path: PathBuf, source: Box<gltf::Error> },

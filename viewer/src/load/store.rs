@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
-use genescape_cache::Digest;
+use genescape_cache::verified;
 
 use super::{LoadError, Result};
 
@@ -42,11 +42,7 @@ impl Store {
         self.get(&format!("bytes of {name}"), || {
             let bytes = std::fs::read(path)
                 .map_err(|source| LoadError::Unreadable { path: path.to_owned(), source })?;
-            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-            if stem.parse::<Digest>().is_ok_and(|promised| promised != Digest::of(&bytes)) {
-                return Err(LoadError::Damaged { path: path.to_owned() });
-            }
-            Ok(bytes)
+            verified(path, bytes).map_err(|_| LoadError::Damaged { path: path.to_owned() })
         })
     }
 }
