@@ -125,7 +125,7 @@ pub fn read_scene(path: &Path, cache: &Cache) -> Result<Vec<u8>> {
     }
     let json = fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
     if !cache.has_copied(&json, SCENE_EXT)? {
-        bail!("{} is not as it was baked", path.display());
+        bail!("{} is not as it was baked, or the blob that vouches for it is gone", path.display());
     }
     Ok(json)
 }

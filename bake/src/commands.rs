@@ -232,8 +232,8 @@ fn export(world: &Path, scene: &str, out: &Path) -> Result<()> {
             let file = current.scenes.get(index);
             let file = file.ok_or_else(|| BadInput(format!("scene {index}: there are scenes 0 to 3")))?;
             let path = world.root().join(file);
-            let json = cache_commands::read_scene(&path, &cache)
-                .context("there is nothing to export; bake again")?;
+            let json =
+                cache_commands::read_scene(&path, &cache).context("it cannot be exported; bake again")?;
             (path, json)
         }
         Err(_) => {

@@ -55,13 +55,13 @@ pub enum RunError {
 impl Runner<'_> {
     /// Runs `plan`; the results in the order of its nodes.
     pub fn run(&self, plan: &Plan) -> Result<Vec<Arc<Done>>, RunError> {
-        // A blob that turns out damaged when it is read is gone from the cache by then: the next attempt finds its
-        // action missing and builds it again. Each attempt mends one action at least, so there are no more attempts to
-        // make than there are actions.
+        // A blob that turns out lost or damaged is gone from the cache by then: the next attempt finds its action
+        // missing and builds it again. Each attempt mends one action at least, so there are no more attempts to make
+        // than there are actions.
         let mut attempts = plan.nodes.len();
         loop {
             attempts -= 1;
-            match self.attempt(plan) {
+            match self.attempt(plan).and_then(|done| self.still_there(plan, done)) {
                 Err(RunError::Stage { source: StageError::InputLost, .. }) if attempts > 0 => {
                     tell_notices(self.cache, self.listener)
                 }
@@ -71,6 +71,16 @@ impl Runner<'_> {
                 }
             }
         }
+    }
+
+    /// The results, if none was lost or damaged while others were made: a person may clear the folder at any time.
+    fn still_there(&self, plan: &Plan, done: Vec<Arc<Done>>) -> Result<Vec<Arc<Done>>, RunError> {
+        for (node, done) in plan.nodes.iter().zip(&done) {
+            if !self.cache.is_whole(&done.record)? {
+                return Err(RunError::Stage { label: node.label.clone(), source: StageError::InputLost });
+            }
+        }
+        Ok(done)
     }
 
     fn attempt(&self, plan: &Plan) -> Result<Vec<Arc<Done>>, RunError> {

@@ -149,6 +149,14 @@ impl Cache {
         Ok(record)
     }
 
+    /// Whether all blobs of a record are still there and whole, as [`Cache::lookup`] says it.
+    ///
+    /// # Errors
+    /// If a file exists and cannot be read.
+    pub fn is_whole(&self, record: &ActionRecord) -> Result<bool> {
+        Ok(self.lost_outputs(record, |blob| self.has_blob(blob))?.is_empty())
+    }
+
     /// The blobs of a record that are not there, as far as `is_there` tells.
     pub(crate) fn lost_outputs<'a>(
         &self,

@@ -60,6 +60,17 @@ fn a_scene_whose_own_blob_is_damaged_too_is_mended_in_one_bake() {
     assert!(world.files() == before);
 }
 
+#[test]
+fn what_is_cleared_away_in_the_midst_of_a_bake_is_made_again() {
+    let world = World::new();
+    let (mut child, mut lines) = world.spawn(&[]);
+    assert!(lines.any(|line| line.contains("\"finished\"")), "a stage");
+    fs::rename(world.file("baked/blobs"), world.file("cleared away")).expect("moved");
+    let lines: Vec<String> = lines.collect();
+    assert!(child.wait().expect("ended").success(), "{lines:?}");
+    assert!(world.files() == World::starters().files());
+}
+
 fn remove(path: &Path) {
     fs::remove_file(path).or_else(|_| fs::remove_dir_all(path)).expect("removed");
 }
