@@ -79,7 +79,7 @@ fn nothing_goes_as_long_as_it_cannot_be_told_what_is_current() {
             fs::remove_file(world.file("baked/current.ron")).expect("removed")
         }),
         ("current.ron", |world| damage(&world.file("baked/current.ron"), |_| b"Current(gener".to_vec())),
-        ("it is no file", |world| {
+        ("current.ron: ", |world| {
             fs::remove_file(world.file("baked/current.ron")).expect("removed");
             fs::create_dir(world.file("baked/current.ron")).expect("made");
         }),
