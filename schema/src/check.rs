@@ -6,8 +6,9 @@ use std::ops::Range;
 use ron::error::SpannedError;
 use serde::de::DeserializeOwned;
 
-use crate::report::{Diagnostic, Report, place};
-use crate::ron_tree::{Field, Node, Value, parse, prepare};
+use crate::printable::steers;
+use crate::report::{Diagnostic, MAX_FAULTS, Report, place, shortened};
+use crate::ron_tree::{Field, MAX_DEPTH, Node, Value, parse, prepare};
 
 /// Reads the text of a file, whose name is for messages: what `read` makes of it, or everything that is wrong.
 pub(crate) fn read<T>(
@@ -27,12 +28,19 @@ pub(crate) struct Checker<'a> {
     file: &'a str,
     text: &'a str,
     faults: Vec<(usize, Diagnostic)>,
+    /// Faults beyond these.
+    more: usize,
 }
+
+/// Characters that the name of something may have.
+pub(crate) const MAX_NAME: usize = 200;
+/// Characters that are quoted of a name that should not be there.
+const MAX_QUOTED: usize = 60;
 
 impl<'a> Checker<'a> {
     /// `text` comes from [`crate::ron_tree::prepare`].
     pub fn new(file: &'a str, text: &'a str) -> Self {
-        Self { file, text, faults: Vec::new() }
+        Self { file, text, faults: Vec::new(), more: 0 }
     }
 
     /// The file as a tree, or the one place where it stops being RON.
@@ -41,7 +49,16 @@ impl<'a> Checker<'a> {
     }
 
     pub fn error(&mut self, span: Range<usize>, message: impl Into<String>) {
-        self.faults.push((span.start, Diagnostic::at(self.file, self.text, span, message.into())));
+        self.error_with(span, || message.into());
+    }
+
+    /// The same for a message that takes work: of very many faults most are only counted.
+    pub fn error_with(&mut self, span: Range<usize>, message: impl FnOnce() -> String) {
+        if self.faults.len() == MAX_FAULTS {
+            self.more += 1;
+            return;
+        }
+        self.faults.push((span.start, Diagnostic::at(self.file, self.text, span, &message())));
     }
 
     /// The same in place of a value.
@@ -62,7 +79,8 @@ impl<'a> Checker<'a> {
             Some(result) if self.faults.is_empty() => Ok(result),
             _ => {
                 self.faults.sort_by_key(|(at, _)| *at);
-                Err(Report { diagnostics: self.faults.into_iter().map(|(_, fault)| fault).collect() })
+                let diagnostics = self.faults.into_iter().map(|(_, fault)| fault).collect();
+                Err(Report { diagnostics, more: self.more })
             }
         }
     }
@@ -86,8 +104,10 @@ impl<'a> Checker<'a> {
         for field in fields {
             let span = field.name_start..field.name_start + field.name.len();
             if !known.contains(&field.name) {
-                let hint = hint(field.name).unwrap_or_else(|| did_you_mean(field.name, known));
-                self.error(span, format!("{what} has no {}{hint}", field.name));
+                self.error_with(span, || {
+                    let hint = hint(field.name).unwrap_or_else(|| did_you_mean(field.name, known));
+                    format!("{what} has no {}{hint}", quoted(field.name))
+                });
             } else if let Some(first) = unique.iter().find(|first| first.name == field.name) {
                 let (line, _) = place(self.text, first.node.start);
                 self.error(span, format!("{} is given twice; first in line {line}", field.name));
@@ -117,7 +137,7 @@ impl<'a> Checker<'a> {
     ) -> Option<Vec<&'n Field<'t>>> {
         let found = node.struct_name();
         if !found.is_empty() && found != name {
-            let message = format!("expected {name}(…), found {found}");
+            let message = format!("expected {name}(…), found {}", quoted(found));
             return self.refuse(node.start..node.start + found.len(), message);
         }
         self.record(node, name, known)
@@ -153,6 +173,22 @@ impl<'a> Checker<'a> {
             Value::Text(text) => Some(text),
             _ => self.wrong_kind(node, what, "a text in quotes"),
         }
+    }
+
+    /// A text in one line for people to read.
+    pub fn line<'n>(&mut self, node: &'n Node<'_>, what: &str, max: usize) -> Option<&'n str> {
+        let text = self.text(node, what)?;
+        let count = text.chars().count();
+        if count > max {
+            return self
+                .refuse(node.span(), format!("{what}: {count} characters; at most {max} are allowed"));
+        }
+        if let Some(place) = text.chars().position(steers) {
+            let code = text.chars().nth(place).map_or(0, u32::from);
+            let message = format!("{what}: character {} is a control character (U+{code:04X})", place + 1);
+            return self.refuse(node.span(), message);
+        }
+        Some(text)
     }
 
     pub fn list<'n, 't>(&mut self, node: &'n Node<'t>, what: &str) -> Option<&'n [Node<'t>]> {
@@ -192,7 +228,7 @@ impl<'a> Checker<'a> {
             at = self.text.trim_end().len();
             message = format!("the file ends too early: {message}");
         }
-        Report { diagnostics: vec![Diagnostic::at(self.file, self.text, at..at, message)] }
+        Report { diagnostics: vec![Diagnostic::at(self.file, self.text, at..at, &message)], more: 0 }
     }
 }
 
@@ -211,8 +247,16 @@ pub(crate) fn given(node: &Node<'_>) -> String {
     short
 }
 
+/// A name that should not be there, cut short.
+pub(crate) fn quoted(name: &str) -> String {
+    shortened(name, MAX_QUOTED)
+}
+
 /// `; did you mean height_m?` if a known name is near.
 pub(crate) fn did_you_mean(name: &str, known: &[&str]) -> String {
+    if name.len() > MAX_QUOTED {
+        return String::new();
+    }
     let near = known.iter().map(|&known| (strsim::osa_distance(name, known), known)).min();
     let limit = 2.max(name.chars().count() / 3);
     near.filter(|&(distance, _)| distance <= limit)
@@ -223,6 +267,9 @@ pub(crate) fn did_you_mean(name: &str, known: &[&str]) -> String {
 fn syntax_message(error: &ron::Error) -> String {
     match error {
         ron::Error::Eof => "a bracket or a quotation mark is still open".into(),
+        ron::Error::ExceededRecursionLimit => {
+            format!("brackets stand within brackets here, more than {MAX_DEPTH} deep; our files need six")
+        }
         ron::Error::ExpectedComma => "expected a comma or a closing bracket before this".into(),
         ron::Error::ExpectedMapColon => "expected a colon after the name".into(),
         ron::Error::TrailingCharacters => "the file should end here; is one bracket too many closed?".into(),

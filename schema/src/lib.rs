@@ -6,6 +6,7 @@
 
 mod check;
 mod current;
+mod decode;
 pub mod edit;
 mod genome;
 
@@ -13,6 +14,7 @@ mod lineage;
 mod load;
 mod parameter;
 mod population;
+mod printable;
 mod report;
 mod ron_tree;
 pub mod scene;
@@ -21,9 +23,11 @@ mod table;
 mod write;
 
 pub use current::Current;
+pub use decode::decode;
 pub use genome::{Chromosome, Genome, GenomeError};
 pub use lineage::{Lineage, unanswered};
 pub use parameter::{Category, Parameter, Scale};
 pub use population::{INDIVIDUALS, Individual, Loaded, LoadedPreset, Parent, Population, TreePreset, Votes};
+pub use printable::printable;
 pub use report::{Diagnostic, Report};
 pub use space::Space;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::check::{Checker, did_you_mean, given, optional, read};
+use crate::check::{Checker, MAX_NAME, did_you_mean, given, optional, quoted, read};
 use crate::genome::{Chromosome, Genome};
 use crate::lineage::{Lineage, read_lineage};
 use crate::parameter::{Category, Parameter};
@@ -62,7 +62,7 @@ impl Loader<'_, '_> {
             self.checker.error(list.start..end, format!("individuals: {found}; there must be {INDIVIDUALS}"));
         }
         let individuals: Vec<_> =
-            nodes.iter().enumerate().filter_map(|(index, node)| self.individual(index, node)).collect();
+            (0..INDIVIDUALS).zip(nodes).filter_map(|(index, node)| self.individual(index, node)).collect();
         let Lineage { generation, parent, votes } = lineage?;
         Some(Population {
             generation,
@@ -84,9 +84,10 @@ impl Loader<'_, '_> {
             if known.contains(&name) {
                 locked.insert(name.to_owned());
             } else {
-                let near = did_you_mean(name, &known);
-                self.checker
-                    .error(node.span(), format!("locked: {name} is neither a gene nor a category{near}"));
+                self.checker.error_with(node.span(), || {
+                    let near = did_you_mean(name, &known);
+                    format!("locked: {} is neither a gene nor a category{near}", quoted(name))
+                });
             }
         }
         locked
@@ -95,7 +96,7 @@ impl Loader<'_, '_> {
     fn individual(&mut self, index: usize, node: &Node<'_>) -> Option<Individual> {
         let what = format!("individual {index}");
         let fields = self.checker.record(node, &what, &["name", "tree", "terrain", "sky"])?;
-        let name = optional(&fields, "name").and_then(|node| self.checker.text(node, "name"));
+        let name = optional(&fields, "name").and_then(|node| self.checker.line(node, "name", MAX_NAME));
         let name = name.unwrap_or_default().to_owned();
         let [tree, terrain, sky] = Category::ALL.map(|category| {
             let node = self.checker.need(&fields, node, &what, category.name())?;
@@ -107,7 +108,7 @@ impl Loader<'_, '_> {
     fn preset(&mut self, root: &Node<'_>) -> Option<TreePreset> {
         let fields = self.checker.root(root, "TreePreset", &["name", "tree"])?;
         let name = self.checker.need(&fields, root, "TreePreset", "name");
-        let name = name.and_then(|node| self.checker.text(node, "name"));
+        let name = name.and_then(|node| self.checker.line(node, "name", MAX_NAME));
         let tree = self.checker.need(&fields, root, "TreePreset", "tree");
         let tree = tree.and_then(|node| self.chromosome(Category::Tree, node));
         Some(TreePreset { name: name?.to_owned(), tree: tree? })
@@ -158,7 +159,7 @@ impl Loader<'_, '_> {
         }
         let code = parameter.snap(value);
         if !parameter.is_written_as(value, code) {
-            let (given, used) = (node.text, parameter.value_text(code));
+            let (given, used) = (given(node), parameter.value_text(code));
             let message = format!("{name}: for {given} the nearest value {used} is used");
             self.notices.push(self.checker.note(node, message));
         }

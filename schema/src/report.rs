@@ -1,10 +1,17 @@
-//! What is wrong with a file, told so that a person can mend it: every fault with its line, the way rustc shows it.
+//! What is wrong with a file, told so that a person can mend it: every fault with its line, the way rustc shows it. A file
+//! may come from a stranger, so what is quoted of it is short and steers no terminal.
 
 use std::fmt;
 use std::ops::Range;
 
+use crate::printable::printable;
+
 /// Characters of a line that are shown; of longer ones the part around the fault.
 const WIDEST: usize = 120;
+/// Faults of a file that are told one by one.
+pub(crate) const MAX_FAULTS: usize = 100;
+/// Characters of a message.
+const MAX_MESSAGE: usize = 2000;
 
 /// One fault of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -17,33 +24,31 @@ pub struct Diagnostic {
     pub column: usize,
     /// What is wrong and what would be right.
     pub message: String,
-    /// That line of the file.
-    pub source: String,
-    /// How many characters of it are meant; at least 1.
-    pub length: usize,
+    /// What is shown of that line of the file.
+    pub excerpt: String,
+    /// Which characters of the excerpt are meant; at least one.
+    pub meant: Range<usize>,
 }
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { file, line, column, message, source, length } = self;
+        let Self { file, line, column, message, excerpt, meant } = self;
         writeln!(f, "{file}:{line}:{column}: {message}")?;
-        let from = if source.chars().count() > WIDEST { column.saturating_sub(WIDEST / 2) } else { 0 };
-        let cut = if from > 0 { "…" } else { "" };
-        let shown: String = source.chars().skip(from).take(WIDEST).collect();
-        writeln!(f, "{line:>5} | {cut}{shown}")?;
+        writeln!(f, "{line:>5} | {excerpt}")?;
         // Tabs are kept so that the marks stand under what they mean.
-        let before = cut.chars().chain(source.chars().skip(from).take(column - 1 - from));
+        let before = excerpt.chars().chain(std::iter::repeat(' ')).take(meant.start);
         let indent: String = before.map(|c| if c == '\t' { c } else { ' ' }).collect();
-        let marks = (*length).min(from + WIDEST + 1 - column).max(1);
-        write!(f, "{:>5} | {indent}{}", "", "^".repeat(marks))
+        write!(f, "{:>5} | {indent}{}", "", "^".repeat(meant.len()))
     }
 }
 
 /// All faults of a file, in the order of the file. Never empty when it is an error.
 #[derive(Clone, Debug, Default, PartialEq, Eq, thiserror::Error)]
 pub struct Report {
-    /// The faults.
+    /// The faults, or the first of very many.
     pub diagnostics: Vec<Diagnostic>,
+    /// How many more there are.
+    pub more: usize,
 }
 
 impl fmt::Display for Report {
@@ -51,9 +56,10 @@ impl fmt::Display for Report {
         for diagnostic in &self.diagnostics {
             writeln!(f, "{diagnostic}")?;
         }
-        match self.diagnostics.len() {
-            1 => write!(f, "1 error"),
-            count => write!(f, "{count} errors"),
+        match (self.diagnostics.len(), self.more) {
+            (1, 0) => write!(f, "1 error"),
+            (count, 0) => write!(f, "{count} errors"),
+            (count, more) => write!(f, "{count} errors, and {more} more"),
         }
     }
 }
@@ -67,14 +73,34 @@ pub(crate) fn place(text: &str, at: usize) -> (usize, usize) {
 
 impl Diagnostic {
     /// A fault of the bytes `span` of `text`.
-    pub(crate) fn at(file: &str, text: &str, span: Range<usize>, message: String) -> Self {
+    pub(crate) fn at(file: &str, text: &str, span: Range<usize>, message: &str) -> Self {
         let (line, column) = place(text, span.start);
-        let source = text.lines().nth(line - 1).unwrap_or_default().to_owned();
-        let meant =
-            &text[floor_char(text, span.start)..floor_char(text, span.end).max(floor_char(text, span.start))];
-        let on_line = source.chars().count().saturating_sub(column - 1);
-        let length = meant.chars().count().clamp(1, on_line.max(1));
-        Self { file: file.to_owned(), line, column, message, source, length }
+        let start = floor_char(text, span.start);
+        let line_start = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
+        let source = text[line_start..].split('\n').next().unwrap_or_default().trim_end_matches('\r');
+        let is_wide = source.chars().nth(WIDEST).is_some();
+        let from = if is_wide { column.saturating_sub(WIDEST / 2) } else { 0 };
+        let cut = if from > 0 { "…" } else { "" };
+        let shown: String = cut.chars().chain(source.chars().skip(from).take(WIDEST)).collect();
+        let first = column - 1 - from + cut.chars().count();
+        let length = text[start..floor_char(text, span.end).max(start)].chars().take(WIDEST).count();
+        let last = (first + length).min(shown.chars().count()).max(first + 1);
+        Self {
+            file: file.to_owned(),
+            line,
+            column,
+            message: printable(&shortened(message, MAX_MESSAGE)).replace('\n', "␊"),
+            excerpt: printable(&shown).into_owned(),
+            meant: first..last,
+        }
+    }
+}
+
+/// A text of so many characters at most.
+pub(crate) fn shortened(text: &str, max: usize) -> String {
+    match text.char_indices().nth(max) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
     }
 }
 

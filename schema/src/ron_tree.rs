@@ -9,6 +9,9 @@ use ron::error::SpannedError;
 use ron::value::RawValue;
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
+/// How deep values may stand within others. Each level is read once more than the one around it.
+pub(crate) const MAX_DEPTH: usize = 32;
+
 /// A value and the text it was written as.
 pub(crate) struct Node<'a> {
     /// The value's text, without space and comments around it.
@@ -80,8 +83,12 @@ pub(crate) fn parse(text: &str) -> Result<Node<'_>, SpannedError> {
     // The deserializer has passed over comments and attributes when it stands ready.
     let start = text.len() - ron::Deserializer::from_str(text)?.remainder().len();
     let reader = Reader { text: text[start..].trim_end(), whole: text };
-    let value = Options::default().from_str_seed(text, reader)?;
+    let value = options().from_str_seed(text, reader)?;
     Ok(Node { text: reader.text, start, value })
+}
+
+fn options() -> Options {
+    Options::default().with_recursion_limit(MAX_DEPTH)
 }
 
 /// Reads one value whose text is known.
@@ -99,7 +106,7 @@ impl<'a> Reader<'a> {
     fn node<E: Error>(self, raw: &'a RawValue) -> Result<Node<'a>, E> {
         let text = raw.trim().get_ron();
         let reader = Reader { text, whole: self.whole };
-        let value = Options::default().from_str_seed(text, reader).map_err(|error| E::custom(error.code))?;
+        let value = options().from_str_seed(text, reader).map_err(|error| E::custom(error.code))?;
         Ok(Node { text, start: self.place(text), value })
     }
 }

@@ -1,6 +1,6 @@
 //! The parameter space: `space.ron` read and checked. Mutation, decoding, sliders and tables derive from it.
 
-use crate::check::{Checker, optional, read};
+use crate::check::{Checker, MAX_NAME, did_you_mean, optional, read};
 use crate::parameter::{Category, Parameter, Scale};
 use crate::report::Report;
 use crate::ron_tree::{Node, Value};
@@ -25,17 +25,23 @@ impl Space {
     /// # Errors
     /// Everything that is wrong with it.
     pub fn parse(file: &str, text: &str) -> Result<Self, Report> {
-        read(file, text, read_space)
+        read(file, text, |checker, root| read_space(checker, root, |_, _, _| {}))
     }
 
     /// Reads the `space.ron` of a world, which may have been made before some of the genes were known: those that it
-    /// lacks are declared as in the built-in space, with a notice for each.
+    /// lacks are declared as in the built-in space, with a notice for each. So are those that it has and nothing reads:
+    /// files may lack these.
     ///
     /// # Errors
-    /// Everything that is wrong with it.
+    /// Everything that is wrong with it, genes of another kind than the landscapes are made from included.
     pub fn load(file: &str, text: &str) -> Result<(Self, Vec<String>), Report> {
-        let (mut space, mut notices) = (Self::parse(file, text)?, Vec::new());
-        for gene in Self::builtin().parameters {
+        let (builtin, mut notices) = (Self::builtin(), Vec::new());
+        let mut space = read(file, text, |checker, root| {
+            read_space(checker, root, |checker, node, gene| {
+                notices.extend(compare(checker, node, gene, &builtin));
+            })
+        })?;
+        for gene in builtin.parameters {
             if space.find(&gene.name).is_none() {
                 let default = gene.default.map(|code| format!(", default {}", gene.text(code)));
                 let (name, range, default) = (&gene.name, gene.range_text(), default.unwrap_or_default());
@@ -74,7 +80,37 @@ impl Space {
     }
 }
 
-fn read_space(checker: &mut Checker<'_>, root: &Node<'_>) -> Option<Space> {
+/// Finds what is wrong with a gene of a world that the program also declares; a notice of one that it does not, which may
+/// then be lacking in a file.
+fn compare(
+    checker: &mut Checker<'_>,
+    node: &Node<'_>,
+    gene: &mut Parameter,
+    builtin: &Space,
+) -> Option<String> {
+    let Some(known) = builtin.find(&gene.name) else {
+        gene.default.get_or_insert(0);
+        let names: Vec<&str> = builtin.parameters().iter().map(|known| known.name.as_str()).collect();
+        let near = did_you_mean(&gene.name, &names);
+        return Some(checker.note(node, format!("{} is a gene that nothing reads{near}", gene.name)));
+    };
+    let (is_whole, must_be) = (gene.scale == Scale::Integer, known.scale == Scale::Integer);
+    let fault = match (is_whole, must_be) {
+        (false, true) => "landscapes are made from whole numbers here: the scale must be integer",
+        (true, false) => "the scale must be linear or logarithmic here; integer is for what is counted",
+        (true, true) if gene.range.0 < 0.0 => "what is counted cannot be negative",
+        _ => return None,
+    };
+    checker.error(node.span(), format!("{}: {fault}", gene.name));
+    None
+}
+
+/// Reads the file; `look` sees each gene before it is taken in.
+fn read_space(
+    checker: &mut Checker<'_>,
+    root: &Node<'_>,
+    mut look: impl FnMut(&mut Checker<'_>, &Node<'_>, &mut Parameter),
+) -> Option<Space> {
     let fields = checker.root(root, "Space", &["version", "parameters"])?;
     if let Some(node) = checker.need(&fields, root, "Space", "version")
         && let Some(version) = checker.whole(node, "version", u32::MAX)
@@ -86,7 +122,8 @@ fn read_space(checker: &mut Checker<'_>, root: &Node<'_>) -> Option<Space> {
     let nodes = checker.list(list, "parameters")?;
     let mut space = Space { parameters: Vec::new() };
     for node in nodes {
-        let Some(gene) = read_parameter(checker, node) else { continue };
+        let Some(mut gene) = read_parameter(checker, node) else { continue };
+        look(checker, node, &mut gene);
         match space.find(&gene.name) {
             Some(_) => checker.error(node.span(), format!("{} is declared twice", gene.name)),
             None => space.add(gene),
@@ -99,6 +136,11 @@ fn read_space(checker: &mut Checker<'_>, root: &Node<'_>) -> Option<Space> {
     }
     Some(space)
 }
+
+/// Characters that a gene's help may have.
+const MAX_HELP: usize = 1000;
+/// No landscape is made of greater numbers, in whatever unit.
+const MAX_VALUE: f64 = 1e9;
 
 const FIELDS: [&str; 8] = ["name", "category", "bits", "range", "scale", "unit", "help", "default"];
 
@@ -115,8 +157,8 @@ fn read_parameter(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<Paramete
     let scale =
         scale.and_then(|node| checker.word(node, "scale", &Scale::ALL.map(Scale::name), Scale::from_name));
     let ends = range.and_then(|node| read_range(checker, node));
-    let unit = unit.and_then(|node| checker.text(node, "unit"))?.to_owned();
-    let help = help.and_then(|node| checker.text(node, "help"))?.to_owned();
+    let unit = unit.and_then(|node| checker.line(node, "unit", MAX_NAME))?.to_owned();
+    let help = help.and_then(|node| checker.line(node, "help", MAX_HELP))?.to_owned();
     let (name, category, bits, scale) = (name?, category?, bits?, scale?);
     let mut gene =
         Parameter { name, category, bits, range: ends?, scale, unit, help, default: None, offset: 0 };
@@ -136,7 +178,7 @@ fn read_parameter(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<Paramete
 }
 
 fn read_name(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<String> {
-    let name = checker.text(node, "name")?;
+    let name = checker.line(node, "name", MAX_NAME)?;
     let letters = name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
     if letters && name.starts_with(|c: char| c.is_ascii_lowercase()) {
         return Some(name.to_owned());
@@ -168,6 +210,9 @@ fn range_fault(parameter: &Parameter) -> Option<String> {
     let codes = parameter.last_code();
     if !low.is_finite() || !high.is_finite() {
         return Some("the range must be finite".into());
+    }
+    if low.abs().max(high.abs()) > MAX_VALUE {
+        return Some(format!("the range must lie within ±{MAX_VALUE:e}"));
     }
     if low >= high {
         return Some(format!("the range must rise, but {low} is not below {high}"));

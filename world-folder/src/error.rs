@@ -17,6 +17,12 @@ pub enum WorldError {
     NoPopulation(PathBuf),
     #[error("cannot make the world folder {}: {error}; choose another with --world DIR", path.display())]
     Make { path: PathBuf, error: io::Error },
+    /// A folder that would have to be made, and the world that was probably meant.
+    #[error(
+        "there is no world {}; did you mean {}? To begin a world of that name, make its folder first: mkdir {}",
+        path.display(), near.display(), path.display()
+    )]
+    NearName { path: PathBuf, near: PathBuf },
     #[error("cannot read {}: {error}", path.display())]
     Read { path: PathBuf, error: io::Error },
     #[error("cannot write {}: {error}", path.display())]
@@ -40,4 +46,18 @@ pub enum WorldError {
     NoScene(PathBuf),
     #[error("{} is neither a world nor a baked folder: it has no {POPULATIONS}/ and no scene.gltf", .0.display())]
     NoSource(PathBuf),
+}
+
+impl WorldError {
+    /// Whether the person has to correct something: what was asked for, or what a file says.
+    pub fn is_bad_input(&self) -> bool {
+        match self {
+            Self::Make { .. } | Self::Write { .. } | Self::Changed(_) => false,
+            Self::Read { error, .. } => {
+                use io::ErrorKind::{FileTooLarge, InvalidInput, NotFound};
+                [NotFound, InvalidInput, FileTooLarge].contains(&error.kind())
+            }
+            _ => true,
+        }
+    }
 }

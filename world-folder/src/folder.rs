@@ -2,13 +2,17 @@
 //! program. A person's files are only ever created, or replaced by a text made from what they say now.
 
 use std::fs;
-use std::io::{Error, ErrorKind};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use genescape_schema::{Current, INDIVIDUALS, Lineage, Parent, Population, Space};
+use genescape_schema::{Current, INDIVIDUALS, Lineage, Parent, Population, Space, decode};
 
-use crate::{WorldError, atomic_write, names};
+use crate::near_name::near_world;
+use crate::{WorldError, atomic_write, names, regular_file};
+
+/// What a file of a world may hold that people write, in bytes; ours have some 12,000.
+pub const MAX_TEXT_BYTES: u64 = 4 << 20;
 
 /// The landscapes that new worlds begin with.
 pub const STARTER_RON: &str = include_str!("../../configs/starter.ron");
@@ -49,8 +53,11 @@ impl World {
     /// The world in `root`, which is made, still without landscapes, if there is none.
     ///
     /// # Errors
-    /// A folder that cannot be made or written to.
+    /// A folder that cannot be made or written to; [`WorldError::NearName`].
     pub fn open_or_create(root: &Path) -> Result<Self, WorldError> {
+        if let Some(near) = near_world(root) {
+            return Err(WorldError::NearName { path: root.to_owned(), near });
+        }
         let made = fs::create_dir_all(root.join(names::POPULATIONS));
         made.map_err(|error| WorldError::Make { path: root.to_owned(), error })?;
         create_unless_there(&root.join(names::SPACE), Space::BUILTIN)?;
@@ -141,14 +148,21 @@ impl World {
         Self::read_population(space, &self.population_path(generation))
     }
 
-    /// The population in a file, which may lie elsewhere.
+    /// The population in a file, which may lie elsewhere. Its generation is the one in the file's name, if that is a
+    /// name of ours: a copy of a file is a generation of its own, whose scenes take nobody's place.
     ///
     /// # Errors
     /// A file that cannot be read or is wrong.
     pub fn read_population(space: &Space, path: &Path) -> Result<PopulationFile, WorldError> {
         let text = read(path)?;
         let loaded = Population::load(space, &path.display().to_string(), &text)?;
-        let (population, notices) = (loaded.population, loaded.notices);
+        let (mut population, mut notices) = (loaded.population, loaded.notices);
+        if let Some(named) = names::generation_of(path).filter(|&named| named != population.generation) {
+            let (path, said) = (path.display(), population.generation);
+            notices
+                .push(format!("{path}: by its name it is generation {named}, and so it is used, not {said}"));
+            population.generation = named;
+        }
         Ok(PopulationFile {
             path: path.to_owned(),
             population,
@@ -166,6 +180,27 @@ impl World {
         match atomic_write::create(&path, population.to_ron(space)) {
             Ok(()) => Ok(path),
             Err(error) => Err(WorldError::Write { path, error }),
+        }
+    }
+
+    /// Writes what `make` makes of the next free number as a new population file and says where. Who else does the same
+    /// at the same time gets another number.
+    ///
+    /// # Errors
+    /// The end of numbers, or a folder that cannot be written to.
+    pub fn create_next_population(
+        &self,
+        space: &Space,
+        make: impl Fn(u32) -> Population,
+    ) -> Result<PathBuf, WorldError> {
+        let mut generation = self.next_generation()?;
+        loop {
+            match self.create_population(space, &make(generation)) {
+                Err(WorldError::Write { error, .. }) if error.kind() == ErrorKind::AlreadyExists => {
+                    generation = generation.checked_add(1).ok_or(WorldError::LastGeneration(generation))?;
+                }
+                result => return result,
+            }
         }
     }
 
@@ -263,12 +298,9 @@ pub(crate) fn list<T>(path: &Path, meaning: impl Fn(&str) -> Option<T>) -> Resul
 }
 
 fn read(path: &Path) -> Result<String, WorldError> {
-    let read = || match fs::metadata(path)?.is_file() {
-        true => fs::read_to_string(path),
-        // A pipe would be waited for.
-        false => Err(Error::new(ErrorKind::InvalidInput, "it is no file")),
-    };
-    read().map_err(|error| WorldError::Read { path: path.to_owned(), error })
+    let bytes = regular_file::read(path, MAX_TEXT_BYTES);
+    let bytes = bytes.map_err(|error| WorldError::Read { path: path.to_owned(), error })?;
+    Ok(decode(&path.display().to_string(), bytes)?)
 }
 
 fn read_if_there(path: &Path) -> Result<Option<String>, WorldError> {
@@ -342,6 +374,56 @@ mod tests {
         assert!(matches!(world.space(), Err(WorldError::Faulty(_))));
         put(world.root().join(names::CURRENT), "Current(");
         assert!(matches!(world.current(), Err(WorldError::Faulty(_))));
+    }
+
+    #[test]
+    fn a_copy_of_a_population_is_the_generation_that_its_name_says() {
+        let (_folder, world) = world();
+        put(&world, 0, None);
+        for (copy, generation, notices) in [("population/g0004.ron", 4, 1), ("population/mine.ron", 0, 0)] {
+            let copy = world.root().join(copy);
+            fs::copy(world.population_path(0), &copy).expect("copied");
+            let file = World::read_population(&Space::builtin(), &copy).expect("valid");
+            assert_eq!((file.population.generation, file.notices.len()), (generation, notices));
+        }
+        let snapshot = crate::Snapshot::take(&crate::Scope::of(world), &crate::Snapshot::default());
+        let known: Vec<u32> = snapshot.lineages().map(|(_, lineage)| lineage.generation).collect();
+        assert_eq!(known, [0, 4]);
+    }
+
+    #[test]
+    fn who_makes_a_population_at_the_same_time_gets_another_number() {
+        let (_folder, world) = world();
+        put(&world, 0, None);
+        let space = Space::builtin();
+        let make = || world.create_next_population(&space, |number| Population::random(&space, 7, number));
+        let mut made: Vec<PathBuf> = std::thread::scope(|scope| {
+            let threads: Vec<_> = (0..6).map(|_| scope.spawn(make)).collect();
+            threads.into_iter().map(|thread| thread.join().expect("no panic").expect("made")).collect()
+        });
+        made.sort();
+        assert_eq!(made, (1..=6).map(|number| world.population_path(number)).collect::<Vec<_>>());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn files_that_no_person_writes_are_refused_and_not_waited_for() {
+        let (_folder, world) = world();
+        put(&world, 0, None);
+        let path = world.population_path(0);
+        let told = || world.population(&Space::builtin(), 0).expect_err("refused").to_string();
+        fs::File::options()
+            .append(true)
+            .open(&path)
+            .and_then(|file| file.set_len(MAX_TEXT_BYTES + 1))
+            .expect("set");
+        assert!(told().contains("larger than 4 MiB"), "{}", told());
+        fs::write(&path, b"\xff\xfe(\0").expect("written");
+        assert!(told().contains("UTF-16"), "{}", told());
+        fs::remove_file(&path).expect("removed");
+        assert!(std::process::Command::new("mkfifo").arg(&path).status().expect("mkfifo runs").success());
+        assert!(told().contains("no regular file"), "{}", told());
+        crate::Snapshot::take(&crate::Scope::of(world), &crate::Snapshot::default());
     }
 
     #[test]

@@ -8,19 +8,27 @@
 //! world/baked/current.ron                      which scenes are ready
 //! ```
 //!
+//! Besides, how a file is read and written that is nobody's yet: [`NamedFiles`] reads what a stranger's model names,
+//! [`output`] says where a program may write.
+//!
 //! [`World`] reads and writes these files; a [`Snapshot`] is what lies there at one moment, and two of them compared
 //! say what was saved in between; [`Watch`] takes one whenever something may have happened.
 
 pub mod atomic_write;
 mod error;
 mod folder;
+mod named_files;
 pub mod names;
+mod near_name;
+pub mod output;
+pub mod regular_file;
 mod snapshot;
 mod source;
 mod watch;
 
 pub use error::WorldError;
-pub use folder::{PopulationFile, STARTER_RON, World};
+pub use folder::{MAX_TEXT_BYTES, PopulationFile, STARTER_RON, World};
+pub use named_files::{MAX_MODEL_BYTES, NamedFiles};
 pub use snapshot::{Change, Scope, Snapshot};
 pub use source::Source;
 pub use watch::Watch;

@@ -1,5 +1,7 @@
 //! Names of the files of a world folder, relative to it, with `/` between folders.
 
+use std::path::Path;
+
 /// This world's copy of the parameter space.
 pub const SPACE: &str = "space.ron";
 /// Folder of what the person made.
@@ -18,6 +20,11 @@ pub fn population(generation: u32) -> String {
 pub fn generation(file: &str) -> Option<u32> {
     let name = file.rsplit(['/', '\\']).next()?;
     baked_generation(name.strip_suffix(".ron")?)
+}
+
+/// The generation of a population file, from its path.
+pub fn generation_of(path: &Path) -> Option<u32> {
+    generation(path.file_name()?.to_str()?)
 }
 
 /// The generation of a folder of scenes, `g0012`; `None` for other names.

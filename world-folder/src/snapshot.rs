@@ -9,8 +9,8 @@ use std::time::SystemTime;
 
 use genescape_schema::{INDIVIDUALS, Lineage};
 
-use crate::folder::{World, list};
-use crate::names;
+use crate::folder::{MAX_TEXT_BYTES, World, list};
+use crate::{names, regular_file};
 
 /// What changed between two snapshots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -117,7 +117,7 @@ impl Snapshot {
         let lineage = match before.populations.get(&path) {
             Some((known, lineage)) if known.digest == stamp.digest => *lineage,
             // Half saved, or with a mistake: it is still that child, so that it is not bred again.
-            known => lineage(&bytes)
+            known => lineage(&path, &bytes)
                 .or_else(|| known.and_then(|(_, known)| known.map(|known| Lineage { votes: None, ..known }))),
         };
         self.populations.insert(path, (stamp, lineage));
@@ -143,9 +143,8 @@ impl Snapshot {
         changes.extend((self.space != before.space).then_some(Change::Space));
         changes.extend((self.current != before.current).then_some(Change::Current));
         changes.extend((self.shaders != before.shaders).then_some(Change::Shaders));
-        let number = |path: &PathBuf| names::generation(path.file_name()?.to_str()?);
         let saved = differing(&self.populations, &before.populations);
-        changes.extend(saved.filter_map(number).map(Change::Population));
+        changes.extend(saved.filter_map(|path| names::generation_of(path)).map(Change::Population));
         let replaced = differing(&self.scenes, &before.scenes);
         changes.extend(replaced.map(|&(generation, index)| Change::Scene { generation, index }));
         changes
@@ -186,8 +185,10 @@ fn differing<'a, K: Ord, V: PartialEq>(
     changed.chain(b.keys().filter(|key| !a.contains_key(key)))
 }
 
-fn lineage(bytes: &[u8]) -> Option<Lineage> {
-    Lineage::read("", std::str::from_utf8(bytes).ok()?).ok()
+/// What a file states; of the generation its name decides, as when it is baked.
+fn lineage(path: &Path, bytes: &[u8]) -> Option<Lineage> {
+    let stated = Lineage::read("", std::str::from_utf8(bytes).ok()?).ok()?;
+    Some(Lineage { generation: names::generation_of(path).unwrap_or(stated.generation), ..stated })
 }
 
 /// What the system knows of a file; `None` if it is not there. Links are followed.
@@ -204,7 +205,7 @@ fn stamp(path: &Path) -> Option<Stamp> {
 fn read(path: &Path) -> Option<(Stamp, Vec<u8>)> {
     // The time first: a save in between is then found by the next look.
     let saved = stamp(path)?.saved;
-    match fs::read(path) {
+    match regular_file::read(path, MAX_TEXT_BYTES) {
         Ok(bytes) => {
             let digest = Some(blake3::hash(&bytes));
             Some((Stamp { saved, digest, ..Stamp::default() }, bytes))

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use genescape_schema::INDIVIDUALS;
 
+use crate::near_name::near_world;
 use crate::{WorldError, names};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,6 +28,9 @@ impl Source {
             (true, false) => return Err(WorldError::NoFile(path.to_owned())),
             (false, true) => return Err(WorldError::NoScene(path.to_owned())),
             (false, false) => {}
+        }
+        if let Some(near) = near_world(path) {
+            return Err(WorldError::NearName { path: path.to_owned(), near });
         }
         if path.join(names::POPULATIONS).is_dir() || !path.exists() {
             return Ok(Self::World(path.to_owned()));

@@ -268,7 +268,8 @@ fn population() -> impl Strategy<Value = Population> {
     let votes = (prop::option::of(0..4usize), prop::option::of(0..4usize), prop::option::of(0..4usize))
         .prop_map(|(tree, terrain, sky)| Votes { tree, terrain, sky });
     let parent = prop::option::of((any::<u32>(), votes.clone()));
-    (any::<u64>(), any::<u32>(), any::<[String; 4]>(), parent, prop::option::of(votes)).prop_map(
+    let names = prop::array::uniform4("\\PC{0,40}");
+    (any::<u64>(), any::<u32>(), names, parent, prop::option::of(votes)).prop_map(
         |(seed, generation, names, parent, votes)| {
             let random = Population::random(&Space::builtin(), seed, generation);
             let mut named = names.into_iter().zip(random.individuals);
@@ -286,6 +287,79 @@ fn population() -> impl Strategy<Value = Population> {
 
 fn votes() -> impl Strategy<Value = Option<Votes>> {
     population().prop_map(|population| population.votes)
+}
+
+#[test]
+fn names_are_one_short_line() {
+    let named = |name: &str| {
+        let text = with("name: ", "name: ");
+        let at = text.find("name: \"").expect("a name") + 7;
+        let end = at + text[at..].find('"').expect("its end");
+        format!("{}{name}{}", &text[..at], &text[end..])
+    };
+    for fine in ["", "Thüringen 𝕏", &"x".repeat(200)] {
+        Population::load(&Space::builtin(), "p.ron", &named(fine))
+            .unwrap_or_else(|report| panic!("{report}"));
+    }
+    for (name, message) in [
+        ("x".repeat(201), "name: 201 characters; at most 200 are allowed"),
+        ("y".repeat(100_000), "name: 100000 characters; at most 200 are allowed"),
+        ("a\\u{1b}[31m".into(), "name: character 2 is a control character (U+001B)"),
+        ("\\n".into(), "name: character 1 is a control character (U+000A)"),
+        ("ab\u{7}".into(), "name: character 3 is a control character (U+0007)"),
+        ("\u{202e}evil".into(), "name: character 1 is a control character (U+202E)"),
+    ] {
+        let told = faults(&named(&name)).to_string();
+        assert!(told.contains(message), "{told}");
+        assert!(!told.contains(['\u{1b}', '\u{7}', '\u{202e}']) && told.len() < 1000, "{told}");
+    }
+}
+
+#[test]
+fn very_many_faults_are_counted_and_not_all_told() {
+    let fields: String = (0..20_000).map(|n| format!("f{n}: 1, ")).collect();
+    let report = faults(&with("individuals:", &format!("{fields}individuals:")));
+    assert_eq!((report.diagnostics.len(), report.more), (100, 19_900));
+    let told = report.to_string();
+    assert!(told.ends_with("100 errors, and 19900 more") && told.len() < 60_000, "{} bytes", told.len());
+    let kept: usize = report.diagnostics.iter().map(|fault| fault.excerpt.len() + fault.message.len()).sum();
+    assert!(kept < 30_000, "{kept} bytes are kept");
+    let locked = format!("locked: [{}], individuals:", "\"x\", ".repeat(20_000));
+    let report = faults(&with("individuals:", &locked));
+    assert_eq!(report.diagnostics.len() + report.more, 20_000);
+}
+
+#[test]
+fn a_huge_name_is_quoted_in_part() {
+    for text in [
+        with("individuals:", &format!("{}: 1, individuals:", "f".repeat(50_000))),
+        with("Population(", &format!("{}(", "P".repeat(50_000))),
+        with("individuals:", &format!("locked: [\"{}\"], individuals:", "x".repeat(50_000))),
+        with("seed: 1", &format!("seed: {}", "9".repeat(50_000))),
+        with("seed: 1", &format!("seed: {}", "x".repeat(50_000))),
+    ] {
+        let told = faults(&text).to_string();
+        assert!(told.len() < 1500, "{} bytes: {}", told.len(), &told[..300]);
+    }
+}
+
+#[test]
+fn ten_thousand_individuals_are_counted_and_not_checked() {
+    let crowd = "(tree: (), terrain: (), sky: ()), ".repeat(10_000);
+    let report = faults(&format!("Population(generation: 0, seed: 0, individuals: [{crowd}])"));
+    assert!(report.to_string().contains("individuals: found 10000; there must be 4"), "{report}");
+    assert_eq!(report.diagnostics.len() + report.more, 1 + 3 * 4, "of four each category is checked");
+}
+
+#[test]
+fn nesting_too_deep_is_told_in_words_for_people() {
+    for (open, close) in [("[", "]"), ("(", ")"), ("Some(", ")"), ("a(b: ", ")")] {
+        for depth in [40, 1_000_000] {
+            let nested = format!("{}{}", open.repeat(depth), close.repeat(depth));
+            let told = fault(&with("individuals:", &format!("x: {nested}, individuals:")));
+            assert!(told.contains("brackets stand within brackets") && !told.contains("recursion"), "{told}");
+        }
+    }
 }
 
 proptest! {

@@ -223,3 +223,34 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_world_says_which_of_its_genes_cannot_be_what_they_are() {
+    let changed = |gene: &str, old: &str, new: &str| {
+        let line = Space::BUILTIN.lines().find(|line| line.contains(&format!("\"{gene}\""))).expect("a gene");
+        assert!(line.contains(old), "{line}");
+        let text = Space::BUILTIN.replacen(line, &line.replacen(old, new, 1), 1);
+        Space::load("space.ron", &text)
+    };
+    for (gene, old, new, message) in [
+        ("levels", "integer", "linear", "levels: landscapes are made from whole numbers here"),
+        ("levels", "(1.0, 4.0)", "(-2.0, 1.0)", "levels: what is counted cannot be negative"),
+        ("base_splits", "integer", "logarithmic", "the range must be above 0"),
+        ("height_m", "(3.0, 30.0)", "(-1e30, 1e30)", "height_m: the range must lie within ±1e9"),
+    ] {
+        let told = changed(gene, old, new).expect_err(gene).to_string();
+        let line =
+            Space::BUILTIN.lines().position(|line| line.contains(&format!("\"{gene}\""))).expect("there");
+        assert!(told.starts_with(&format!("space.ron:{}:", line + 1)), "{told}");
+        assert!(told.contains(message) || message.contains("above 0"), "{told}");
+    }
+    // A gene of another name: the space is blamed, and files that lack it are read.
+    let (space, notices) = changed("height_m", "height_m", "hight_m").expect("valid");
+    let is_told =
+        |part: &str| notices.iter().any(|notice| notice.starts_with("space.ron") && notice.contains(part));
+    assert!(is_told("hight_m is a gene that nothing reads; did you mean height_m?"), "{notices:?}");
+    assert!(is_told("lacks height_m; the built-in declaration is used"), "{notices:?}");
+    let text = Population::random(&Space::builtin(), 1, 0).to_ron(&Space::builtin());
+    let loaded = Population::load(&space, "p.ron", &text).unwrap_or_else(|report| panic!("{report}"));
+    assert!(loaded.notices.iter().all(|notice| notice.contains("hight_m")), "{:?}", loaded.notices);
+}
