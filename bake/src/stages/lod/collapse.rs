@@ -8,7 +8,7 @@ use super::edge::{Edge, EdgeTriangles};
 use super::merge::merge;
 use super::quadric::{Freedom, Quadrics};
 use super::state::State;
-use super::topology::{BOUNDARY, LOCKED, PointSet, Topology, surface_triangles};
+use super::topology::{BOUNDARY, LOCKED, PointMap, PointSet, Topology, surface_triangles};
 
 /// Error per metre of edge that orders collapses which cost nothing: short edges first.
 const LENGTH_WEIGHT: f64 = 1e-3;
@@ -34,6 +34,8 @@ pub struct Collapsed {
     pub error_m: f64,
     /// The point that stands for both.
     pub point: u32,
+    /// How many corners it has, or a few less.
+    pub corners: usize,
 }
 
 /// Surface parts with what it takes to collapse their edges.
@@ -42,8 +44,9 @@ pub struct Surface {
     quadrics: Quadrics,
     /// Scratch memory.
     seen: PointSet,
+    slots: PointMap,
     stars: [Vec<u32>; 2],
-    ring: Vec<u32>,
+    edges: Vec<(u32, EdgeTriangles)>,
 }
 
 impl Surface {
@@ -55,8 +58,9 @@ impl Surface {
             topology,
             quadrics: Quadrics::new(points),
             seen: PointSet::new(points),
+            slots: PointMap::new(points),
             stars: Default::default(),
-            ring: Vec::new(),
+            edges: Vec::new(),
         };
         for t in surface_triangles(state) {
             let points = surface.topology.points_from(state, 3 * t as u32).map(|p| p as usize);
@@ -69,21 +73,30 @@ impl Surface {
     /// The collapse of edge (a, b), if there can be one.
     pub fn candidate(&mut self, state: &State, a: u32, b: u32) -> Option<Candidate> {
         self.topology.star(state, a, &mut self.stars[0]);
-        self.judge(state, a, b)
+        self.judge(a, b, &EdgeTriangles::new(&self.topology, state, b, &self.stars[0]))
     }
 
     /// All collapses of a point's edges: what each costs, and the point at the edge's other end.
     pub fn candidates(&mut self, state: &State, point: u32) -> impl Iterator<Item = (f64, u32)> {
         self.topology.star(state, point, &mut self.stars[0]);
-        self.topology.ring(state, point, &self.stars[0], &mut self.seen, &mut self.ring);
+        EdgeTriangles::all(&self.topology, state, &self.stars[0], &mut self.slots, &mut self.edges);
         let surface: &Self = self;
-        surface.ring.iter().filter_map(move |&b| Some((surface.judge(state, point, b)?.cost, b)))
+        let judged = move |(b, triangles): &(u32, _)| Some((surface.judge(point, *b, triangles)?.cost, *b));
+        surface.edges.iter().filter_map(judged)
     }
 
-    /// The collapse of edge (a, b), where `stars[0]` holds the corners at `a`.
-    fn judge(&self, state: &State, a: u32, b: u32) -> Option<Candidate> {
-        let triangles = EdgeTriangles::new(&self.topology, state, b, &self.stars[0]);
-        let (freedom, penalty) = self.freedom(a, b, &triangles)?;
+    /// The points at the other ends of the edges that the last collapse gave to `point`.
+    pub fn new_neighbours(&mut self, state: &State, point: u32) -> Vec<u32> {
+        self.seen.clear();
+        self.seen.insert(point);
+        let living = self.stars[1].iter().filter(|&&corner| state.triangle_lives[corner as usize / 3]);
+        let points = living.flat_map(|&corner| self.topology.points_from(state, corner));
+        points.filter(|&other| self.seen.insert(other)).collect()
+    }
+
+    /// The collapse of edge (a, b), which has these triangles.
+    fn judge(&self, a: u32, b: u32, triangles: &EdgeTriangles) -> Option<Candidate> {
+        let (freedom, penalty) = self.freedom(a, b, triangles)?;
         let ends = self.ends(a, b);
         let placed = self.quadrics.place(a as usize, b as usize, ends, freedom);
         let length = (ends[1] - ends[0]).length() * LENGTH_WEIGHT;
@@ -107,7 +120,8 @@ impl Surface {
             let error_m = self.quadrics.error_m(a as usize, b as usize, at);
             merge(&mut self.topology, state, &edge, along as f32, at);
             self.quadrics.merge(a as usize, b as usize);
-            done = Some(Collapsed { error_m, point: a });
+            let corners = edge.stars[0].len() + edge.stars[1].len();
+            done = Some(Collapsed { error_m, point: a, corners });
         }
         self.stars = edge.stars;
         done
@@ -119,23 +133,23 @@ impl Surface {
 
     /// Flags boundaries and what is no surface, and holds boundaries and seams in place.
     fn find_creases(&mut self, state: &State) {
-        let (mut star, mut ring) = (Vec::new(), Vec::new());
+        let (mut star, mut edges) = (Vec::new(), Vec::new());
         for a in 0..self.topology.positions.len() as u32 {
             self.topology.star(state, a, &mut star);
-            self.topology.ring(state, a, &star, &mut self.seen, &mut ring);
+            EdgeTriangles::all(&self.topology, state, &star, &mut self.slots, &mut edges);
             let mut boundaries = 0;
-            for &b in &ring {
-                let triangles = EdgeTriangles::new(&self.topology, state, b, &star);
+            for (b, triangles) in &edges {
+                let b = *b;
                 boundaries += usize::from(triangles.count == 1);
                 let flag = [LOCKED, BOUNDARY, 0, LOCKED][triangles.count.min(3)];
                 self.topology.flags[a as usize] |= flag;
                 self.topology.flags[b as usize] |= flag;
                 if a < b {
-                    self.constrain(state, a, b, &triangles);
+                    self.constrain(state, a, b, triangles);
                 }
             }
             // One fan has none or two boundary edges and visits each neighbour once.
-            let one_fan = star.len() + usize::from(boundaries > 0) == ring.len();
+            let one_fan = star.len() + usize::from(boundaries > 0) == edges.len();
             if boundaries > 2 || !one_fan || !self.topology.is_one_fan(state, a, &star) {
                 self.topology.flags[a as usize] |= LOCKED;
             }

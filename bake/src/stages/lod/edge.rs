@@ -5,7 +5,7 @@
 use glam::DVec3;
 
 use super::state::State;
-use super::topology::{PointSet, Topology};
+use super::topology::{PointMap, PointSet, Topology};
 
 /// Cosine of the greatest angle that a collapse may turn a triangle by.
 const MIN_COSINE: f64 = 0.15;
@@ -31,14 +31,47 @@ impl EdgeTriangles {
                 if topology.point_of[triangle[other] as usize] != b {
                     continue;
                 }
-                if found.count < 2 {
-                    found.vertices[found.count] = (triangle[k], triangle[other]);
-                    found.opposite[found.count] = (3 * t + opposite) as u32;
-                }
-                found.count += 1;
+                found.add((triangle[k], triangle[other]), (3 * t + opposite) as u32);
             }
         }
         found
+    }
+
+    /// Those of all edges from a point with the corners `star`, each with the point at its other end, in the order in
+    /// which the star names these: what [`EdgeTriangles::new`] finds, in one pass.
+    pub fn all(
+        topology: &Topology,
+        state: &State,
+        star: &[u32],
+        slots: &mut PointMap,
+        found: &mut Vec<(u32, Self)>,
+    ) {
+        slots.clear();
+        found.clear();
+        for &corner in star {
+            let (t, k) = (corner as usize / 3, corner as usize % 3);
+            let triangle = state.triangles[t];
+            let point = topology.point_of[triangle[k] as usize];
+            for (other, opposite) in [((k + 1) % 3, (k + 2) % 3), ((k + 2) % 3, (k + 1) % 3)] {
+                let end = topology.point_of[triangle[other] as usize];
+                if end == point {
+                    continue;
+                }
+                let slot = slots.get_or_insert(end, found.len() as u32) as usize;
+                if slot == found.len() {
+                    found.push((end, Self::default()));
+                }
+                found[slot].1.add((triangle[k], triangle[other]), (3 * t + opposite) as u32);
+            }
+        }
+    }
+
+    fn add(&mut self, ends: (u32, u32), opposite: u32) {
+        if self.count < 2 {
+            self.vertices[self.count] = ends;
+            self.opposite[self.count] = opposite;
+        }
+        self.count += 1;
     }
 
     /// Whether attributes are discontinuous across the edge.

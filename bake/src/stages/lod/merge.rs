@@ -17,9 +17,10 @@ pub fn merge(topology: &mut Topology, state: &mut State, edge: &Edge, along: f32
     let [a, b] = edge.points;
     let merged_into = merged_wedges(edge);
     let mut wedges: Vec<u32> = Vec::with_capacity(8);
+    topology.seen.clear();
     for &corner in edge.stars.iter().flatten() {
         let vertex = state.vertex_at(corner);
-        if !wedges.contains(&vertex) {
+        if topology.seen.insert(vertex) {
             wedges.push(vertex);
         }
     }

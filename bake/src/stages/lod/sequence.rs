@@ -16,6 +16,9 @@ use super::state::{NONE, State};
 const MAX_COST: f64 = 0.06;
 /// Refused collapses are tried again whenever costs have grown by this factor.
 const RETRY_GROWTH: f64 = 1.4;
+/// Of a point with more corners than this only the edges are queued that the collapse gave to it; the others keep the
+/// place that they had. Else a hub of n triangles would cost n² entries, and its collapses n³ steps in all.
+const MAX_REQUEUED: usize = 1024;
 /// A piece may take a level this far below its target.
 const OVERSHOOT: usize = 4;
 
@@ -143,9 +146,16 @@ impl Sequence {
             return;
         };
         self.error_m = self.error_m.max(done.error_m);
-        for point in [a, b] {
-            self.versions[point as usize] = self.versions[point as usize].wrapping_add(1);
+        let removed = if done.point == a { b } else { a };
+        self.versions[removed as usize] = self.versions[removed as usize].wrapping_add(1);
+        if done.corners > MAX_REQUEUED {
+            for other in self.surface.new_neighbours(&self.state, done.point) {
+                self.queue_edge(done.point, other);
+            }
+            return;
         }
+        let kept = &mut self.versions[done.point as usize];
+        *kept = kept.wrapping_add(1);
         let found = self.surface.candidates(&self.state, done.point);
         self.queue.extend(found.map(|(cost, other)| entry(&self.versions, cost, done.point, other)));
     }

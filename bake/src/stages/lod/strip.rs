@@ -25,9 +25,12 @@ pub fn triangles(strip: &[u32]) -> Vec<[u32; 3]> {
 
 struct Walker<'a> {
     triangles: &'a [[u32; 3]],
-    /// Corners at vertex v: `corners[first[v]..first[v+1]]`.
+    /// Edges that begin at vertex v: `edges[first[v]..first[v+1]]`.
     first: Vec<u32>,
-    corners: Vec<u32>,
+    /// Sorted, for each vertex: the vertex at the edge's end, and the corner of its triangle at the beginning.
+    edges: Vec<(u32, u32)>,
+    /// For the first of equal edges: how many of their triangles, from there on, are known to be done.
+    passed: Vec<u32>,
     done: Vec<bool>,
     /// All triangles before this one are done.
     unseen: usize,
@@ -41,26 +44,36 @@ impl<'a> Walker<'a> {
         let mut first = vec![0_u32; vertices + 2];
         triangles.iter().flatten().for_each(|&v| first[v as usize + 2] += 1);
         (2..first.len()).for_each(|v| first[v] += first[v - 1]);
-        let mut corners = vec![0; 3 * triangles.len()];
+        let mut edges = vec![(0, 0); 3 * triangles.len()];
         for (corner, &v) in triangles.iter().flatten().enumerate() {
+            let (t, k) = (corner / 3, corner % 3);
             let slot = &mut first[v as usize + 1];
-            corners[*slot as usize] = corner as u32;
+            edges[*slot as usize] = (triangles[t][(k + 1) % 3], corner as u32);
             *slot += 1;
+        }
+        for v in 0..vertices {
+            edges[first[v] as usize..first[v + 1] as usize].sort_unstable();
         }
         let done = triangles.iter().map(|t| t[0] == t[1] || t[1] == t[2] || t[2] == t[0]).collect();
         let strip = Vec::with_capacity(3 * triangles.len());
-        Self { triangles, first, corners, done, unseen: 0, drawn: Vec::new(), strip }
+        let passed = vec![0; edges.len()];
+        Self { triangles, first, edges, passed, done, unseen: 0, drawn: Vec::new(), strip }
     }
 
     /// The undrawn triangle that has the edge from `u` to `v` in this direction, and its third vertex.
-    fn beside(&self, u: u32, v: u32) -> Option<(u32, u32)> {
-        let range = self.first[u as usize] as usize..self.first[u as usize + 1] as usize;
-        self.corners[range].iter().find_map(|&corner| {
-            let (t, k) = (corner as usize / 3, corner as usize % 3);
-            let triangle = self.triangles[t];
-            let fits = !self.done[t] && triangle[(k + 1) % 3] == v;
-            fits.then(|| (t as u32, triangle[(k + 2) % 3]))
-        })
+    fn beside(&mut self, u: u32, v: u32) -> Option<(u32, u32)> {
+        let (start, end) = (self.first[u as usize] as usize, self.first[u as usize + 1] as usize);
+        let first = start + self.edges[start..end].partition_point(|edge| edge.0 < v);
+        loop {
+            // Triangles that are done stay done: each is passed once, however many share the edge.
+            let at = first + *self.passed.get(first)? as usize;
+            let &(_, corner) = self.edges[..end].get(at).filter(|edge| edge.0 == v)?;
+            let (t, k) = (corner / 3, corner as usize % 3);
+            if !self.done[t as usize] {
+                return Some((t, self.triangles[t as usize][(k + 2) % 3]));
+            }
+            self.passed[first] += 1;
+        }
     }
 
     /// The triangle to start from, turned so that the strip can continue.

@@ -45,6 +45,8 @@ pub struct Topology {
     pub piece_of: Vec<u32>,
     pub pieces: Vec<Piece>,
     pub piece_triangles: Vec<u32>,
+    /// Scratch memory: a set of vertices.
+    pub seen: PointSet,
     /// What follows each corner in its point's chain; after all corners, what each point's chain starts with.
     next: Vec<u32>,
     /// The last link of each point's chain: a corner or, if there is none, the chain's start.
@@ -64,6 +66,7 @@ impl Topology {
             piece_of: vec![NONE; points],
             pieces: Vec::new(),
             piece_triangles: Vec::new(),
+            seen: PointSet::new(state.vertices.len()),
             next: vec![NONE; corners + points],
             tail: (corners..corners + points).map(|start| start as u32).collect(),
             point_of,
@@ -122,15 +125,6 @@ impl Topology {
     #[inline]
     fn chain_start(&self, point: u32) -> usize {
         self.next.len() - self.tail.len() + point as usize
-    }
-
-    /// The points that share an edge with `point`, whose corners are `star`.
-    pub fn ring(&self, state: &State, point: u32, star: &[u32], seen: &mut PointSet, found: &mut Vec<u32>) {
-        seen.clear();
-        seen.insert(point);
-        let points = star.iter().flat_map(|&corner| self.points_from(state, corner));
-        found.clear();
-        found.extend(points.filter(|&other| seen.insert(other)));
     }
 
     /// Whether the triangles around a point hang together by edges; stars of over 64 triangles count as torn.
@@ -221,7 +215,7 @@ impl Topology {
     }
 }
 
-/// A set of points that is emptied in constant time.
+/// A set of points, or of vertices, that is emptied in constant time.
 pub struct PointSet {
     stamps: Vec<u32>,
     now: u32,
@@ -245,6 +239,33 @@ impl PointSet {
     #[inline]
     pub fn contains(&self, point: u32) -> bool {
         self.stamps[point as usize] == self.now
+    }
+}
+
+/// A number for each point of some, emptied in constant time.
+pub struct PointMap {
+    /// When it was set, and what to.
+    entries: Vec<(u32, u32)>,
+    now: u32,
+}
+
+impl PointMap {
+    pub fn new(points: usize) -> Self {
+        Self { entries: vec![(0, 0); points], now: 0 }
+    }
+
+    pub fn clear(&mut self) {
+        self.now += 1;
+    }
+
+    /// The point's number: `number`, if it had none.
+    #[inline]
+    pub fn get_or_insert(&mut self, point: u32, number: u32) -> u32 {
+        let entry = &mut self.entries[point as usize];
+        if entry.0 != self.now {
+            *entry = (self.now, number);
+        }
+        entry.1
     }
 }
 

@@ -4,9 +4,14 @@
 //! faces around the vertex that differ from the face's own by less than a threshold. Faces count by the angle of
 //! their corner there (Thürmer & Wüthrich 1998), so that the triangulation of a flat side does not show.
 
+use std::collections::BTreeMap;
+
 use glam::Vec3;
 
 use crate::model::{Mesh, Part};
+
+/// Faces around a vertex beyond which it pays to look whether one in the same plane came before.
+const MANY_FACES: usize = 64;
 
 /// The mesh with unit normals, vertices split where normals differ.
 ///
@@ -57,14 +62,25 @@ fn corners(mesh: &Mesh, part: &Part, cos_threshold: f32) -> Vec<Vec3> {
     for around in incident.chunk_by(|a, b| a.0 == b.0) {
         let weight = |&(_, corner): &_| corner_angle(mesh, part.triangles[corner / 3], corner % 3);
         let weights: Vec<f32> = around.iter().map(weight).collect();
+        // Of very many faces around a vertex most lie in few planes: those of one plane have one normal.
+        let mut known: BTreeMap<[u32; 3], Vec3> = BTreeMap::new();
         for &(_, corner) in around {
             let own = faces[corner / 3];
+            let plane = own.to_array().map(f32::to_bits);
+            let joins_itself = own.length_squared() > cos_threshold;
+            if let Some(&same) = known.get(&plane) {
+                normals[corner] = same;
+                continue;
+            }
             let joins = |other: usize| {
                 own == Vec3::ZERO || other == corner / 3 || own.dot(faces[other]) > cos_threshold
             };
             let joined = around.iter().zip(&weights).filter(|((_, other), _)| joins(other / 3));
             let sum: Vec3 = joined.map(|((_, other), &weight)| faces[other / 3] * weight).sum();
             normals[corner] = sum.try_normalize().unwrap_or(own).try_normalize().unwrap_or(Vec3::Y);
+            if around.len() > MANY_FACES && joins_itself {
+                known.insert(plane, normals[corner]);
+            }
         }
     }
     normals
