@@ -173,7 +173,7 @@ impl Samples {
             let count = built.unwrap_or(ms.len());
             say!("  {name:<34} {min:>9.2} {mean:>9.2} {:>9.2} {count:>13}", variance.sqrt());
         }
-        say!();
+        say!("");
     }
 }
 

@@ -53,10 +53,10 @@ pub struct RunArgs {
     #[arg(long, value_name = "DIR", default_value = "world", global = true)]
     pub world: PathBuf,
     /// Threads to compute on [default: one a core]. The result does not depend on it.
-    #[arg(long, value_name = "N", global = true)]
+    #[arg(long, value_name = "N", global = true, value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
     /// Samples a side of the heightfield: 65, 129, 257, 513, 1025 or 2049.
-    #[arg(long, value_name = "N", default_value_t = 513, global = true)]
+    #[arg(long, value_name = "N", default_value_t = 513, global = true, allow_negative_numbers = true)]
     pub size: u32,
     /// Print events as JSON, one a line, instead of a progress bar.
     #[arg(long, global = true)]
@@ -69,9 +69,9 @@ pub enum Command {
     /// Make a population of four random genomes and bake it.
     #[command(after_help = "Example:\n  bake random --seed 7 --world /tmp/seven")]
     Random {
-        /// The same seed makes the same population.
-        #[arg(long, value_name = "N")]
-        seed: u64,
+        /// The same seed makes the same population [default: drawn by chance, and told].
+        #[arg(long, value_name = "N", allow_negative_numbers = true)]
+        seed: Option<u64>,
     },
     /// Breed the next population from votes and bake it.
     Next {
@@ -150,6 +150,13 @@ pub enum CacheCommand {
     },
 }
 
+/// A number of threads: more than any machine's cores would only keep it from other work.
+pub fn threads(text: &str) -> Result<usize, String> {
+    const MAX_THREADS: usize = 1024;
+    let threads = text.parse().ok().filter(|threads| (1..=MAX_THREADS).contains(threads));
+    threads.ok_or_else(|| format!("a whole number from 1 to {MAX_THREADS}"))
+}
+
 /// The command that a word which is no population file was meant to be, if one is near.
 pub fn meant_command(word: &str) -> Option<String> {
     let cli = Cli::command();
@@ -182,6 +189,16 @@ mod tests {
     fn a_misspelt_command_is_recognised() {
         for (word, meant) in [("nxt", Some("next")), ("exprot", Some("export")), ("world/g0000.ron", None)] {
             assert_eq!(meant_command(word).as_deref(), meant);
+        }
+    }
+
+    #[test]
+    fn numbers_out_of_range_are_refused_in_words() {
+        for words in [["--threads", "1000000"], ["--threads", "0"], ["--threads", "-5"], ["--size", "-5"]] {
+            let told =
+                Cli::try_parse_from([&["bake"], &words[..]].concat()).expect_err("refused").to_string();
+            assert!(told.contains(&format!("invalid value '{}'", words[1])), "{told}");
+            assert!(!told.contains("-- -5"), "{told}");
         }
     }
 

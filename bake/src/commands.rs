@@ -1,13 +1,14 @@
 //! Carries out each command of the command line and reports the outcome.
 
-use std::fs;
+use std::hash::{BuildHasher, RandomState};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result};
-use genescape_cache::verified;
+use genescape_cache::{Change, Explanation};
 use genescape_schema::{Current, INDIVIDUALS, Population, Space};
-use genescape_world::{World, WorldError, atomic_write, names};
+use genescape_world::output::{self, BadOutput};
+use genescape_world::{MAX_MODEL_BYTES, NamedFiles, World, WorldError, atomic_write, names, regular_file};
 
 use crate::breed::NoVotes;
 use crate::cache_commands::GaveUp;
@@ -45,7 +46,7 @@ pub fn run(cli: Cli) -> u8 {
             if cli.run.json {
                 JsonLines.tell(&Event::Failed { message: format!("{error:#}") });
             }
-            eprintln!("error: {error:#}");
+            say::warn(format_args!("error: {error:#}"));
             exit_code(&error)
         }
     }
@@ -59,8 +60,12 @@ fn exit_code(error: &anyhow::Error) -> u8 {
     if matches!(error.downcast_ref(), Some(RunError::Cancelled)) || error.is::<GaveUp>() {
         return INTERRUPTED_CODE;
     }
-    let world = matches!(error.downcast_ref(), Some(WorldError::Faulty(_) | WorldError::LastGeneration(_)));
-    if world || error.is::<NoVotes>() || error.is::<BadInput>() { BAD_INPUT } else { FAILED }
+    let world = error.downcast_ref().is_some_and(WorldError::is_bad_input);
+    if world || error.is::<BadOutput>() || error.is::<NoVotes>() || error.is::<BadInput>() {
+        BAD_INPUT
+    } else {
+        FAILED
+    }
 }
 
 fn dispatch(cli: &Cli) -> Result<()> {
@@ -82,9 +87,6 @@ fn dispatch(cli: &Cli) -> Result<()> {
 }
 
 fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
-    if threads == Some(0) {
-        return Err(BadInput("--threads 0: at least one thread is needed".into()).into());
-    }
     let builder = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0));
     builder.build().context("cannot start threads")
 }
@@ -143,7 +145,7 @@ impl Host for Console {
         if self.json {
             JsonLines.tell(&Event::Failed { message: format!("{error:#}") });
         }
-        eprintln!("error: {error:#}");
+        say::warn(format_args!("error: {error:#}"));
     }
 
     fn waiting(&self) {
@@ -154,7 +156,12 @@ impl Host for Console {
 }
 
 fn summary(baked: &Baked) {
-    let Baked { file, scenes, built, reused, ms } = baked;
+    let Baked { file, scenes, built, reused, ms, publish } = baked;
+    if *publish == Publish::Aside {
+        // What is to be looked at and edited has been told already.
+        say!("{} in {:.2} s: {built} stages built, {reused} reused", file.path.display(), ms / 1e3);
+        return;
+    }
     if *built == 0 {
         say!("nothing to do: all {reused} stages are up to date ({ms:.0} ms)");
     } else {
@@ -183,6 +190,10 @@ fn bake(Cli { run, population, watch, poll, .. }: &Cli) -> Result<()> {
         ))
         .into());
     }
+    if let Some(path) = population.as_ref().filter(|path| !path.exists()) {
+        // Before a world is made for it.
+        return Err(WorldError::NoFile(path.clone()).into());
+    }
     let (mut session, console) = (session(run)?, Console::new(run));
     if population.is_none() && session.world().begin()? && !run.json {
         say!("made {} from the starter landscapes", session.world().root().display());
@@ -195,14 +206,26 @@ fn bake(Cli { run, population, watch, poll, .. }: &Cli) -> Result<()> {
     console.bake(&session, &path)
 }
 
-fn random(seed: u64, args: &RunArgs) -> Result<()> {
+fn random(seed: Option<u64>, args: &RunArgs) -> Result<()> {
+    let seed = seed.unwrap_or_else(drawn_seed);
     let (session, console) = (session(args)?, Console::new(args));
-    let (world, space) = (session.world(), session.space());
-    let path = world.create_population(space, &Population::random(space, seed, world.next_generation()?))?;
+    let space = session.space();
+    let make = |generation| Population::random(space, seed, generation);
+    let path = session.world().create_next_population(space, make)?;
+    if !args.json {
+        say!("seed {seed}");
+    }
     console.bake_new(&session, &path)
 }
 
+/// A seed by chance, short enough to be told: what std seeds its hash maps with.
+fn drawn_seed() -> u64 {
+    RandomState::new().hash_one(()) % 1_000_000
+}
+
 fn next(from: Option<u32>, args: &RunArgs) -> Result<()> {
+    // Nothing can be bred in a world that would have to be made.
+    World::open(&args.world)?;
     let (session, console) = (session(args)?, Console::new(args));
     let world = session.world();
     let parents = match from {
@@ -219,7 +242,7 @@ fn params(world: &Path, markdown: bool) -> Result<()> {
         // Without a world there is still the space that one would begin with.
         false => (Space::builtin(), Vec::new()),
     };
-    notices.iter().for_each(|notice| eprintln!("note: {notice}"));
+    notices.iter().for_each(|notice| say::warn(format_args!("note: {notice}")));
     say!("{}", if markdown { space.to_markdown() } else { space.to_table() }.trim_end());
     Ok(())
 }
@@ -237,20 +260,19 @@ fn export(world: &Path, scene: &str, out: &Path) -> Result<()> {
             (path, json)
         }
         Err(_) => {
-            let json = fs::read(scene).with_context(|| format!("cannot read {scene}"))?;
+            let json = regular_file::read(Path::new(scene), MAX_MODEL_BYTES);
+            let json = json.with_context(|| format!("cannot read {scene}"))?;
             (PathBuf::from(scene), json)
         }
     };
-    let folder = path.parent().unwrap_or(Path::new("."));
-    let read = |uri: &str| {
-        let path = folder.join(uri);
-        let bytes = fs::read(&path).map_err(|error| error.to_string())?;
-        verified(&path, bytes).map_err(|error| error.to_string())
-    };
+    output::check(out, "glb", std::slice::from_ref(&path))?;
+    let files = NamedFiles::of(&path);
+    let read = |uri: &str| files.read_uri(uri).map_err(|error| error.to_string());
     let glb = crate::gltf::single_glb(&json, read).with_context(|| {
         let scene = path.display();
         format!("{scene} cannot be made one file; `bake cache verify`, then `bake` make again what it lacks")
     })?;
+    output::check(out, "glb", &files.files())?;
     atomic_write::replace(out, &glb).with_context(|| format!("cannot write {}", out.display()))?;
     say!("wrote {} ({})", out.display(), say::size(glb.len() as u64));
     Ok(())
@@ -266,12 +288,28 @@ fn explain(world: &Path, scene: Option<usize>) -> Result<()> {
     if scene.is_some_and(|scene| scene >= INDIVIDUALS) {
         return Err(BadInput("there are scenes 0 to 3".into()).into());
     }
+    let (space, _) = world.space()?;
     for index in scene.map_or(0..INDIVIDUALS, |scene| scene..scene + 1) {
         say!("{} in the last bake:", current.scenes[index]);
         let history = cache.history(&names::scene_id(current.generation, index))?;
         for (stage, explanation) in history.last() {
-            say!("  {stage:<16} {explanation}");
+            say!("  {stage:<16} {}", as_in_files(&space, explanation));
         }
     }
     Ok(())
+}
+
+/// An explanation with genes' values as population files say them: 12.86, where a stage reads 12.857142448425293.
+fn as_in_files(space: &Space, explanation: &Explanation) -> Explanation {
+    let mut explanation = explanation.clone();
+    for change in &mut explanation.changes {
+        let Change::Parameter { name, from, to } = change else { continue };
+        let Some(gene) = space.find(name) else { continue };
+        for value in [from, to].into_iter().flatten() {
+            if let Ok(number) = value.parse() {
+                *value = gene.text(gene.snap(number));
+            }
+        }
+    }
+    explanation
 }

@@ -1,6 +1,6 @@
 //! Turns a population of genomes into landscapes: a graph of pure stages run through a content-addressed cache.
 
-mod say;
+pub mod say;
 
 pub mod bench;
 pub mod breed;

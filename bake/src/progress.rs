@@ -1,7 +1,8 @@
 //! Events → a progress bar for people, or JSON lines for programs.
 
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
 
 use indicatif::{ProgressDrawTarget, ProgressStyle};
 
@@ -13,7 +14,9 @@ pub struct JsonLines;
 
 impl Listener for JsonLines {
     fn tell(&self, event: &Event) {
-        say!("{}", serde_json::to_string(event).expect("events are plain data"));
+        // Exactly, where `say!` would make control characters visible. The reader may have gone.
+        let line = serde_json::to_string(event).expect("events are plain data");
+        let _ = writeln!(std::io::stdout().lock(), "{line}");
     }
 }
 
@@ -41,6 +44,15 @@ impl ProgressBar {
     }
 }
 
+/// Says on standard error, if that is a terminal, what is being done and for how long, until it is cleared.
+pub fn spinner(message: String) -> indicatif::ProgressBar {
+    let style =
+        ProgressStyle::with_template("{spinner} {wide_msg:.dim} {elapsed:.dim}").expect("a valid template");
+    let spinner = indicatif::ProgressBar::new_spinner().with_style(style).with_message(message);
+    spinner.enable_steady_tick(Duration::from_millis(100));
+    spinner
+}
+
 impl Listener for ProgressBar {
     fn tell(&self, event: &Event) {
         match event {
@@ -56,9 +68,10 @@ impl Listener for ProgressBar {
                 self.update(|running| running.retain(|stage| *stage != ended));
                 self.bar.inc(1);
             }
-            Event::Notice { message } => self.bar.suspend(|| eprintln!("note: {message}")),
+            Event::Notice { message } => self.bar.suspend(|| say::warn(format_args!("note: {message}"))),
             Event::Bred { parent, path } => {
-                self.bar.suspend(|| eprintln!("bred {path} from the votes on generation {parent}"));
+                self.bar
+                    .suspend(|| say::warn(format_args!("bred {path} from the votes on generation {parent}")));
             }
             Event::SceneReady { .. } | Event::Superseded | Event::Done { .. } | Event::Failed { .. } => {}
         }

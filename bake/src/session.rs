@@ -48,6 +48,7 @@ pub struct Baked {
     pub reused: usize,
     /// Milliseconds of wall-clock time.
     pub ms: f64,
+    pub publish: Publish,
 }
 
 impl Session {
@@ -114,7 +115,7 @@ impl Session {
         let (reused, ms) = (done.len() - built, start.elapsed().as_secs_f64() * 1e3);
         listener.tell(&Event::Done { built, reused, ms });
         let scenes = (0..plan.scenes.len()).map(|scene| self.world.scene_path(generation, scene)).collect();
-        Ok(Baked { file, scenes, built, reused, ms })
+        Ok(Baked { file, scenes, built, reused, ms, publish })
     }
 
     /// Breeds from the votes in a population file, and writes the child as a new file with the next free number.

@@ -26,9 +26,9 @@ pub fn read(path: &Path, max: u64) -> Result<Vec<u8>> {
 
 fn in_words(bytes: u64) -> String {
     match bytes {
-        ..0x400 => format!("{bytes} bytes"),
-        ..0x10_0000 => format!("{} KiB", bytes >> 10),
-        _ => format!("{} MiB", bytes >> 20),
+        0x10_0000.. => format!("{} MiB", bytes >> 20),
+        0x400.. => format!("{} KiB", bytes >> 10),
+        _ => format!("{bytes} bytes"),
     }
 }
 

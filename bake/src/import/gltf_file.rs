@@ -24,6 +24,7 @@ pub fn read(bytes: &[u8], resolve: &Resolve<'_>) -> Result<Raw, ImportError> {
     let mut root: Value = serde_json::from_slice(text).map_err(|e| malformed("glTF", e))?;
     check_required(&mut root)?;
     let skipped = drop_without_positions(&mut root)?;
+    complete_images(&mut root);
     let plain = serde_json::to_vec(&root).map_err(|e| malformed("glTF", e))?;
     let document = gltf::Gltf::from_slice(&plain).map_err(|e| malformed("glTF", e))?;
     let buffers = read_buffers(&document, blob, resolve)?;
@@ -74,6 +75,21 @@ fn drop_without_positions(root: &mut Value) -> Result<usize, ImportError> {
         }
     }
     Ok(skipped)
+}
+
+/// Gives images what the gltf crate takes for granted, and panics without: a place to come from, and a type if that
+/// is part of a buffer. An empty image is left out later; an empty type is replaced by what the image begins as.
+fn complete_images(root: &mut Value) {
+    let images = root.get_mut("images").and_then(Value::as_array_mut).into_iter().flatten();
+    for image in images.filter_map(Value::as_object_mut) {
+        let is_given = |key: &str| image.get(key).is_some_and(|value| !value.is_null());
+        let (in_buffer, has_file, has_type) = (is_given("bufferView"), is_given("uri"), is_given("mimeType"));
+        if in_buffer && !has_type {
+            image.insert("mimeType".into(), json!(""));
+        } else if !in_buffer && !has_file {
+            image.insert("uri".into(), json!("data:,"));
+        }
+    }
 }
 
 fn read_buffers(

@@ -4,6 +4,7 @@
 mod accessor;
 mod clean;
 mod gltf_file;
+mod mtl;
 mod obj;
 
 #[cfg(test)]
@@ -27,10 +28,17 @@ pub enum ImportError {
     Malformed { format: &'static str, reason: String },
     #[error("the file requires the glTF extension {0}, which Genescape doesn't know; export it without")]
     RequiredExtension(String),
-    #[error("the file needs \"{name}\", which can't be read: {source}")]
+    #[error("the file needs {}, which can't be read: {source}", quoted(name))]
     Missing { name: String, source: io::Error },
     #[error("the file holds no triangle that can be used{}", listed(.0))]
     Empty(Vec<Repair>),
+}
+
+/// A name out of a stranger's file for people: in quotation marks, not too long.
+fn quoted(name: &str) -> String {
+    const MAX_CHARS: usize = 80;
+    let end = name.char_indices().nth(MAX_CHARS).map_or(name.len(), |(at, _)| at);
+    format!("\"{}{}\"", &name[..end], if end < name.len() { "…" } else { "" })
 }
 
 fn listed(repairs: &[Repair]) -> String {
@@ -84,7 +92,7 @@ impl fmt::Display for Repair {
             Self::CyclicNodes(n) => write!(f, "{n} nodes that contain themselves skipped"),
             Self::MissingNormals(n) => write!(f, "{n} parts without normals: all normals are made anew"),
             Self::AttributeMismatch(name) => write!(f, "{name} doesn't fit its vertices and was left out"),
-            Self::MissingFile(name) => write!(f, "\"{name}\" can't be read and was left out"),
+            Self::MissingFile(name) => write!(f, "{} can't be read and was left out", quoted(name)),
             Self::FoundAggregate(n) => write!(f, "{n} like pieces will be thinned out as leaves are"),
         }
     }

@@ -1,13 +1,13 @@
 //! .obj → primitives by material; .mtl materials as glTF writes them. Polygons become triangles.
 
 use std::cell::RefCell;
-use std::io::{BufReader, Cursor};
+use std::io::Cursor;
 use std::path::Path;
 
 use serde_json::json;
 
 use super::gltf_file::mime_of;
-use super::{ImportError, Imported, ImportedImage, Primitive, Raw, Repair, Resolve, color_byte};
+use super::{ImportError, Imported, ImportedImage, Primitive, Raw, Repair, Resolve, color_byte, mtl};
 use crate::model::Mesh;
 
 /// Reads the text of an .obj file.
@@ -18,12 +18,11 @@ pub fn read(bytes: &[u8], resolve: &Resolve<'_>) -> Result<Raw, ImportError> {
     let missing = RefCell::new(Vec::new());
     let material_file = |path: &Path| {
         let name = path.to_string_lossy().into_owned();
-        let found = resolve(&name).map_err(|_| tobj::LoadError::OpenFileFailed);
-        let loaded = found.and_then(|bytes| tobj::load_mtl_buf(&mut BufReader::new(Cursor::new(bytes))));
-        loaded.or_else(|_| {
+        let found = resolve(&name).map(|bytes| mtl::read(&String::from_utf8_lossy(&bytes)));
+        Ok(found.unwrap_or_else(|_| {
             missing.borrow_mut().push(Repair::MissingFile(name));
-            Ok((Vec::new(), Default::default()))
-        })
+            Default::default()
+        }))
     };
     // Text in other encodings only shows in names.
     let text = String::from_utf8_lossy(bytes);

@@ -3,7 +3,7 @@
 use std::fs;
 use std::process::Command;
 
-use crate::world::{Baked, World};
+use crate::world::World;
 
 /// Bakes after `change` and gives what was said; the file must be untouched and the exit code 2.
 fn refused(change: impl FnOnce(String) -> String) -> String {
@@ -103,8 +103,94 @@ fn meshes_that_can_be_repaired_are_and_it_is_said() {
 #[test]
 fn a_missing_population_is_named() {
     let world = World::new();
-    let mut command = world.command(&["nowhere.ron", "--json"]);
-    let baked = Baked::from(command.output().expect("bake runs"));
-    assert_eq!(baked.code, Some(1));
-    assert!(baked.stderr.contains("nowhere.ron"), "{}", baked.stderr);
+    for words in [["nowhere.ron", "--json"], ["nowhere.ron", "--watch"]] {
+        let output = world.run(&words);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && said.contains("nowhere.ron"), "{said}");
+    }
+    assert!(!world.path().exists(), "no world is made for it");
+}
+
+#[test]
+fn what_needs_a_world_makes_none() {
+    let world = World::new();
+    for folder_is_there in [false, true] {
+        if folder_is_there {
+            fs::create_dir(world.path()).expect("made");
+        }
+        for words in [&["next"][..], &["next", "--from", "0"], &["export", "0", "a.glb"], &["explain"]] {
+            let output = world.run(words);
+            let said = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert!(
+                output.status.code() == Some(2) && said.contains("is no world folder"),
+                "{words:?}: {said}"
+            );
+            let left = fs::read_dir(world.path()).map_or(0, Iterator::count);
+            assert!(world.path().exists() == folder_is_there && left == 0, "{words:?} leaves something");
+        }
+    }
+}
+
+#[test]
+fn a_typing_error_makes_no_world() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::create_dir_all(folder.path().join("alps/population")).expect("made");
+    for words in [&[][..], &["random", "--seed", "1"], &["--watch"]] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_bake"));
+        let output = command.args(words).args(["--world", "alpz"]).current_dir(folder.path()).output();
+        let output = output.expect("bake runs");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && said.contains("did you mean alps?"), "{words:?}: {said}");
+        assert!(!folder.path().join("alpz").exists());
+    }
+}
+
+#[test]
+fn text_of_another_encoding_says_what_to_do() {
+    let world = World::new();
+    fs::create_dir_all(world.file("population")).expect("a folder");
+    let starter = include_str!("../../../configs/starter.ron");
+    let utf16: Vec<u8> = starter.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let latin = starter.replacen("name: \"", "name: \"\u{0}", 1).replace('\0', "?").into_bytes();
+    let latin: Vec<u8> = latin.iter().map(|&byte| if byte == b'?' { 0xe4 } else { byte }).collect();
+    for (bytes, hint) in [([&[0xff, 0xfe][..], &utf16].concat(), "UTF-16"), (latin, "UTF-8")] {
+        fs::write(world.population(0), bytes).expect("written");
+        let baked = world.bake(&[]);
+        assert_eq!(baked.code, Some(2), "{}", baked.stderr);
+        assert!(baked.stderr.contains("g0000.ron:") && baked.stderr.contains(hint), "{}", baked.stderr);
+    }
+}
+
+#[test]
+fn names_that_are_no_names_are_refused_before_anything_is_baked() {
+    for name in ["x".repeat(70_000), "\\u{1b}[31m".into(), "\u{1b}]0;title\u{7}".into()] {
+        let at = |text: &str| text.find("name: \"").expect("a name") + 7;
+        let said = refused(|text| format!("{}{name}{}", &text[..at(&text)], &text[at(&text)..]));
+        assert!(said.contains("name: ") && said.len() < 1000 && !said.contains('\u{1b}'), "{said:?}");
+    }
+}
+
+#[test]
+fn a_space_that_landscapes_cannot_be_made_from_is_told_before_anything_is_written() {
+    let world = World::starters();
+    let space = fs::read_to_string(world.file("space.ron")).expect("there");
+    let line = space.lines().find(|line| line.contains("\"base_splits\"")).expect("a gene");
+    let changed = space.replacen(line, &line.replace("scale: integer", "scale: linear"), 1);
+    fs::write(world.file("space.ron"), changed).expect("written");
+    for words in [&["random", "--seed", "3"][..], &["params"], &[]] {
+        let output = world.run(words);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{words:?}: {said}");
+        assert!(said.contains("space.ron:") && said.contains("base_splits"), "{words:?}: {said}");
+    }
+    assert!(!world.population(1).exists(), "no file is made that cannot be baked");
+}
+
+#[test]
+fn numbers_of_threads_are_bounded() {
+    let world = World::new();
+    for threads in ["0", "1000000", "-1"] {
+        assert_eq!(world.run(&["--threads", threads]).status.code(), Some(2), "{threads}");
+    }
+    assert!(!world.path().exists());
 }

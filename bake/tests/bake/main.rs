@@ -7,6 +7,7 @@ mod healing;
 mod library;
 mod random_genomes;
 mod stage_digests;
+mod strangers;
 mod watch;
 mod whole_bake;
 mod world;

@@ -116,6 +116,25 @@ fn watch_answers_votes_once_and_on_old_generations_too() {
 }
 
 #[test]
+fn after_breeding_the_newest_file_is_the_one_to_edit() {
+    let world = World::starters();
+    let mut command = world.command(&["--watch", "--size", "65", "--threads", "1"]);
+    let mut child = command.stdout(std::process::Stdio::piped()).spawn().expect("bake runs");
+    let mut lines = std::io::BufRead::lines(std::io::BufReader::new(child.stdout.take().expect("piped")));
+    let mut until_it_waits = || -> Vec<String> {
+        let lines = lines.by_ref().map(|line| line.expect("text"));
+        lines.take_while(|line| !line.starts_with("watching")).collect()
+    };
+    until_it_waits();
+    vote(&world, 0, "Some((tree: Some(0), terrain: Some(1), sky: Some(2)))");
+    let told = until_it_waits();
+    let _ = child.kill();
+    let _ = child.wait();
+    let to_edit: Vec<_> = told.iter().filter(|line| line.starts_with("Change them")).collect();
+    assert!(to_edit.last().is_some_and(|line| line.contains("g0001.ron")), "{told:#?}");
+}
+
+#[test]
 fn a_child_that_is_half_saved_is_not_bred_again() {
     let world = World::starters();
     let mut watching = Watching::new(&world);

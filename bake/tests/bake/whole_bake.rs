@@ -156,6 +156,38 @@ fn explain_names_the_gene() {
     assert!(output.status.success());
     assert!(text.contains("turbidity"), "{text}");
     assert!(text.contains("reused"), "{text}");
+    // A value that no decimal of a few digits is exactly, in the words of the file.
+    world.edit(0, |text| set_gene(&text, 1, "height_m", "12.86"));
+    world.bake(&[]).ok();
+    let text = String::from_utf8(world.run(&["explain", "1"]).stdout).expect("text");
+    assert!(text.contains("→ 12.86"), "{text}");
+}
+
+#[test]
+fn a_copy_of_a_population_leaves_the_scenes_of_the_first_alone() {
+    let world = World::starters();
+    let before = fs::read(world.scene(1)).expect("a scene");
+    let text = fs::read_to_string(world.population(0)).expect("there");
+    fs::write(world.population(4), set_gene(&text, 1, "cloud_cover", "0.6")).expect("copied");
+    let baked = world.bake(&[]).ok();
+    assert_eq!(baked.of("planned").next().expect("a plan")["generation"], 4);
+    let told = |event: &serde_json::Value| {
+        event["message"].as_str().is_some_and(|text| text.contains("by its name"))
+    };
+    assert!(baked.of("notice").any(told), "{:?}", baked.events);
+    assert!(fs::read(world.scene(1)).expect("a scene") == before);
+    assert!(world.file("baked/g0004/scene-1/scene.gltf").is_file());
+}
+
+#[test]
+fn random_without_a_seed_draws_one_and_tells_it() {
+    let world = World::starters();
+    let output = world.run(&["random", "--size", "65"]);
+    let said = String::from_utf8(output.stdout).expect("text");
+    let seed = said.lines().find_map(|line| line.strip_prefix("seed ")).expect("a seed is told");
+    let seed = seed.parse().expect("a number");
+    let text = Population::random(&Space::builtin(), seed, 1).to_ron(&Space::builtin());
+    assert_eq!(fs::read_to_string(world.population(1)).expect("a population"), text);
 }
 
 #[test]
