@@ -37,6 +37,9 @@ impl Current {
     }
 }
 
+/// Characters of the path of a scene.
+const MAX_PATH: usize = 200;
+
 fn read_current(checker: &mut Checker<'_>, root: &Node<'_>) -> Option<Current> {
     const FIELDS: [&str; 3] = ["generation", "population", "scenes"];
     let fields = checker.root(root, "Current", &FIELDS)?;
@@ -46,7 +49,12 @@ fn read_current(checker: &mut Checker<'_>, root: &Node<'_>) -> Option<Current> {
     let list = scenes?;
     let mut paths = Vec::new();
     for node in checker.list(list, "scenes")? {
-        paths.push(checker.text(node, "scenes")?.to_owned());
+        let path = checker.line(node, "scenes", MAX_PATH)?;
+        // It may be a stranger's world.
+        if path.split(['/', '\\']).any(|part| ["", ".", ".."].contains(&part)) || path.contains(':') {
+            return checker.refuse(node.span(), format!("scenes: {path} does not lie in the world"));
+        }
+        paths.push(path.to_owned());
     }
     let found = paths.len();
     if found != INDIVIDUALS {

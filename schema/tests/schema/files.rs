@@ -259,6 +259,11 @@ fn current_survives_its_file() {
     };
     let text = current.to_ron();
     assert_eq!(Current::load("current.ron", &text), Ok(current));
+    for outside in ["/etc/passwd", "../other/scene.gltf", "baked/../../scene.gltf", "C:scene.gltf", ""] {
+        let text = text.replacen("baked/g0003/scene-2/scene.gltf", outside, 1);
+        let told = Current::load("current.ron", &text).expect_err(outside).to_string();
+        assert!(told.contains("does not lie in the world"), "{told}");
+    }
     let told =
         Current::load("current.ron", "Current(generation: 3, scenes: [1])").expect_err("faulty").to_string();
     assert!(told.contains("Current lacks population") && told.contains("scenes: expected a text"), "{told}");
