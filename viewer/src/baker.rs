@@ -15,6 +15,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Error, Result};
+use genescape_bake::cli::threads;
 use genescape_bake::events::Listener;
 use genescape_bake::plan::Resolution;
 use genescape_bake::session::Session;
@@ -39,7 +40,7 @@ const END_TIMEOUT: Duration = Duration::from_millis(500);
 #[derive(Clone, Debug, clap::Args)]
 pub struct BakerOptions {
     /// Threads that bake [default: all cores but one]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = threads)]
     pub threads: Option<usize>,
 
     /// Samples a side of the heightfields that are baked, as in `bake --size`: 65, 129, 257, 513, 1025 or 2049

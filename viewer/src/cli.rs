@@ -6,7 +6,7 @@ use clap::{Parser, Subcommand};
 
 use crate::baker::BakerOptions;
 use crate::image_file::parse_size;
-use crate::options::Options;
+use crate::options::{Options, number};
 
 /// Shows four landscapes at once: walk through all of them, say which has the best trees, terrain and sky, and breed
 /// four new ones
@@ -65,7 +65,7 @@ pub struct Cli {
     pub camera: Option<Place>,
 
     /// With --screenshot: seconds for which clouds have drifted
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = seconds)]
     pub time: f32,
 
     #[command(flatten)]
@@ -101,6 +101,10 @@ pub struct Place {
     pub yaw_deg: f32,
     /// Degrees upwards.
     pub pitch_deg: f32,
+}
+
+fn seconds(text: &str) -> Result<f32, String> {
+    number(text, 0.0..=1e6, "seconds")
 }
 
 fn place(text: &str) -> Result<Place, String> {
@@ -142,6 +146,20 @@ mod tests {
         };
         assert_eq!(options(&args), expected);
         assert!(Cli::try_parse_from(["viewer", "--samples", "2"]).is_err());
+    }
+
+    #[test]
+    fn numbers_that_nothing_can_be_drawn_with_are_refused() {
+        for option in ["--fov", "--exposure", "--time", "--tree-error", "--terrain-error"] {
+            for wrong in ["nan", "inf", "-inf", "-1", "1e9", "x"] {
+                let told = Cli::try_parse_from(["viewer", &format!("{option}={wrong}")]).expect_err(wrong);
+                assert!(told.to_string().contains("a number from"), "{told}");
+            }
+            Cli::try_parse_from(["viewer", option, "60"]).expect("a number");
+        }
+        for threads in ["0", "1000000", "-3"] {
+            Cli::try_parse_from(["viewer", &format!("--threads={threads}")]).expect_err(threads);
+        }
     }
 
     #[test]

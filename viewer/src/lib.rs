@@ -31,11 +31,12 @@ pub mod upload;
 pub mod view;
 pub mod walk;
 
-/// `println!` that goes on when nothing reads it any more, as in `viewer bench | head`.
+/// `println!` that goes on when nothing reads it any more, as in `viewer bench | head`, and in which no name out of a file
+/// steers the terminal.
 macro_rules! say {
     ($($words:tt)*) => {{
         use std::io::Write as _;
-        let _ = writeln!(std::io::stdout().lock(), $($words)*);
+        let _ = writeln!(std::io::stdout().lock(), "{}", genescape_schema::printable(&format!($($words)*)));
     }};
 }
 use say;

@@ -1,5 +1,7 @@
 //! What one frame is drawn from, for all views alike: time, choices of the person.
 
+use std::ops::RangeInclusive;
+
 use clap::ArgAction;
 use serde::{Deserialize, Serialize};
 
@@ -19,10 +21,10 @@ pub struct Options {
     #[arg(long, value_enum, default_value_t)]
     pub terrain_lod: TerrainLodMode,
     /// Error that trees may have on the screen, in pixels
-    #[arg(long = "tree-error", value_name = "PIXELS", default_value_t = Self::default().tree_error_px)]
+    #[arg(long = "tree-error", value_name = "PIXELS", default_value_t = Self::default().tree_error_px, value_parser = pixels)]
     pub tree_error_px: f32,
     /// Error that the terrain may have on the screen, in pixels
-    #[arg(long = "terrain-error", value_name = "PIXELS", default_value_t = Self::default().terrain_error_px)]
+    #[arg(long = "terrain-error", value_name = "PIXELS", default_value_t = Self::default().terrain_error_px, value_parser = pixels)]
     pub terrain_error_px: f32,
     /// Edges of triangles only
     #[arg(long)]
@@ -45,13 +47,13 @@ pub struct Options {
     #[arg(skip = true)]
     pub draw_terrain: bool,
     /// Factor on the landscape's own exposure
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = factor)]
     pub exposure: f32,
     /// Samples a pixel
     #[arg(long, default_value_t = 4, value_parser = parse_samples)]
     pub samples: u32,
     /// Vertical field of view in degrees
-    #[arg(long = "fov", value_name = "DEGREES", default_value_t = Self::default().fov_y_deg)]
+    #[arg(long = "fov", value_name = "DEGREES", default_value_t = Self::default().fov_y_deg, value_parser = degrees)]
     pub fov_y_deg: f32,
 }
 
@@ -76,6 +78,24 @@ pub const PICTURE_SWITCHES: [Switch; 4] = [
     ("Grass", GRASS_HELP, |options| &mut options.grass),
     ("Clouds drift", "", |options| &mut options.drift_clouds),
 ];
+
+fn pixels(text: &str) -> Result<f32, String> {
+    number(text, 0.0..=1e4, "pixels")
+}
+
+fn factor(text: &str) -> Result<f32, String> {
+    number(text, 0.0..=1e6, "times")
+}
+
+fn degrees(text: &str) -> Result<f32, String> {
+    number(text, 1.0..=170.0, "degrees")
+}
+
+/// A number in a range that the command line takes.
+pub(crate) fn number(text: &str, range: RangeInclusive<f32>, unit: &str) -> Result<f32, String> {
+    let number = text.parse().ok().filter(|number| range.contains(number));
+    number.ok_or_else(|| format!("a number from {} to {} {unit}", range.start(), range.end()))
+}
 
 fn parse_samples(text: &str) -> Result<u32, String> {
     let samples = text.parse().ok().filter(|samples| [1, 4].contains(samples));

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow};
-use genescape_world::Source;
+use genescape_world::{Source, output};
 use glam::{Vec2, Vec3};
 
 use crate::camera::Camera;
@@ -19,14 +19,17 @@ const DEFAULT_SIZE_PX: [u32; 2] = [1280, 800];
 
 /// Draws what the command line asks for.
 pub fn take(cli: &Cli, source: &Source, out: &Path) -> Result<()> {
+    // Scenes have other endings: none can be written over.
+    output::check(out, "png", &[])?;
     let paths = chosen(cli, scene_files(source)?)?;
     let options = cli.drawing;
     let headless = Headless::open(&Shaders::from(cli.shaders.clone()), options.samples)?;
+    let [width, height] = cli.size.unwrap_or(DEFAULT_SIZE_PX);
+    image_file::check_size(&headless.gpu, [width, height])?;
     let loaded = paths.iter().map(|path| headless.load(path)).collect::<Result<Vec<_>>>()?;
     let lands: Vec<&Land> = loaded.iter().map(|loaded| &*loaded.land).collect();
     let rig = Rig::new(start_pose(&lands), &lands);
 
-    let [width, height] = cli.size.unwrap_or(DEFAULT_SIZE_PX);
     let columns = if loaded.len() > 1 { 2 } else { 1 };
     let rows = loaded.len().div_ceil(columns) as u32;
     let size = [(width / columns as u32).max(1), (height / rows).max(1)];

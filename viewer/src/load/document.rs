@@ -6,15 +6,17 @@ use std::sync::Arc;
 
 use genescape_cache::verified;
 use genescape_schema::scene::Resource;
+use genescape_world::{MAX_MODEL_BYTES, NamedFiles, regular_file};
 use serde::de::DeserializeOwned;
 
-use super::{LoadError, Result, Store};
+use super::{LoadError, Result, Store, accessor};
 
 /// A scene file with the folder it names others from.
 pub(super) struct Document<'a> {
     path: PathBuf,
     pub gltf: gltf::Document,
     pub store: &'a Store,
+    files: NamedFiles,
     /// The file's own binary part, if it is a single .glb.
     embedded: Option<Arc<Vec<u8>>>,
     /// Buffers that were asked for so far: most are never needed when a template is known already.
@@ -23,14 +25,31 @@ pub(super) struct Document<'a> {
 
 impl<'a> Document<'a> {
     pub fn open(path: &Path, store: &'a Store) -> Result<Self> {
-        let bytes =
-            std::fs::read(path).map_err(|source| LoadError::Unreadable { path: path.to_owned(), source })?;
+        let bytes = regular_file::read(path, MAX_MODEL_BYTES)
+            .map_err(|source| LoadError::Unreadable { path: path.to_owned(), source })?;
         let bytes = verified(path, bytes).map_err(|_| LoadError::Damaged { path: path.to_owned() })?;
         let parsed = gltf::Gltf::from_slice(&bytes)
             .map_err(|source| LoadError::NoGltf { path: path.to_owned(), source: Box::new(source) })?;
         let buffers = RefCell::new(vec![None; parsed.document.buffers().len()]);
         let embedded = parsed.blob.map(Arc::new);
-        Ok(Self { path: path.to_owned(), gltf: parsed.document, store, embedded, buffers })
+        let (path, files) = (path.to_owned(), NamedFiles::of(path));
+        let document = Self { path, gltf: parsed.document, store, files, embedded, buffers };
+        document.check_images()?;
+        Ok(document)
+    }
+
+    /// The gltf crate panics over an image that comes from nowhere, or from a buffer without saying what it is.
+    fn check_images(&self) -> Result<()> {
+        for (index, image) in self.gltf.as_json().images.iter().enumerate() {
+            let is_sound = match image.buffer_view {
+                Some(_) => image.mime_type.is_some(),
+                None => image.uri.is_some(),
+            };
+            if !is_sound {
+                return Err(self.wrong(format!("image {index} names neither a file nor a part of a buffer")));
+            }
+        }
+        Ok(())
     }
 
     /// An error about this file.
@@ -58,6 +77,11 @@ impl<'a> Document<'a> {
         self.path.parent().unwrap_or(Path::new(".")).join(uri)
     }
 
+    /// The bytes of a file that the scene names.
+    fn named(&self, uri: &str) -> Result<Arc<Vec<u8>>> {
+        self.store.bytes(&self.files, uri, &self.file(uri))
+    }
+
     /// A name by which the same content is known in every scene.
     pub fn name_of(&self, resource: &Resource) -> String {
         match (&resource.uri, resource.buffer_view) {
@@ -69,7 +93,7 @@ impl<'a> Document<'a> {
     /// What a resource holds.
     pub fn bytes(&self, resource: &Resource) -> Result<Arc<Vec<u8>>> {
         match (&resource.uri, resource.buffer_view) {
-            (Some(uri), _) => self.store.blob(&self.file(uri)),
+            (Some(uri), _) => self.named(uri),
             (None, Some(view)) => Ok(self.view(view)?.into()),
             (None, None) => Err(self.wrong("a resource has neither a uri nor a bufferView")),
         }
@@ -80,7 +104,8 @@ impl<'a> Document<'a> {
         let view = self.gltf.views().nth(index);
         let view = view.ok_or_else(|| self.wrong(format!("it has no bufferView {index}")))?;
         let buffer = self.buffer(view.buffer().index())?;
-        let bytes = buffer.get(view.offset()..view.offset() + view.length());
+        let end = view.offset().checked_add(view.length());
+        let bytes = end.and_then(|end| buffer.get(view.offset()..end));
         Ok(bytes.ok_or_else(|| self.wrong(format!("bufferView {index} ends beyond its buffer")))?.to_vec())
     }
 
@@ -92,7 +117,7 @@ impl<'a> Document<'a> {
         let buffer = self.gltf.buffers().nth(index);
         let buffer = buffer.ok_or_else(|| self.wrong(format!("it has no buffer {index}")))?;
         let bytes = match buffer.source() {
-            gltf::buffer::Source::Uri(uri) => self.store.blob(&self.file(uri))?,
+            gltf::buffer::Source::Uri(uri) => self.named(uri)?,
             gltf::buffer::Source::Bin => {
                 self.embedded.clone().ok_or_else(|| self.wrong("its binary part is missing"))?
             }
@@ -124,6 +149,10 @@ impl<'a> Document<'a> {
             return Err(self.wrong(format!("accessor {index} has another type than expected")));
         }
         let buffers = self.buffers.borrow();
+        let length_of = |index: usize| buffers[index].as_ref().map_or(0, |bytes| bytes.len());
+        if !accessor::fits(&accessor, length_of) {
+            return Err(self.wrong(format!("accessor {index} reaches beyond its buffer")));
+        }
         let get = |buffer: gltf::Buffer<'_>| buffers[buffer.index()].as_deref().map(Vec::as_slice);
         let values = gltf::accessor::Iter::<T>::new(accessor, get);
         Ok(values.ok_or_else(|| self.wrong(format!("accessor {index} reaches beyond its buffer")))?.collect())
@@ -134,15 +163,121 @@ impl<'a> Document<'a> {
         self.gltf.accessors().nth(index).ok_or_else(|| self.wrong(format!("it has no accessor {index}")))
     }
 
-    /// Indices of any width.
-    pub fn indices(&self, primitive: &gltf::Primitive<'_>) -> Result<Vec<u32>> {
+    /// A primitive's indices, of any width, into its `count` vertices.
+    pub fn indices(&self, primitive: &gltf::Primitive<'_>, count: usize) -> Result<Vec<u32>> {
         use gltf::accessor::DataType;
         let accessor = primitive.indices().ok_or_else(|| self.wrong("a mesh has no indices"))?;
-        Ok(match accessor.data_type() {
+        let indices = match accessor.data_type() {
             DataType::U16 => self.values::<u16>(accessor)?.into_iter().map(u32::from).collect(),
             DataType::U32 => self.values::<u32>(accessor)?,
             DataType::U8 => self.values::<u8>(accessor)?.into_iter().map(u32::from).collect(),
             other => return Err(self.wrong(format!("indices are of type {other:?}"))),
-        })
+        };
+        match indices.iter().find(|&&index| index as usize >= count) {
+            Some(index) => Err(self.wrong(format!("a mesh has no vertex {index}"))),
+            None => Ok(indices),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+    use crate::load::images;
+
+    /// A file with one accessor of three points in `points.bin`, and one image.
+    fn scene(accessor: &str, image: &str) -> String {
+        format!(
+            r#"{{"asset":{{"version":"2.0"}},"accessors":[{{"componentType":5126,"type":"VEC3",{accessor}}}],
+            "images":[{image}],"bufferViews":[{{"buffer":0,"byteLength":36}},{{"buffer":0,"byteLength":4}}],
+            "buffers":[{{"byteLength":36,"uri":"points.bin"}}]}}"#
+        )
+    }
+
+    /// What `look` sees in such a file.
+    fn look<T>(accessor: &str, image: &str, look: impl FnOnce(Result<Document<'_>>) -> T) -> T {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let model = folder.path().join("model");
+        fs::create_dir(&model).expect("made");
+        fs::write(folder.path().join("secret.bin"), [1; 36]).expect("written");
+        fs::write(model.join("points.bin"), [0; 36]).expect("written");
+        fs::write(model.join("huge.png"), huge_png()).expect("written");
+        fs::write(model.join("scene.gltf"), scene(accessor, image)).expect("written");
+        look(Document::open(&model.join("scene.gltf"), &Store::default()))
+    }
+
+    /// A PNG whose header says 100,000 x 65,535 pixels, and which holds next to nothing.
+    fn huge_png() -> Vec<u8> {
+        let mut png = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\x01\x86\xa0\0\0\xff\xff\x08\x06\0\0\0".to_vec();
+        png.extend([0xe0, 0xd0, 0x24, 0x8c]);
+        png.extend(b"\0\0\0\x04IDAT\x78\x9c\x63\0");
+        png
+    }
+
+    const IMAGE: &str = r#"{"uri":"huge.png"}"#;
+
+    #[test]
+    fn only_numbers_that_are_there_are_read() {
+        let read = |accessor: &str| {
+            look(accessor, IMAGE, |document| {
+                let document = document.expect("glTF");
+                let accessor = document.accessor(0).expect("there");
+                document.values::<[f32; 3]>(accessor).map(|values| values.len())
+            })
+        };
+        let sparse = |count: &str, base: &str, indices: u32| {
+            format!(
+                r#""count":{base},"sparse":{{"count":{count},"indices":{{"bufferView":{indices},"componentType":5125}},
+                "values":{{"bufferView":0}}}}"#
+            )
+        };
+        assert_eq!(read(r#""bufferView":0,"count":3"#).ok(), Some(3));
+        assert_eq!(read(&sparse("1", "5", 1)).ok(), Some(5));
+        for wrong in [
+            r#""bufferView":0,"count":4"#.to_owned(),
+            r#""bufferView":0,"count":3,"byteOffset":1"#.to_owned(),
+            r#""bufferView":0,"count":4294967296"#.to_owned(),
+            r#""bufferView":0,"count":1,"byteOffset":9223372036854775807"#.to_owned(),
+            sparse("4294967296", "5", 1),
+            sparse("4294967296", "4294967296", 1),
+            sparse("1", "4294967296", 1),
+            sparse("2", "5", 1),
+            sparse("4", "5", 0),
+        ] {
+            let error = read(&wrong).expect_err(&wrong).to_string();
+            assert!(error.contains("reaches beyond its buffer"), "{wrong}: {error}");
+        }
+    }
+
+    #[test]
+    fn a_picture_that_says_it_is_huge_is_refused() {
+        let told = look(r#""bufferView":0,"count":3"#, IMAGE, |document| {
+            let document = document.expect("glTF");
+            images::png(&document, &Resource::file("huge.png", "image/png")).expect_err("26 GB").to_string()
+        });
+        assert!(told.contains("huge.png") && told.contains("imit"), "{told}");
+    }
+
+    #[test]
+    fn an_image_from_nowhere_is_refused() {
+        for image in [r#"{"name":"x"}"#, r#"{"bufferView":0}"#] {
+            let told = look(r#""bufferView":0,"count":3"#, image, |document| {
+                document.err().map(|error| error.to_string()).unwrap_or_default()
+            });
+            assert!(told.contains("image 0"), "{image}: {told}");
+        }
+    }
+
+    #[test]
+    fn nothing_outside_the_folder_is_read() {
+        for uri in ["../secret.bin", "..%2fsecret.bin", "/dev/zero", "/etc/hostname"] {
+            let told = look(r#""bufferView":0,"count":3"#, IMAGE, |document| {
+                let document = document.expect("glTF");
+                document.bytes(&Resource::file(uri, "")).expect_err(uri).to_string()
+            });
+            assert!(told.contains("outside the folder"), "{uri}: {told}");
+        }
     }
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use genescape_schema::scene::{GSC_HEIGHTFIELD, HeightfieldExtension, TerrainLod};
 
+use super::bounds::{MAX_LAND_M, within};
 use super::document::Document;
 use super::{Result, images};
 use crate::scene::{Apron, Ground};
@@ -17,6 +18,10 @@ pub(super) fn read(document: &Document) -> Result<Ground> {
         TerrainLod::from_bytes(&bytes)
             .map_err(|what| document.wrong(format!("its heightfield {name} is wrong: {what}")))
     })?;
+    let numbers = [&lod.field.heights_m[..], &lod.wedgies_m, lod.block_ranges_m.as_flattened()];
+    if !numbers.into_iter().all(|numbers| within(numbers, MAX_LAND_M)) || lod.field.spacing_m > MAX_LAND_M {
+        return Err(document.wrong(format!("its heightfield {name} holds numbers beyond {MAX_LAND_M:e} m")));
+    }
     Ok(Ground {
         name,
         field: lod.field.clone(),
@@ -43,12 +48,17 @@ fn apron(document: &Document) -> Result<Apron> {
             Some(colors) => apron.colors.extend(document.values::<[u8; 4]>(colors)?),
             None => apron.colors.resize(apron.positions_m.len(), [128; 4]),
         }
-        let indices = document.indices(&primitive)?;
+        let count = apron.positions_m.len() - base as usize;
+        let indices = document.indices(&primitive, count)?;
         apron.triangles.extend(indices.chunks_exact(3).map(|t| [t[0] + base, t[1] + base, t[2] + base]));
     }
     let count = apron.positions_m.len();
     let sound = apron.normals.len() == count
         && apron.colors.len() == count
-        && apron.triangles.as_flattened().iter().all(|&vertex| (vertex as usize) < count);
-    if sound { Ok(apron) } else { Err(document.wrong("its apron's arrays do not match")) }
+        && within(apron.positions_m.as_flattened(), MAX_LAND_M);
+    if sound {
+        Ok(apron)
+    } else {
+        Err(document.wrong("its apron's arrays do not match, or it reaches too far"))
+    }
 }

@@ -3,12 +3,15 @@
 use std::io::Cursor;
 use std::sync::Arc;
 
+use exr::error::Error;
+use exr::meta::MetaData;
 use exr::prelude::{ReadChannels, ReadLayers};
 use genescape_schema::scene::Resource;
 use half::f16;
-use image::{ImageFormat, RgbaImage};
+use image::{ImageFormat, ImageReader, Limits, RgbaImage};
 
 use super::Result;
+use super::bounds::{MAX_PICTURE_PX, MAX_SKY_PX};
 use super::document::Document;
 use crate::scene::{HdrImage, Image};
 
@@ -38,7 +41,11 @@ pub(super) fn with_mips(document: &Document, resource: &Resource, mipmaps: &[Res
 
 fn decode(document: &Document, resource: &Resource) -> Result<RgbaImage> {
     let bytes = document.bytes(resource)?;
-    match image::load_from_memory_with_format(&bytes, ImageFormat::Png) {
+    let mut reader = ImageReader::with_format(Cursor::new(&**bytes), ImageFormat::Png);
+    let mut limits = Limits::default();
+    (limits.max_image_width, limits.max_image_height) = (Some(MAX_PICTURE_PX), Some(MAX_PICTURE_PX));
+    reader.limits(limits);
+    match reader.decode() {
         Ok(image) => Ok(image.into_rgba8()),
         Err(error) => Err(document.wrong(format!("{} is no PNG: {error}", document.name_of(resource)))),
     }
@@ -56,6 +63,12 @@ pub(super) fn exr(document: &Document, resource: &Resource) -> Result<HdrImage> 
 
 /// By the `exr` crate itself: `image` would make floats of the halves first, in 5 ms for 384² instead of 0.4.
 fn decode_exr(name: &str, bytes: &[u8]) -> exr::error::Result<HdrImage> {
+    // Before memory is taken for what the header says.
+    let header = MetaData::read_from_buffered(Cursor::new(bytes), false)?;
+    let sizes = header.headers.iter().map(|header| header.layer_size);
+    if { sizes }.any(|size| size.width().max(size.height()) > MAX_SKY_PX) {
+        return Err(Error::Invalid(format!("more than {MAX_SKY_PX} pixels a side").into()));
+    }
     let image = exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()
@@ -98,5 +111,22 @@ mod tests {
         assert_eq!((image.width_px, image.height_px), (3, 2));
         assert_eq!(*image.pixels, *bytemuck::cast_slice::<_, u8>(&right));
         assert!(decode_exr("sky.exr", b"no image").is_err());
+    }
+
+    #[test]
+    fn an_exr_that_says_it_is_huge_is_refused_before_memory_is_taken() {
+        let channels = SpecificChannels::rgb(|_: Vec2<usize>| (f16::ONE, f16::ONE, f16::ONE));
+        let mut bytes = Cursor::new(Vec::new());
+        Image::from_channels((3, 2), channels).write().to_buffered(&mut bytes).expect("written");
+        let mut bytes = bytes.into_inner();
+        // Both windows end at (2, 1).
+        let end: Vec<u8> = [2i32, 1].iter().flat_map(|end| end.to_le_bytes()).collect();
+        let places: Vec<usize> = (0..bytes.len() - 8).filter(|&at| bytes[at..at + 8] == end).collect();
+        assert!(places.len() >= 2, "{places:?}");
+        for at in places {
+            bytes[at..at + 8].copy_from_slice(&[[0xff, 0xff, 0xff, 0]; 2].concat());
+        }
+        let error = decode_exr("sky.exr", &bytes).expect_err("16 million pixels a side").to_string();
+        assert!(error.contains("4096"), "{error}");
     }
 }

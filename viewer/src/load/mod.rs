@@ -1,6 +1,8 @@
 //! `scene.gltf` and the blobs that it names → [`Scene`]. What was read for one landscape is kept while any landscape
 //! uses it, so that a reload reads only blobs with new names.
 
+mod accessor;
+mod bounds;
 mod document;
 mod ground;
 mod images;

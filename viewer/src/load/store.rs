@@ -2,10 +2,11 @@
 
 use std::any::Any;
 use std::collections::HashMap;
+use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
-use genescape_cache::verified;
+use genescape_world::NamedFiles;
 
 use super::{LoadError, Result};
 
@@ -36,13 +37,15 @@ impl Store {
         Ok(made)
     }
 
-    /// A blob's bytes, verified against its name if that is a digest (a person's own files have other names).
-    pub(super) fn blob(&self, path: &Path) -> Result<Arc<Vec<u8>>> {
+    /// The bytes at `path`, which a scene names `uri`; verified against their name if that is a digest (a person's own
+    /// files have other names).
+    pub(super) fn bytes(&self, files: &NamedFiles, uri: &str, path: &Path) -> Result<Arc<Vec<u8>>> {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         self.get(&format!("bytes of {name}"), || {
-            let bytes = std::fs::read(path)
-                .map_err(|source| LoadError::Unreadable { path: path.to_owned(), source })?;
-            verified(path, bytes).map_err(|_| LoadError::Damaged { path: path.to_owned() })
+            files.read_uri(uri).map_err(|source| match source.kind() {
+                ErrorKind::InvalidData => LoadError::Damaged { path: path.to_owned() },
+                _ => LoadError::Unreadable { path: path.to_owned(), source },
+            })
         })
     }
 }

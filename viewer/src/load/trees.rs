@@ -6,6 +6,7 @@ use genescape_schema::scene::{InstancesExtension, ProgressiveMeshExtension, Reso
 use glam::Vec3;
 use gltf::Semantic;
 
+use super::bounds::{is_placed, is_tree_sized};
 use super::document::Document;
 use super::{Result, images};
 use crate::scene::{Image, Level, Material, Range, Template, TreeVertex, Trees};
@@ -25,6 +26,9 @@ pub(super) fn read(document: &Document) -> Result<Trees> {
         .collect::<Result<Vec<_>>>()?;
     if let Some(tree) = instances.iter().find(|tree| tree.template as usize >= templates.len()) {
         return Err(document.wrong(format!("a tree is of unknown template {}", tree.template)));
+    }
+    if !instances.iter().all(is_placed) {
+        return Err(document.wrong("a tree stands or reaches beyond all bounds"));
     }
     Ok(Trees { templates, instances: instances.into() })
 }
@@ -84,9 +88,12 @@ fn build(
             if template.materials[slot].alpha_cutoff.is_some() {
                 shade_crown(&mut part);
             }
+            let count = part.len();
             template.vertices.extend(part);
             let first = template.indices.len() as u32;
-            template.indices.extend(document.indices(&primitive)?.iter().map(|index| index + first_vertex));
+            template
+                .indices
+                .extend(document.indices(&primitive, count)?.iter().map(|index| index + first_vertex));
             ranges[slot] = Range { first, count: template.indices.len() as u32 - first };
         }
         template.levels.push(Level { error_m: level.error_m, base_vertex, ranges });
@@ -129,6 +136,9 @@ fn vertices(
     let (moves, turns) = target.map_or((None, None), |target| (target.positions(), target.normals()));
     let moves = values_or(document, moves, [0.0; 3], count, "geomorphs")?;
     let turns = values_or(document, turns, [0.0; 3], count, "geomorphs of normals")?;
+    if !is_tree_sized(&positions) || !is_tree_sized(&moves) {
+        return Err(document.wrong("a tree is larger than any tree"));
+    }
     let slides = texcoord_deltas.map(|index| document.accessor(index)).transpose()?;
     let slides = values_or(document, slides, [0.0; 2], count, "geomorphs of texture coordinates")?;
     let vertex = |v: usize| {

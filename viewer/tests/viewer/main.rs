@@ -6,6 +6,7 @@ mod display;
 mod golden;
 mod lod_twin;
 mod made_up;
+mod mistakes;
 mod program;
 mod shaders;
 mod window;
