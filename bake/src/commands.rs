@@ -9,7 +9,7 @@ use anyhow::{Context, Result, bail};
 use bytesize::ByteSize;
 use genescape_cache::{Cache, GcOptions};
 use genescape_schema::{Current, INDIVIDUALS, Population, Space};
-use genescape_world::{World, WorldError, atomic_write, names};
+use genescape_world::{World, WorldError, names};
 use serde_json::Value;
 
 use crate::breed::NoVotes;
@@ -22,7 +22,7 @@ use crate::run::RunError;
 use crate::say;
 use crate::session::{Baked, Publish, Session};
 use crate::watch_loop::{self, Host};
-use crate::{bench, lod_command};
+use crate::{bench, export_command, lod_command};
 
 /// Set by Ctrl-C.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
@@ -73,7 +73,7 @@ fn dispatch(cli: &Cli) -> Result<()> {
         Command::Next { from } => next(*from, run),
         Command::Params { markdown } => params(&run.world, *markdown),
         Command::Explain { scene } => explain(&run.world, *scene),
-        Command::Export { scene, out } => export(&run.world, scene, out),
+        Command::Export { scene, out } => export_command::export(&run.world, scene, out),
         Command::Lod { input, out, crease_deg } => lod_command::convert(input, out, *crease_deg),
         Command::Cache { action } => look_after_cache(&run.world, action),
         Command::Bench { runs } => bench::bench(*runs, &pool(run.threads)?, resolution(run.size)?),
@@ -223,41 +223,15 @@ fn params(world: &Path, markdown: bool) -> Result<()> {
     Ok(())
 }
 
-fn export(world: &Path, scene: &str, out: &Path) -> Result<()> {
-    let path = match scene.parse::<usize>() {
-        Ok(index) => {
-            let world = World::open(world)?;
-            let current = current(&world)?;
-            let file = current.scenes.get(index);
-            let file = file.ok_or_else(|| BadInput(format!("scene {index}: there are scenes 0 to 3")))?;
-            world.root().join(file)
-        }
-        Err(_) => PathBuf::from(scene),
-    };
-    let json = fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
-    let folder = path.parent().unwrap_or(Path::new("."));
-    let read = |uri: &str| fs::read(folder.join(uri)).map_err(|error| error.to_string());
-    let glb = crate::gltf::single_glb(&json, read).with_context(|| {
-        format!("{}: cannot be made one file; bake again if blobs are missing", path.display())
-    })?;
-    atomic_write::replace(out, &glb).with_context(|| format!("cannot write {}", out.display()))?;
-    say!("wrote {} ({})", out.display(), size(glb.len() as u64));
-    Ok(())
-}
-
 fn open_cache(world: &Path) -> Result<(World, Cache)> {
     let world = World::open(world)?;
     let cache = Cache::open(world.baked())?;
     Ok((world, cache))
 }
 
-fn current(world: &World) -> Result<Current> {
-    world.current()?.with_context(|| format!("nothing has been baked in {} yet", world.root().display()))
-}
-
 fn explain(world: &Path, scene: Option<usize>) -> Result<()> {
     let (world, cache) = open_cache(world)?;
-    let current = current(&world)?;
+    let current = export_command::current(&world)?;
     if scene.is_some_and(|scene| scene >= INDIVIDUALS) {
         return Err(BadInput("there are scenes 0 to 3".into()).into());
     }

@@ -26,6 +26,7 @@ const RULES: &[Rule] = &[
             "xtask/",
             "bake/src/bench.rs",
             "bake/src/commands.rs",
+            "bake/src/export_command.rs",
             "bake/src/lod_command.rs",
             "bake/src/session.rs",
             "viewer/src/app/",
