@@ -13,8 +13,9 @@ use genescape_world::{World, WorldError, names};
 use serde_json::Value;
 
 use crate::breed::NoVotes;
-use crate::cli::{BadInput, CacheCommand, Cli, Command, RunArgs, meant_command};
+use crate::cli::{BadInput, CacheCommand, Cli, Command, Landscape, RunArgs, meant_command};
 use crate::events::{Event, Listener};
+use crate::export::InTheWay;
 use crate::gltf::for_each_object;
 use crate::plan::Resolution;
 use crate::progress::{JsonLines, ProgressBar};
@@ -59,7 +60,11 @@ fn exit_code(error: &anyhow::Error) -> u8 {
         return INTERRUPTED_CODE;
     }
     let world = matches!(error.downcast_ref(), Some(WorldError::Faulty(_) | WorldError::LastGeneration(_)));
-    if world || error.is::<NoVotes>() || error.is::<BadInput>() { BAD_INPUT } else { FAILED }
+    if world || error.is::<NoVotes>() || error.is::<InTheWay>() || error.is::<BadInput>() {
+        BAD_INPUT
+    } else {
+        FAILED
+    }
 }
 
 fn dispatch(cli: &Cli) -> Result<()> {
@@ -72,8 +77,8 @@ fn dispatch(cli: &Cli) -> Result<()> {
         Command::Random { seed } => random(*seed, run),
         Command::Next { from } => next(*from, run),
         Command::Params { markdown } => params(&run.world, *markdown),
-        Command::Explain { scene } => explain(&run.world, *scene),
-        Command::Export { scene, out } => export_command::export(&run.world, scene, out),
+        Command::Explain { landscape } => explain(&run.world, *landscape),
+        Command::Export { scene, out, options } => export_command::run(scene, out, *options, run),
         Command::Lod { input, out, crease_deg } => lod_command::convert(input, out, *crease_deg),
         Command::Cache { action } => look_after_cache(&run.world, action),
         Command::Bench { runs } => bench::bench(*runs, &pool(run.threads)?, resolution(run.size)?),
@@ -161,12 +166,12 @@ fn summary(baked: &Baked) {
     }
     let individuals = &file.population.individuals;
     let width = individuals.iter().map(|i| i.name.chars().count()).max().unwrap_or(0);
-    for (scene, (individual, path)) in individuals.iter().zip(scenes).enumerate() {
-        say!("  {scene}  {:width$}  {}", individual.name, path.display());
+    for ((landscape, individual), path) in Landscape::all().zip(individuals).zip(scenes) {
+        say!("  {landscape}  {:width$}  {}", individual.name, path.display());
     }
     say!(
         "Look at them: import a scene.gltf in Blender, or drop it on any glTF viewer;\n\
-         `bake export 0 scene.glb` makes one self-contained file of scene 0.\n\
+         `bake export 1 valley/` writes landscape 1, its sky and its trees for other programs.\n\
          Change them: edit {} and bake again.",
         file.path.display()
     );
@@ -229,15 +234,12 @@ fn open_cache(world: &Path) -> Result<(World, Cache)> {
     Ok((world, cache))
 }
 
-fn explain(world: &Path, scene: Option<usize>) -> Result<()> {
+fn explain(world: &Path, landscape: Option<Landscape>) -> Result<()> {
     let (world, cache) = open_cache(world)?;
     let current = export_command::current(&world)?;
-    if scene.is_some_and(|scene| scene >= INDIVIDUALS) {
-        return Err(BadInput("there are scenes 0 to 3".into()).into());
-    }
-    for index in scene.map_or(0..INDIVIDUALS, |scene| scene..scene + 1) {
-        say!("{} in the last bake:", current.scenes[index]);
-        let history = cache.history(&names::scene_id(current.generation, index))?;
+    for landscape in landscape.map_or_else(|| Landscape::all().collect(), |one| vec![one]) {
+        say!("landscape {landscape} ({}) in the last bake:", current.scenes[landscape.index()]);
+        let history = cache.history(&names::scene_id(current.generation, landscape.index()))?;
         for (stage, explanation) in history.last() {
             say!("  {stage:<16} {explanation}");
         }

@@ -7,6 +7,7 @@ pub mod breed;
 pub mod cli;
 pub mod commands;
 pub mod events;
+pub mod export;
 pub mod export_command;
 pub mod gltf;
 pub mod graph;

@@ -60,6 +60,8 @@ impl Listener for ProgressBar {
             Event::Bred { parent, path } => {
                 self.bar.suspend(|| eprintln!("bred {path} from the votes on generation {parent}"));
             }
+            Event::Exporting { files } => self.bar.set_length(*files as u64),
+            Event::Written { .. } => self.bar.inc(1),
             Event::SceneReady { .. } | Event::Superseded | Event::Done { .. } | Event::Failed { .. } => {}
         }
     }

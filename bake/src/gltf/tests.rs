@@ -228,7 +228,8 @@ fn the_start_is_dry_and_at_eye_height() {
 #[test]
 fn a_single_file_holds_the_whole_scene() {
     let (synthetic, bytes) = scene(20);
-    let glb = single_glb(&bytes, |uri| synthetic.files.resolve(uri)).unwrap();
+    let json: Value = serde_json::from_slice(&bytes).unwrap();
+    let glb = single_glb(json.clone(), |uri| synthetic.files.resolve(uri)).unwrap();
     assert!(!String::from_utf8_lossy(&glb).contains("\"uri\""));
     let (single, bin) = gltf_of(&glb);
     check_ranges(&single, &[bin.len()]);
@@ -242,7 +243,7 @@ fn a_single_file_holds_the_whole_scene() {
         assert_eq!(part(&ours, &many), part(&theirs, &[&bin]));
     }
     assert_eq!(single.images().count(), document.images().count());
-    let missing = single_glb(&bytes, |_| Err("gone".into()));
+    let missing = single_glb(json, |_| Err("gone".into()));
     assert!(matches!(missing, Err(ExportError::Missing(..))));
 }
 
