@@ -12,6 +12,9 @@ use genescape_schema::scene::{
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
+/// Where scenes find their blobs.
+const BLOBS: &str = "../../blobs/";
+
 /// An open scene.
 pub struct SceneFile {
     pub path: PathBuf,
@@ -37,20 +40,19 @@ impl SceneFile {
         self.folder().join("../..")
     }
 
-    /// A blob by its URI: all that is read of a scene is read here. Its bytes are those that it is named after.
+    /// A blob by its URI: all that is read of a scene is read here, and nothing but blobs is, whoever wrote the scene. Its
+    /// bytes are those that it is named after.
     ///
     /// # Errors
-    /// A blob that is missing or damaged.
+    /// What is no blob, or one that is missing or damaged.
     pub fn read(&self, uri: &str) -> Result<Vec<u8>> {
+        let blob = uri.strip_prefix(BLOBS).filter(|blob| !blob.contains(".."));
+        let name = blob.and_then(|blob| Path::new(blob).file_stem()?.to_str()?.parse::<Digest>().ok());
+        let name = name.with_context(|| format!("{} names {uri}, which is no blob", self.path.display()))?;
         let path = self.folder().join(uri);
         let bytes = fs::read(&path).with_context(|| format!("cannot read {}; bake again", path.display()))?;
-        let name =
-            path.file_stem().and_then(|stem| stem.to_str()).and_then(|stem| stem.parse::<Digest>().ok());
-        ensure!(
-            name.is_none_or(|digest| digest == Digest::of(&bytes)),
-            "{} is damaged; `bake cache verify`, then bake again",
-            path.display()
-        );
+        let damaged = || format!("{} is damaged; `bake cache verify`, then bake again", path.display());
+        ensure!(name == Digest::of(&bytes), damaged());
         Ok(bytes)
     }
 

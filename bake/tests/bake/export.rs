@@ -225,3 +225,18 @@ fn a_damaged_blob_is_not_exported() {
     assert_eq!(output.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&output.stderr).contains("is damaged"));
 }
+
+#[test]
+fn nothing_but_blobs_is_read_whoever_wrote_the_scene() {
+    let world = World::starters();
+    let text = fs::read_to_string(world.scene(0)).expect("a scene");
+    let from = text.find("../../blobs/").expect("a blob");
+    let to = from + text[from..].find('"').expect("its end");
+    for secret in ["../../../space.ron", "../../current.ron", "../../blobs/../current.ron"] {
+        fs::write(world.scene(0), [&text[..from], secret, &text[to..]].concat()).expect("written");
+        let out = world.file("x.glb");
+        let output = world.run(&["export", "1", out.to_str().expect("a path")]);
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(error.contains("which is no blob") && !out.exists(), "{error}");
+    }
+}
