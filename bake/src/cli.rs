@@ -1,9 +1,14 @@
 //! The command line: words → one [`Command`] for each thing that can be asked for.
 
+use std::fmt;
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use bytesize::ByteSize;
 use clap::{Args, CommandFactory, Parser, Subcommand};
+use genescape_schema::INDIVIDUALS;
+
+use crate::export::{Audience, Options};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -12,16 +17,78 @@ Examples:
   bake --watch                           bake whenever a population file is saved, breed whenever one is voted on
   bake random --seed 7                   make a population of four random genomes, and bake it
   bake next                              breed the next population from the votes, and bake it
-  bake export 2 alps.glb                 one self-contained file of scene 2, to send along
+  bake export 2 alps/                    landscape 2 with its sky and its trees, as files for other programs
+  bake export 2 alps.glb                 landscape 2 as one self-contained file, to send along
   bake lod bunny.obj bunny.glb           progressive mesh and distinguished meshes of any model
-  bake explain 0                         why each stage of scene 0 was or was not rebuilt
+  bake explain 1                         why each stage of landscape 1 was or was not rebuilt
+
+Landscapes are counted 1 to 4; their folders are scene-0 to scene-3.
 
 Exit codes: 0 done, 1 failed, 2 wrong usage or bad input, 130 interrupted (Ctrl-C; what was finished is kept).";
+
+const EXPORT_EXAMPLES: &str = "\
+Examples:
+  bake export 1 valley/                  valley/oak-valley-in-june.glb, its sky, and valley/trees/oak-1.glb to oak-5.glb
+  bake export 1 valley/ --for blender    the same for Blender, and valley/oak-valley-in-june-blender.py
+  bake export 1 valley.glb               one self-contained file
+  bake export world/baked/g0002/scene-1/scene.gltf alps.glb";
 
 /// Input that the person must correct, as against a failure of the program: exit code 2.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 pub struct BadInput(pub String);
+
+/// One of the four landscapes, which people count from 1; files and arrays count from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Landscape(usize);
+
+impl Landscape {
+    /// All four, in order.
+    pub fn all() -> impl Iterator<Item = Self> {
+        (0..INDIVIDUALS).map(Self)
+    }
+
+    /// From 0.
+    pub fn index(self) -> usize {
+        self.0
+    }
+}
+
+impl fmt::Display for Landscape {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.0 + 1)
+    }
+}
+
+impl FromStr for Landscape {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = text.parse::<usize>().ok().filter(|number| (1..=INDIVIDUALS).contains(number));
+        number
+            .map(|number| Self(number - 1))
+            .ok_or_else(|| format!("there are landscapes 1 to {INDIVIDUALS}"))
+    }
+}
+
+/// A landscape of the current generation, or any baked one by its file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SceneArg {
+    Current(Landscape),
+    File(PathBuf),
+}
+
+impl FromStr for SceneArg {
+    type Err = String;
+
+    /// Whatever looks like a number is meant as one.
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.parse::<i64>() {
+            Ok(_) => text.parse().map(Self::Current),
+            Err(_) => Ok(Self::File(text.into())),
+        }
+    }
+}
 
 /// Bakes landscapes from genomes: glTF, PNG and EXR files that open in Blender and in any glTF viewer.
 #[derive(Debug, Parser)]
@@ -87,19 +154,25 @@ pub enum Command {
     },
     /// Say for each stage whether it was reused and, if not, which field of its key changed.
     Explain {
-        /// Scene 0 to 3 [default: all].
-        scene: Option<usize>,
+        /// Landscape 1 to 4 [default: all].
+        #[arg(value_name = "LANDSCAPE", allow_negative_numbers = true)]
+        landscape: Option<Landscape>,
     },
-    /// Write a scene as one self-contained file.
-    #[command(
-        after_help = "Examples:\n  bake export 0 valley.glb\n  bake export world/baked/g0002/scene-1/scene.gltf alps.glb"
-    )]
+    /// Write a landscape for other programs: with its sky and trees into a folder, or as one file.
+    ///
+    /// A folder gets NAME.glb, the sky as NAME-sky.exr (linear, equirectangular) and NAME-sky.jpg (to look at), and
+    /// trees/KIND-1.glb and so on, each with all its levels of detail. Files of an earlier export are replaced; any
+    /// other file in the way is left alone and named.
+    #[command(after_help = EXPORT_EXAMPLES)]
     Export {
-        /// Scene 0 to 3 of the current generation, or the path of a scene.gltf.
-        scene: String,
-        /// The file to write.
-        #[arg(value_name = "FILE.glb")]
+        /// Landscape 1 to 4 of the current generation, or the path of a scene.gltf.
+        #[arg(value_name = "LANDSCAPE", allow_negative_numbers = true)]
+        scene: SceneArg,
+        /// A folder, or a file to write.
+        #[arg(value_name = "DIR|FILE.glb")]
         out: PathBuf,
+        #[command(flatten)]
+        options: ExportArgs,
     },
     /// Make a progressive mesh with distinguished meshes and geomorphs of any glTF or OBJ file.
     #[command(
@@ -127,6 +200,44 @@ pub enum Command {
         #[arg(long, default_value_t = 3)]
         runs: u32,
     },
+}
+
+/// What an export is for.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct ExportArgs {
+    /// The program that the file is for.
+    ///
+    /// Glb viewers take the sun's intensity as it is and know no sky, so there materials glow as if under one. Blender
+    /// takes it for lux; its file comes with a sky and a script, NAME-blender.py, that sets up the whole scene.
+    #[arg(long = "for", value_enum, value_name = "PROGRAM", default_value_t = Audience::Viewers)]
+    audience: Audience,
+    /// With the 10 km of land around: the default for Blender.
+    #[arg(long, overrides_with = "no_apron")]
+    apron: bool,
+    /// Without it: the default for viewers, which aim their camera at the whole.
+    #[arg(long, overrides_with = "apron")]
+    no_apron: bool,
+    /// Trees by EXT_mesh_gpu_instancing: a node for each mesh instead of two for each tree.
+    ///
+    /// For three.js, Babylon.js and engines. Others show one tree of each kind. Instances cannot shear, so trees lean
+    /// and stretch a little less; how much is said.
+    #[arg(long)]
+    instancing: bool,
+}
+
+impl ExportArgs {
+    /// # Errors
+    /// Blender with instancing.
+    pub fn options(self) -> Result<Options, BadInput> {
+        let Self { audience, apron, no_apron, instancing } = self;
+        if instancing && audience == Audience::Blender {
+            let text =
+                "--instancing is not for Blender, where the script makes the trees instances of collections";
+            return Err(BadInput(text.into()));
+        }
+        let apron = apron || audience == Audience::Blender && !no_apron;
+        Ok(Options { audience, apron, instancing })
+    }
 }
 
 /// `bake cache …`
@@ -182,6 +293,34 @@ mod tests {
             let cli = Cli::try_parse_from([&["bake"], &words[..]].concat()).expect("valid");
             assert!(matches!(cli.command, Some(Command::Next { from: None })), "{cli:?}");
             assert_eq!((cli.run.world, cli.run.threads), ("here".into(), Some(2)));
+        }
+    }
+
+    #[test]
+    fn landscapes_are_counted_from_one() {
+        assert_eq!("1".parse().map(Landscape::index), Ok(0));
+        assert!(Landscape::all().all(|landscape| landscape.to_string().parse() == Ok(landscape)));
+        for wrong in ["0", "5", "-1", "99999999999999999999", "one", ""] {
+            assert_eq!(wrong.parse::<Landscape>(), Err("there are landscapes 1 to 4".into()), "{wrong}");
+        }
+        assert_eq!("4".parse(), Ok(SceneArg::Current(Landscape(3))));
+        assert_eq!("0".parse::<SceneArg>(), Err("there are landscapes 1 to 4".into()));
+        assert_eq!("a/scene.gltf".parse(), Ok(SceneArg::File("a/scene.gltf".into())));
+    }
+
+    #[test]
+    fn the_land_around_is_for_blender_unless_told_otherwise() {
+        for (words, apron) in [
+            (&[][..], false),
+            (&["--apron"], true),
+            (&["--for", "blender"], true),
+            (&["--for", "blender", "--no-apron"], false),
+            (&["--no-apron", "--apron"], true),
+        ] {
+            let cli =
+                Cli::try_parse_from([&["bake", "export", "1", "x.glb"], words].concat()).expect("valid");
+            let Some(Command::Export { options, .. }) = cli.command else { panic!("{cli:?}") };
+            assert_eq!(options.options().expect("valid").apron, apron, "{words:?}");
         }
     }
 

@@ -6,21 +6,22 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result};
 use genescape_cache::{Change, Explanation};
-use genescape_schema::{Current, INDIVIDUALS, Population, Space};
-use genescape_world::output::{self, BadOutput};
-use genescape_world::{MAX_MODEL_BYTES, NamedFiles, World, WorldError, atomic_write, names, regular_file};
+use genescape_schema::{Population, Space};
+use genescape_world::output::BadOutput;
+use genescape_world::{World, WorldError, names};
 
 use crate::breed::NoVotes;
 use crate::cache_commands::GaveUp;
-use crate::cli::{BadInput, Cli, Command, RunArgs, meant_command};
+use crate::cli::{BadInput, Cli, Command, Landscape, RunArgs, meant_command};
 use crate::events::{Event, Listener};
+use crate::export::InTheWay;
 use crate::plan::Resolution;
 use crate::progress::{JsonLines, ProgressBar};
 use crate::run::RunError;
 use crate::say;
 use crate::session::{Baked, Publish, Session};
 use crate::watch_loop::{self, Host};
-use crate::{bench, cache_commands, lod_command};
+use crate::{bench, cache_commands, export_command, lod_command};
 
 /// Set by Ctrl-C.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
@@ -61,11 +62,8 @@ fn exit_code(error: &anyhow::Error) -> u8 {
         return INTERRUPTED_CODE;
     }
     let world = error.downcast_ref().is_some_and(WorldError::is_bad_input);
-    if world || error.is::<BadOutput>() || error.is::<NoVotes>() || error.is::<BadInput>() {
-        BAD_INPUT
-    } else {
-        FAILED
-    }
+    let way = error.is::<BadOutput>() || error.is::<InTheWay>();
+    if world || way || error.is::<NoVotes>() || error.is::<BadInput>() { BAD_INPUT } else { FAILED }
 }
 
 fn dispatch(cli: &Cli) -> Result<()> {
@@ -78,8 +76,8 @@ fn dispatch(cli: &Cli) -> Result<()> {
         Command::Random { seed } => random(*seed, run),
         Command::Next { from } => next(*from, run),
         Command::Params { markdown } => params(&run.world, *markdown),
-        Command::Explain { scene } => explain(&run.world, *scene),
-        Command::Export { scene, out } => export(&run.world, scene, out),
+        Command::Explain { landscape } => explain(&run.world, *landscape),
+        Command::Export { scene, out, options } => export_command::run(scene, out, *options, run),
         Command::Lod { input, out, crease_deg } => lod_command::convert(input, out, *crease_deg),
         Command::Cache { action } => cache_commands::look_after(&run.world, action, &stopped),
         Command::Bench { runs } => bench::bench(*runs, &pool(run.threads)?, resolution(run.size)?),
@@ -169,12 +167,12 @@ fn summary(baked: &Baked) {
     }
     let individuals = &file.population.individuals;
     let width = individuals.iter().map(|i| i.name.chars().count()).max().unwrap_or(0);
-    for (scene, (individual, path)) in individuals.iter().zip(scenes).enumerate() {
-        say!("  {scene}  {:width$}  {}", individual.name, path.display());
+    for ((landscape, individual), path) in Landscape::all().zip(individuals).zip(scenes) {
+        say!("  {landscape}  {:width$}  {}", individual.name, path.display());
     }
     say!(
         "Look at them: import a scene.gltf in Blender, or drop it on any glTF viewer;\n\
-         `bake export 0 scene.glb` makes one self-contained file of scene 0.\n\
+         `bake export 1 valley/` writes landscape 1, its sky and its trees for other programs.\n\
          Change them: edit {} and bake again.",
         file.path.display()
     );
@@ -247,51 +245,13 @@ fn params(world: &Path, markdown: bool) -> Result<()> {
     Ok(())
 }
 
-fn export(world: &Path, scene: &str, out: &Path) -> Result<()> {
-    let (path, json) = match scene.parse::<usize>() {
-        Ok(index) => {
-            let (world, cache) = cache_commands::open(world)?;
-            let current = current(&world)?;
-            let file = current.scenes.get(index);
-            let file = file.ok_or_else(|| BadInput(format!("scene {index}: there are scenes 0 to 3")))?;
-            let path = world.root().join(file);
-            let json =
-                cache_commands::read_scene(&path, &cache).context("it cannot be exported; bake again")?;
-            (path, json)
-        }
-        Err(_) => {
-            let json = regular_file::read(Path::new(scene), MAX_MODEL_BYTES);
-            let json = json.with_context(|| format!("cannot read {scene}"))?;
-            (PathBuf::from(scene), json)
-        }
-    };
-    output::check(out, "glb", std::slice::from_ref(&path))?;
-    let files = NamedFiles::of(&path);
-    let read = |uri: &str| files.read_uri(uri).map_err(|error| error.to_string());
-    let glb = crate::gltf::single_glb(&json, read).with_context(|| {
-        let scene = path.display();
-        format!("{scene} cannot be made one file; `bake cache verify`, then `bake` make again what it lacks")
-    })?;
-    output::check(out, "glb", &files.files())?;
-    atomic_write::replace(out, &glb).with_context(|| format!("cannot write {}", out.display()))?;
-    say!("wrote {} ({})", out.display(), say::size(glb.len() as u64));
-    Ok(())
-}
-
-fn current(world: &World) -> Result<Current> {
-    world.current()?.with_context(|| format!("nothing has been baked in {} yet", world.root().display()))
-}
-
-fn explain(world: &Path, scene: Option<usize>) -> Result<()> {
+fn explain(world: &Path, landscape: Option<Landscape>) -> Result<()> {
     let (world, cache) = cache_commands::open(world)?;
-    let current = current(&world)?;
-    if scene.is_some_and(|scene| scene >= INDIVIDUALS) {
-        return Err(BadInput("there are scenes 0 to 3".into()).into());
-    }
+    let current = export_command::current(&world)?;
     let (space, _) = world.space()?;
-    for index in scene.map_or(0..INDIVIDUALS, |scene| scene..scene + 1) {
-        say!("{} in the last bake:", current.scenes[index]);
-        let history = cache.history(&names::scene_id(current.generation, index))?;
+    for landscape in landscape.map_or_else(|| Landscape::all().collect(), |one| vec![one]) {
+        say!("landscape {landscape} ({}) in the last bake:", current.scenes[landscape.index()]);
+        let history = cache.history(&names::scene_id(current.generation, landscape.index()))?;
         for (stage, explanation) in history.last() {
             say!("  {stage:<16} {}", as_in_files(&space, explanation));
         }

@@ -19,6 +19,10 @@ pub enum Event {
     Bred { parent: u32, path: String },
     /// Something newer was saved: the bake that was going on ends early, and another one begins.
     Superseded,
+    /// An export of `files` files begins.
+    Exporting { files: usize },
+    /// One of them is in place.
+    Written { path: String, bytes: u64 },
     /// The bake has ended well.
     Done { built: usize, reused: usize, ms: f64 },
     /// It ended with an error.

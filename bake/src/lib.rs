@@ -8,6 +8,8 @@ mod cache_commands;
 pub mod cli;
 pub mod commands;
 pub mod events;
+pub mod export;
+pub mod export_command;
 pub mod gltf;
 pub mod graph;
 pub mod import;

@@ -74,6 +74,18 @@ pub fn half_bits(value: f32) -> u16 {
     if bits < (113 << 23) { subnormal as u16 } else { normal as u16 }
 }
 
+/// The value of a half float by its bits.
+#[inline]
+pub fn value_of_half(bits: u16) -> f32 {
+    let (sign, exponent, fraction) =
+        (u32::from(bits >> 15) << 31, u32::from(bits >> 10 & 31), u32::from(bits & 1023));
+    match exponent {
+        0 => f32::from_bits(sign | (fraction as f32 / 16_777_216.0).to_bits()),
+        31 => f32::from_bits(sign | 255 << 23 | fraction << 13),
+        _ => f32::from_bits(sign | (exponent + 112) << 23 | fraction << 13),
+    }
+}
+
 /// Four vectors, then the same turned by one, two and three quarters of a turn.
 pub const fn quarter_turns(first: [[f32; 2]; 4]) -> [[f32; 2]; 16] {
     let mut all = [[0.0; 2]; 16];
@@ -111,6 +123,10 @@ mod tests {
             if value < 65504.0 {
                 assert_eq!(half_bits(value), half::f16::from_f32(value).to_bits(), "{value:e}");
             }
+        }
+        for bits in 0..=u16::MAX {
+            let (ours, theirs) = (value_of_half(bits), half::f16::from_bits(bits).to_f32());
+            assert!(ours == theirs || ours.is_nan() && theirs.is_nan(), "{bits:x}: {ours} for {theirs}");
         }
         assert_eq!(half_bits(1e9), half::f16::MAX.to_bits());
         assert_eq!(half_bits(f32::NAN), 0);

@@ -73,6 +73,8 @@ impl Listener for ProgressBar {
                 self.bar
                     .suspend(|| say::warn(format_args!("bred {path} from the votes on generation {parent}")));
             }
+            Event::Exporting { files } => self.bar.set_length(*files as u64),
+            Event::Written { .. } => self.bar.inc(1),
             Event::SceneReady { .. } | Event::Superseded | Event::Done { .. } | Event::Failed { .. } => {}
         }
     }

@@ -6,13 +6,14 @@ import struct
 import numpy as np
 
 
-def start():
-    """An empty Blender with its glTF importer; its chatter goes to stderr. Returns bpy and our own stdout."""
+def start(empty=True):
+    """Blender with its glTF importer, empty or as a person finds it; its chatter goes to stderr. Returns bpy and our own
+    stdout."""
     out = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
     import bpy
     import addon_utils
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_factory_settings(use_empty=empty)
     addon_utils.enable("io_scene_gltf2", default_set=False)
     addon_utils.enable("cycles", default_set=False)
     return bpy, out

@@ -177,15 +177,30 @@ fn world() -> PathBuf {
     root().join("target/interop/world")
 }
 
-fn single_file() -> PathBuf {
-    root().join("target/interop/single.glb")
+/// Where its exports are: a folder for viewers, one for Blender, and a file with instances.
+fn exports() -> PathBuf {
+    root().join("target/interop/exports")
 }
 
-/// What a newcomer does first: the starters, from nothing, and one scene as a single file.
+/// What a newcomer does first: the starters, from nothing, and exports of one.
 fn release_build() -> Result<()> {
     let bake = release("genescape-bake", "bake")?;
     execute(program(&bake).arg("--world").arg(fresh(world())?))?;
-    execute(program(&bake).arg("export").arg(first_scene()?).arg(single_file()).arg("--world").arg(world()))
+    fresh(exports())?;
+    let (scene, folder) = (small_scene()?, exports());
+    for (out, options) in
+        [("plain", &[][..]), ("blender", &["--for", "blender"]), ("instanced.glb", &["--instancing"])]
+    {
+        execute(program(&bake).arg("export").arg(&scene).arg(folder.join(out)).args(options))?;
+    }
+    Ok(())
+}
+
+/// The only file in a folder of the exports that ends so.
+fn exported(folder: &str, ending: &str) -> Result<PathBuf> {
+    let folder = exports().join(folder);
+    let found = files(&folder, &[ending])?.into_iter().find(|file| file.parent() == Some(&folder));
+    found.with_context(|| format!("no {ending} in {}", folder.display()))
 }
 
 /// The same starters at the size of the table of digests: a test of the debug build compares them with it.
@@ -205,6 +220,12 @@ fn first_scene() -> Result<PathBuf> {
     baked_files(&["scene.gltf"])?.into_iter().next().context("the bake made no scene")
 }
 
+/// The scene of the fewest trees, which others' programs, that draw each by itself, show in little time.
+fn small_scene() -> Result<PathBuf> {
+    let size = |path: &PathBuf| std::fs::metadata(path).map_or(u64::MAX, |metadata| metadata.len());
+    baked_files(&["scene.gltf"])?.into_iter().min_by_key(size).context("the bake made no scene")
+}
+
 /// A tree: the first .glb with levels in it.
 fn tree_file() -> Result<PathBuf> {
     let has_levels = |path: &PathBuf| {
@@ -219,7 +240,7 @@ fn tree_file() -> Result<PathBuf> {
 fn validator() -> Result<()> {
     setup::node()?;
     let all = baked_files(&["scene.gltf", ".glb"])?;
-    execute(program("node").arg(script("validate.mjs")).args(all).arg(single_file()))
+    execute(program("node").arg(script("validate.mjs")).args(all).args(files(&exports(), &[".glb"])?))
 }
 
 fn blender() -> Result<()> {
@@ -227,22 +248,24 @@ fn blender() -> Result<()> {
     for file in [first_scene()?, tree_file()?] {
         execute(program(python()).arg(script("blender_check.py")).arg(file))?;
     }
-    Ok(())
+    let (set_up, plain) = (exported("blender", ".py")?, exported("plain", ".glb")?);
+    execute(program(python()).arg(script("blender_export.py")).arg(set_up).arg(plain))
 }
 
 fn three() -> Result<()> {
     setup::node()?;
     let scenes = baked_files(&["scene.gltf"])?;
-    execute(program("node").arg(script("three_check.mjs")).args(scenes).arg(tree_file()?).arg(single_file()))
+    let exports = files(&exports(), &[".glb"])?;
+    execute(program("node").arg(script("three_check.mjs")).args(scenes).arg(tree_file()?).args(exports))
 }
 
 fn f3d() -> Result<()> {
     setup::blender()?;
-    // It draws each tree by itself, so a scene of few trees is enough of its time.
-    let size = |path: &PathBuf| std::fs::metadata(path).map_or(u64::MAX, |metadata| metadata.len());
-    let scene =
-        baked_files(&["scene.gltf"])?.into_iter().min_by_key(size).context("the bake made no scene")?;
-    for (file, picture) in [(scene, "f3d-scene.png"), (tree_file()?, "f3d-tree.png")] {
+    for (file, picture) in [
+        (small_scene()?, "f3d-scene.png"),
+        (tree_file()?, "f3d-tree.png"),
+        (exported("plain", ".glb")?, "f3d-export.png"),
+    ] {
         let picture = root().join("target/interop").join(picture);
         execute(program(python()).arg(script("f3d_render.py")).arg(file).arg(&picture))?;
         ensure!(picture.is_file(), "F3D wrote no picture");

@@ -27,6 +27,8 @@ const RULES: &[Rule] = &[
             "bake/src/bench.rs",
             "bake/src/cache_commands.rs",
             "bake/src/commands.rs",
+            "bake/src/export/receipts.rs",
+            "bake/src/export/source.rs",
             "bake/src/lod_command.rs",
             "viewer/src/app/",
             "viewer/src/load/",

@@ -31,6 +31,29 @@ pub fn encode(image: &ImageF16) -> Vec<u8> {
     file
 }
 
+/// The picture in a file that [`encode`] made; `None` for any other.
+pub fn decode(file: &[u8]) -> Option<ImageF16> {
+    const WINDOW: &[u8] = b"dataWindow\0box2i\0\x10\0\0\0";
+    let window = file.windows(WINDOW.len()).position(|window| window == WINDOW)? + WINDOW.len();
+    let last = |at: usize| Some(u32::from_le_bytes(*file.get(window + at..)?.first_chunk()?));
+    let (width, height) = (last(8)?.checked_add(1)?, last(12)?.checked_add(1)?);
+    let rest = file.strip_prefix(&header(width, height)[..])?;
+    let line_bytes = width as usize * 6;
+    let lines = rest.get(height as usize * 8..)?;
+    if lines.len() != height as usize * (line_bytes + 8) {
+        return None;
+    }
+    let mut data = Vec::with_capacity(lines.len() / 2);
+    for line in lines.chunks_exact(line_bytes + 8) {
+        let (blue, rest) = line[8..].split_at(line_bytes / 3);
+        let (green, red) = rest.split_at(line_bytes / 3);
+        for at in (0..blue.len()).step_by(2) {
+            data.extend([red, green, blue].map(|run| u16::from_le_bytes([run[at], run[at + 1]])));
+        }
+    }
+    Some(ImageF16 { width, height, data })
+}
+
 /// Interleaved RGB → a run of B, a run of G, a run of R, little endian.
 fn pack(pixels: &[u16], packed: &mut [u8]) {
     let (blue, rest) = packed.split_at_mut(packed.len() / 3);
@@ -115,6 +138,17 @@ mod tests {
             .from_buffered(Cursor::new(encode(&image)))
             .unwrap();
         assert_eq!(read.layer_data.channel_data.pixels, image);
+        assert_eq!(super::decode(&encode(&image)), Some(image));
+    }
+
+    #[test]
+    fn other_files_are_not_taken_for_ours() {
+        let file = encode(&ramp(5, 3));
+        for length in 0..file.len() {
+            assert_eq!(super::decode(&file[..length]), None, "{length} bytes");
+        }
+        let other = file.iter().map(|byte| byte ^ u8::from(*byte == 1)).collect::<Vec<_>>();
+        assert_eq!(super::decode(&other), None);
     }
 
     #[test]

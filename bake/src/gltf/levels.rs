@@ -1,5 +1,5 @@
-//! A levelled mesh → one self-contained .glb: scene 0 is D_0, scene 1 every distinguished mesh side by side, each
-//! D_i with a core morph target that is its geomorph to D_{i+1}, and everything in `GSC_progressive_mesh` besides.
+//! A levelled mesh → one self-contained .glb: scene 0 is D_0, with the others as its MSFT_lod, scene 1 every
+//! distinguished mesh side by side, each D_i with a core morph target that is its geomorph to D_{i+1}, and everything in `GSC_progressive_mesh` besides.
 
 use genescape_schema::scene::{GSC_PROGRESSIVE_MESH, ProgressiveLevel, ProgressiveMeshExtension};
 use serde_json::{Value, json};
@@ -8,7 +8,10 @@ use super::document::{ARRAY_BUFFER, Document, ELEMENT_ARRAY_BUFFER, FLOAT, Node,
 use super::glb::write_glb;
 use super::tangents::tangents;
 use super::{ExportError, MaterialSet};
-use crate::model::{Bounds, LevelledMesh, Material, Mesh};
+use crate::model::{Bounds, Level, LevelledMesh, Material, Mesh};
+
+/// Levels of detail that Babylon.js reads.
+const MSFT_LOD: &str = "MSFT_lod";
 
 /// One .glb with all levels of `mesh`, named after `name`.
 ///
@@ -80,33 +83,59 @@ pub fn levelled_glb(
         document.meshes[0]["extensions"] = json!({ GSC_PROGRESSIVE_MESH: extension });
         document.extensions_used.insert(GSC_PROGRESSIVE_MESH.into());
     }
-    let bounds = levels.iter().map(|level| level.mesh.bounds());
-    add_scenes(&mut document, name, &bounds.map(|b| b.max.x - b.min.x).collect::<Vec<_>>());
+    add_scenes(&mut document, name, &levels);
     materials.add_images_to(&mut document);
     let json = document.json();
     Ok(write_glb(json, document.bin))
 }
 
-/// Scene 0: the finished mesh. Scene 1: all levels in a row along x.
-fn add_scenes(document: &mut Document, name: &str, widths_m: &[f32]) {
+/// Pixels by which a level may be off, and the rows of the picture that these are pixels of, where programs choose levels
+/// by `MSFT_screencoverage`.
+const ERROR_PX: f32 = 1.5;
+const SCREEN_PX: f32 = 1080.0;
+
+/// Scene 0: the finished mesh. Scene 1: all levels in a row along x. Each stands on a node of its own there, so that the
+/// nodes of its meshes, which stand in no one's way, serve scene 0 as levels: Blender shows nodes that are in no scene.
+fn add_scenes(document: &mut Document, name: &str, levels: &[&Level]) {
     let finished = document.node(Node { name: name.into(), mesh: Some(0), ..Node::default() });
-    let mut children = Vec::new();
-    let mut at_m = 0.0;
-    for (i, width_m) in widths_m.iter().enumerate() {
-        if i > 0 {
-            at_m += 0.55 * (widths_m[i - 1] + width_m);
-        }
-        let node = Node {
-            name: format!("{name} D{i}"),
-            mesh: Some(i),
+    let (mut places, mut meshes) = (Vec::new(), Vec::new());
+    let widths_m = levels.iter().map(|level| level.mesh.bounds()).map(|bounds| bounds.max.x - bounds.min.x);
+    let (mut at_m, mut before_m) = (0.0, None);
+    for (i, width_m) in widths_m.enumerate() {
+        at_m += before_m.replace(width_m).map_or(0.0, |before_m| 0.55 * (before_m + width_m));
+        let mesh = document.node(Node { name: format!("{name} D{i}"), mesh: Some(i), ..Node::default() });
+        meshes.push(mesh);
+        places.push(document.node(Node {
+            name: format!("{name} D{i} place"),
             translation: Some([at_m, 0.0, 0.0]),
+            children: vec![mesh],
             ..Node::default()
-        };
-        children.push(document.node(node));
+        }));
     }
-    let row = document.node(Node { name: format!("{name} levels"), children, ..Node::default() });
+    let row = document.node(Node { name: format!("{name} levels"), children: places, ..Node::default() });
     document.scenes.push(json!({ "name": name, "nodes": [finished] }));
     document.scenes.push(json!({ "name": format!("{name} levels"), "nodes": [row] }));
+    if levels.len() > 1 {
+        let node = &mut document.nodes[finished];
+        node.extensions = Some(json!({ MSFT_LOD: { "ids": meshes[1..] } }));
+        node.extras = Some(json!({ "MSFT_screencoverage": screen_coverage(levels) }));
+        document.extensions_used.insert(MSFT_LOD.into());
+    }
+}
+
+/// For each level the part of the picture's height that the mesh must fill for it to be needed: less, and the next one's
+/// error is too small to see. The last is never let go.
+fn screen_coverage(levels: &[&Level]) -> Vec<f32> {
+    let bounds = levels[0].mesh.bounds();
+    let size_m = bounds.max.distance(bounds.min);
+    let mut coverage = Vec::with_capacity(levels.len());
+    let mut above = 1.0f32;
+    for level in &levels[1..] {
+        above = above.min(ERROR_PX / SCREEN_PX * size_m / level.error_m.max(f32::MIN_POSITIVE));
+        coverage.push(above);
+    }
+    coverage.push(0.0);
+    coverage
 }
 
 /// A primitive without morph targets: what part of the mesh it is, and its JSON so far.

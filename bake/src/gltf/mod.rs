@@ -10,6 +10,7 @@ mod glb;
 mod levels;
 mod materials;
 pub mod png;
+mod prune;
 mod scene;
 mod scene_import;
 mod scene_parts;

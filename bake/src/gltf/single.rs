@@ -7,18 +7,19 @@ use serde_json::{Value, json};
 use super::ExportError;
 use super::document::{Document, compact, for_each_object, pad};
 use super::glb::write_glb;
+use super::prune::prune;
 
-/// Puts all that `scene_gltf` names by URI into one .glb: parts of buffers that are used, images, and the resources
-/// of our extensions. `resolve` gives a file's bytes for a relative URI.
+/// Puts all that a scene, given as JSON, names by URI into one .glb: parts of buffers that are used, images, and the
+/// resources of our extensions; what no scene of it uses is left out. `resolve` gives a file's bytes for a relative URI.
 ///
 /// # Errors
-/// When the scene is not JSON of a glTF file, or a file cannot be had or is too short.
+/// When the scene is not glTF, or a file cannot be had or is too short.
 pub fn single_glb(
-    scene_gltf: &[u8],
+    mut root: Value,
     mut resolve: impl FnMut(&str) -> Result<Vec<u8>, String>,
 ) -> Result<Vec<u8>, ExportError> {
     let bad = |why: String| ExportError::NotGltf("the scene".into(), why);
-    let mut root: Value = serde_json::from_slice(scene_gltf).map_err(|e| bad(e.to_string()))?;
+    prune(&mut root);
     let mut load = |uri: &str| resolve(uri).map_err(|why| ExportError::Missing(uri.into(), why));
     let mut buffers = Vec::new();
     for (index, buffer) in take_list(&mut root, "buffers").iter().enumerate() {

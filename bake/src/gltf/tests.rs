@@ -76,6 +76,31 @@ fn a_tree_reads_back_as_it_was() {
 }
 
 #[test]
+fn coarser_levels_take_the_trees_place() {
+    let tree = tree(false);
+    let (document, _) = gltf_of(&tree_file(&tree));
+    let finished = document.default_scene().unwrap().nodes().next().unwrap();
+    let lod = finished.extension_value("MSFT_lod").unwrap();
+    let ids: Vec<usize> = serde_json::from_value(lod["ids"].clone()).unwrap();
+    let levels: Vec<_> = ids.iter().map(|&id| document.nodes().nth(id).unwrap()).collect();
+    let meshes = levels.iter().map(|node| node.mesh().unwrap().index());
+    assert_eq!(meshes.collect::<Vec<_>>(), (1..tree.levels.len()).collect::<Vec<_>>());
+    let (translation, rotation, scale) = finished.transform().decomposed();
+    assert!(levels.iter().all(|node| node.transform().decomposed() == (translation, rotation, scale)));
+    // Every node is in a scene, for Blender shows those that are in none.
+    let held: usize = document.nodes().map(|node| node.children().count()).sum();
+    let roots: usize = document.scenes().map(|scene| scene.nodes().count()).sum();
+    assert_eq!(held + roots, document.nodes().count());
+    let extras: Value = serde_json::from_str(finished.extras().as_ref().unwrap().get()).unwrap();
+    let coverage: Vec<f32> = serde_json::from_value(extras["MSFT_screencoverage"].clone()).unwrap();
+    assert_eq!(coverage.len(), tree.levels.len());
+    assert!(
+        coverage.is_sorted_by(|a, b| a > b) && coverage[0] <= 1.0 && coverage.ends_with(&[0.0]),
+        "{coverage:?}"
+    );
+}
+
+#[test]
 fn geomorphs_lead_to_the_next_level() {
     for still in [false, true] {
         let tree = tree(still);
@@ -228,7 +253,8 @@ fn the_start_is_dry_and_at_eye_height() {
 #[test]
 fn a_single_file_holds_the_whole_scene() {
     let (synthetic, bytes) = scene(20);
-    let glb = single_glb(&bytes, |uri| synthetic.files.resolve(uri)).unwrap();
+    let json: Value = serde_json::from_slice(&bytes).unwrap();
+    let glb = single_glb(json.clone(), |uri| synthetic.files.resolve(uri)).unwrap();
     assert!(!String::from_utf8_lossy(&glb).contains("\"uri\""));
     let (single, bin) = gltf_of(&glb);
     check_ranges(&single, &[bin.len()]);
@@ -242,7 +268,7 @@ fn a_single_file_holds_the_whole_scene() {
         assert_eq!(part(&ours, &many), part(&theirs, &[&bin]));
     }
     assert_eq!(single.images().count(), document.images().count());
-    let missing = single_glb(&bytes, |_| Err("gone".into()));
+    let missing = single_glb(json, |_| Err("gone".into()));
     assert!(matches!(missing, Err(ExportError::Missing(..))));
 }
 

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod eviction;
+mod export;
 mod faults;
 mod healing;
 mod library;

@@ -45,6 +45,7 @@ impl BakeProgress {
             }
             Event::Superseded | Event::Failed { .. } => self.baking = None,
             Event::Notice { .. } | Event::Bred { .. } | Event::SceneReady { .. } => {}
+            Event::Exporting { .. } | Event::Written { .. } => {}
         }
     }
 

@@ -1,0 +1,256 @@
+# Sets up a landscape of Genescape in Blender 4.2 or later, for Cycles and Eevee alike. Written by `bake export --for
+# blender`; another export replaces it unless it was changed.
+#
+#   blender --python THIS_FILE         or open it in Blender's text editor and press Run Script
+#
+# Imports the .glb beside it unless that was imported already, then sorts it into collections, makes trees instances of
+# one collection for each kind, and sets camera, sun, sky, haze and view transform. Run again, it changes nothing twice.
+import math
+import os
+
+import bpy
+
+SETTINGS = {}
+
+# Names in Blender are 63 bytes at most.
+TITLE = SETTINGS["title"].encode()[:50].decode(errors="ignore") or SETTINGS["landscape"]
+# Metres that the view reaches: beyond the land around.
+FAR_M = 40000.0
+# Leaves are cards with transparent corners, many behind one another.
+TRANSPARENT_BOUNCES = 32
+
+
+def main():
+    if not roots():
+        bpy.ops.import_scene.gltf(filepath=beside(SETTINGS["scene_file"]))
+        hide_startup_objects()
+    if not roots():
+        raise RuntimeError(f"{SETTINGS['scene_file']} holds no landscape {SETTINGS['landscape']}")
+    objects = {o for root in roots() for o in (root, *root.children_recursive)}
+    count = sort_into_collections(objects)
+    set_camera(objects)
+    set_sun(objects)
+    set_sky()
+    for material in {m for o in objects | kinds_of_trees() if o.type == "MESH" for m in o.data.materials if m}:
+        add_haze(material)
+    set_view()
+    print(f"{TITLE}: {count} trees of {len(SETTINGS['kinds'])} kinds; camera, sun and sky are set")
+
+
+def roots():
+    """What the landscape's file has at its top."""
+    return [o for o in bpy.data.objects
+            if o.get("landscape") == SETTINGS["landscape"] and o.parent is None and "role" not in o]
+
+
+def kinds_of_trees():
+    return {o for o in bpy.data.objects if o.get("landscape") == SETTINGS["landscape"] and "role" in o}
+
+
+def beside(name):
+    """A file beside this script, which Blender may also run from a text inside a .blend."""
+    places = [globals().get("__file__"), bpy.data.filepath, *(text.filepath for text in bpy.data.texts)]
+    for place in filter(None, places):
+        path = os.path.join(os.path.dirname(os.path.abspath(bpy.path.abspath(place))), name)
+        if os.path.exists(path):
+            return path
+    raise FileNotFoundError(f"{name} is not beside this script; keep the files of an export together")
+
+
+def hide_startup_objects():
+    """The cube and the lamp that every new Blender file begins with, unless the file is someone's work."""
+    if bpy.data.filepath:
+        return
+    for name in ("Cube", "Light"):
+        startup = bpy.data.objects.get(name)
+        if startup:
+            startup.hide_render = True
+            startup.hide_set(True)
+
+
+# ---- collections ----
+
+def sort_into_collections(objects):
+    """Land, Grass, Trees and so on below one collection; how many trees there are."""
+    top = top_collection()
+    library = collection("Kinds of trees", top)
+    kinds = [collection(kind, library) for kind in SETTINGS["kinds"]]
+    for tree in kinds_of_trees():
+        move(tree, kinds[tree["template"]])
+        # The finest mesh is for pictures, the proxy for the work on them.
+        tree.hide_viewport, tree.hide_render = tree["role"] == "finest", tree["role"] == "proxy"
+    layer = layer_collection(library, bpy.context.view_layer.layer_collection)
+    if layer:
+        layer.exclude = True
+    trees = collection("Trees", top)
+    replaced = [child for o in objects if "level" in o for child in o.children if child.type == "MESH"]
+    for mesh in replaced:
+        add_instance(mesh, kinds[mesh.parent["template"]], trees)
+    names = {"terrain": "Land", "apron": "Land", "water": "Water", "grass": "Grass"}
+    for o in objects - set(replaced):
+        place = "Trees" if o.type == "EMPTY" else names.get(o.name.split(".")[0], "Camera and light")
+        move(o, collection(place, top))
+    objects -= set(replaced)
+    bpy.data.batch_remove(replaced)
+    for imported in [c for c in bpy.data.collections if c.name.split(".")[0] == "kinds of trees"]:
+        if not imported.objects and not imported.children:
+            bpy.data.collections.remove(imported)
+    return sum(o.instance_type == "COLLECTION" for o in trees.objects)
+
+
+def top_collection():
+    """The landscape's own, below the scene's; the importer may have made it, below the one that was active."""
+    marked = (c for c in bpy.data.collections if c.get("landscape") == SETTINGS["landscape"])
+    top = next(marked, None) or bpy.data.collections.get(TITLE) or bpy.data.collections.new(TITLE)
+    top["landscape"] = SETTINGS["landscape"]
+    for parent in (bpy.context.scene.collection, *bpy.data.collections):
+        if top.name in parent.children:
+            parent.children.unlink(top)
+    bpy.context.scene.collection.children.link(top)
+    return top
+
+
+def collection(name, parent):
+    """The child of that name."""
+    found = next((c for c in parent.children if c.name.split(".")[0] == name), None)
+    if not found:
+        found = bpy.data.collections.new(name)
+        parent.children.link(found)
+    return found
+
+
+def layer_collection(wanted, layer):
+    if layer.collection == wanted:
+        return layer
+    return next(filter(None, (layer_collection(wanted, child) for child in layer.children)), None)
+
+
+def move(o, target):
+    for old in o.users_collection:
+        if old != target:
+            old.objects.unlink(o)
+    if o.name not in target.objects:
+        target.objects.link(o)
+
+
+def add_instance(mesh, kind, trees):
+    """An empty in the place of a tree's mesh, which shows the whole kind. Its parent has the rest of the transform: trees
+    lean and stretch, which one object cannot."""
+    instance = bpy.data.objects.new(f"{mesh.parent.name} {kind.name}", None)
+    instance.instance_type, instance.instance_collection = "COLLECTION", kind
+    instance.parent, instance.matrix_local = mesh.parent, mesh.matrix_local.copy()
+    instance.empty_display_size = mesh.parent.empty_display_size = 0.01
+    trees.objects.link(instance)
+
+
+# ---- camera and light ----
+
+def set_camera(objects):
+    camera = next(o for o in objects if o.type == "CAMERA")
+    camera.data.clip_end = FAR_M
+    bpy.context.scene.camera = camera
+    for screen in bpy.data.screens:
+        for space in (s for area in screen.areas for s in area.spaces if s.type == "VIEW_3D"):
+            space.clip_end = max(space.clip_end, FAR_M)
+
+
+def set_sun(objects):
+    sun = next(o for o in objects if o.type == "LIGHT").data
+    sun.energy, sun.color, sun.angle = SETTINGS["sun_strength"], SETTINGS["sun_color"], SETTINGS["sun_angle_rad"]
+
+
+def set_sky():
+    name = f"{TITLE} sky"
+    world = bpy.data.worlds.get(name) or bpy.data.worlds.new(name)
+    bpy.context.scene.world, world.use_nodes = world, True
+    nodes, links = world.node_tree.nodes, world.node_tree.links
+    nodes.clear()
+    environment = nodes.new("ShaderNodeTexEnvironment")
+    environment.image = bpy.data.images.load(beside(SETTINGS["sky_file"]), check_existing=True)
+    coordinates, mapping = nodes.new("ShaderNodeTexCoord"), nodes.new("ShaderNodeMapping")
+    # The middle column of a picture is +x to Blender; ours is north, which is +y.
+    mapping.inputs["Rotation"].default_value = (0, 0, -math.pi / 2)
+    background = nodes.new("ShaderNodeBackground")
+    background.inputs["Strength"].default_value = SETTINGS["sky_strength"]
+    output = nodes.new("ShaderNodeOutputWorld")
+    links.new(coordinates.outputs["Generated"], mapping.inputs["Vector"])
+    links.new(mapping.outputs["Vector"], environment.inputs["Vector"])
+    links.new(environment.outputs["Color"], background.inputs["Color"])
+    links.new(background.outputs["Background"], output.inputs["Surface"])
+    for i, node in enumerate((coordinates, mapping, environment, background, output)):
+        node.location = (300 * i, 0)
+    if hasattr(world, "sun_threshold"):
+        world.sun_threshold = 0.0  # Eevee would take the glow around the sun for a second one
+
+
+# ---- haze ----
+
+def haze_group():
+    """A shader, and the part of it that is not transparent → the same behind the air of its distance.
+
+    In materials and not in the world: a volume of many kilometres takes Cycles hours, and Eevee cuts it into slices."""
+    name = f"{TITLE} haze"
+    group = bpy.data.node_groups.get(name)
+    if group:
+        return group
+    group = bpy.data.node_groups.new(name, "ShaderNodeTree")
+    group.interface.new_socket("Shader", in_out="INPUT", socket_type="NodeSocketShader")
+    alpha = group.interface.new_socket("Alpha", in_out="INPUT", socket_type="NodeSocketFloat")
+    alpha.default_value = 1.0
+    group.interface.new_socket("Shader", in_out="OUTPUT", socket_type="NodeSocketShader")
+    inputs, outputs = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
+
+    def math_node(operation, *values):
+        node = group.nodes.new("ShaderNodeMath")
+        node.operation = operation
+        for socket, value in zip(node.inputs, values):
+            if hasattr(value, "links"):
+                group.links.new(value, socket)
+            else:
+                socket.default_value = value
+        return node.outputs[0]
+
+    distance_m = group.nodes.new("ShaderNodeCameraData").outputs["View Distance"]
+    clear = math_node("EXPONENT", math_node("MULTIPLY", distance_m, -SETTINGS["haze_extinction_per_m"]))
+    hazy = math_node("MULTIPLY", math_node("SUBTRACT", 1.0, clear), inputs.outputs["Alpha"])
+    seen = math_node("MULTIPLY", hazy, group.nodes.new("ShaderNodeLightPath").outputs["Is Camera Ray"])
+    air = group.nodes.new("ShaderNodeEmission")
+    air.inputs["Color"].default_value = (*SETTINGS["haze_color"], 1.0)
+    mix = group.nodes.new("ShaderNodeMixShader")
+    group.links.new(seen, mix.inputs[0])
+    group.links.new(inputs.outputs["Shader"], mix.inputs[1])
+    group.links.new(air.outputs[0], mix.inputs[2])
+    group.links.new(mix.outputs[0], outputs.inputs["Shader"])
+    return group
+
+
+def add_haze(material):
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    output = next((n for n in nodes if n.type == "OUTPUT_MATERIAL" and n.is_active_output), None)
+    surface = output and output.inputs["Surface"].links
+    if not surface or any(n.type == "GROUP" and n.node_tree == haze_group() for n in nodes):
+        return
+    haze = nodes.new("ShaderNodeGroup")
+    haze.node_tree = haze_group()
+    haze.location = (output.location.x, output.location.y + 200)
+    shader = next((n for n in nodes if n.type == "BSDF_PRINCIPLED"), None)
+    alpha = shader and shader.inputs["Alpha"].links
+    if alpha:
+        links.new(alpha[0].from_socket, haze.inputs["Alpha"])
+    else:
+        haze.inputs["Alpha"].default_value = 1.0
+    links.new(surface[0].from_socket, haze.inputs["Shader"])
+    links.new(haze.outputs["Shader"], output.inputs["Surface"])
+    if hasattr(material, "cycles"):
+        material.cycles.emission_sampling = "NONE"  # air is no lamp
+
+
+def set_view():
+    scene = bpy.context.scene
+    scene.view_settings.view_transform, scene.view_settings.look = "AgX", "None"
+    scene.view_settings.exposure, scene.view_settings.gamma = 0.0, 1.0
+    if hasattr(scene, "cycles"):
+        scene.cycles.transparent_max_bounces = max(scene.cycles.transparent_max_bounces, TRANSPARENT_BOUNCES)
+
+
+main()
