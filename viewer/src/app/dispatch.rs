@@ -6,7 +6,8 @@ use winit::event_loop::ActiveEventLoop;
 use winit::window::Fullscreen;
 
 use super::{App, lands};
-use crate::event::{Arrangement, Ballot, Event, Panel};
+use crate::ballots::Ballot;
+use crate::event::{Arrangement, Event, Panel};
 use crate::image_file;
 use crate::input::{Best, Command};
 use crate::lod_mode::LodMode;

@@ -7,7 +7,8 @@ use std::sync::Arc;
 use egui::TextureId;
 use genescape_schema::{Genome, INDIVIDUALS, Parameter, Space};
 
-use crate::event::{Arrangement, Ballots, Panel};
+use crate::ballots::Ballots;
+use crate::event::{Arrangement, Panel};
 use crate::input::KeyGroup;
 use crate::options::Options;
 use crate::settings::Comfort;

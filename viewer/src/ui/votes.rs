@@ -9,7 +9,8 @@ use super::icon::Icon;
 use super::model::Model;
 use super::theme;
 use super::widgets::{Asks, painted_button, progress_ring};
-use crate::event::{Ballot, Event};
+use crate::ballots::Ballot;
+use crate::event::Event;
 use crate::input::Command;
 
 /// Height of a vote button, in points.

@@ -176,6 +176,8 @@ fn a_person_votes_and_breeds(stage: &Stage, viewer: &mut Viewer) {
     viewer.until("another by key", |viewer| cast(viewer) == [json!(0), json!(1), json!(2)]);
     display.tap_with_ctrl(keys::Z);
     viewer.until("it is taken back", |viewer| cast(viewer) == [json!(0), json!(1), json!(null)]);
+    display.tap_with_ctrl(keys::Y);
+    viewer.until("it is made again", |viewer| cast(viewer) == [json!(0), json!(1), json!(2)]);
     viewer.click(display, "Sky: none of the four");
     viewer.until("none pleases", |viewer| cast(viewer) == [json!(0), json!(1), json!("none")]);
     viewer.frames(1);
@@ -200,6 +202,12 @@ fn a_person_goes_back(stage: &Stage, viewer: &mut Viewer) {
     viewer.until("the children again", |viewer| viewer.shows(1));
     display.tap_with_ctrl(keys::Z);
     viewer.until("the breeding is taken back", |viewer| viewer.shows(0));
+    assert_eq!(stage.population(0).votes, None);
+    display.tap_with_ctrl(keys::Y);
+    viewer.until("it is made again", |viewer| viewer.shows(1));
+    assert!(stage.population(0).votes.is_some());
+    display.tap_with_ctrl(keys::Z);
+    viewer.until("it is taken back once more", |viewer| viewer.shows(0));
     assert_eq!(stage.population(0).votes, None);
     assert_eq!(*viewer.get("ballots", "tree"), 0, "the ballots are as they were before");
     assert_eq!(stage.files.generations().expect("a folder"), [0, 1], "nothing is thrown away");
@@ -307,6 +315,17 @@ fn it_ends_and_remembers(stage: &Stage, mut viewer: Viewer) {
     let found = place(&viewer);
     assert!(left.iter().zip(found).all(|(left, found)| (left - found).abs() < 0.01), "{left:?} {found:?}");
     stage.display.picture().save("9-second-start.png");
+    // The last step of the first run.
+    let edited = fs::read_to_string(stage.files.population_path(0)).expect("a file");
+    stage.display.tap_with_ctrl(keys::Z);
+    viewer.until("the gene is taken back", |viewer| {
+        fs::read_to_string(stage.files.population_path(0)).is_ok_and(|text| text != edited)
+            && viewer.get("ballots", "tree") == 0
+    });
+    stage.display.tap_with_ctrl(keys::Y);
+    viewer.until("the gene is changed again", |_| {
+        fs::read_to_string(stage.files.population_path(0)).is_ok_and(|text| text == edited)
+    });
     assert_eq!(viewer.quit(&stage.display).code(), Some(0));
 }
 

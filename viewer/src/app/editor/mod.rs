@@ -4,6 +4,8 @@
 mod bake_progress;
 mod edits;
 mod model;
+#[cfg(test)]
+mod tests;
 mod votes;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -14,13 +16,12 @@ use genescape_schema::{Genome, INDIVIDUALS, Population, Space};
 use genescape_world::{Change, Source, World, names};
 
 use crate::baker;
-use crate::edit_history::History;
-use crate::event::Ballots;
+use crate::ballots::Ballots;
+use crate::edit_history::Steps;
 use crate::settings::WorldSettings;
 use crate::ui::Tone;
 use crate::ui::model::FileError;
 use bake_progress::BakeProgress;
-use edits::Step;
 
 /// What went wrong where; one of each kind at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -54,8 +55,7 @@ pub struct Editor {
     /// Genes as they were when the generation was first shown.
     bred: Option<[Genome; INDIVIDUALS]>,
     pub(super) ballots: Ballots,
-    history: History,
-    steps: Vec<Step>,
+    steps: Steps,
     /// A newer generation is shown as soon as it is born.
     follows: bool,
     /// Views that show their scene of that generation.
@@ -82,8 +82,7 @@ impl Editor {
             population: None,
             bred: None,
             ballots: Ballots::default(),
-            history: History::default(),
-            steps: Vec::new(),
+            steps: kept.steps.value.clone(),
             follows: true,
             loaded: [false; INDIVIDUALS],
             faults: BTreeMap::new(),
@@ -92,11 +91,11 @@ impl Editor {
             tasks: Vec::new(),
             source,
         };
-        editor.begin(kept);
+        editor.begin();
         editor
     }
 
-    fn begin(&mut self, kept: &WorldSettings) {
+    fn begin(&mut self) {
         if let Source::Scenes(scenes) = &self.source {
             let load =
                 |(view, path): (usize, &PathBuf)| Task::Load { view, generation: 0, path: path.clone() };
@@ -110,7 +109,11 @@ impl Editor {
         if let Some(generation) = current.filter(|g| self.generations.contains(g)).or(newest) {
             self.go_to(generation);
         }
-        self.resume_votes(kept);
+    }
+
+    /// What should be kept of this world between runs, besides places.
+    pub fn keep(&self, kept: &mut WorldSettings) {
+        kept.steps.value.clone_from(&self.steps);
     }
 
     /// What has to be done since the last call.
@@ -189,7 +192,7 @@ impl Editor {
         self.generation = generation;
         self.follows = self.generations.last() == Some(&generation);
         (self.population, self.bred) = (None, None);
-        self.ballots = Ballots::default();
+        self.ballots = self.steps.ballots(generation);
         self.loaded = [false; INDIVIDUALS];
         self.bake.forget_scenes();
         self.faults.retain(|fault, _| !matches!(fault, Fault::Scene(_)));
@@ -308,100 +311,5 @@ impl Editor {
         if let Some(kind) = self.faults.keys().nth(index).copied() {
             self.faults.remove(&kind);
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A world with the starter landscapes in `root`, an editor of it, and its population file.
-    fn starter(root: &Path) -> (Editor, PathBuf) {
-        let world = World::open_or_create(root).expect("a world");
-        world.begin().expect("its first generation");
-        let editor = Editor::open(Source::World(root.to_owned()), &WorldSettings::default());
-        (editor, world.population_path(0))
-    }
-
-    #[test]
-    fn a_mistake_in_the_first_file_is_told_until_it_is_mended() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let (_, path) = starter(folder.path());
-        let good = std::fs::read_to_string(&path).expect("there");
-        std::fs::write(&path, "Population(").expect("written");
-        let (mut editor, _) = starter(folder.path());
-        assert!(editor.is_hindered() && editor.errors()[0].report.contains("g0000.ron:1:"));
-        std::fs::write(&path, good).expect("written");
-        editor.changed(Change::Population(0));
-        assert!(!editor.is_hindered() && editor.errors().is_empty());
-    }
-
-    #[test]
-    fn a_mistake_is_told_once_whether_bake_or_editor_finds_it_first() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        for bake_first in [true, false] {
-            let (mut editor, path) = starter(folder.path());
-            let good = std::fs::read_to_string(&path).expect("there");
-            std::fs::write(&path, "Population(").expect("written");
-            let failed = baker::Event::Failed { message: "g0000.ron:1: wrong".into() };
-            if bake_first {
-                editor.baked(failed.clone());
-            }
-            editor.changed(Change::Population(0));
-            if !bake_first {
-                editor.baked(failed);
-            }
-            assert_eq!(editor.errors().len(), 1, "{bake_first}");
-            std::fs::write(&path, good).expect("written");
-        }
-    }
-
-    #[test]
-    fn a_new_generation_comes_on_show_whichever_change_is_told_first() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        for (place, told) in [[0, 1], [1, 0]].into_iter().enumerate() {
-            let (mut editor, path) = starter(&folder.path().join(place.to_string()));
-            assert_eq!(editor.generations(), (0, [0].as_slice()));
-            let first = std::fs::read_to_string(path).expect("there");
-            let second = first.replacen("generation: 0", "generation: 1", 1);
-            std::fs::write(editor.world.population_path(1), second).expect("written");
-            told.into_iter().for_each(|generation| editor.changed(Change::Population(generation)));
-            assert_eq!(editor.generations(), (1, [0, 1].as_slice()), "{told:?}");
-        }
-    }
-
-    #[test]
-    fn genes_of_an_older_world_are_filled_in_told_once_and_can_be_edited() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let (_, path) = starter(folder.path());
-        for (file, sign) in [(folder.path().join(names::SPACE), "\"snow_line\""), (path, " snow_line: ")] {
-            let text = std::fs::read_to_string(&file).expect("there");
-            let older: Vec<&str> = text.lines().filter(|line| !line.contains(sign)).collect();
-            std::fs::write(&file, older.join("\n")).expect("written");
-        }
-        let (mut editor, path) = starter(folder.path());
-        let told = |editor: &mut Editor| {
-            editor
-                .take_tasks()
-                .iter()
-                .filter(|task| matches!(task, Task::Tell(_, text) if text.contains("snow_line")))
-                .count()
-        };
-        assert_eq!(told(&mut editor), 1 + INDIVIDUALS);
-        let bake = World::read_population(&editor.space, &path).expect("valid").notices;
-        bake.into_iter().for_each(|message| editor.baked(baker::Event::Notice { message }));
-        editor.changed(Change::Space);
-        assert_eq!(told(&mut editor), 0);
-        editor.set_genes(1, vec![("snow_line".into(), 0.2)]);
-        assert!(std::fs::read_to_string(&path).expect("there").contains("snow_line: 0.2,"));
-        let value = |editor: &Editor| {
-            editor
-                .population
-                .as_ref()
-                .and_then(|all| all.individuals[1].genome.value(&editor.space, "snow_line"))
-        };
-        assert_eq!(value(&editor), Some(0.2));
-        editor.undo();
-        assert_eq!(value(&editor), Some(1.0));
     }
 }

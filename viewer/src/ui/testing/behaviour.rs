@@ -7,7 +7,8 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use genescape_schema::Category;
 
 use super::*;
-use crate::event::{Ballot, Panel};
+use crate::ballots::Ballot;
+use crate::event::Panel;
 use crate::input::Command;
 use crate::settings::Theme;
 use crate::ui::theme::title;

@@ -11,7 +11,7 @@ use egui_kittest::{Harness, TestRenderer};
 use egui_wgpu::{RendererOptions, ScreenDescriptor};
 
 use super::*;
-use crate::event::Ballot;
+use crate::ballots::Ballot;
 use crate::gpu::Gpu;
 use crate::image_file;
 use genescape_schema::Category;
