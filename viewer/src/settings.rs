@@ -49,11 +49,13 @@ pub struct Comfort {
     pub theme: Theme,
     /// Factor on the desktop's own scale: 0.5 to 2.5.
     pub ui_scale: f32,
+    /// A new generation is entered where one is, and not at its start.
+    pub stay: bool,
 }
 
 impl Default for Comfort {
     fn default() -> Self {
-        Self { mouse_sensitivity: 1.0, invert_y: false, theme: Theme::System, ui_scale: 1.0 }
+        Self { mouse_sensitivity: 1.0, invert_y: false, theme: Theme::System, ui_scale: 1.0, stay: false }
     }
 }
 
@@ -121,6 +123,8 @@ impl Default for Window {
 pub struct WorldSettings {
     /// Where the person was last.
     pub place: Option<Bookmark>,
+    /// The generation that was shown last.
+    pub generation: Option<u32>,
     /// Places to go back to, by the number of their key.
     pub bookmarks: BTreeMap<u8, Bookmark>,
     /// What can be taken back and made again, the ballots that are not yet written down among it.

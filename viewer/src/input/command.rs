@@ -55,7 +55,7 @@ pub enum Command {
     /// let the mouse go
     #[strum(props(keys = "Escape"))]
     ReleaseMouse,
-    /// back to the start
+    /// to the start view, where each new generation begins
     #[strum(to_string = "start", props(keys = "Home"))]
     GoToStart,
     /// one landscape alone

@@ -85,6 +85,8 @@ fn comfort(ui: &mut Ui, current: &Comfort) {
     section(ui, "HANDLING");
     number(ui, &mut comfort.mouse_sensitivity, 0.1..=5.0, "Mouse sensitivity", " ×");
     switch(ui, &mut comfort.invert_y, "Invert up and down", "Mouse up looks down");
+    let help = "Otherwise each new generation is entered at its start view, as by Home";
+    switch(ui, &mut comfort.stay, "Stay where you are in a new generation", help);
     section(ui, "APPEARANCE");
     let themes = [(Theme::System, "System", ""), (Theme::Light, "Light", ""), (Theme::Dark, "Dark", "")];
     segmented(ui, "Theme", &themes, &mut comfort.theme);

@@ -183,8 +183,14 @@ fn a_person_votes_and_breeds(stage: &Stage, viewer: &mut Viewer) {
     viewer.frames(1);
     stage.look("3-votes.png");
 
+    let (from, before) = (viewer.lines.len(), place(viewer));
     display.tap(keys::N);
     viewer.until("the next generation", |viewer| viewer.shows(1));
+    viewer.frames(5);
+    let mut poses: Vec<_> = viewer.lines[from..].iter().filter(|line| line["what"] == "pose").collect();
+    poses.dedup_by_key(|pose| [pose["x_m"].clone(), pose["z_m"].clone()]);
+    assert!((1..=2).contains(&poses.len()), "one goes to the start once, or once more: {poses:?}");
+    assert_ne!(place(viewer), before);
     let votes = Votes { tree: Some(0), terrain: Some(1), sky: None };
     let (parents, children) = (stage.population(0), stage.population(1));
     assert_eq!(parents.votes, Some(votes));

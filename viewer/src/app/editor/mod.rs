@@ -42,6 +42,8 @@ pub enum Task {
     Load { view: usize, generation: u32, path: PathBuf },
     /// Tell the person.
     Tell(Tone, String),
+    /// A new generation is on show: walks begin at its start.
+    BeginWalk,
 }
 
 pub struct Editor {
@@ -240,6 +242,7 @@ impl Editor {
                 } else if let (true, true, Some(newest)) = (newest > before, self.follows, newest) {
                     // Whichever file changed: the change of the parents' may be reported after the child exists.
                     self.go_to(newest);
+                    self.tasks.push(Task::BeginWalk);
                     self.tell(Tone::Success, format!("Generation {newest} is born"));
                 } else if generation == self.generation {
                     self.read_population();

@@ -3,7 +3,7 @@
 use genescape_schema::{Category, Parent};
 use genescape_world::WorldError;
 
-use super::Editor;
+use super::{Editor, Task};
 use crate::ballots::{Ballot, Ballots};
 use crate::edit_history::{Change, Edit, Step};
 use crate::ui::Tone;
@@ -44,6 +44,7 @@ impl Editor {
         match child {
             Some(child) => {
                 self.visit(child);
+                self.tasks.push(Task::BeginWalk);
                 self.tell(Tone::Info, format!("Generation {child} was bred from these votes"));
             }
             None => {
