@@ -98,7 +98,9 @@ impl Session {
         let population = &file.population;
         let plan = Plan::new(&self.space, population, self.resolution)?;
         let generation = population.generation;
-        listener.tell(&Event::Planned { generation, stages: plan.nodes.len() });
+        let needs = |scene: usize| plan.nodes.iter().filter(|node| node.scenes.contains(&scene)).count();
+        let of_scenes = (0..plan.scenes.len()).map(needs).collect();
+        listener.tell(&Event::Planned { generation, stages: plan.nodes.len(), of_scenes });
         let result = self.run(&plan, population, listener, cancelled);
         // The bar must not stand between the person and the message.
         listener.end();

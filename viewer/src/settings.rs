@@ -34,6 +34,8 @@ pub struct Settings {
     pub bindings: Part<Bindings>,
     /// The window.
     pub window: Window,
+    /// The person has walked or voted once.
+    pub greeted: bool,
     /// By the world folder's full path.
     pub worlds: BTreeMap<String, WorldSettings>,
 }

@@ -115,6 +115,11 @@ impl CameraControl {
         commands
     }
 
+    /// Something was held, or turned, at the last step.
+    pub fn is_steered(&self) -> bool {
+        !self.resting
+    }
+
     /// Goes on to the next of walk, fly and orbit, and returns it.
     pub fn next_mode(&mut self, lands: &[&Land]) -> Mode {
         self.leave(Place::Chosen);

@@ -13,6 +13,7 @@ mod screen;
 mod viewports;
 mod window_events;
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
@@ -24,6 +25,7 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy}
 use crate::baker::Baker;
 use crate::cli::Cli;
 use crate::gpu::Gpu;
+use crate::input::Bindings;
 use crate::loader::{Loader, Request};
 use crate::options::FrameInput;
 use crate::settings::{Bookmark, Comfort, SettingsFile, WorldSettings};
@@ -63,6 +65,8 @@ struct App {
     proxy: EventLoopProxy<Wake>,
     log: Log,
     file: SettingsFile,
+    /// Those of the settings, which change only while the program is closed.
+    bindings: Arc<Bindings>,
     layout: Layout,
     editor: Editor,
     camera: CameraControl,
@@ -116,9 +120,10 @@ impl App {
         camera.return_to(place_to_return_to(&editor, &kept, &file.settings.comfort.value));
         let now = Instant::now();
         let mut app = Self {
-            editor,
+            layout: Layout::of(editor.count(), Default::default()),
+            bindings: Arc::new(file.settings.bindings.value.clone()),
             file,
-            layout: Layout::default(),
+            editor,
             camera,
             ui: ui::State::default(),
             focus: Focus::default(),
@@ -175,6 +180,7 @@ impl App {
         self.save_settings();
         let kept = self.file.settings.world(&source);
         self.editor = Editor::open(source.clone(), &kept);
+        self.layout = Layout::of(self.editor.count(), self.layout.panels);
         self.source = source;
         let comfort = &self.file.settings.comfort.value;
         self.camera.return_to(place_to_return_to(&self.editor, &kept, comfort));
@@ -267,6 +273,7 @@ impl App {
         let dt_s = (now - std::mem::replace(&mut self.clock.last_step, now)).as_secs_f32();
         let comfort = &self.file.settings.comfort.value;
         let commands = self.camera.step(dt_s, comfort, &lands(&self.live));
+        self.file.settings.greeted |= self.camera.is_steered() && self.live.is_some();
         commands.into_iter().for_each(|command| self.dispatch(command.into(), events));
     }
 
@@ -279,11 +286,7 @@ impl App {
             self.editor.shaders(Some(error.to_string()));
         }
         ui::theme::follow(&screen.ctx, &model.comfort);
-        let mut input = screen.input.take_egui_input(&screen.window);
-        if !self.focus.typing {
-            // Else it would move the focus to a button, besides what it is bound to.
-            input.events.retain(|event| !matches!(event, egui::Event::Key { key: egui::Key::Tab, .. }));
-        }
+        let input = screen.take_input();
         let ctx = screen.ctx.clone();
         let mut output = ui::Output::default();
         let full = ctx.run_ui(input, |ui| output = ui::show(ui, model, &mut self.ui));

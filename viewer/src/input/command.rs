@@ -64,7 +64,7 @@ pub enum Command {
     /// all four landscapes
     #[strum(props(keys = "0 or Backspace"))]
     ShowAll,
-    /// two side by side
+    /// two over each other, with a splitter
     #[strum(props(keys = "Tab"))]
     Compare,
     #[strum(to_string = "vote_{0}", props(group = "Choose"))]

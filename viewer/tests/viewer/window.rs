@@ -370,6 +370,45 @@ fn a_baker_that_is_killed_leaves_the_viewer_going_and_another_bakes_the_rest() {
     assert_eq!(viewer.quit(&stage.display).code(), Some(0));
 }
 
+/// A scene without its world fills the window; another program's glTF is refused in the window.
+#[test]
+#[ignore = "needs Xvfb and a Vulkan driver: `cargo xtask test` runs it"]
+fn a_scene_alone_and_a_file_that_is_none_of_ours() {
+    let stage = Stage::set();
+    let baker = baker(stage.files.root());
+    let scene = stage.files.scene_path(0, 2);
+    let start = Instant::now();
+    while !scene.is_file() {
+        assert!(start.elapsed() < Duration::from_secs(180), "nothing is baked");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    drop(baker);
+    let open = |path: &Path| {
+        let arguments = ["--size", "640x480", "--settings", "alone.ron", path.to_str().expect("UTF-8")];
+        Viewer::start(&stage.display, stage.folder.path(), &arguments)
+    };
+    let mut viewer = open(&scene);
+    viewer.until("the scene", |viewer| viewer.landscapes[0]["generation"] == 0);
+    for key in [keys::U, keys::TAB, keys::digit('3')] {
+        stage.display.tap(key);
+    }
+    viewer.frames(3);
+    assert_eq!(*viewer.get("screen", "arrangement"), "One(0)");
+    assert!(viewer.get("ballots", "tree").is_null());
+    stage.display.picture().save("12-one-scene.png");
+    assert_eq!(viewer.quit(&stage.display).code(), Some(0));
+
+    let foreign = stage.path("triangle.gltf");
+    fs::write(&foreign, r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": []}]}"#)
+        .expect("written");
+    let mut viewer = open(&foreign);
+    viewer.until("it is told", |viewer| viewer.get("screen", "situation") == "stuck");
+    assert!(viewer.get("errors", "errors")[0]["report"].to_string().contains("triangle.gltf"));
+    viewer.frames(2);
+    stage.display.picture().save("13-no-landscape.png");
+    assert_eq!(viewer.quit(&stage.display).code(), Some(0));
+}
+
 /// Names the world to a process of this program that is to be a baker.
 const BAKES: &str = "GENESCAPE_TEST_BAKES";
 /// The test that such a process runs.

@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use genescape_schema::{Genome, INDIVIDUALS, Population, Space};
+use genescape_schema::{Genome, INDIVIDUALS, Parent, Population, Space};
 use genescape_world::{Change, Source, World, names};
 
 use crate::baker;
@@ -53,6 +53,10 @@ pub struct Editor {
     /// The generation that is shown.
     generation: u32,
     generations: Vec<u32>,
+    /// What they were bred from.
+    parents: BTreeMap<u32, Parent>,
+    /// Names of the landscapes that those on show were bred from.
+    ancestors: Option<[String; INDIVIDUALS]>,
     population: Option<Population>,
     /// Genes as they were when the generation was first shown.
     bred: Option<[Genome; INDIVIDUALS]>,
@@ -62,6 +66,8 @@ pub struct Editor {
     follows: bool,
     /// Views that show their scene of that generation.
     loaded: [bool; INDIVIDUALS],
+    /// Views whose scene of that generation is being read.
+    asked: [bool; INDIVIDUALS],
     faults: BTreeMap<Fault, FileError>,
     pub(super) bake: BakeProgress,
     /// Remarks on files that were reported and still hold: a file is read again for many reasons.
@@ -81,12 +87,15 @@ impl Editor {
             space: Arc::new(Space::builtin()),
             generation: 0,
             generations: Vec::new(),
+            parents: BTreeMap::new(),
+            ancestors: None,
             population: None,
             bred: None,
             ballots: Ballots::default(),
             steps: kept.steps.value.clone(),
             follows: true,
             loaded: [false; INDIVIDUALS],
+            asked: [false; INDIVIDUALS],
             faults: BTreeMap::new(),
             bake: BakeProgress::default(),
             noticed: BTreeSet::new(),
@@ -99,9 +108,10 @@ impl Editor {
 
     fn begin(&mut self) {
         if let Source::Scenes(scenes) = &self.source {
-            let load =
-                |(view, path): (usize, &PathBuf)| Task::Load { view, generation: 0, path: path.clone() };
-            self.tasks.extend(scenes.iter().take(INDIVIDUALS).enumerate().map(load));
+            for (view, path) in scenes.iter().take(INDIVIDUALS).enumerate() {
+                self.asked[view] = true;
+                self.tasks.push(Task::Load { view, generation: 0, path: path.clone() });
+            }
             return;
         }
         self.read_space();
@@ -168,6 +178,10 @@ impl Editor {
     fn read_generations(&mut self) {
         match self.world.generations() {
             Ok(generations) => {
+                for generation in generations.iter().filter(|known| !self.generations.contains(known)) {
+                    let parent = self.world.parent_of(*generation);
+                    self.parents.extend(parent.map(|parent| (*generation, parent)));
+                }
                 self.generations = generations;
                 self.faults.remove(&Fault::Folder);
             }
@@ -195,16 +209,21 @@ impl Editor {
         self.follows = self.generations.last() == Some(&generation);
         (self.population, self.bred) = (None, None);
         self.ballots = self.steps.ballots(generation);
-        self.loaded = [false; INDIVIDUALS];
-        self.bake.forget_scenes();
+        (self.loaded, self.asked) = Default::default();
         self.faults.retain(|fault, _| !matches!(fault, Fault::Scene(_)));
         self.read_population();
+        let names = |parent: &Parent| {
+            let file = self.world.population(&self.space, parent.generation).ok()?;
+            Some(file.population.individuals.map(|one| one.name))
+        };
+        self.ancestors = self.parents.get(&generation).and_then(names);
         (0..INDIVIDUALS).for_each(|view| self.load(view));
     }
 
     fn load(&mut self, view: usize) {
         let path = self.world.scene_path(self.generation, view);
         if path.is_file() {
+            self.asked[view] = true;
             self.tasks.push(Task::Load { view, generation: self.generation, path });
         }
     }
@@ -214,6 +233,7 @@ impl Editor {
         if generation != self.generation {
             return false;
         }
+        self.asked[view] = false;
         match result {
             Ok(()) => {
                 self.loaded[view] = true;

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::ballots::Ballot;
+use crate::ui::model::ViewState;
 use genescape_schema::{Category, Parent};
 
 /// A world with the starter landscapes in `root`, an editor of it, and its population file.
@@ -185,4 +186,46 @@ fn ballots_wait_for_a_person_who_looks_at_another_generation() {
     editor.visit(1);
     editor.visit(0);
     assert_eq!(editor.ballots.get(Category::Tree), Ballot::For(3));
+}
+
+#[test]
+fn a_landscape_waits_grows_loads_and_is_ready_and_never_falls_back() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (mut editor, _) = starter(folder.path());
+    let states = |editor: &Editor| [0, 1].map(|view| editor.state(view));
+    assert_eq!(states(&editor), [ViewState::Waiting, ViewState::Waiting]);
+    let stage =
+        |stage: &str, scenes: &[usize]| baker::Event::Started { stage: stage.into(), scenes: scenes.into() };
+    let finished = |scenes: &[usize]| baker::Event::Finished {
+        stage: String::new(),
+        scenes: scenes.into(),
+        reused: false,
+        ms: 1.0,
+    };
+    editor.baked(baker::Event::Planned { generation: 0, stages: 5, of_scenes: vec![3, 3, 1, 1] });
+    editor.baked(stage("sky", &[0, 1]));
+    editor.baked(finished(&[0, 1]));
+    editor.baked(stage("tree", &[0]));
+    let growing = |done, stage: &str| ViewState::Baking { done, total: 3, stage: stage.into() };
+    assert_eq!(states(&editor), [growing(1, "tree"), growing(1, "sky")]);
+    editor.baked(finished(&[0]));
+    editor.baked(finished(&[0]));
+    let ready = baker::Event::SceneReady { scene: 0, name: String::new(), path: String::new() };
+    editor.baked(ready);
+    assert_eq!(states(&editor), [ViewState::Loading, growing(1, "sky")]);
+    // The file is there, the bake is done, and it takes its time to read it.
+    let path = editor.world.scene_path(0, 0);
+    std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+    std::fs::write(&path, "{}").expect("written");
+    editor.changed(Change::Scene { generation: 0, index: 0 });
+    editor.baked(baker::Event::Done { built: 5, reused: 0, ms: 1.0 });
+    assert_eq!(editor.state(0), ViewState::Loading);
+    assert!(editor.loaded(0, 0, Ok(())));
+    assert_eq!(editor.state(0), ViewState::Ready);
+    // A generation that was baked long ago, while another one grows.
+    bear(&mut editor, folder.path());
+    editor.baked(baker::Event::Planned { generation: 1, stages: 5, of_scenes: vec![3, 3, 1, 1] });
+    editor.baked(stage("sky", &[0, 1]));
+    editor.visit(0);
+    assert_eq!(states(&editor), [ViewState::Loading, ViewState::Waiting]);
 }

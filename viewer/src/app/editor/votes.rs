@@ -11,6 +11,9 @@ use crate::ui::Tone;
 impl Editor {
     /// Changes the vote on one category, which is not written yet.
     pub fn vote(&mut self, category: Category, ballot: Ballot) {
+        if self.world().is_none() {
+            return self.tell(Tone::Info, "Scenes alone cannot be voted on: open a world");
+        }
         let before = self.ballots;
         self.ballots.set(category, ballot);
         if before != self.ballots {
@@ -20,15 +23,15 @@ impl Editor {
 
     /// Writes the votes down, for the bake to breed from them.
     pub fn breed(&mut self) {
+        if self.world().is_none() {
+            return self.tell(Tone::Warning, "Scenes alone cannot breed: open a world to go on from here");
+        }
         let is_open = |category: &Category| self.ballots.get(*category) == Ballot::Open;
         let open: Vec<&str> = Category::ALL.into_iter().filter(is_open).map(Category::name).collect();
         if !open.is_empty() {
             let open = open.join(" and ");
             let text = format!("Vote first: who has the best {open}? None of them is an answer, too.");
             return self.tell(Tone::Info, text);
-        }
-        if self.world().is_none() {
-            return self.tell(Tone::Warning, "Baked folders cannot breed: open a world to go on from here");
         }
         match self.breed_from(self.generation, self.ballots) {
             Ok(step) => self.steps.push(step),
