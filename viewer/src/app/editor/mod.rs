@@ -324,7 +324,11 @@ impl Editor {
     /// Tries again what failed.
     pub fn retry(&mut self) {
         self.faults.remove(&Fault::Bake);
-        if self.world().is_some() && self.generations.contains(&self.generation) {
+        if self.world().is_none() {
+            self.faults.retain(|fault, _| !matches!(fault, Fault::Scene(_)));
+            return self.begin();
+        }
+        if self.generations.contains(&self.generation) {
             self.visit(self.generation);
         }
     }

@@ -229,3 +229,15 @@ fn a_landscape_waits_grows_loads_and_is_ready_and_never_falls_back() {
     editor.visit(0);
     assert_eq!(states(&editor), [ViewState::Loading, ViewState::Waiting]);
 }
+
+#[test]
+fn a_scene_that_cannot_be_shown_is_read_again_when_one_tries_again() {
+    let path = PathBuf::from("elsewhere/scene.gltf");
+    let mut editor = Editor::open(Source::Scenes(vec![path.clone()]), &WorldSettings::default());
+    let load = Task::Load { view: 0, generation: 0, path };
+    assert_eq!(editor.take_tasks(), std::slice::from_ref(&load));
+    assert!(!editor.loaded(0, 0, Err("it is no landscape")));
+    assert!(matches!(editor.state(0), ViewState::Failed { .. }) && editor.count() == 1);
+    editor.retry();
+    assert_eq!((editor.take_tasks(), editor.state(0)), (vec![load], ViewState::Loading));
+}
