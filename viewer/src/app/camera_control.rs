@@ -215,8 +215,9 @@ mod tests {
 
     #[test]
     fn a_new_generation_is_entered_once_and_corrected_only_where_it_must() {
-        let (old, first, second) = (land(0.0, &[]), land(10.0, &[]), land(20.0, &[]));
+        let (old, first) = (land(0.0, &[]), land(10.0, &[]));
         for trunks in [vec![], vec![Vec2::new(10.0, 0.5)]] {
+            let second = land(20.0, &trunks);
             let mut control = control();
             control.lands_changed(&[&old], &[&old], true);
             walk(&mut control, &[&old]);
@@ -225,8 +226,8 @@ mod tests {
             control.lands_changed(&[&first, &old], &[&first], false);
             assert_eq!(x_m(&control), 10.0, "whoever walked while it grew is taken along");
             control.lands_changed(&[&first, &second], &[&first, &second], false);
-            assert_eq!(x_m(&control), 10.0, "not with every landscape");
-            let last = land(30.0, &trunks);
+            assert!((x_m(&control) - 10.0).abs() < 2.0, "out of the trunk, not to another start");
+            let last = land(30.0, &[]);
             let lands = [&first, &second, &last];
             control.lands_changed(&lands, &lands, true);
             let expected = if trunks.is_empty() { 10.0 } else { 20.0 };

@@ -49,6 +49,13 @@ fn names_and_votes_stay_on_their_pictures_wherever_the_splitter_is() {
     }
 }
 
+const NOTICES: [&str; 4] = [
+    "a notice that is long enough to reach the buttons",
+    "a second such notice that reaches the buttons, too",
+    "a third such notice that reaches the buttons, too",
+    "a fourth such notice that reaches the buttons, too",
+];
+
 #[test]
 fn notices_lie_on_no_vote_button() {
     for size in [[640.0, 400.0], [800.0, 600.0], WINDOW] {
@@ -56,13 +63,12 @@ fn notices_lie_on_no_vote_button() {
             let mut world = model();
             world.panels.stats = stats;
             let mut harness = bench(world, size, 1.0);
-            for text in ["one", "two", "three", "four"] {
+            for text in NOTICES {
                 harness.state_mut().state.notify(crate::ui::Tone::Info, text);
             }
             harness.run_steps(6);
-            let told: Vec<_> =
-                ["three", "four"].iter().filter_map(|text| text_rect(&harness, text)).collect();
-            assert_eq!(told.len(), 2);
+            let told: Vec<_> = NOTICES.iter().filter_map(|text| text_rect(&harness, text)).collect();
+            assert_eq!(told.len(), 3, "the oldest has made room");
             for view in 1..=4 {
                 let button = harness.get_by_label(&format!("Trees: best in {view}")).rect();
                 assert!(
@@ -77,10 +83,16 @@ fn notices_lie_on_no_vote_button() {
 #[test]
 fn the_hubs_tooltip_is_gone_when_its_button_was_pressed() {
     let mut harness = bench(all_voted(), WINDOW, 1.0);
+    let at = harness.get_by_label("Next generation (hub)").rect().center();
     assert_eq!(press(&mut harness, "Next generation (hub)").len(), 1);
     harness.state_mut().model.baking = baking();
     harness.state_mut().model.ballots = Default::default();
-    harness.run_steps(60);
+    harness.run_steps(8);
+    let ring = harness.get_by_label("Sky: none of the four").rect().right_center() + egui::vec2(20.0, 0.0);
+    for place in [at, ring] {
+        harness.hover_at(place);
+        harness.run_steps(8);
+    }
     assert!(text_rect(&harness, "Wait until generation 4 has grown").is_none());
     assert!(text_rect(&harness, "Breed four new landscapes from what you chose").is_none());
 }
