@@ -23,7 +23,7 @@ const SWITCH: f32 = 0.3;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "nobody has voted on generation {generation} yet: in its file, say which of 0 … 3 has the best of each, \
-     as votes: Some((tree: Some(0), terrain: Some(2), sky: None)), where None means none of them"
+     as votes: Some((tree: Some(0), terrain: Some(2), sky: None)), where Some(0) is the first and None means none of them"
 )]
 pub struct NoVotes {
     pub generation: u32,
@@ -45,27 +45,85 @@ pub fn breed(space: &Space, parents: &Population, next: u32) -> Result<Populatio
         std::array::from_fn::<_, INDIVIDUALS, _>(|child| {
             let (mut chromosome, origin) = match favourite {
                 Some(favourite) => breeder.descendant(favourite, child),
-                None => breeder.newcomer(),
+                None => (breeder.newcomer(), Origin::New),
             };
             // Locked genes are those of the favourite or, without one, of the parent in the child's place.
             let kept = &parents.individuals[favourite.unwrap_or(child)].genome;
             for gene in space.category(category).filter(|gene| parents.is_locked(gene)) {
                 chromosome.set_code(gene, kept.code(gene));
             }
-            (chromosome, format!("{category} {origin}"))
+            (chromosome, origin)
         })
     });
     let individuals = std::array::from_fn(|child| {
         let chromosomes = children.each_ref().map(|category| category[child].0.clone());
-        let origins = children.each_ref().map(|category| category[child].1.as_str());
-        Individual { name: format!("{next}.{child}: {}", origins.join(", ")), genome: Genome { chromosomes } }
+        let origins = children.each_ref().map(|category| category[child].1);
+        Individual { name: child_name(parents, origins), genome: Genome { chromosomes } }
     });
     let parent = Some(Parent { generation, votes });
     let locked = parents.locked.clone();
     Ok(Population { generation: next, seed: parents.seed, parent, individuals, votes: None, locked })
 }
 
-/// Makes one category's chromosomes, each with a word on where it comes from.
+/// Where a chromosome comes from; parents count from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Origin {
+    Of(usize),
+    /// A variation.
+    Like(usize),
+    /// A crossover, of the favourite first.
+    Crossed(usize, usize),
+    New,
+}
+
+impl Origin {
+    fn favourite(self) -> Option<usize> {
+        match self {
+            Self::Of(one) | Self::Like(one) | Self::Crossed(one, _) => Some(one),
+            Self::New => None,
+        }
+    }
+}
+
+/// What parts of a landscape are called in names of children, as in [`Category::ALL`].
+const PARTS: [&str; 3] = ["trees", "land", "sky"];
+/// Between the parts of a child's name.
+const SEPARATOR: &str = " · ";
+
+/// "trees of 2 · land like 3 · new sky": where each part comes from, in few enough words to stand under a picture, and
+/// with the numbers that landscapes have there, from 1. A child that has two or three parts of one parent bears that
+/// parent's name, if it was given one, and says only what differs: "Spruces by a mountain lake · sky of 4".
+fn child_name(parents: &Population, origins: [Origin; 3]) -> String {
+    let descends = |parent: usize| origins.iter().filter(|origin| origin.favourite() == Some(parent)).count();
+    let main = (0..INDIVIDUALS).find(|parent| descends(*parent) >= 2);
+    let named = main.and_then(|main| Some((main, given_name(&parents.individuals[main].name)?)));
+    let part = |(part, origin): (&str, Origin)| match (origin, named) {
+        (Origin::Of(one), Some((main, _))) if one == main => None,
+        (Origin::Like(one), Some((main, _))) if one == main => Some(format!("{part} varied")),
+        (Origin::Crossed(one, other), Some((main, _))) if one == main => {
+            Some(format!("{part} × {}", other + 1))
+        }
+        (Origin::Of(one), _) => Some(format!("{part} of {}", one + 1)),
+        (Origin::Like(one), _) => Some(format!("{part} like {}", one + 1)),
+        (Origin::Crossed(one, other), _) => Some(format!("{part} of {} × {}", one + 1, other + 1)),
+        (Origin::New, _) => Some(format!("new {part}")),
+    };
+    let parts = PARTS.into_iter().zip(origins).filter_map(part);
+    let name = named.map(|(_, name)| name.to_owned());
+    name.into_iter().chain(parts).collect::<Vec<_>>().join(SEPARATOR)
+}
+
+/// The part of a name that a person gave; none of a name that only tells of descent, as this or an older version does.
+fn given_name(name: &str) -> Option<&str> {
+    let first = name.split(SEPARATOR).next().unwrap_or_default();
+    let is_descent =
+        name.contains(SEPARATOR) && PARTS.iter().any(|part| first.starts_with(&format!("{part} ")));
+    let is_new = PARTS.iter().any(|part| first == format!("new {part}"));
+    let is_older = first.starts_with(|c: char| c.is_ascii_digit()) && first.contains(": tree ");
+    (!first.is_empty() && !is_descent && !is_new && !is_older).then_some(first)
+}
+
+/// Makes one category's chromosomes.
 struct Breeder<'a> {
     space: &'a Space,
     category: Category,
@@ -76,27 +134,27 @@ struct Breeder<'a> {
 impl Breeder<'_> {
     /// From the favourite: itself for child 0 and for the child that keeps this category; of the other two, the
     /// first is a variation and the second a crossover with another parent.
-    fn descendant(&mut self, favourite: usize, child: usize) -> (Chromosome, String) {
+    fn descendant(&mut self, favourite: usize, child: usize) -> (Chromosome, Origin) {
         let keeper = self.category as usize + 1;
-        let (best, from) = (self.parent(favourite), format!("{}.{favourite}", self.parents.generation));
+        let best = self.parent(favourite);
         if child == 0 || child == keeper {
-            return (best, format!("of {from}"));
+            return (best, Origin::Of(favourite));
         }
         let first = if keeper == 1 { 2 } else { 1 };
         if child == first {
-            return (self.fresh(best, GENTLE), format!("like {from}"));
+            return (self.fresh(best, GENTLE), Origin::Like(favourite));
         }
         let other = (favourite + 1 + self.below(INDIVIDUALS as u32 - 1) as usize) % INDIVIDUALS;
         let crossed = self.crossed(&best, &self.parent(other));
-        (self.mutated(crossed, 0.5 * GENTLE), format!("of {from} and {other}"))
+        (self.mutated(crossed, 0.5 * GENTLE), Origin::Crossed(favourite, other))
     }
 
     /// From any two parents, much changed.
-    fn newcomer(&mut self) -> (Chromosome, String) {
+    fn newcomer(&mut self) -> Chromosome {
         let mother = self.below(INDIVIDUALS as u32) as usize;
         let father = (mother + 1 + self.below(INDIVIDUALS as u32 - 1) as usize) % INDIVIDUALS;
         let crossed = self.crossed(&self.parent(mother), &self.parent(father));
-        (self.fresh(crossed, STRONG), "new".into())
+        self.fresh(crossed, STRONG)
     }
 
     fn parent(&self, index: usize) -> Chromosome {
@@ -180,6 +238,30 @@ mod tests {
         let error = breed(&space, &Population::random(&space, 1, 3), 4).expect_err("nobody voted");
         assert_eq!(error, NoVotes { generation: 3 });
         assert!(error.to_string().contains("votes: Some((tree: Some(0)"));
+    }
+
+    #[test]
+    fn names_tell_of_descent_as_pictures_count_and_keep_what_a_person_called_a_landscape() {
+        let space = Space::builtin();
+        let mut parents = voted(&space, 1, 0, [Some(1), Some(1), Some(3)]);
+        parents.individuals[1].name = "Spruces by a lake".into();
+        let names = |parents: &Population| {
+            breed(&space, parents, 1).expect("votes").individuals.map(|child| child.name)
+        };
+        let children = names(&parents);
+        assert_eq!(children[0], "Spruces by a lake · sky of 4");
+        assert!(children.iter().all(|name| name.starts_with("Spruces by a lake · ")), "{children:?}");
+        parents.votes = Some(Votes { tree: Some(1), terrain: Some(0), sky: None });
+        let children = names(&parents);
+        assert_eq!(children[0], "trees of 2 · land of 1 · new sky");
+        // Their children, and those of an older version's, have no name to keep.
+        for name in
+            [children[0].as_str(), "1.0: tree of 0.1, terrain like 0.2, sky new", "new trees · land of 1"]
+        {
+            parents.individuals[1].name = name.into();
+            parents.votes = Some(Votes { tree: Some(1), terrain: Some(1), sky: Some(1) });
+            assert_eq!(names(&parents)[0], "trees of 2 · land of 2 · sky of 2", "{name}");
+        }
     }
 
     #[test]

@@ -5,8 +5,8 @@ use serde::Serialize;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
 pub enum Event {
-    /// The bake of a population begins; it has `stages` stages.
-    Planned { generation: u32, stages: usize },
+    /// The bake of a population begins; it has `stages` stages. Each scene needs `of_scenes` of them, several scenes some.
+    Planned { generation: u32, stages: usize, of_scenes: Vec<usize> },
     /// A stage ("tree 3") that these scenes use is being computed.
     Started { stage: String, scenes: Vec<usize> },
     /// A stage has its results after `ms` of wall-clock time; `reused` from the cache, it takes 0.

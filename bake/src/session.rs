@@ -98,7 +98,9 @@ impl Session {
         let population = &file.population;
         let plan = Plan::new(&self.space, population, self.resolution)?;
         let generation = population.generation;
-        listener.tell(&Event::Planned { generation, stages: plan.nodes.len() });
+        let needs = |scene: usize| plan.nodes.iter().filter(|node| node.scenes.contains(&scene)).count();
+        let of_scenes = (0..plan.scenes.len()).map(needs).collect();
+        listener.tell(&Event::Planned { generation, stages: plan.nodes.len(), of_scenes });
         // Until current.ron says that it is in use, too.
         let _nothing_is_evicted = self.cache.lease()?;
         let result = self.run(&plan, population, listener, cancelled);

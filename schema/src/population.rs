@@ -76,7 +76,7 @@ impl Population {
             for parameter in space.parameters() {
                 genome.set_code(parameter, (split_mix(&mut state) >> (64 - parameter.bits)) as u32);
             }
-            Individual { name: format!("Random {seed}.{index}"), genome }
+            Individual { name: format!("Random {seed}.{}", index + 1), genome }
         });
         Self { generation, seed, parent: None, individuals, votes: None, locked: BTreeSet::new() }
     }

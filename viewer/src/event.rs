@@ -3,9 +3,10 @@
 
 use std::path::PathBuf;
 
-use genescape_schema::{Category, Votes};
+use genescape_schema::Category;
 use serde::{Deserialize, Serialize};
 
+use crate::ballots::Ballot;
 use crate::input::Command;
 use crate::options::Options;
 use crate::settings::Comfort;
@@ -52,54 +53,6 @@ impl From<Command> for Event {
     }
 }
 
-/// What the person thinks about one category.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Ballot {
-    /// Not voted yet.
-    #[default]
-    Open,
-    /// None of the four pleases.
-    NoFavourite,
-    /// This one is the best: 0 to 3.
-    For(usize),
-}
-
-impl Ballot {
-    /// The best landscape, or `Some(None)` for none of them; `None` while this is open.
-    pub fn cast(self) -> Option<Option<usize>> {
-        match self {
-            Self::Open => None,
-            Self::NoFavourite => Some(None),
-            Self::For(best) => Some(Some(best)),
-        }
-    }
-}
-
-/// The ballots of all three categories.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Ballots([Ballot; 3]);
-
-impl Ballots {
-    /// One category's ballot.
-    pub fn get(&self, category: Category) -> Ballot {
-        self.0[category as usize]
-    }
-
-    /// Changes one category's ballot.
-    pub fn set(&mut self, category: Category, ballot: Ballot) {
-        self.0[category as usize] = ballot;
-    }
-
-    /// The votes for the population's file; `None` while a category is open.
-    pub fn votes(&self) -> Option<Votes> {
-        let mut votes = Votes::default();
-        for category in Category::ALL {
-            votes.set(category, self.get(category).cast()?);
-        }
-        Some(votes)
-    }
-}
-
 /// How the four landscapes share the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Arrangement {
@@ -123,26 +76,4 @@ pub enum Panel {
     Help,
     /// Options and comfort.
     Settings,
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn votes_are_complete_only_when_no_category_is_open_and_name_the_best_of_each() {
-        let choices = [Ballot::Open, Ballot::NoFavourite, Ballot::For(0), Ballot::For(3)];
-        for (tree, terrain, sky) in
-            (0..64).map(|code: usize| (choices[code % 4], choices[code / 4 % 4], choices[code / 16]))
-        {
-            let ballots = Ballots([tree, terrain, sky]);
-            let open = [tree, terrain, sky].contains(&Ballot::Open);
-            assert_eq!(ballots.votes().is_none(), open);
-            for (category, vote) in
-                ballots.votes().into_iter().flat_map(|votes| Category::ALL.map(|c| (c, votes.get(c))))
-            {
-                assert_eq!(vote.map_or(Ballot::NoFavourite, Ballot::For), ballots.get(category));
-            }
-        }
-    }
 }

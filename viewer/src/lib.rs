@@ -5,6 +5,7 @@
 
 pub mod app;
 pub mod baker;
+pub mod ballots;
 pub mod bench;
 pub mod camera;
 pub mod cli;

@@ -1,5 +1,5 @@
-//! What is kept between runs (options, comfort, keys, window, bookmarks, votes that were not yet written down) ⇄ one RON
-//! file for people, in the platform's folder for settings.
+//! What is kept between runs (options, comfort, keys, window; of each world places and steps to take back) ⇄ one RON file
+//! for people, in the platform's folder for settings.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -13,12 +13,16 @@ use ron::value::RawValue;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize};
 
+use crate::edit_history::Steps;
 use crate::input::Bindings;
 use crate::options;
 
 /// The file's first line.
 const TITLE: &str =
     "// Settings of Genescape's viewer. It writes them when they change, so edit them while it is closed.\n";
+
+/// How deep the file is indented: a bookmark, or a step, is one line.
+const DEPTH: usize = 5;
 
 /// Everything that is kept.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -30,6 +34,8 @@ pub struct Settings {
     pub bindings: Part<Bindings>,
     /// The window.
     pub window: Window,
+    /// The person has walked or voted once.
+    pub greeted: bool,
     /// By the world folder's full path.
     pub worlds: BTreeMap<String, WorldSettings>,
 }
@@ -45,11 +51,13 @@ pub struct Comfort {
     pub theme: Theme,
     /// Factor on the desktop's own scale: 0.5 to 2.5.
     pub ui_scale: f32,
+    /// A new generation is entered where one is, and not at its start.
+    pub stay: bool,
 }
 
 impl Default for Comfort {
     fn default() -> Self {
-        Self { mouse_sensitivity: 1.0, invert_y: false, theme: Theme::System, ui_scale: 1.0 }
+        Self { mouse_sensitivity: 1.0, invert_y: false, theme: Theme::System, ui_scale: 1.0, stay: false }
     }
 }
 
@@ -66,8 +74,10 @@ pub enum Theme {
 impl Settings {
     /// What is wrong with parts of them.
     fn faults(&self) -> Vec<String> {
+        let steps = self.worlds.values().map(|world| ("steps", &world.steps.fault));
         [("comfort", &self.comfort.fault), ("bindings", &self.bindings.fault)]
             .into_iter()
+            .chain(steps)
             .filter_map(|(part, fault)| Some((part, fault.as_ref()?)))
             .map(|(part, fault)| format!("{part} in the settings: {fault}; defaults are used"))
             .collect()
@@ -115,10 +125,12 @@ impl Default for Window {
 pub struct WorldSettings {
     /// Where the person was last.
     pub place: Option<Bookmark>,
+    /// The generation that was shown last.
+    pub generation: Option<u32>,
     /// Places to go back to, by the number of their key.
     pub bookmarks: BTreeMap<u8, Bookmark>,
-    /// Votes that were cast and not yet written into the population's file.
-    pub running_votes: Option<RunningVotes>,
+    /// What can be taken back and made again, the ballots that are not yet written down among it.
+    pub steps: Part<Steps>,
 }
 
 /// A place and a view.
@@ -133,17 +145,6 @@ pub struct Bookmark {
     /// In flight; otherwise on foot, at whatever height the ground is.
     #[serde(default)]
     pub flying: bool,
-}
-
-/// Votes in the making.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct RunningVotes {
-    /// The generation that they are on.
-    pub generation: u32,
-    /// By category ("tree", "terrain", "sky") the best individual, or `None` for none of them; categories that are not
-    /// voted on yet are absent.
-    pub cast: BTreeMap<String, Option<usize>>,
 }
 
 /// A part of the settings that is read by itself: a fault in it spoils nothing else.
@@ -229,7 +230,7 @@ impl SettingsFile {
         let Some(path) = self.path.take_if(|_| self.saved.as_ref() != Some(&self.settings)) else {
             return Ok(());
         };
-        let style = ron::ser::PrettyConfig::new().indentor("    ").struct_names(true);
+        let style = ron::ser::PrettyConfig::new().indentor("    ").struct_names(true).depth_limit(DEPTH);
         let text = format!("{TITLE}{}\n", ron::ser::to_string_pretty(&self.settings, style)?);
         atomic_write::replace(&path, &text).map_err(|error| {
             let path = path.display();
@@ -266,8 +267,11 @@ fn set_aside(path: &Path) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ballots::{Ballot, Ballots};
+    use crate::edit_history::Step;
     use crate::input::Command;
     use crate::lod_mode::{TerrainLodMode, TreeLodMode};
+    use genescape_schema::Category;
     use proptest::prelude::*;
 
     fn bindings() -> Bindings {
@@ -290,8 +294,11 @@ mod tests {
                     let mark = Bookmark { position_m: [turn, 1.5, -0.25], yaw_rad: turn, pitch_rad: 0.1, flying: maximized };
                     world.bookmarks.insert(number, mark);
                 }
-                let cast = BTreeMap::from([("sky".to_owned(), best), ("tree".to_owned(), None)]);
-                world.running_votes = Some(RunningVotes { generation, cast });
+                let mut ballots = Ballots::default();
+                ballots.set(Category::Sky, best.map_or(Ballot::NoFavourite, Ballot::For));
+                let before = Ballots::default();
+                world.steps.value.push(Step::Ballots { generation, before, after: ballots });
+                world.steps.value.undone.push(Step::Bred { from: generation, ballots, change: None });
                 settings.worlds.insert(name, world);
             }
             settings.comfort.value.invert_y = !maximized;
@@ -370,6 +377,20 @@ mod tests {
         assert_eq!(chords(Command::Forward).collect::<Vec<_>>(), ["W", "Numpad 8"]);
         assert_eq!(chords(Command::Screenshot).collect::<Vec<_>>(), ["Print Screen"]);
         assert_eq!(settings.worlds["world"].place.map(|place| place.position_m), Some([1.0, 2.0, 3.0]));
+    }
+
+    #[test]
+    fn a_ballot_for_a_fifth_landscape_spoils_the_steps_alone() {
+        let text = r#"(worlds: {"world": (
+            bookmarks: {1: (position_m: (1.0, 2.0, 3.0), yaw_rad: 0.5, pitch_rad: 0.0)},
+            steps: (done: [Ballots(generation: 0, before: (Open, Open, Open), after: (Open, Open, For(4)))]),
+        )})"#;
+        let settings = parse(text).expect("valid");
+        let [fault] = &settings.faults()[..] else { panic!("{:?}", settings.faults()) };
+        assert!(fault.contains("steps in the settings") && fault.contains("0 to 3"), "{fault}");
+        assert_eq!(settings.worlds["world"].bookmarks.len(), 1);
+        let good = parse(&text.replace("For(4)", "For(3)")).expect("valid");
+        assert_eq!(good.worlds["world"].steps.value.done.len(), 1);
     }
 
     #[test]

@@ -226,16 +226,18 @@ impl World {
         touch().map_err(|error| WorldError::Write { path: path.clone(), error })
     }
 
+    /// What a generation was bred from, if from any, as far as its file is legible.
+    pub fn parent_of(&self, generation: u32) -> Option<Parent> {
+        let text = self.population_text(generation).ok()?;
+        Lineage::read("", &text).ok()?.parent
+    }
+
     /// The generation that was bred from that one by those votes, as far as the files are legible.
     ///
     /// # Errors
     /// A folder that cannot be read.
     pub fn child_of(&self, parent: &Parent) -> Result<Option<u32>, WorldError> {
-        let is_child = |generation: &u32| {
-            let lineage =
-                self.population_text(*generation).ok().and_then(|text| Lineage::read("", &text).ok());
-            lineage.is_some_and(|lineage| lineage.parent.as_ref() == Some(parent))
-        };
+        let is_child = |generation: &u32| self.parent_of(*generation).as_ref() == Some(parent);
         Ok(self.generations()?.into_iter().find(is_child))
     }
 

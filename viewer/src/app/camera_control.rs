@@ -4,7 +4,18 @@ use winit::window::{CursorGrabMode, Window};
 
 use crate::input::{Command, Held};
 use crate::settings::{Bookmark, Comfort};
-use crate::walk::{Feel, Land, Mode, Pose, Rig, start_pose};
+use crate::walk::{Feel, Land, Mode, Pose, Rig, start_pose, suits_all};
+
+/// How the camera came to be where it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Place {
+    /// It doesn't matter: the first landscape of a generation that is to come says where the walk begins.
+    Awaited,
+    /// At the start of those landscapes that were there.
+    Start,
+    /// Where the person has gone.
+    Chosen,
+}
 
 /// What moves the camera.
 pub struct CameraControl {
@@ -13,8 +24,7 @@ pub struct CameraControl {
     pub held: Held,
     /// The pointer steers the view.
     captured: bool,
-    /// A walk has begun: the person has chosen the place, and it is kept.
-    begun: bool,
+    place: Place,
     /// Nothing was held at the last step.
     resting: bool,
     #[cfg(feature = "gamepad")]
@@ -32,7 +42,7 @@ impl CameraControl {
             rig: Rig::new(Pose::default(), &[]),
             held: Held::default(),
             captured: false,
-            begun: false,
+            place: Place::Awaited,
             resting: true,
             #[cfg(feature = "gamepad")]
             gamepads,
@@ -45,18 +55,40 @@ impl CameraControl {
         self.captured
     }
 
-    /// The landscapes have changed: a camera that has not moved yet goes to their start, any other steps out of trunks.
-    pub fn lands_changed(&mut self, lands: &[&Land]) {
-        if self.begun {
-            self.rig.settle(lands);
+    /// A generation is born: the walk begins anew with its first landscape.
+    pub fn await_landscapes(&mut self) {
+        self.place = Place::Awaited;
+    }
+
+    /// Landscapes have changed. `own`: those of the generation on show, of `all` that are walked in; `complete`: no more
+    /// are to come.
+    ///
+    /// A new walk begins with the first landscape, whose start is known then, and not with the last: that may be half a
+    /// minute later, spent in a lake. Each of the others might know a better start, but a person who looks around must
+    /// not be moved again and again. So that is asked once, when all are known, of someone who has not moved, and only
+    /// if the place is bad for one of them.
+    pub fn lands_changed(&mut self, all: &[&Land], own: &[&Land], complete: bool) {
+        let begins = self.place == Place::Awaited && !own.is_empty();
+        let is_bad = || self.place == Place::Start && !suits_all(own, &self.rig.pose());
+        if begins || complete && is_bad() {
+            self.rig.go(start_pose(own), own);
+            self.place = Place::Start;
         } else {
-            self.go_to_start(lands);
+            self.rig.settle(all);
         }
     }
 
     /// Goes to where every walk starts.
     pub fn go_to_start(&mut self, lands: &[&Land]) {
         self.rig.go(start_pose(lands), lands);
+        self.leave(Place::Start);
+    }
+
+    /// While landscapes are awaited, a walk in the old ones changes nothing.
+    fn leave(&mut self, place: Place) {
+        if self.place != Place::Awaited {
+            self.place = place;
+        }
     }
 
     /// Moves for a frame of `dt_s` seconds. Returns what a gamepad asked for meanwhile.
@@ -70,7 +102,9 @@ impl CameraControl {
         #[cfg(not(feature = "gamepad"))]
         let commands = Vec::new();
         self.resting = controls == Default::default();
-        self.begun |= !self.resting;
+        if !self.resting {
+            self.leave(Place::Chosen);
+        }
         let usual = Feel::default();
         let feel = Feel {
             mouse_rad: usual.mouse_rad * comfort.mouse_sensitivity,
@@ -81,9 +115,14 @@ impl CameraControl {
         commands
     }
 
+    /// Something was held, or turned, at the last step.
+    pub fn is_steered(&self) -> bool {
+        !self.resting
+    }
+
     /// Goes on to the next of walk, fly and orbit, and returns it.
     pub fn next_mode(&mut self, lands: &[&Land]) -> Mode {
-        self.begun = true;
+        self.leave(Place::Chosen);
         self.rig.cycle_mode(lands);
         self.rig.mode()
     }
@@ -99,14 +138,14 @@ impl CameraControl {
         }
     }
 
-    /// The place to come back to at the next start, if the camera was moved and has come to rest.
+    /// The place to come back to at the next start, if there is one and the camera has come to rest.
     pub fn rested_at(&self) -> Option<Bookmark> {
-        (self.begun && self.resting).then(|| self.bookmark())
+        (self.place != Place::Awaited && self.resting).then(|| self.bookmark())
     }
 
     /// Goes to a remembered place.
     pub fn go_to(&mut self, mark: &Bookmark, lands: &[&Land]) {
-        self.begun = true;
+        self.place = Place::Chosen;
         let [x_m, altitude_m, z_m] = mark.position_m;
         let pose = Pose {
             x_m,
@@ -122,7 +161,7 @@ impl CameraControl {
 
     /// Before landscapes are loaded: goes to where the last session ended. Without such a place the landscapes decide.
     pub fn return_to(&mut self, place: Option<&Bookmark>) {
-        self.begun = false;
+        self.place = Place::Awaited;
         if let Some(place) = place {
             self.go_to(place, &[]);
         }
@@ -141,5 +180,75 @@ impl CameraControl {
         }
         window.set_cursor_visible(!captured);
         self.captured = captured;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{Vec2, Vec3};
+
+    use super::*;
+    use crate::walk::testing::{land_with, ramp, trunk};
+    use genescape_schema::scene::StartView;
+
+    /// Level land whose walks start at that `x_m`, with room there.
+    fn land(x_m: f32, trunks: &[Vec2]) -> Land {
+        let start = StartView { position_m: Vec3::new(x_m, 1.6, 0.0), direction: Vec3::NEG_Z };
+        Land { start, ..land_with(trunks.iter().map(|&place| trunk(place, 0.5))) }
+    }
+
+    fn control() -> CameraControl {
+        CameraControl::new().0
+    }
+
+    fn x_m(control: &CameraControl) -> f32 {
+        control.rig.pose().x_m
+    }
+
+    /// A second of walking forward.
+    fn walk(control: &mut CameraControl, lands: &[&Land]) {
+        let bindings = crate::input::Bindings::default();
+        control.held.press(&bindings, "W".parse().expect("a key"));
+        (0..4).for_each(|_| drop(control.step(0.25, &Comfort::default(), lands)));
+        control.held.focus_lost();
+    }
+
+    #[test]
+    fn a_new_generation_is_entered_once_and_corrected_only_where_it_must() {
+        let (old, first) = (land(0.0, &[]), land(10.0, &[]));
+        for trunks in [vec![], vec![Vec2::new(10.0, 0.5)]] {
+            let second = land(20.0, &trunks);
+            let mut control = control();
+            control.lands_changed(&[&old], &[&old], true);
+            walk(&mut control, &[&old]);
+            control.await_landscapes();
+            walk(&mut control, &[&old]);
+            control.lands_changed(&[&first, &old], &[&first], false);
+            assert_eq!(x_m(&control), 10.0, "whoever walked while it grew is taken along");
+            control.lands_changed(&[&first, &second], &[&first, &second], false);
+            assert!((x_m(&control) - 10.0).abs() < 2.0, "out of the trunk, not to another start");
+            let last = land(30.0, &[]);
+            let lands = [&first, &second, &last];
+            control.lands_changed(&lands, &lands, true);
+            let expected = if trunks.is_empty() { 10.0 } else { 20.0 };
+            assert_eq!(x_m(&control), expected, "a trunk before the eyes: {trunks:?}");
+        }
+    }
+
+    #[test]
+    fn whoever_walks_on_in_the_new_generation_is_left_alone_and_so_is_whoever_stays() {
+        let (old, first, wall) = (land(0.0, &[]), land(10.0, &[]), ramp(-0.5));
+        let mut control = control();
+        control.lands_changed(&[&old], &[&old], true);
+        walk(&mut control, &[&old]);
+        let before = control.rig.pose();
+        control.lands_changed(&[&first, &old], &[&first], false);
+        assert_eq!(control.rig.pose(), before, "nothing was awaited");
+        control.await_landscapes();
+        control.lands_changed(&[&first], &[&first], false);
+        walk(&mut control, &[&first]);
+        let before = control.rig.pose();
+        control.lands_changed(&[&first, &wall], &[&first, &wall], true);
+        assert_eq!(control.rig.pose(), before);
     }
 }

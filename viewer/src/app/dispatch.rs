@@ -6,7 +6,8 @@ use winit::event_loop::ActiveEventLoop;
 use winit::window::Fullscreen;
 
 use super::{App, lands};
-use crate::event::{Arrangement, Ballot, Event, Panel};
+use crate::ballots::Ballot;
+use crate::event::{Arrangement, Event, Panel};
 use crate::image_file;
 use crate::input::{Best, Command};
 use crate::lod_mode::LodMode;
@@ -22,9 +23,9 @@ impl App {
         let settings = &mut self.file.settings;
         match event {
             Event::Command(_) => {}
-            Event::Vote { category, ballot } => self.editor.vote(category, ballot),
+            Event::Vote { category, ballot } => self.vote(category, ballot),
             Event::GoToGeneration(generation) => self.editor.visit(generation),
-            Event::Arrange(arrangement) => self.layout.arrangement = arrangement,
+            Event::Arrange(arrangement) => self.layout.arrange(arrangement),
             Event::Choose(individual) => self.layout.chosen = individual,
             Event::Genes { individual, values } => self.editor.set_genes(individual, values),
             Event::LockGene { name, locked } => self.editor.lock(&name, locked),
@@ -60,7 +61,7 @@ impl App {
             Command::ReleaseMouse => self.capture(false),
             Command::GoToStart => self.camera.go_to_start(&lands(&self.live)),
             Command::Maximise(landscape) => self.layout.maximise(usize::from(landscape) - 1),
-            Command::ShowAll => self.layout.arrangement = Arrangement::Grid,
+            Command::ShowAll => self.layout.arrange(Arrangement::Grid),
             Command::Compare => self.layout.compare(),
             Command::Vote(Best { category, landscape }) => self.vote_by_key(category, landscape),
             Command::NextGeneration => self.editor.breed(),
@@ -95,8 +96,18 @@ impl App {
 
     fn capture(&mut self, captured: bool) {
         if let Some(live) = &self.live {
+            let told = captured && !self.camera.captured();
             self.camera.capture(&live.screen.window, captured);
+            if told {
+                let keys = self.bindings.chords(Command::ReleaseMouse).next().map(|chord| chord.to_string());
+                self.tell(Tone::Info, format!("{} gives the mouse back", keys.unwrap_or_default()));
+            }
         }
+    }
+
+    fn vote(&mut self, category: Category, ballot: Ballot) {
+        self.editor.vote(category, ballot);
+        self.file.settings.greeted = true;
     }
 
     /// The same key again takes the vote back.
@@ -104,7 +115,7 @@ impl App {
         let ballot =
             landscape.map_or(Ballot::NoFavourite, |landscape| Ballot::For(usize::from(landscape) - 1));
         let known = self.editor.ballots.get(category);
-        self.editor.vote(category, if known == ballot { Ballot::Open } else { ballot });
+        self.vote(category, if known == ballot { Ballot::Open } else { ballot });
     }
 
     fn step_generation(&mut self, by: isize) {

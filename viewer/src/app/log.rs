@@ -238,7 +238,7 @@ mod tests {
             log.state("bake", json!({ "generation": value }));
             log.state("errors", json!({ "count": 0 }));
         }
-        log.event(&crate::event::Ballot::NoFavourite);
+        log.event(&crate::ballots::Ballot::NoFavourite);
         let told: Vec<_> = lines(&path).iter().map(|line| line["what"].clone()).collect();
         assert_eq!(told, ["bake", "errors", "bake", "bake", "wish"]);
         assert_eq!(lines(&path)[2]["generation"], 2);

@@ -13,9 +13,11 @@ mod screen;
 mod viewports;
 mod window_events;
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
+use genescape_schema::INDIVIDUALS;
 use genescape_world::{Change, Scope, Source, Watch, World};
 use serde_json::json;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
@@ -23,10 +25,11 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy}
 use crate::baker::Baker;
 use crate::cli::Cli;
 use crate::gpu::Gpu;
+use crate::input::Bindings;
 use crate::loader::{Loader, Request};
 use crate::options::FrameInput;
-use crate::settings::SettingsFile;
-use crate::ui::model::Model;
+use crate::settings::{Bookmark, Comfort, SettingsFile, WorldSettings};
+use crate::ui::model::{Model, ViewState};
 use crate::ui::{self, Tone};
 use crate::walk::Land;
 use camera_control::CameraControl;
@@ -62,6 +65,8 @@ struct App {
     proxy: EventLoopProxy<Wake>,
     log: Log,
     file: SettingsFile,
+    /// Those of the settings, which change only while the program is closed.
+    bindings: Arc<Bindings>,
     layout: Layout,
     editor: Editor,
     camera: CameraControl,
@@ -111,12 +116,14 @@ impl App {
         let (file, problems) = SettingsFile::open(cli.settings.clone().or_else(SettingsFile::usual_path));
         let (mut camera, problem) = CameraControl::new();
         let kept = file.settings.world(&source);
-        camera.return_to(kept.place.as_ref());
+        let editor = Editor::open(source.clone(), &kept);
+        camera.return_to(place_to_return_to(&editor, &kept, &file.settings.comfort.value));
         let now = Instant::now();
         let mut app = Self {
-            editor: Editor::open(source.clone(), &kept),
+            layout: Layout::of(editor.count(), Default::default()),
+            bindings: Arc::new(file.settings.bindings.value.clone()),
             file,
-            layout: Layout::default(),
+            editor,
             camera,
             ui: ui::State::default(),
             focus: Focus::default(),
@@ -173,8 +180,10 @@ impl App {
         self.save_settings();
         let kept = self.file.settings.world(&source);
         self.editor = Editor::open(source.clone(), &kept);
+        self.layout = Layout::of(self.editor.count(), self.layout.panels);
         self.source = source;
-        self.camera.return_to(kept.place.as_ref());
+        let comfort = &self.file.settings.comfort.value;
+        self.camera.return_to(place_to_return_to(&self.editor, &kept, comfort));
         if let Some(live) = &mut self.live {
             live.viewports.clear();
         }
@@ -228,13 +237,18 @@ impl App {
             }
         }
         if changed {
-            self.camera.lands_changed(&live.viewports.lands());
+            let of_generation = |view: &usize| self.editor.state(*view) == ViewState::Ready;
+            let own = (0..INDIVIDUALS).filter(of_generation).filter_map(|view| live.viewports.land(view));
+            let complete = !self.editor.awaits_scenes();
+            self.camera.lands_changed(&live.viewports.lands(), &own.collect::<Vec<_>>(), complete);
         }
     }
 
     fn carry_out(&mut self, task: Task) {
         match task {
             Task::Tell(tone, text) => self.tell(tone, text),
+            Task::BeginWalk if self.file.settings.comfort.value.stay => {}
+            Task::BeginWalk => self.camera.await_landscapes(),
             Task::Load { view, generation, path } => {
                 if let Some(live) = &self.live {
                     live.loader.ask(Request { view, generation, path, passes: live.viewports.passes() });
@@ -259,6 +273,7 @@ impl App {
         let dt_s = (now - std::mem::replace(&mut self.clock.last_step, now)).as_secs_f32();
         let comfort = &self.file.settings.comfort.value;
         let commands = self.camera.step(dt_s, comfort, &lands(&self.live));
+        self.file.settings.greeted |= self.camera.is_steered() && self.live.is_some();
         commands.into_iter().for_each(|command| self.dispatch(command.into(), events));
     }
 
@@ -271,11 +286,7 @@ impl App {
             self.editor.shaders(Some(error.to_string()));
         }
         ui::theme::follow(&screen.ctx, &model.comfort);
-        let mut input = screen.input.take_egui_input(&screen.window);
-        if !self.focus.typing {
-            // Else it would move the focus to a button, besides what it is bound to.
-            input.events.retain(|event| !matches!(event, egui::Event::Key { key: egui::Key::Tab, .. }));
-        }
+        let input = screen.take_input();
         let ctx = screen.ctx.clone();
         let mut output = ui::Output::default();
         let full = ctx.run_ui(input, |ui| output = ui::show(ui, model, &mut self.ui));
@@ -336,6 +347,7 @@ impl App {
         // Not at every step of a walk, or the file would be written for as long as it goes.
         if self.editor.world().is_some() {
             kept.place = self.camera.rested_at().or(kept.place);
+            kept.generation = Some(self.editor.generations().0);
         }
         if kept != settings.world(source) {
             *settings.world_mut(source) = kept;
@@ -347,6 +359,16 @@ impl App {
             self.editor.settings_fault(error.to_string());
         }
     }
+}
+
+/// Where the last session has ended, unless a generation was born since and has a start of its own.
+fn place_to_return_to<'a>(
+    editor: &Editor,
+    kept: &'a WorldSettings,
+    comfort: &Comfort,
+) -> Option<&'a Bookmark> {
+    let is_known = kept.generation.is_none_or(|generation| generation >= editor.generations().0);
+    kept.place.as_ref().filter(|_| is_known || comfort.stay)
 }
 
 /// The lands that a walker is in.

@@ -35,7 +35,12 @@ impl App {
             bake_log: editor.bake.log.clone(),
             errors: editor.errors(),
             stats: viewports.map_or_else(Stats::default, |viewports| viewports.stats().clone()),
-            keys: settings.bindings.value.help(),
+            bindings: self.bindings.clone(),
+            count: editor.count(),
+            votable: editor.world().is_some(),
+            parents: editor.parents().clone(),
+            ancestors: editor.ancestors().cloned(),
+            greets: !settings.greeted,
             options: settings.options,
             comfort: settings.comfort.value,
             panels: self.layout.panels,
@@ -53,12 +58,17 @@ impl App {
         {
             return Situation::Ready;
         }
-        let failed = views.iter().all(|view| matches!(view.state, ViewState::Failed { .. }));
+        let own = &views[..editor.count()];
+        let failed = own.iter().all(|view| matches!(view.state, ViewState::Failed { .. }));
         if let (true, Some(error)) = (failed || editor.is_hindered(), editor.errors().first()) {
             return Situation::Stuck {
                 title: "Nothing to show".to_owned(),
                 what: error.report.clone(),
-                remedy: "Mend what the message names, or drop another world's folder here.".to_owned(),
+                remedy: match editor.world() {
+                    Some(_) => "Mend what the message names, or drop another world's folder here.",
+                    None => "Drop a world here, a baked folder, or a scene.gltf that bake has written.",
+                }
+                .to_owned(),
             };
         }
         if editor.world().is_some() && self.background.baker.is_none() && editor.generations().1.is_empty() {

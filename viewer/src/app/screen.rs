@@ -17,6 +17,8 @@ pub struct Screen {
     pub input: egui_winit::State,
     /// Paints; knows textures by [`egui::TextureId`].
     pub painter: egui_wgpu::Renderer,
+    /// What is for the next frame.
+    later: Vec<egui::Event>,
     surface: wgpu::Surface<'static>,
     config: wgpu::SurfaceConfiguration,
     gpu: Gpu,
@@ -47,7 +49,19 @@ impl Screen {
         let input = egui_winit::State::new(ctx.clone(), id, &window, Some(scale), window.theme(), Some(8192));
         let painter =
             egui_wgpu::Renderer::new(&gpu.device, config.format, egui_wgpu::RendererOptions::default());
-        Ok((Self { window, ctx, input, painter, surface, config, gpu: gpu.clone() }, gpu))
+        Ok((Self { window, ctx, input, painter, later: Vec::new(), surface, config, gpu: gpu.clone() }, gpu))
+    }
+
+    /// What has happened since the last frame, up to a press.
+    pub fn take_input(&mut self) -> egui::RawInput {
+        let mut input = self.input.take_egui_input(&self.window);
+        self.later.append(&mut input.events);
+        let length = up_to_a_press(&self.later);
+        input.events = self.later.drain(..length).collect();
+        if !self.later.is_empty() {
+            self.window.request_redraw();
+        }
+        input
     }
 
     /// Keeps the window's size for the next start.
@@ -117,5 +131,37 @@ impl Screen {
             }
         }
         None
+    }
+}
+
+/// How many events one frame takes: egui gives a press to whatever is under the pointer at the frame's end. Where frames
+/// are long the pointer is elsewhere by then, so what is pressed and moved waits with its movement for the next.
+fn up_to_a_press(events: &[egui::Event]) -> usize {
+    use egui::Event;
+    let is_press = |event: &Event| matches!(event, Event::PointerButton { pressed: true, .. });
+    let Some(press) = events.iter().position(is_press) else { return events.len() };
+    let moves = |event: &Event| matches!(event, Event::PointerMoved(_));
+    events[press..].iter().position(moves).map_or(events.len(), |at| press + at)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::up_to_a_press;
+    use egui::{Event, Modifiers, PointerButton, pos2};
+
+    #[test]
+    fn a_press_and_the_movement_after_it_come_in_two_frames_and_a_click_in_one() {
+        let moved = |x: f32| Event::PointerMoved(pos2(x, 0.0));
+        let button = |pressed| Event::PointerButton {
+            pos: pos2(1.0, 0.0),
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        };
+        let drag = [moved(0.0), moved(1.0), button(true), moved(50.0), moved(90.0), button(false)];
+        assert_eq!(up_to_a_press(&drag), 3);
+        assert_eq!(up_to_a_press(&drag[3..]), 3);
+        assert_eq!(up_to_a_press(&[moved(1.0), button(true), button(false)]), 3);
+        assert_eq!(up_to_a_press(&[]), 0);
     }
 }

@@ -86,6 +86,11 @@ impl Viewports {
         self.lands.iter().flatten().map(Arc::as_ref).collect()
     }
 
+    /// What a walker meets in the landscape of a view.
+    pub fn land(&self, view: usize) -> Option<&Land> {
+        self.lands[view].as_deref()
+    }
+
     /// Shows a landscape from the next frame on.
     pub fn show(&mut self, view: usize, loaded: Loaded) {
         self.views[view].show(&self.passes, loaded.buffers);

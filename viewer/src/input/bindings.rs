@@ -99,7 +99,16 @@ impl Bindings {
     fn keys(&self, series: &[Command]) -> String {
         if let [command] = series {
             let names: Vec<String> = self.chords(*command).map(|chord| chord.to_string()).collect();
-            return if names.is_empty() { "no key".into() } else { names.join(" or ") };
+            return match &names[..] {
+                [] => "no key".into(),
+                // "Shift", whichever.
+                [left, right]
+                    if left.strip_prefix("Left ").is_some_and(|key| right == &format!("Right {key}")) =>
+                {
+                    right["Right ".len()..].to_owned()
+                }
+                _ => names.join(" or "),
+            };
         }
         let first =
             |command: &Command| self.chords(*command).next().map_or("–".into(), |chord| chord.to_string());

@@ -55,7 +55,7 @@ pub enum Command {
     /// let the mouse go
     #[strum(props(keys = "Escape"))]
     ReleaseMouse,
-    /// back to the start
+    /// to the start view, where each new generation begins
     #[strum(to_string = "start", props(keys = "Home"))]
     GoToStart,
     /// one landscape alone
@@ -64,7 +64,7 @@ pub enum Command {
     /// all four landscapes
     #[strum(props(keys = "0 or Backspace"))]
     ShowAll,
-    /// two side by side
+    /// two over each other, with a splitter
     #[strum(props(keys = "Tab"))]
     Compare,
     #[strum(to_string = "vote_{0}", props(group = "Choose"))]

@@ -4,6 +4,7 @@ use egui::{CollapsingHeader, Frame, Label, Margin, RichText, ScrollArea, Sense, 
 
 use super::icon::Icon;
 use super::model::{FileError, StageEntry};
+use super::report::{self, Part};
 use super::theme::{self, Palette};
 use super::widgets::{Asks, ends, section, sized_icon_button, small};
 use crate::event::Event;
@@ -92,9 +93,24 @@ fn one(ui: &mut Ui, index: usize, error: &FileError) {
             },
         );
     });
-    ScrollArea::both().id_salt("report").max_height(260.0).auto_shrink([false, true]).show(ui, |ui| {
-        let text = RichText::new(&error.report).monospace().color(palette.text);
-        ui.add(Label::new(text).extend().selectable(true));
+    ScrollArea::vertical().id_salt("report").max_height(260.0).auto_shrink([false, true]).show(ui, |ui| {
+        for (index, part) in report::parts(&error.report).into_iter().enumerate() {
+            ui.push_id(index, |ui| report_part(ui, part));
+        }
     });
     ui.label(RichText::new("The last good landscapes stay. Save the file again when it is mended.").small());
+}
+
+fn report_part(ui: &mut Ui, part: Part) {
+    let color = Palette::of(ui.visuals()).text;
+    match part {
+        Part::Sentence(text) => {
+            ui.add(Label::new(RichText::new(text).color(color)).wrap().selectable(true));
+        }
+        Part::Excerpt(text) => {
+            let text = Label::new(RichText::new(text).monospace().color(color)).extend().selectable(true);
+            ScrollArea::horizontal().auto_shrink([false, true]).show(ui, |ui| ui.add(text));
+            ui.add_space(4.0);
+        }
+    }
 }

@@ -24,12 +24,12 @@ pub fn show(ui: &mut Ui, model: &Model) -> bool {
     let mut ui = ui.new_child(UiBuilder::new().max_rect(card));
     ui.vertical_centered(|ui| match &model.situation {
         Situation::Stuck { title, what, remedy } => stuck(ui, title, what, remedy),
-        Situation::Growing | Situation::Ready => growing(ui, model.baking.as_ref()),
+        Situation::Growing | Situation::Ready => growing(ui, model),
     });
     true
 }
 
-fn growing(ui: &mut Ui, baking: Option<&Baking>) {
+fn growing(ui: &mut Ui, model: &Model) {
     let palette = Palette::of(ui.visuals());
     let (rect, _) = ui.allocate_exact_size(vec2(150.0, 44.0), Sense::hover());
     for (at, category) in Category::ALL.into_iter().enumerate() {
@@ -37,6 +37,11 @@ fn growing(ui: &mut Ui, baking: Option<&Baking>) {
         Icon::from(category).paint_at(ui.painter(), center, 32.0, palette.category(category));
     }
     ui.add_space(12.0);
+    if !model.votable {
+        ui.label(RichText::new("Loading…").size(21.0));
+        return;
+    }
+    let baking = model.baking.as_ref();
     ui.label(RichText::new("Growing four landscapes…").size(21.0));
     ui.add_space(2.0);
     ui.weak("Each appears as soon as it is ready. What has grown once is kept.");

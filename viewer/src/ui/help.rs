@@ -16,11 +16,24 @@ const FIRST_STEPS: [(&str, &str); 3] = [
     ("Breed", "Press “Next generation”: four new landscapes grow from what you chose."),
 ];
 
+/// What the mouse does in a picture; no binding says it.
+fn mouse() -> KeyGroup {
+    let lines = [
+        ("Drag", "look around"),
+        ("Right click", "look around without a button, until Esc"),
+        ("Wheel", "speed of a flight; distance of an orbit"),
+        ("Double click", "one landscape alone, and back"),
+    ];
+    let keys = lines.map(|(key, meaning)| (key.replace(' ', "\u{a0}"), meaning.to_owned())).into();
+    KeyGroup { title: "Mouse".to_owned(), keys }
+}
+
 /// Draws it in the middle of the window, over a veil that closes it.
 pub fn show(ui: &mut Ui, model: &Model) {
     let window = ui.ctx().content_rect();
     let mut close = veil(ui, window) || ui.input(|input| input.key_pressed(egui::Key::Escape));
-    let columns = if window.width() >= 900.0 { 2 } else { 1 };
+    let columns = if window.width() >= 1200.0 { 3 } else { 1 + usize::from(window.width() >= 900.0) };
+    let groups = [vec![mouse()], model.bindings.help()].concat();
     let width = (380.0 * columns as f32 + 40.0).min(window.width() - 32.0);
     Area::new(Id::unique("help"))
         .order(Order::Foreground)
@@ -40,7 +53,7 @@ pub fn show(ui: &mut Ui, model: &Model) {
                 scrolled(ui, window.height() - 130.0, |ui| {
                     first_steps(ui);
                     ui.add_space(12.0);
-                    keys(ui, &model.keys, columns);
+                    keys(ui, &groups, columns);
                 });
             });
         });

@@ -9,6 +9,7 @@ mod genome;
 mod help;
 pub mod icon;
 pub mod model;
+mod report;
 mod settings;
 pub mod stats;
 #[cfg(test)]
@@ -29,6 +30,11 @@ use crate::event::{Event, Panel};
 use model::Model;
 use widgets::{Asks, ask, asked};
 
+/// Notices that are shown at a time: more would reach up to the next picture's buttons.
+const NOTICES: usize = 3;
+/// Space between notices and the lower left corner of the pictures: there are vote buttons.
+const NOTICES_AT: egui::Vec2 = egui::vec2(14.0, 56.0);
+
 /// What the panels remember between frames.
 pub struct State {
     /// Where the splitter is, as a part of the pictures' width.
@@ -40,7 +46,7 @@ pub struct State {
 
 impl Default for State {
     fn default() -> Self {
-        let toasts = Toasts::default().with_anchor(Anchor::BottomLeft).with_margin(egui::vec2(14.0, 14.0));
+        let toasts = Toasts::default().with_anchor(Anchor::BottomLeft).with_margin(NOTICES_AT);
         Self { split: 0.5, genome: genome::State::default(), toasts }
     }
 }
@@ -62,6 +68,9 @@ impl State {
     /// Shows a notice for some seconds.
     pub fn notify(&mut self, tone: Tone, text: impl Into<String>) {
         let text = text.into();
+        if self.toasts.len() >= NOTICES {
+            self.toasts.dismiss_oldest_toast();
+        }
         let (toast, seconds) = match tone {
             Tone::Info => (self.toasts.info(text), 4),
             Tone::Success => (self.toasts.success(text), 4),
@@ -87,6 +96,8 @@ pub struct Output {
 /// been called once, [`theme::follow`] in each frame before.
 pub fn show(ui: &mut Ui, model: &Model, state: &mut State) -> Output {
     let mut output = Output::default();
+    keep_keyboard(ui.ctx());
+    theme::keep_pace(ui.ctx());
     top_bar::show(ui, model);
     if model.panels.genome {
         genome::show(ui, model, &mut state.genome);
@@ -109,10 +120,25 @@ pub fn show(ui: &mut Ui, model: &Model, state: &mut State) -> Output {
     empty::drop_target(ui);
     let dropped = ui.input(|input| input.raw.dropped_files.clone());
     dropped.into_iter().for_each(|file| ask(ui, Event::OpenFolder(file.path().to_path_buf())));
+    let below = ui.ctx().content_rect().bottom() - area.bottom();
+    let margin = NOTICES_AT + egui::vec2(area.left(), below);
+    state.toasts = std::mem::take(&mut state.toasts).with_margin(margin);
     state.toasts.show(ui.ctx());
     output.events = asked(ui);
     output.typing = ui.ctx().text_edit_focused();
     output
+}
+
+/// Keys are commands and lead from no control to the next: else a key that is meant as a command would press the one that
+/// they have reached, too. Tab leaves a text field, as Enter does.
+fn keep_keyboard(ctx: &egui::Context) {
+    let tab = ctx.input(|input| input.key_pressed(egui::Key::Tab));
+    ctx.memory_mut(|memory| {
+        memory.move_focus(egui::FocusDirection::None);
+        if let Some(field) = memory.focused().filter(|_| tab) {
+            memory.surrender_focus(field);
+        }
+    });
 }
 
 /// A line over the pictures while a file is broken and the panel that tells more is closed.

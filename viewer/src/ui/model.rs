@@ -1,14 +1,15 @@
 //! What the user interface shows, as plain values: filled by the application once a frame, read by the panels. No
 //! handle to a device, a file or a clock; a picture is an [`egui::TextureId`], which only names it.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use egui::TextureId;
-use genescape_schema::{Genome, INDIVIDUALS, Parameter, Space};
+use genescape_schema::{Genome, INDIVIDUALS, Parameter, Parent, Space};
 
-use crate::event::{Arrangement, Ballots, Panel};
-use crate::input::KeyGroup;
+use crate::ballots::Ballots;
+use crate::event::{Arrangement, Panel};
+use crate::input::{Bindings, Command};
 use crate::options::Options;
 use crate::settings::Comfort;
 
@@ -43,8 +44,18 @@ pub struct Model {
     pub errors: Vec<FileError>,
     /// Times and counts of the last frames.
     pub stats: Stats,
-    /// What the keys do, in groups.
-    pub keys: Vec<KeyGroup>,
+    /// What the keys do.
+    pub bindings: Arc<Bindings>,
+    /// How many landscapes there are: fewer than four if scenes alone are shown.
+    pub count: usize,
+    /// They belong to a world, where votes lead on.
+    pub votable: bool,
+    /// What generations were bred from, if from any.
+    pub parents: BTreeMap<u32, Parent>,
+    /// Names of the landscapes that those on show were bred from.
+    pub ancestors: Option<[String; INDIVIDUALS]>,
+    /// Nobody has walked or voted yet.
+    pub greets: bool,
     /// What is drawn, and how.
     pub options: Options,
     /// How the program handles.
@@ -53,6 +64,16 @@ pub struct Model {
     pub panels: Panels,
     /// The pointer is locked into the picture: nothing reacts to it.
     pub captured: bool,
+}
+
+impl Model {
+    /// A tooltip with the key that does the same: "Settings (F2)".
+    pub fn with_key(&self, text: &str, command: Command) -> String {
+        match self.bindings.chords(command).next() {
+            Some(chord) => format!("{text} ({chord})"),
+            None => text.to_owned(),
+        }
+    }
 }
 
 /// Whether there is anything to look at, and if not, why.
@@ -84,9 +105,13 @@ pub struct ViewModel {
 pub enum ViewState {
     /// The picture is right.
     Ready,
-    /// The scene is being baked: `done` of `total` stages (0 while that is not known) are finished, and `stage`
-    /// ("terrain: erosion"; may be empty) is being computed.
+    /// No stage of it is computed yet.
+    Waiting,
+    /// The scene is being baked: `done` of `total` stages are finished, and `stage` ("terrain: erosion"; may be empty) is
+    /// being computed.
     Baking { done: usize, total: usize, stage: String },
+    /// It is baked, and is being read.
+    Loading,
     /// Baking or reading failed; the picture, if any, is the last good one. What went wrong, and what to do about it.
     Failed { what: String, remedy: String },
 }

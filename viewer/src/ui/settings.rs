@@ -32,8 +32,8 @@ pub fn show(ui: &mut Ui, model: &Model, area: Rect) {
                 ui.horizontal(header);
                 scrolled(ui, area.height() - 80.0, |ui| {
                     ui.set_width(ui.available_width() - 10.0);
-                    options(ui, &model.options);
                     comfort(ui, &model.comfort);
+                    options(ui, &model.options);
                 });
             });
         });
@@ -60,6 +60,13 @@ fn switches(ui: &mut Ui, all: &[Switch], options: &mut Options) {
 
 fn options(ui: &mut Ui, current: &Options) {
     let mut options = *current;
+    section(ui, "PICTURE");
+    switches(ui, &PICTURE_SWITCHES, &mut options);
+    number(ui, &mut options.exposure, 0.125..=8.0, "Exposure", " ×");
+    number(ui, &mut options.fov_y_deg, 20.0..=110.0, "Field of view", "°");
+    ui.label("Samples a pixel");
+    let samples = [(1, "1", "Fastest"), (4, "4", "Smooth edges")];
+    segmented(ui, "Samples a pixel", &samples, &mut options.samples);
     section(ui, "LEVELS OF DETAIL");
     ui.label("Trees");
     segmented(ui, "Tree detail", &modes(), &mut options.tree_lod);
@@ -68,13 +75,6 @@ fn options(ui: &mut Ui, current: &Options) {
     segmented(ui, "Terrain detail", &modes(), &mut options.terrain_lod);
     number(ui, &mut options.terrain_error_px, 0.1..=16.0, "Error allowed on terrain", " px");
     switches(ui, &LOD_SWITCHES, &mut options);
-    section(ui, "PICTURE");
-    switches(ui, &PICTURE_SWITCHES, &mut options);
-    number(ui, &mut options.exposure, 0.125..=8.0, "Exposure", " ×");
-    number(ui, &mut options.fov_y_deg, 20.0..=110.0, "Field of view", "°");
-    ui.label("Samples a pixel");
-    let samples = [(1, "1", "Fastest"), (4, "4", "Smooth edges")];
-    segmented(ui, "Samples a pixel", &samples, &mut options.samples);
     if options != *current {
         ask(ui, Event::Options(options));
     }
@@ -82,9 +82,6 @@ fn options(ui: &mut Ui, current: &Options) {
 
 fn comfort(ui: &mut Ui, current: &Comfort) {
     let mut comfort = *current;
-    section(ui, "HANDLING");
-    number(ui, &mut comfort.mouse_sensitivity, 0.1..=5.0, "Mouse sensitivity", " ×");
-    switch(ui, &mut comfort.invert_y, "Invert up and down", "Mouse up looks down");
     section(ui, "APPEARANCE");
     let themes = [(Theme::System, "System", ""), (Theme::Light, "Light", ""), (Theme::Dark, "Dark", "")];
     segmented(ui, "Theme", &themes, &mut comfort.theme);
@@ -92,6 +89,11 @@ fn comfort(ui: &mut Ui, current: &Comfort) {
     let scales =
         [(0.8, "80 %", ""), (1.0, "100 %", ""), (1.25, "125 %", ""), (1.5, "150 %", ""), (2.0, "200 %", "")];
     segmented(ui, "Scale", &scales, &mut comfort.ui_scale);
+    section(ui, "HANDLING");
+    number(ui, &mut comfort.mouse_sensitivity, 0.1..=5.0, "Mouse sensitivity", " ×");
+    switch(ui, &mut comfort.invert_y, "Invert up and down", "Mouse up looks down");
+    let help = "Otherwise each new generation is entered at its start view, as by Home";
+    switch(ui, &mut comfort.stay, "Stay where you are in a new generation", help);
     if comfort != *current {
         ask(ui, Event::Comfort(comfort));
     }

@@ -31,6 +31,11 @@ pub const ON_BRIGHT: Color32 = rgb(0x101612);
 /// Corners of pictures and cards, in points.
 pub const RADIUS: u8 = 7;
 
+/// In which a panel opens, or a switch moves.
+const ANIMATION_S: f32 = 0.12;
+/// A frame that takes longer is no part of a movement.
+const SLOW_S: f32 = 0.1;
+
 /// A category's colour on pictures, bright in both themes.
 pub fn bright(category: Category) -> Color32 {
     [rgb(0x86cf7e), rgb(0xebb666), rgb(0x85c1f4)][category as usize]
@@ -139,6 +144,15 @@ pub fn follow(ctx: &Context, comfort: &settings::Comfort) {
     ctx.set_zoom_factor(comfort.ui_scale.clamp(0.5, 2.5));
 }
 
+/// Nothing fades or slides while frames take long: in steps of a second it would only be late.
+pub fn keep_pace(ctx: &Context) {
+    let is_slow = ctx.input(|input| input.unstable_dt) > SLOW_S;
+    let wanted = if is_slow { 0.0 } else { ANIMATION_S };
+    if ctx.global_style().animation_time != wanted {
+        ctx.all_styles_mut(|style| style.animation_time = wanted);
+    }
+}
+
 fn style(palette: &Palette, base: Visuals) -> Style {
     let mut style = Style { visuals: visuals(palette, base), text_styles: text_styles(), ..Style::default() };
     let spacing = &mut style.spacing;
@@ -152,7 +166,7 @@ fn style(palette: &Palette, base: Visuals) -> Style {
     spacing.scroll = ScrollStyle { bar_width: 7.0, ..ScrollStyle::thin() };
     style.interaction.selectable_labels = false;
     style.interaction.tooltip_delay = 0.35;
-    style.animation_time = 0.12;
+    style.animation_time = ANIMATION_S;
     style
 }
 

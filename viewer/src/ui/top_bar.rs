@@ -1,13 +1,17 @@
 //! The slim bar on top: the line of generations, undo and the next generation at the left; progress in the middle;
 //! arrangement, screenshot and panels at the right.
 
-use egui::{Align, Frame, Layout, Margin, Rect, Sense, Stroke, TextStyle, Ui, vec2};
+use egui::text::{LayoutJob, TextFormat};
+use egui::{Align, Frame, Id, Layout, Margin, Rect, Response, Sense, Stroke, TextStyle, Ui, vec2};
+use genescape_schema::{Category, Parent};
 
 use super::icon::Icon;
 use super::model::{Baking, Model};
-use super::theme::Palette;
+use super::theme::{self, Palette};
 use super::votes;
-use super::widgets::{Asks, ICON_BUTTON, ask, flat_button, icon_button, primary_button, progress_bar};
+use super::widgets::{
+    Asks, ICON_BUTTON, ask, bar_button, flat_button, icon_button, primary_button, progress_bar,
+};
 use crate::event::{Arrangement, Event, Panel};
 use crate::input::Command;
 
@@ -28,7 +32,9 @@ pub fn show(ui: &mut Ui, model: &Model) {
             arrangements(ui, model);
             ui.add_space(4.0);
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                generations(ui, model, words);
+                if model.votable {
+                    generations(ui, model, words);
+                }
             });
         });
     });
@@ -36,14 +42,14 @@ pub fn show(ui: &mut Ui, model: &Model) {
 
 fn panels(ui: &mut Ui, model: &Model) {
     let all = [
-        (Panel::Help, Icon::Help, "Help and keys"),
-        (Panel::Settings, Icon::Settings, "Settings"),
-        (Panel::Stats, Icon::Stats, "Frame times"),
-        (Panel::Genome, Icon::Genome, "Genes"),
+        (Panel::Help, Icon::Help, "Help and keys", Command::Help),
+        (Panel::Settings, Icon::Settings, "Settings", Command::Settings),
+        (Panel::Stats, Icon::Stats, "Frame times", Command::Stats),
+        (Panel::Genome, Icon::Genome, "Genes", Command::Genome),
     ];
-    for (panel, icon, label) in all {
+    for (panel, icon, label, command) in all {
         let open = model.panels.is_open(panel);
-        let response = icon_button(ui, icon, label, open);
+        let response = bar_button(ui, icon, label, open, &model.with_key(label, command));
         if panel == Panel::Genome && !model.errors.is_empty() {
             let center = response.rect.right_top() + vec2(-6.0, 6.0);
             ui.painter().circle_filled(center, 4.0, Palette::of(ui.visuals()).danger);
@@ -51,20 +57,26 @@ fn panels(ui: &mut Ui, model: &Model) {
         response.asks(Event::Panel { panel, open: !open });
     }
     divider(ui);
-    icon_button(ui, Icon::Camera, "Save a screenshot", false).asks(Command::Screenshot);
+    let label = "Save a screenshot";
+    bar_button(ui, Icon::Camera, label, false, &model.with_key(label, Command::Screenshot))
+        .asks(Command::Screenshot);
 }
 
 fn arrangements(ui: &mut Ui, model: &Model) {
+    if model.count < 2 {
+        return;
+    }
     divider(ui);
-    let (left, right) = (model.chosen, (model.chosen + 1) % model.views.len());
+    let (left, right) = (model.chosen, (model.chosen + 1) % model.count);
+    let one = Command::Maximise(model.chosen as u8 + 1);
     let all = [
-        (Arrangement::Compare { left, right }, Icon::Compare, "Compare two"),
-        (Arrangement::One(model.chosen), Icon::Single, "One alone"),
-        (Arrangement::Grid, Icon::Grid, "All four"),
+        (Arrangement::Compare { left, right }, Icon::Compare, "Compare two", Command::Compare),
+        (Arrangement::One(model.chosen), Icon::Single, "One alone", one),
+        (Arrangement::Grid, Icon::Grid, "All four", Command::ShowAll),
     ];
-    for (arrangement, icon, label) in all {
+    for (arrangement, icon, label, command) in all {
         let same = std::mem::discriminant(&arrangement) == std::mem::discriminant(&model.arrangement);
-        if icon_button(ui, icon, label, same).clicked() && !same {
+        if bar_button(ui, icon, label, same, &model.with_key(label, command)).clicked() && !same {
             ask(ui, Event::Arrange(arrangement));
         }
     }
@@ -77,9 +89,9 @@ fn divider(ui: &mut Ui) {
 }
 
 fn generations(ui: &mut Ui, model: &Model, words: bool) {
-    step(ui, Icon::Undo, "Undo", model.undo.as_deref(), Command::Undo);
+    step(ui, model, Icon::Undo, "Undo", model.undo.as_deref(), Command::Undo);
     if model.redo.is_some() {
-        step(ui, Icon::Redo, "Redo", model.redo.as_deref(), Command::Redo);
+        step(ui, model, Icon::Redo, "Redo", model.redo.as_deref(), Command::Redo);
     }
     divider(ui);
     let way_on = if words { 330.0 } else { 36.0 };
@@ -98,15 +110,18 @@ fn generations(ui: &mut Ui, model: &Model, words: bool) {
 }
 
 /// Takes a step back or does it again; `what` says which, `None` that there is none.
-fn step(ui: &mut Ui, icon: Icon, verb: &str, what: Option<&str>, command: Command) {
+fn step(ui: &mut Ui, model: &Model, icon: Icon, verb: &str, what: Option<&str>, command: Command) {
     let label = match what {
         Some(what) => format!("{verb}: {what}"),
         None => format!("Nothing to {}", verb.to_lowercase()),
     };
-    ui.add_enabled_ui(what.is_some(), |ui| icon_button(ui, icon, &label, false)).inner.asks(command);
+    let tooltip = model.with_key(&label, command);
+    let button = |ui: &mut Ui| bar_button(ui, icon, &label, false, &tooltip);
+    ui.add_enabled_ui(what.is_some(), button).inner.asks(command);
 }
 
-/// The line of generations, the newest at the right; scrolls when it is longer than `room`.
+/// The line of generations, the newest at the right; scrolls when it is longer than `room`, to the one on show when that
+/// is another.
 fn strip(ui: &mut Ui, model: &Model, room: f32) {
     let wanted = model.generations.len() as f32 * 44.0;
     let size = vec2(room.min(wanted.max(40.0)), ICON_BUTTON);
@@ -114,26 +129,39 @@ fn strip(ui: &mut Ui, model: &Model, room: f32) {
         let area = egui::ScrollArea::horizontal()
             .id_salt("generations")
             .scroll_bar_visibility(egui::scroll_area::ScrollBarVisibility::AlwaysHidden)
-            .stick_to_right(true)
             .max_width(size.x)
             .auto_shrink([true, true]);
         area.show(ui, |ui| {
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = 2.0;
+                let now = (model.generation, model.generations.len());
+                let seen = ui.data_mut(|data| {
+                    data.get_temp_mut_or_insert_with(Id::unique("seen generation"), || None).replace(now)
+                });
                 for &generation in &model.generations {
-                    generation_tab(ui, model, generation);
+                    let tab = generation_tab(ui, model, generation);
+                    if generation == model.generation && seen != Some(now) {
+                        tab.scroll_to_me(Some(Align::Center));
+                    }
                 }
             });
         });
     });
 }
 
-fn generation_tab(ui: &mut Ui, model: &Model, generation: u32) {
+fn generation_tab(ui: &mut Ui, model: &Model, generation: u32) -> Response {
     let palette = Palette::of(ui.visuals());
     let current = generation == model.generation;
-    let text = format!("g{generation}");
     let color = if current { palette.text } else { palette.weak };
-    let galley = ui.painter().layout_no_wrap(text, TextStyle::Button.resolve(ui.style()), color);
+    let format = |style: TextStyle, color| TextFormat::simple(style.resolve(ui.style()), color);
+    let mut job = LayoutJob::default();
+    job.append(&format!("g{generation}"), 0.0, format(TextStyle::Button, color));
+    // A branch: it does not descend from the one before it.
+    let parent = model.parents.get(&generation);
+    if let Some(parent) = parent.filter(|parent| parent.generation + 1 != generation) {
+        job.append(&format!("‹{}", parent.generation), 2.0, format(TextStyle::Small, palette.weak));
+    }
+    let galley = ui.painter().layout_job(job);
     let size = vec2(galley.size().x + 16.0, ICON_BUTTON);
     let (rect, response) = flat_button(ui, size, &format!("Generation {generation}"), current);
     ui.painter().galley(rect.center() - 0.5 * galley.size(), galley, color);
@@ -144,10 +172,21 @@ fn generation_tab(ui: &mut Ui, model: &Model, generation: u32) {
     if response.clicked() && !current {
         ask(ui, Event::GoToGeneration(generation));
     }
-    response.on_hover_text(match current {
-        true => format!("Generation {generation}, shown now"),
-        false => format!("Go to generation {generation}"),
-    });
+    let first = if current {
+        format!("Generation {generation}, shown now")
+    } else {
+        format!("Go to generation {generation}")
+    };
+    response.on_hover_text(parent.map_or(first.clone(), |parent| format!("{first}\n{}", descent(parent))))
+}
+
+/// "Bred from generation 3: trees of 1, terrain of 2, sky of none".
+fn descent(parent: &Parent) -> String {
+    let vote = |category: Category| {
+        let best = parent.votes.get(category).map_or("none".to_owned(), |best| (best + 1).to_string());
+        format!("{} of {best}", theme::title(category).to_lowercase())
+    };
+    format!("Bred from generation {}: {}", parent.generation, Category::ALL.map(vote).join(", "))
 }
 
 fn next(ui: &mut Ui, model: &Model, words: bool) {
@@ -162,6 +201,9 @@ fn next(ui: &mut Ui, model: &Model, words: bool) {
     response.asks(Command::NextGeneration);
     match hindrance {
         Some(text) => response.on_disabled_hover_text(text),
-        None => response.on_hover_text("Breed four new landscapes from what you chose"),
+        None => {
+            let text = "Breed four new landscapes from what you chose";
+            response.on_hover_text(model.with_key(text, Command::NextGeneration))
+        }
     };
 }

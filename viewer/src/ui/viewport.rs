@@ -2,7 +2,7 @@
 //! when it does not show what it should, why and what to do.
 
 use egui::text::{LayoutJob, TextFormat, TextWrapping};
-use egui::{Align2, Color32, FontId, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
+use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 use genescape_schema::INDIVIDUALS;
 
 use super::icon::Icon;
@@ -14,13 +14,19 @@ use crate::event::{Arrangement, Event};
 /// Side of a button on a picture, in points.
 const BUTTON: f32 = 26.0;
 
-/// Draws name, buttons and state over the picture in `rect`; `lively` when the pointer is over it.
-pub fn show(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool) {
-    let buttons = if lively { 2.0 * (BUTTON + 4.0) } else { 0.0 };
-    name_tag(ui, model, view, rect, rect.width() - 20.0 - buttons);
+/// Draws name, buttons and state over the picture in `rect`; `lively` when the pointer is over it. Where the name ends.
+pub fn show(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool) -> Pos2 {
+    if view >= model.count {
+        return rect.min;
+    }
+    // Where they would be, so that the name stays as it is when they come.
+    let buttons = if matches!(model.arrangement, Arrangement::Grid) { 2.0 * (BUTTON + 4.0) } else { 0.0 };
+    let below = name_tag(ui, model, view, rect, rect.width() - 20.0 - buttons);
     match &model.views[view].state {
         ViewState::Ready => {}
+        ViewState::Waiting => progress(ui, rect, 0.0, "…", "waiting to grow".to_owned()),
         ViewState::Baking { done, total, stage } => baking(ui, rect, *done, *total, stage),
+        ViewState::Loading => progress(ui, rect, 1.0, "100%", "loading".to_owned()),
         ViewState::Failed { what, remedy } => failed(ui, view, rect, what, remedy),
     }
     let compared = Arrangement::Compare { left: view, right: (view + 1) % INDIVIDUALS };
@@ -29,8 +35,8 @@ pub fn show(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool) {
             (Icon::Maximise, "Show this one alone", Arrangement::One(view)),
             (Icon::Compare, "Compare with another", compared),
         ],
-        Arrangement::One(_) => &[(Icon::Grid, "Show all four", Arrangement::Grid)],
-        Arrangement::Compare { .. } => &[],
+        Arrangement::One(_) if model.count > 1 => &[(Icon::Grid, "Show all four", Arrangement::Grid)],
+        Arrangement::One(_) | Arrangement::Compare { .. } => &[],
     };
     let mut corner = rect.right_top() + vec2(-10.0 - BUTTON, 10.0);
     for &(icon, label, arrangement) in tools.iter().filter(|_| lively) {
@@ -42,6 +48,7 @@ pub fn show(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool) {
         response.on_hover_text(label).asks(Event::Arrange(arrangement));
         corner.x -= BUTTON + 4.0;
     }
+    below
 }
 
 /// The ground of a button on a picture.
@@ -54,11 +61,11 @@ fn text(size: f32, color: Color32) -> TextFormat {
 }
 
 /// Four numbers below the name that choose which landscape this side of the comparison shows.
-pub fn choose_side(ui: &mut Ui, model: &Model, side: usize, half: Rect) {
+pub fn choose_side(ui: &mut Ui, model: &Model, side: usize, below: Pos2) {
     let Arrangement::Compare { left, right } = model.arrangement else { return };
     let shown = [left, right][side];
     for view in 0..INDIVIDUALS {
-        let corner = pos2(half.left() + 10.0 + view as f32 * 30.0, half.top() + 44.0);
+        let corner = below + vec2(view as f32 * 30.0, 6.0);
         let rect = Rect::from_min_size(corner, vec2(26.0, 24.0));
         let name = format!("Show {} on the {}", view + 1, ["left", "right"][side]);
         let (response, lit) = painted_button(ui, rect, ("side", view), &name, view == shown);
@@ -76,33 +83,47 @@ pub fn choose_side(ui: &mut Ui, model: &Model, side: usize, half: Rect) {
     }
 }
 
-fn name_tag(ui: &Ui, model: &Model, view: usize, rect: Rect, room: f32) {
+/// Number and name, on two lines where one has no room for them; its lower left corner.
+fn name_tag(ui: &mut Ui, model: &Model, view: usize, rect: Rect, room: f32) -> Pos2 {
+    let name = &model.views[view].name;
     let mut job = LayoutJob::default();
     job.append(&format!("{}", view + 1), 0.0, text(14.0, theme::DARK.accent));
-    job.append(&model.views[view].name, 8.0, text(14.0, theme::ON_SCRIM));
-    job.wrap = TextWrapping::truncate_at_width((room - 20.0).max(20.0));
+    job.append(name, 8.0, text(14.0, theme::ON_SCRIM));
+    job.wrap = TextWrapping { max_width: (room - 20.0).max(20.0), max_rows: 2, ..Default::default() };
     let galley = ui.painter().layout_job(job);
     let tag = Rect::from_min_size(rect.min + vec2(10.0, 10.0), galley.size() + vec2(20.0, 9.0));
     ui.painter().rect_filled(tag, 13, theme::SCRIM);
     ui.painter().galley(tag.min + vec2(10.0, 4.5), galley, theme::ON_SCRIM);
+    let told = ui.interact(tag, ui.scope_id().with(("name", view)), Sense::hover());
+    told.on_hover_text(legend(model, name));
+    tag.left_bottom()
+}
+
+/// A whole name, and who is meant by its numbers.
+fn legend(model: &Model, name: &str) -> String {
+    let Some((parent, ancestors)) = model.parents.get(&model.generation).zip(model.ancestors.as_ref()) else {
+        return name.to_owned();
+    };
+    let line = |(index, name): (usize, &String)| format!("\n{} {name}", index + 1);
+    let lines: String = ancestors.iter().enumerate().map(line).collect();
+    format!("{name}\n\nNumbers are those of generation {}:{lines}", parent.generation)
 }
 
 fn baking(ui: &Ui, rect: Rect, done: usize, total: usize, stage: &str) {
-    let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
     let part = done as f32 / total.max(1) as f32;
+    let line = if stage.is_empty() { "growing" } else { stage };
+    progress(ui, rect, part, &format!("{}%", (part * 100.0) as u32), format!("{line} · {done} of {total}"));
+}
+
+/// A ring with a word in it and a line below.
+fn progress(ui: &Ui, rect: Rect, part: f32, word: &str, line: String) {
+    let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
     let center = rect.center() - vec2(0.0, 16.0);
     let radius = 24.0f32.min(rect.height() * 0.18);
     painter.circle_filled(center, radius + 10.0, theme::SCRIM);
     progress_ring(&painter, center, radius, part, theme::DARK.accent, Color32::from_white_alpha(40));
-    let percent = if total == 0 { "…".to_owned() } else { format!("{}%", (part * 100.0) as u32) };
     let font = FontId::proportional(13.0);
-    painter.text(center, Align2::CENTER_CENTER, percent, font.clone(), theme::ON_SCRIM);
-    let line = match (total, stage) {
-        (0, "") => "waiting to grow".to_owned(),
-        (0, stage) => stage.to_owned(),
-        (_, "") => format!("{done} of {total} stages"),
-        (_, stage) => format!("{stage} · {done} of {total}"),
-    };
+    painter.text(center, Align2::CENTER_CENTER, word, font.clone(), theme::ON_SCRIM);
     let mut job = LayoutJob::simple_singleline(line, font, theme::ON_SCRIM);
     job.wrap = TextWrapping::truncate_at_width((rect.width() - 44.0).max(20.0));
     let galley = painter.layout_job(job);

@@ -1,7 +1,9 @@
 //! The four pictures: two by two, one alone, or two over each other with a splitter; on each its name, its state and
 //! its vote buttons. Says which rectangles the renderer has to fill and where the pointer is.
 
-use egui::{Color32, CursorIcon, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};
+use egui::{
+    Color32, CursorIcon, FontId, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2, pos2, vec2,
+};
 
 use super::arrange::{Slot, slots};
 use super::model::{Model, ViewState};
@@ -9,6 +11,7 @@ use super::theme::{self, Palette};
 use super::widgets::ask;
 use super::{viewport, votes};
 use crate::event::{Arrangement, Event};
+use crate::input::Command;
 
 /// What the application has to know about the views.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -46,20 +49,30 @@ pub fn show(ui: &mut Ui, model: &Model, split: &mut f32) -> Views {
             }
         }
     }
-    let (anchor, beside) = hub_place(model.arrangement, area, &slots);
-    votes::hub(ui, model, anchor, beside);
+    if model.votable {
+        let (anchor, beside) = hub_place(model, area, &slots, *split);
+        votes::hub(ui, model, anchor, beside);
+    }
+    if model.greets {
+        greeting(ui, model, area);
+    }
     views.slots = slots;
     views
 }
 
 /// The middle of the hub's lower edge, and the width of the pictures whose vote buttons are beside it.
-fn hub_place(arrangement: Arrangement, area: Rect, slots: &[Slot]) -> (Pos2, f32) {
+fn hub_place(model: &Model, area: Rect, slots: &[Slot], split: f32) -> (Pos2, f32) {
     let (first, last) = (slots[0].rect, slots[slots.len() - 1].rect);
-    match arrangement {
+    match model.arrangement {
         // Just below the crossing, where the name of the lower right picture begins.
         Arrangement::Grid => (pos2(0.5 * (first.right() + last.left()), last.top() + 2.0), first.width()),
-        // Between the vote buttons of the two halves.
-        Arrangement::Compare { .. } => (pos2(area.center().x, area.bottom() - 9.0), 0.5 * area.width()),
+        // On the splitter, between the vote buttons of the two pictures, as long as it is inside.
+        Arrangement::Compare { .. } => {
+            let beside = 0.5 * area.width();
+            let half = 0.5 * votes::hub_size(model, beside).0.x + 4.0;
+            let x = egui::lerp(first.x_range(), split).clamp(first.left() + half, first.right() - half);
+            (pos2(x, area.bottom() - 9.0), beside)
+        }
         Arrangement::One(_) => (pos2(area.center().x, area.top() + 50.0), first.width()),
     }
 }
@@ -110,6 +123,19 @@ fn paint_picture(ui: &Ui, model: &Model, view: usize, rect: Rect, clip: Rect) {
     }
 }
 
+/// What to do first, until it was done once.
+fn greeting(ui: &Ui, model: &Model, area: Rect) {
+    let key =
+        |command| model.bindings.chords(command).next().map_or("–".to_owned(), |chord| chord.to_string());
+    let walk = [Command::Forward, Command::Left, Command::Back, Command::Right].map(key).join(" ");
+    let text = format!("{walk} walk · drag to look around · {} help", key(Command::Help));
+    let galley = ui.painter().layout_no_wrap(text, FontId::proportional(14.0), theme::ON_SCRIM);
+    // Below the names of the lower pictures.
+    let tag = Rect::from_center_size(area.center() + vec2(0.0, 84.0), galley.size() + vec2(28.0, 14.0));
+    ui.painter().rect_filled(tag, 15, theme::SCRIM_HOVERED);
+    ui.painter().galley(tag.min + vec2(14.0, 7.0), galley, theme::ON_SCRIM);
+}
+
 /// A line around the chosen picture while the genome panel is open, and around the one under the pointer.
 fn frame(ui: &Ui, model: &Model, slot: &Slot, lively: bool) {
     let color = match (model.panels.genome && model.chosen == slot.view, lively) {
@@ -123,7 +149,7 @@ fn frame(ui: &Ui, model: &Model, slot: &Slot, lively: bool) {
 
 fn vote_bar(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool) {
     let seen = model.views[view].picture.is_some();
-    if seen && matches!(model.views[view].state, ViewState::Ready) {
+    if seen && model.votable && matches!(model.views[view].state, ViewState::Ready) {
         votes::bar(ui, model, view, rect, lively);
     }
 }
@@ -137,13 +163,20 @@ fn compare(ui: &mut Ui, model: &Model, [left, right]: [Slot; 2], split: &mut f32
             ui.push_id(("side", side), |ui| picture(ui, model, slot.view, rect, part, views)).inner;
         !model.captured && response.contains_pointer()
     });
-    // Names and votes keep to their half however far the splitter is moved.
-    let halves = rect.split_left_right_at_fraction(0.5);
-    for (side, (slot, half)) in [(left, halves.0), (right, halves.1)].into_iter().enumerate() {
+    let hub_x = hub_place(model, rect.expand(4.0), &[left, right], *split).0.x;
+    let half_hub = 0.5 * votes::hub_size(model, 0.5 * rect.width()).0.x + 4.0;
+    // Names and votes are on their pictures, however far the splitter is moved.
+    for (side, (slot, part)) in [(left, parts.0), (right, parts.1)].into_iter().enumerate() {
         ui.push_id(("half", side), |ui| {
-            viewport::show(ui, model, slot.view, half, lively[side]);
-            viewport::choose_side(ui, model, side, half);
-            vote_bar(ui, model, slot.view, half, lively[side]);
+            ui.set_clip_rect(part.intersect(ui.clip_rect()));
+            let below = viewport::show(ui, model, slot.view, part, lively[side]);
+            viewport::choose_side(ui, model, side, below);
+            let mut beside_hub = part;
+            match side {
+                0 => beside_hub.max.x = part.right().min(hub_x - half_hub),
+                _ => beside_hub.min.x = part.left().max(hub_x + half_hub),
+            }
+            vote_bar(ui, model, slot.view, beside_hub, lively[side]);
         });
     }
     splitter(ui, rect, parts.0.right(), split);

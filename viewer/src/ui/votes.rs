@@ -1,7 +1,7 @@
 //! Voting: three buttons on each picture, and the hub between the pictures, which shows how far the vote is and leads
 //! to the next generation. Colour says which category; a filled button is a vote that was won here.
 
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui, Vec2};
 use egui::{pos2, vec2};
 use genescape_schema::Category;
 
@@ -9,20 +9,27 @@ use super::icon::Icon;
 use super::model::Model;
 use super::theme;
 use super::widgets::{Asks, painted_button, progress_ring};
-use crate::event::{Ballot, Event};
-use crate::input::Command;
+use crate::ballots::Ballot;
+use crate::event::Event;
+use crate::input::{Best, Command};
 
 /// Height of a vote button, in points.
 const PILL: f32 = 28.0;
 /// A picture narrower than this shows pictograms without words, in points.
 const WORDS_FROM: f32 = 400.0;
+/// A picture narrower than this, beside a splitter, has no vote buttons, in points.
+const NARROW: f32 = 122.0;
 /// Side of a ballot in the hub, in points.
 const CHIP: f32 = 26.0;
 /// The hub's shorter side, in points.
 const HUB: f32 = 38.0;
 
-/// The vote buttons of one picture, centred at `bottom`; `lively` when the pointer is over the picture.
+/// The vote buttons of one picture, at the lower edge of `within`, if there is room for them; `lively` when the pointer is
+/// over the picture.
 pub fn bar(ui: &mut Ui, model: &Model, view: usize, within: Rect, lively: bool) {
+    if within.width() < NARROW {
+        return;
+    }
     let words = within.width() >= WORDS_FROM;
     let widths = Category::ALL.map(|category| if words { pill_width(ui, category) } else { 36.0 });
     let total = widths.iter().sum::<f32>() + 12.0;
@@ -80,7 +87,8 @@ fn pill(ui: &mut Ui, model: &Model, view: usize, category: Category, rect: Rect,
     response.on_hover_text(if won {
         format!("{title} is best here. Click to take the vote back.")
     } else {
-        format!("Vote: “{}” has the best {}", model.views[view].name, title.to_lowercase())
+        let text = format!("Vote: {} has the best {}", view + 1, title.to_lowercase());
+        model.with_key(&text, Command::Vote(Best { category, landscape: Some(view as u8 + 1) }))
     });
 }
 
@@ -94,9 +102,8 @@ pub fn hindrance(model: &Model) -> Option<String> {
     (!names.is_empty()).then(|| format!("Still to vote on: {}", names.join(", ")))
 }
 
-/// The hub between the pictures: three ballots, and the button for the next generation. `anchor` is the middle of its
-/// lower edge.
-pub fn hub(ui: &mut Ui, model: &Model, anchor: Pos2, picture_width: f32) {
+/// Size of the hub beside pictures of some width, and whether its button has words; it is a column if it is high.
+pub fn hub_size(model: &Model, picture_width: f32) -> (Vec2, bool) {
     let hindrance = hindrance(model);
     // Whatever leaves the vote buttons beside it free: a row with words, a row, or a column where pictures are narrow.
     let (words, column) = (picture_width >= 520.0, picture_width < 300.0);
@@ -107,10 +114,14 @@ pub fn hub(ui: &mut Ui, model: &Model, anchor: Pos2, picture_width: f32) {
         (Some(_), None) => 0.0,
     };
     let length = 3.0 * CHIP + 20.0 + way_on;
-    let (size, step) = match column {
-        true => (vec2(HUB, length), vec2(0.0, CHIP + 4.0)),
-        false => (vec2(length, HUB), vec2(CHIP + 4.0, 0.0)),
-    };
+    (if column { vec2(HUB, length) } else { vec2(length, HUB) }, words)
+}
+
+/// The hub between the pictures: three ballots, and the button for the next generation. `anchor` is the middle of its
+/// lower edge.
+pub fn hub(ui: &mut Ui, model: &Model, anchor: Pos2, picture_width: f32) {
+    let (hindrance, (size, words)) = (hindrance(model), hub_size(model, picture_width));
+    let step = if size.y > HUB { vec2(0.0, CHIP + 4.0) } else { vec2(CHIP + 4.0, 0.0) };
     let rect = Rect::from_min_size(anchor - vec2(0.5 * size.x, size.y), size);
     // The hub takes clicks itself, so that none falls through to a picture.
     ui.interact(rect, ui.scope_id().with("hub"), Sense::click());
@@ -126,10 +137,10 @@ pub fn hub(ui: &mut Ui, model: &Model, anchor: Pos2, picture_width: f32) {
         Rect::from_min_max(first.min + 3.0 * step + step.normalized() * 2.0, rect.max - vec2(6.0, 6.0));
     match (&model.baking, hindrance) {
         (_, None) => next_button(ui, rest, words),
-        (Some(baking), Some(text)) => {
+        // Without a tooltip: the pointer rests there since it has pressed the button, and it would hide a name.
+        (Some(baking), Some(_)) => {
             let rest_color = Color32::from_white_alpha(45);
             progress_ring(ui.painter(), rest.center(), 9.0, baking.part(), DARK_ACCENT, rest_color);
-            ui.interact(rest, ui.scope_id().with("hub baking"), Sense::hover()).on_hover_text(text);
         }
         (None, Some(_)) => {}
     }
@@ -188,8 +199,6 @@ fn chip(ui: &mut Ui, model: &Model, category: Category, rect: Rect) {
     response.on_hover_text(match ballot {
         Ballot::Open => format!("{title}: not voted yet. Click if none of the four pleases."),
         Ballot::NoFavourite => format!("{title}: none of the four. Click to take that back."),
-        Ballot::For(best) => {
-            format!("{title}: {} “{}”. Click if none of the four pleases.", best + 1, model.views[best].name)
-        }
+        Ballot::For(best) => format!("{title}: {} is best. Click if none of the four pleases.", best + 1),
     });
 }

@@ -18,10 +18,19 @@ pub fn icon_button(ui: &mut Ui, icon: Icon, label: &str, active: bool) -> Respon
 
 /// The same of another size, in points.
 pub fn sized_icon_button(ui: &mut Ui, icon: Icon, label: &str, active: bool, side: f32) -> Response {
+    told_button(ui, icon, label, active, side, label)
+}
+
+/// A button of the bar, whose tooltip says more than its name.
+pub fn bar_button(ui: &mut Ui, icon: Icon, label: &str, active: bool, tooltip: &str) -> Response {
+    told_button(ui, icon, label, active, ICON_BUTTON, tooltip)
+}
+
+fn told_button(ui: &mut Ui, icon: Icon, label: &str, active: bool, side: f32, tooltip: &str) -> Response {
     let color = if active { Palette::of(ui.visuals()).accent } else { Palette::of(ui.visuals()).text };
     let (rect, response) = flat_button(ui, vec2(side, side), label, active);
     icon.paint(ui.painter(), rect.shrink(side * 0.24), color);
-    response.on_hover_text(label)
+    response.on_hover_text(tooltip)
 }
 
 /// The ground of a button that is invisible at rest unless it is `active`; its caller paints what is on it.
@@ -210,7 +219,7 @@ pub fn key_caps(ui: &mut Ui, keys: &str) {
     let font = FontId::new(12.0, egui::FontFamily::Monospace);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        for key in keys.split_whitespace() {
+        for key in keys.split(' ') {
             let galley = ui.painter().layout_no_wrap(key.to_owned(), font.clone(), palette.text);
             let size = vec2((galley.size().x + 12.0).max(22.0), 21.0);
             let (rect, response) = ui.allocate_exact_size(size, Sense::hover());

@@ -12,7 +12,7 @@ mod orbit;
 mod start;
 mod steps;
 #[cfg(test)]
-mod testing;
+pub mod testing;
 #[cfg(test)]
 mod tests;
 mod trunks;
@@ -23,7 +23,7 @@ use glam::{Vec2, Vec3, Vec3Swizzles};
 use serde::Serialize;
 
 pub use land::{BODY_RADIUS_M, EDGE_M, EYE_HEIGHT_M, Land, MIN_HEIGHT_M, WADING_DEPTH_M, reach_m, within};
-pub use start::start_pose;
+pub use start::{start_pose, suits_all};
 pub use steps::{advance, free, nearest_free};
 pub use trunks::{Trunk, Trunks};
 

@@ -19,6 +19,11 @@ pub fn land_with(trunks: impl IntoIterator<Item = Trunk>) -> Land {
     land(|_, _| 0.0, trunks)
 }
 
+/// 128 m × 128 m that rise by `slope` to the east.
+pub fn ramp(slope: f32) -> Land {
+    land(|x, _| slope * x, [])
+}
+
 /// 128 m × 128 m of hills of up to 20 m, different for each seed.
 pub fn hilly(seed: u64, trunks: impl IntoIterator<Item = Trunk>) -> Land {
     let mut rng = Pcg32::seed_from_u64(seed);

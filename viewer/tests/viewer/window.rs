@@ -176,13 +176,21 @@ fn a_person_votes_and_breeds(stage: &Stage, viewer: &mut Viewer) {
     viewer.until("another by key", |viewer| cast(viewer) == [json!(0), json!(1), json!(2)]);
     display.tap_with_ctrl(keys::Z);
     viewer.until("it is taken back", |viewer| cast(viewer) == [json!(0), json!(1), json!(null)]);
+    display.tap_with_ctrl(keys::Y);
+    viewer.until("it is made again", |viewer| cast(viewer) == [json!(0), json!(1), json!(2)]);
     viewer.click(display, "Sky: none of the four");
     viewer.until("none pleases", |viewer| cast(viewer) == [json!(0), json!(1), json!("none")]);
     viewer.frames(1);
     stage.look("3-votes.png");
 
+    let (from, before) = (viewer.lines.len(), place(viewer));
     display.tap(keys::N);
     viewer.until("the next generation", |viewer| viewer.shows(1));
+    viewer.frames(5);
+    let mut poses: Vec<_> = viewer.lines[from..].iter().filter(|line| line["what"] == "pose").collect();
+    poses.dedup_by_key(|pose| [pose["x_m"].clone(), pose["z_m"].clone()]);
+    assert!((1..=2).contains(&poses.len()), "one goes to the start once, or once more: {poses:?}");
+    assert_ne!(place(viewer), before);
     let votes = Votes { tree: Some(0), terrain: Some(1), sky: None };
     let (parents, children) = (stage.population(0), stage.population(1));
     assert_eq!(parents.votes, Some(votes));
@@ -200,6 +208,12 @@ fn a_person_goes_back(stage: &Stage, viewer: &mut Viewer) {
     viewer.until("the children again", |viewer| viewer.shows(1));
     display.tap_with_ctrl(keys::Z);
     viewer.until("the breeding is taken back", |viewer| viewer.shows(0));
+    assert_eq!(stage.population(0).votes, None);
+    display.tap_with_ctrl(keys::Y);
+    viewer.until("it is made again", |viewer| viewer.shows(1));
+    assert!(stage.population(0).votes.is_some());
+    display.tap_with_ctrl(keys::Z);
+    viewer.until("it is taken back once more", |viewer| viewer.shows(0));
     assert_eq!(stage.population(0).votes, None);
     assert_eq!(*viewer.get("ballots", "tree"), 0, "the ballots are as they were before");
     assert_eq!(stage.files.generations().expect("a folder"), [0, 1], "nothing is thrown away");
@@ -307,6 +321,17 @@ fn it_ends_and_remembers(stage: &Stage, mut viewer: Viewer) {
     let found = place(&viewer);
     assert!(left.iter().zip(found).all(|(left, found)| (left - found).abs() < 0.01), "{left:?} {found:?}");
     stage.display.picture().save("9-second-start.png");
+    // The last step of the first run.
+    let edited = fs::read_to_string(stage.files.population_path(0)).expect("a file");
+    stage.display.tap_with_ctrl(keys::Z);
+    viewer.until("the gene is taken back", |viewer| {
+        fs::read_to_string(stage.files.population_path(0)).is_ok_and(|text| text != edited)
+            && viewer.get("ballots", "tree") == 0
+    });
+    stage.display.tap_with_ctrl(keys::Y);
+    viewer.until("the gene is changed again", |_| {
+        fs::read_to_string(stage.files.population_path(0)).is_ok_and(|text| text == edited)
+    });
     assert_eq!(viewer.quit(&stage.display).code(), Some(0));
 }
 
@@ -342,6 +367,45 @@ fn a_baker_that_is_killed_leaves_the_viewer_going_and_another_bakes_the_rest() {
     stage.look("11-second-baker.png");
     drop(second);
     viewer.frames(3);
+    assert_eq!(viewer.quit(&stage.display).code(), Some(0));
+}
+
+/// A scene without its world fills the window; another program's glTF is refused in the window.
+#[test]
+#[ignore = "needs Xvfb and a Vulkan driver: `cargo xtask test` runs it"]
+fn a_scene_alone_and_a_file_that_is_none_of_ours() {
+    let stage = Stage::set();
+    let baker = baker(stage.files.root());
+    let scene = stage.files.scene_path(0, 2);
+    let start = Instant::now();
+    while !scene.is_file() {
+        assert!(start.elapsed() < Duration::from_secs(180), "nothing is baked");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    drop(baker);
+    let open = |path: &Path| {
+        let arguments = ["--size", "640x480", "--settings", "alone.ron", path.to_str().expect("UTF-8")];
+        Viewer::start(&stage.display, stage.folder.path(), &arguments)
+    };
+    let mut viewer = open(&scene);
+    viewer.until("the scene", |viewer| viewer.landscapes[0]["generation"] == 0);
+    for key in [keys::U, keys::TAB, keys::digit('3')] {
+        stage.display.tap(key);
+    }
+    viewer.frames(3);
+    assert_eq!(*viewer.get("screen", "arrangement"), "One(0)");
+    assert!(viewer.get("ballots", "tree").is_null());
+    stage.display.picture().save("12-one-scene.png");
+    assert_eq!(viewer.quit(&stage.display).code(), Some(0));
+
+    let foreign = stage.path("triangle.gltf");
+    fs::write(&foreign, r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": []}]}"#)
+        .expect("written");
+    let mut viewer = open(&foreign);
+    viewer.until("it is told", |viewer| viewer.get("screen", "situation") == "stuck");
+    assert!(viewer.get("errors", "errors")[0]["report"].to_string().contains("triangle.gltf"));
+    viewer.frames(2);
+    stage.display.picture().save("13-no-landscape.png");
     assert_eq!(viewer.quit(&stage.display).code(), Some(0));
 }
 

@@ -1,22 +1,9 @@
 //! Changes of genes and locks in the population's file, and the way back through these and the votes.
 
-use genescape_schema::Category;
-
 use super::Editor;
-use crate::edit_history::Edit;
-use crate::event::{Ballot, Ballots};
+use crate::ballots::Ballots;
+use crate::edit_history::{Change, Edit, Step, UndoError};
 use crate::ui::Tone;
-
-/// A step that can be taken back.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Step {
-    /// A ballot was another one before.
-    Ballot { category: Category, before: Ballot },
-    /// A population file was changed.
-    File { generation: u32 },
-    /// A generation was asked for; `wrote`: votes were written into its parents' file.
-    Bred { from: u32, ballots: Ballots, wrote: bool },
-}
 
 impl Editor {
     /// Changes genes of one landscape for good, except those that are locked.
@@ -41,68 +28,101 @@ impl Editor {
 
     /// Writes a change into the file of the generation that is shown. Scenes alone have none, and no population either.
     fn edit(&mut self, edit: &Edit) {
-        match self.history.apply(&self.world, &self.space, self.generation, edit) {
-            Ok(true) => {
-                self.steps.push(Step::File { generation: self.generation });
+        match Change::make(&self.world, &self.space, self.generation, edit) {
+            Ok(Some(change)) => {
+                self.steps.push(Step::File(change));
                 self.read_population();
             }
-            Ok(false) => {}
+            Ok(None) => {}
             Err(error) => self.tell(Tone::Error, format!("Nothing is changed: {error}")),
         }
     }
 
-    /// Takes the latest step back.
+    /// Takes the latest step back. One that cannot be is dropped, so that those before it can.
     pub fn undo(&mut self) {
-        match self.steps.pop() {
-            None => self.tell(Tone::Info, "There is nothing to undo"),
-            Some(Step::Ballot { category, before }) => self.ballots.set(category, before),
-            Some(Step::File { generation }) => self.undo_file(generation),
-            Some(Step::Bred { from, ballots, wrote }) => {
-                if wrote {
-                    self.undo_file(from);
-                }
-                self.visit(from);
-                self.ballots = ballots;
-                self.follows = false;
-            }
-        }
-    }
-
-    fn undo_file(&mut self, generation: u32) {
-        match self.history.undo(&self.world, generation) {
-            Ok(name) => self.tell(Tone::Info, format!("Taken back: {name}")),
+        let Some(step) = self.steps.done.pop() else {
+            return self.tell(Tone::Info, "There is nothing to undo");
+        };
+        match self.take_back(&step) {
+            Ok(()) => self.steps.undone.push(step),
             Err(error) => self.tell(Tone::Warning, error.to_string()),
         }
-        if generation == self.generation {
-            self.read_population();
+    }
+
+    fn take_back(&mut self, step: &Step) -> Result<(), UndoError> {
+        match step {
+            Step::Ballots { generation, before, .. } => self.show_ballots(*generation, *before),
+            Step::File(change) => {
+                change.undo(&self.world)?;
+                self.show_change(change.generation, format!("Taken back: {}", change.name));
+            }
+            Step::Bred { from, ballots, change } => {
+                let undone = change.as_ref().map_or(Ok(()), |change| change.undo(&self.world));
+                self.show_ballots(*from, *ballots);
+                self.follows = false;
+                let stays = "What was bred stays, and redo shows it again";
+                self.tell(Tone::Info, format!("Back to generation {from}. {stays}"));
+                // Votes in a file that was changed since stay there. They are the wish for a child that is there.
+                if let Err(error) = undone {
+                    self.tell(Tone::Info, error.to_string());
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes the step again that was taken back last. One that cannot be is dropped with all that came after it.
+    pub fn redo(&mut self) {
+        let Some(step) = self.steps.undone.pop() else {
+            return self.tell(Tone::Info, "There is nothing to redo");
+        };
+        match self.make_again(step) {
+            Ok(step) => self.steps.done.push(step),
+            Err(error) => {
+                self.steps.undone.clear();
+                self.tell(Tone::Warning, error);
+            }
         }
     }
 
-    /// Makes again what was taken back last in the file of the generation that is shown.
-    pub fn redo(&mut self) {
-        match self.history.redo(&self.world, self.generation) {
-            Ok(name) => {
-                self.steps.push(Step::File { generation: self.generation });
-                self.tell(Tone::Info, format!("Made again: {name}"));
-                self.read_population();
+    /// What was made then need not be the same: a file may say other things around a vote.
+    fn make_again(&mut self, step: Step) -> Result<Step, String> {
+        match &step {
+            Step::Ballots { generation, after, .. } => self.show_ballots(*generation, *after),
+            Step::File(change) => {
+                change.redo(&self.world).map_err(|error| error.to_string())?;
+                self.show_change(change.generation, format!("Made again: {}", change.name));
             }
-            Err(error) => self.tell(Tone::Info, error.to_string()),
+            Step::Bred { from, ballots, .. } => {
+                return self.breed_from(*from, *ballots).map_err(|error| error.to_string());
+            }
         }
+        Ok(step)
+    }
+
+    pub(super) fn show_ballots(&mut self, generation: u32, ballots: Ballots) {
+        if generation != self.generation {
+            self.visit(generation);
+        }
+        self.ballots = ballots;
+    }
+
+    fn show_change(&mut self, generation: u32, text: String) {
+        if generation == self.generation {
+            self.read_population();
+        } else {
+            self.visit(generation);
+        }
+        self.tell(Tone::Info, text);
     }
 
     /// What redo would make again, in a few words.
     pub fn next_redo(&self) -> Option<String> {
-        self.history.next_redo(self.generation).map(str::to_owned)
+        self.steps.undone.last().map(Step::name)
     }
 
     /// What undo would take back, in a few words.
     pub fn next_undo(&self) -> Option<String> {
-        self.steps.last().map(|step| match step {
-            Step::Ballot { category, .. } => format!("vote on {}", category.name()),
-            Step::File { generation } => {
-                self.history.next_undo(*generation).unwrap_or("change of genes").to_owned()
-            }
-            Step::Bred { from, .. } => format!("breeding from generation {from}"),
-        })
+        self.steps.done.last().map(Step::name)
     }
 }

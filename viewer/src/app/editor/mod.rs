@@ -4,23 +4,24 @@
 mod bake_progress;
 mod edits;
 mod model;
+#[cfg(test)]
+mod tests;
 mod votes;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use genescape_schema::{Genome, INDIVIDUALS, Population, Space};
+use genescape_schema::{Genome, INDIVIDUALS, Parent, Population, Space};
 use genescape_world::{Change, Source, World, names};
 
 use crate::baker;
-use crate::edit_history::History;
-use crate::event::Ballots;
+use crate::ballots::Ballots;
+use crate::edit_history::Steps;
 use crate::settings::WorldSettings;
 use crate::ui::Tone;
 use crate::ui::model::FileError;
 use bake_progress::BakeProgress;
-use edits::Step;
 
 /// What went wrong where; one of each kind at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -41,6 +42,8 @@ pub enum Task {
     Load { view: usize, generation: u32, path: PathBuf },
     /// Tell the person.
     Tell(Tone, String),
+    /// A new generation is on show: walks begin at its start.
+    BeginWalk,
 }
 
 pub struct Editor {
@@ -50,16 +53,21 @@ pub struct Editor {
     /// The generation that is shown.
     generation: u32,
     generations: Vec<u32>,
+    /// What they were bred from.
+    parents: BTreeMap<u32, Parent>,
+    /// Names of the landscapes that those on show were bred from.
+    ancestors: Option<[String; INDIVIDUALS]>,
     population: Option<Population>,
     /// Genes as they were when the generation was first shown.
     bred: Option<[Genome; INDIVIDUALS]>,
     pub(super) ballots: Ballots,
-    history: History,
-    steps: Vec<Step>,
+    steps: Steps,
     /// A newer generation is shown as soon as it is born.
     follows: bool,
     /// Views that show their scene of that generation.
     loaded: [bool; INDIVIDUALS],
+    /// Views whose scene of that generation is being read.
+    asked: [bool; INDIVIDUALS],
     faults: BTreeMap<Fault, FileError>,
     pub(super) bake: BakeProgress,
     /// Remarks on files that were reported and still hold: a file is read again for many reasons.
@@ -79,28 +87,31 @@ impl Editor {
             space: Arc::new(Space::builtin()),
             generation: 0,
             generations: Vec::new(),
+            parents: BTreeMap::new(),
+            ancestors: None,
             population: None,
             bred: None,
             ballots: Ballots::default(),
-            history: History::default(),
-            steps: Vec::new(),
+            steps: kept.steps.value.clone(),
             follows: true,
             loaded: [false; INDIVIDUALS],
+            asked: [false; INDIVIDUALS],
             faults: BTreeMap::new(),
             bake: BakeProgress::default(),
             noticed: BTreeSet::new(),
             tasks: Vec::new(),
             source,
         };
-        editor.begin(kept);
+        editor.begin();
         editor
     }
 
-    fn begin(&mut self, kept: &WorldSettings) {
+    fn begin(&mut self) {
         if let Source::Scenes(scenes) = &self.source {
-            let load =
-                |(view, path): (usize, &PathBuf)| Task::Load { view, generation: 0, path: path.clone() };
-            self.tasks.extend(scenes.iter().take(INDIVIDUALS).enumerate().map(load));
+            for (view, path) in scenes.iter().take(INDIVIDUALS).enumerate() {
+                self.asked[view] = true;
+                self.tasks.push(Task::Load { view, generation: 0, path: path.clone() });
+            }
             return;
         }
         self.read_space();
@@ -110,7 +121,11 @@ impl Editor {
         if let Some(generation) = current.filter(|g| self.generations.contains(g)).or(newest) {
             self.go_to(generation);
         }
-        self.resume_votes(kept);
+    }
+
+    /// What should be kept of this world between runs, besides places.
+    pub fn keep(&self, kept: &mut WorldSettings) {
+        kept.steps.value.clone_from(&self.steps);
     }
 
     /// What has to be done since the last call.
@@ -163,6 +178,10 @@ impl Editor {
     fn read_generations(&mut self) {
         match self.world.generations() {
             Ok(generations) => {
+                for generation in generations.iter().filter(|known| !self.generations.contains(known)) {
+                    let parent = self.world.parent_of(*generation);
+                    self.parents.extend(parent.map(|parent| (*generation, parent)));
+                }
                 self.generations = generations;
                 self.faults.remove(&Fault::Folder);
             }
@@ -189,17 +208,22 @@ impl Editor {
         self.generation = generation;
         self.follows = self.generations.last() == Some(&generation);
         (self.population, self.bred) = (None, None);
-        self.ballots = Ballots::default();
-        self.loaded = [false; INDIVIDUALS];
-        self.bake.forget_scenes();
+        self.ballots = self.steps.ballots(generation);
+        (self.loaded, self.asked) = Default::default();
         self.faults.retain(|fault, _| !matches!(fault, Fault::Scene(_)));
         self.read_population();
+        let names = |parent: &Parent| {
+            let file = self.world.population(&self.space, parent.generation).ok()?;
+            Some(file.population.individuals.map(|one| one.name))
+        };
+        self.ancestors = self.parents.get(&generation).and_then(names);
         (0..INDIVIDUALS).for_each(|view| self.load(view));
     }
 
     fn load(&mut self, view: usize) {
         let path = self.world.scene_path(self.generation, view);
         if path.is_file() {
+            self.asked[view] = true;
             self.tasks.push(Task::Load { view, generation: self.generation, path });
         }
     }
@@ -209,6 +233,7 @@ impl Editor {
         if generation != self.generation {
             return false;
         }
+        self.asked[view] = false;
         match result {
             Ok(()) => {
                 self.loaded[view] = true;
@@ -237,6 +262,7 @@ impl Editor {
                 } else if let (true, true, Some(newest)) = (newest > before, self.follows, newest) {
                     // Whichever file changed: the change of the parents' may be reported after the child exists.
                     self.go_to(newest);
+                    self.tasks.push(Task::BeginWalk);
                     self.tell(Tone::Success, format!("Generation {newest} is born"));
                 } else if generation == self.generation {
                     self.read_population();
@@ -298,7 +324,11 @@ impl Editor {
     /// Tries again what failed.
     pub fn retry(&mut self) {
         self.faults.remove(&Fault::Bake);
-        if self.world().is_some() && self.generations.contains(&self.generation) {
+        if self.world().is_none() {
+            self.faults.retain(|fault, _| !matches!(fault, Fault::Scene(_)));
+            return self.begin();
+        }
+        if self.generations.contains(&self.generation) {
             self.visit(self.generation);
         }
     }
@@ -308,100 +338,5 @@ impl Editor {
         if let Some(kind) = self.faults.keys().nth(index).copied() {
             self.faults.remove(&kind);
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A world with the starter landscapes in `root`, an editor of it, and its population file.
-    fn starter(root: &Path) -> (Editor, PathBuf) {
-        let world = World::open_or_create(root).expect("a world");
-        world.begin().expect("its first generation");
-        let editor = Editor::open(Source::World(root.to_owned()), &WorldSettings::default());
-        (editor, world.population_path(0))
-    }
-
-    #[test]
-    fn a_mistake_in_the_first_file_is_told_until_it_is_mended() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let (_, path) = starter(folder.path());
-        let good = std::fs::read_to_string(&path).expect("there");
-        std::fs::write(&path, "Population(").expect("written");
-        let (mut editor, _) = starter(folder.path());
-        assert!(editor.is_hindered() && editor.errors()[0].report.contains("g0000.ron:1:"));
-        std::fs::write(&path, good).expect("written");
-        editor.changed(Change::Population(0));
-        assert!(!editor.is_hindered() && editor.errors().is_empty());
-    }
-
-    #[test]
-    fn a_mistake_is_told_once_whether_bake_or_editor_finds_it_first() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        for bake_first in [true, false] {
-            let (mut editor, path) = starter(folder.path());
-            let good = std::fs::read_to_string(&path).expect("there");
-            std::fs::write(&path, "Population(").expect("written");
-            let failed = baker::Event::Failed { message: "g0000.ron:1: wrong".into() };
-            if bake_first {
-                editor.baked(failed.clone());
-            }
-            editor.changed(Change::Population(0));
-            if !bake_first {
-                editor.baked(failed);
-            }
-            assert_eq!(editor.errors().len(), 1, "{bake_first}");
-            std::fs::write(&path, good).expect("written");
-        }
-    }
-
-    #[test]
-    fn a_new_generation_comes_on_show_whichever_change_is_told_first() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        for (place, told) in [[0, 1], [1, 0]].into_iter().enumerate() {
-            let (mut editor, path) = starter(&folder.path().join(place.to_string()));
-            assert_eq!(editor.generations(), (0, [0].as_slice()));
-            let first = std::fs::read_to_string(path).expect("there");
-            let second = first.replacen("generation: 0", "generation: 1", 1);
-            std::fs::write(editor.world.population_path(1), second).expect("written");
-            told.into_iter().for_each(|generation| editor.changed(Change::Population(generation)));
-            assert_eq!(editor.generations(), (1, [0, 1].as_slice()), "{told:?}");
-        }
-    }
-
-    #[test]
-    fn genes_of_an_older_world_are_filled_in_told_once_and_can_be_edited() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let (_, path) = starter(folder.path());
-        for (file, sign) in [(folder.path().join(names::SPACE), "\"snow_line\""), (path, " snow_line: ")] {
-            let text = std::fs::read_to_string(&file).expect("there");
-            let older: Vec<&str> = text.lines().filter(|line| !line.contains(sign)).collect();
-            std::fs::write(&file, older.join("\n")).expect("written");
-        }
-        let (mut editor, path) = starter(folder.path());
-        let told = |editor: &mut Editor| {
-            editor
-                .take_tasks()
-                .iter()
-                .filter(|task| matches!(task, Task::Tell(_, text) if text.contains("snow_line")))
-                .count()
-        };
-        assert_eq!(told(&mut editor), 1 + INDIVIDUALS);
-        let bake = World::read_population(&editor.space, &path).expect("valid").notices;
-        bake.into_iter().for_each(|message| editor.baked(baker::Event::Notice { message }));
-        editor.changed(Change::Space);
-        assert_eq!(told(&mut editor), 0);
-        editor.set_genes(1, vec![("snow_line".into(), 0.2)]);
-        assert!(std::fs::read_to_string(&path).expect("there").contains("snow_line: 0.2,"));
-        let value = |editor: &Editor| {
-            editor
-                .population
-                .as_ref()
-                .and_then(|all| all.individuals[1].genome.value(&editor.space, "snow_line"))
-        };
-        assert_eq!(value(&editor), Some(0.2));
-        editor.undo();
-        assert_eq!(value(&editor), Some(1.0));
     }
 }

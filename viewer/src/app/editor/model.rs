@@ -1,6 +1,8 @@
 //! What the user interface shows of the editor.
 
-use genescape_schema::{Category, INDIVIDUALS};
+use std::collections::BTreeMap;
+
+use genescape_schema::{Category, INDIVIDUALS, Parent};
 use genescape_world::Source;
 
 use super::{Editor, Fault};
@@ -10,6 +12,24 @@ impl Editor {
     /// The generation that is shown, and all that exist.
     pub fn generations(&self) -> (u32, &[u32]) {
         (self.generation, &self.generations)
+    }
+
+    /// What generations were bred from, if from any.
+    pub fn parents(&self) -> &BTreeMap<u32, Parent> {
+        &self.parents
+    }
+
+    /// Names of the landscapes that those on show were bred from.
+    pub fn ancestors(&self) -> Option<&[String; INDIVIDUALS]> {
+        self.ancestors.as_ref()
+    }
+
+    /// How many landscapes there are, or are to come.
+    pub fn count(&self) -> usize {
+        match &self.source {
+            Source::World(_) => INDIVIDUALS,
+            Source::Scenes(scenes) => scenes.len().min(INDIVIDUALS),
+        }
     }
 
     pub fn errors(&self) -> Vec<FileError> {
@@ -38,22 +58,21 @@ impl Editor {
         if self.loaded[view] {
             return ViewState::Ready;
         }
-        let Some(baking) = &self.bake.baking else {
-            return failed(Fault::Bake, "Try again, or run bake in a terminal to learn more")
-                .unwrap_or(ViewState::Baking { done: 0, total: 0, stage: String::new() });
-        };
-        let (done, stage) = self.bake.scenes[view].clone();
-        let total = if baking.total == 0 { 0 } else { (baking.total / INDIVIDUALS).max(done) };
-        ViewState::Baking { done, total, stage }
+        if self.asked[view] {
+            return ViewState::Loading;
+        }
+        match self.bake.state(self.generation, view) {
+            ViewState::Waiting if self.bake.baking.is_none() => {
+                failed(Fault::Bake, "Try again, or run bake in a terminal to learn more")
+                    .unwrap_or(ViewState::Waiting)
+            }
+            state => state,
+        }
     }
 
     /// Whether a view waits for a scene that is there to be read.
     pub fn awaits_scenes(&self) -> bool {
-        let wanted = match &self.source {
-            Source::World(_) => INDIVIDUALS,
-            Source::Scenes(scenes) => scenes.len().min(INDIVIDUALS),
-        };
-        (0..wanted).any(|view| !self.loaded[view] && !self.faults.contains_key(&Fault::Scene(view)))
+        (0..self.count()).any(|view| !self.loaded[view] && !self.faults.contains_key(&Fault::Scene(view)))
     }
 
     /// Genes of the four landscapes; none before a population is read.

@@ -7,26 +7,27 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use genescape_schema::Category;
 
 use super::*;
-use crate::event::{Ballot, Panel};
+use crate::ballots::Ballot;
+use crate::event::Panel;
 use crate::input::Command;
 use crate::settings::Theme;
 use crate::ui::theme::title;
 
-const WINDOW: [f32; 2] = [1280.0, 800.0];
+pub const WINDOW: [f32; 2] = [1280.0, 800.0];
 
-fn taken(harness: &mut Harness<'static, Bench>) -> Vec<Event> {
+pub fn taken(harness: &mut Harness<'static, Bench>) -> Vec<Event> {
     std::mem::take(&mut harness.state_mut().events)
 }
 
 /// Presses what has that name; what was asked by it.
-fn press(harness: &mut Harness<'static, Bench>, label: &str) -> Vec<Event> {
+pub fn press(harness: &mut Harness<'static, Bench>, label: &str) -> Vec<Event> {
     harness.state_mut().events.clear();
     harness.get_by_label(label).click();
     harness.run();
     taken(harness)
 }
 
-fn all_voted() -> Model {
+pub fn all_voted() -> Model {
     let mut model = model();
     for category in Category::ALL {
         model.ballots.set(category, Ballot::For(category as usize));
@@ -125,6 +126,39 @@ fn pictures_are_chosen_maximised_and_compared() {
         [Event::Arrange(Arrangement::Compare { left: 1, right: 0 })]
     );
     assert_eq!(press(&mut harness, "All four"), [Event::Arrange(Arrangement::Grid)]);
+}
+
+#[test]
+fn no_control_keeps_the_keyboard_when_a_text_field_is_left() {
+    for key in [Key::Tab, Key::Enter, Key::Escape] {
+        let mut harness = bench(with_genome(|_| {}), [1280.0, 1600.0], 1.0);
+        let focused = |harness: &Harness<'static, Bench>| harness.ctx.memory(|memory| memory.focused());
+        harness.get_by_label("Search genes").focus();
+        harness.run();
+        assert!(harness.state().output.typing);
+        harness.key_press(key);
+        harness.run();
+        assert!(!harness.state().output.typing && focused(&harness).is_none(), "{key:?}");
+        for key in [Key::Tab, Key::Space, Key::ArrowDown, Key::Space] {
+            harness.key_press(key);
+            harness.run();
+        }
+        assert!(focused(&harness).is_none() && taken(&mut harness).is_empty(), "{key:?}");
+    }
+}
+
+#[test]
+fn a_value_that_was_typed_is_taken_when_tab_leaves_its_field() {
+    let mut harness = bench(with_genome(|_| {}), [1280.0, 1600.0], 1.0);
+    harness.get_by_label("Value of height_m").focus();
+    harness.run();
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::A);
+    harness.run();
+    harness.get_by_label("Value of height_m").type_text("7.4");
+    harness.run();
+    harness.key_press(Key::Tab);
+    harness.run();
+    assert!(matches!(&taken(&mut harness)[..], [Event::Genes { individual: 0, .. }]));
 }
 
 #[test]
@@ -327,10 +361,10 @@ fn settings_give_the_whole_new_value() {
 fn help_lists_every_binding_that_it_is_given() {
     let mut model = model();
     model.panels.help = true;
-    let keys = model.keys.clone();
+    let keys = model.bindings.help();
     let mut harness = bench(model, [1280.0, 1200.0], 1.0);
     for group in &keys {
-        assert!(harness.query_by_label(&group.title).is_some(), "{}", group.title);
+        assert!(harness.query_all_by_label(&group.title).next().is_some(), "{}", group.title);
         for (keys, meaning) in &group.keys {
             assert!(harness.query_all_by_label(meaning).next().is_some(), "{meaning}");
             for key in keys.split_whitespace() {
@@ -349,11 +383,17 @@ fn an_error_is_told_in_full_and_can_be_dismissed() {
     let error = file_error();
     assert!(error.report.lines().count() > 10);
     model.errors = vec![error.clone()];
-    let mut harness = bench(model, WINDOW, 1.0);
+    let mut harness = bench(model, [800.0, 600.0], 1.0);
     assert_eq!(press(&mut harness, "Show"), [Event::Panel { panel: Panel::Genome, open: true }]);
     harness.state_mut().model.panels.genome = true;
     harness.run();
-    assert!(harness.query_by_label(&error.report).is_some());
+    let sentences = error.report.lines().filter(|line| line.contains("g0003.ron:"));
+    for sentence in sentences.map(|line| line.trim_start_matches("population/")) {
+        let rect = harness.get_by_label(sentence).rect();
+        assert!(rect.left() >= 400.0 && rect.right() <= 800.0, "{sentence} at {rect}");
+        let rows = (rect.height() / 17.0).round();
+        assert!(rows * rect.width() > 6.0 * sentence.len() as f32, "{sentence} is cut: {rect}");
+    }
     assert_eq!(press(&mut harness, &format!("Dismiss: {}", error.title)), [Event::DismissError(0)]);
 }
 

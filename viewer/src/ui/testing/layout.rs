@@ -5,7 +5,7 @@ use egui::Rect;
 use egui_kittest::kittest::{NodeT, Queryable};
 
 use super::*;
-use crate::event::Ballot;
+use crate::ballots::Ballot;
 use genescape_schema::Category;
 
 const WINDOWS: [([f32; 2], f32); 3] = [([800.0, 600.0], 1.0), ([1920.0, 1080.0], 1.0), ([960.0, 540.0], 2.0)];

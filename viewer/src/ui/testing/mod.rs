@@ -3,19 +3,20 @@
 mod behaviour;
 mod layout;
 mod pictures;
+mod shown;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use egui::{Color32, ColorImage, TextureHandle, TextureOptions, Vec2};
 use egui_kittest::{Harness, HarnessBuilder};
-use genescape_schema::{Population, Space};
+use genescape_schema::{Parent, Population, Space, Votes};
 
 use super::model::{Baking, FileError, Genes, Model, Panels, PassTime, Situation, StageEntry, Stats};
 use super::model::{ViewModel, ViewState};
 use super::{Output, State, theme};
-use crate::event::{Arrangement, Ballots, Event};
-use crate::input::KeyGroup;
+use crate::ballots::Ballots;
+use crate::event::{Arrangement, Event};
 use crate::options::Options;
 use crate::settings::Comfort;
 
@@ -103,12 +104,22 @@ pub fn model() -> Model {
         bake_log: bake_log(),
         errors: Vec::new(),
         stats: stats(),
-        keys: keys(),
+        bindings: Arc::default(),
+        count: 4,
+        votable: true,
+        parents: (1..=3).map(|generation| (generation, parent(generation - 1))).collect(),
+        ancestors: Some(["Old oaks", "Wet birches", "A ridge", "Pines"].map(str::to_owned)),
+        greets: false,
         options: Options::default(),
         comfort: Comfort::default(),
         panels: Panels::default(),
         captured: false,
     }
+}
+
+/// Bred from that generation.
+pub fn parent(generation: u32) -> Parent {
+    Parent { generation, votes: Votes { tree: Some(0), terrain: Some(2), sky: None } }
 }
 
 /// Two faults of a population file, as the schema reports them.
@@ -162,45 +173,6 @@ fn stats() -> Stats {
         trees_per_level: vec![12, 60, 410, 1900, 5200, 9800, 4100],
         adapter: "llvmpipe (LLVM 19.1.7, 256 bits)".to_owned(),
     }
-}
-
-fn keys() -> Vec<KeyGroup> {
-    let group = |title: &str, keys: &[(&str, &str)]| KeyGroup {
-        title: title.to_owned(),
-        keys: keys.iter().map(|&(key, meaning)| (key.to_owned(), meaning.to_owned())).collect(),
-    };
-    vec![
-        group(
-            "Walking",
-            &[
-                ("W A S D", "walk"),
-                ("Shift", "run"),
-                ("F", "walk, fly or orbit"),
-                ("Home", "back to the start"),
-            ],
-        ),
-        group("Looking", &[("1 2 3 4", "one landscape alone"), ("0", "all four"), ("C", "compare two")]),
-        group(
-            "Voting",
-            &[
-                ("T", "trees: this one"),
-                ("G", "terrain: this one"),
-                ("B", "sky: this one"),
-                ("Enter", "next generation"),
-                ("Ctrl Z", "undo"),
-            ],
-        ),
-        group(
-            "Program",
-            &[
-                ("F1", "help"),
-                ("F2", "genes"),
-                ("F3", "frame times"),
-                ("F12", "screenshot"),
-                ("Ctrl Q", "quit"),
-            ],
-        ),
-    ]
 }
 
 /// A picture that looks enough like a landscape: sky, hills, dots for trees.

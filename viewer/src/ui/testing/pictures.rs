@@ -11,7 +11,7 @@ use egui_kittest::{Harness, TestRenderer};
 use egui_wgpu::{RendererOptions, ScreenDescriptor};
 
 use super::*;
-use crate::event::Ballot;
+use crate::ballots::Ballot;
 use crate::gpu::Gpu;
 use crate::image_file;
 use genescape_schema::Category;
@@ -107,7 +107,7 @@ fn edited(model: &mut Model) {
 type Scene = (&'static str, [f32; 2], f32, egui::Theme, Prepare, Act);
 
 /// Name, window in points, scale, theme, how the world differs from the usual one, and what is done to it.
-const SCENES: [Scene; 14] = [
+const SCENES: [Scene; 20] = [
     (
         "grid",
         [1280.0, 800.0],
@@ -157,7 +157,8 @@ const SCENES: [Scene; 14] = [
             model.views[1].state =
                 ViewState::Baking { done: 7, total: 19, stage: "terrain: erosion".to_owned() };
             model.views[2].picture = None;
-            model.views[2].state = ViewState::Baking { done: 0, total: 0, stage: String::new() };
+            model.views[2].state = ViewState::Waiting;
+            model.views[0].state = ViewState::Loading;
             model.views[3].state = ViewState::Failed {
                 what: "scene-3/scene.gltf names a blob that is missing: blobs/ab/ab12….png".to_owned(),
                 remedy: "Bake this generation again; what is intact is reused.".to_owned(),
@@ -203,6 +204,82 @@ const SCENES: [Scene; 14] = [
         |model| {
             voted(model);
             model.arrangement = Arrangement::Compare { left: 0, right: 2 };
+        },
+        nothing,
+    ),
+    (
+        "compare-left",
+        [800.0, 600.0],
+        1.0,
+        egui::Theme::Dark,
+        |model| {
+            voted(model);
+            model.ballots.set(Category::Sky, Ballot::For(1));
+            model.arrangement = Arrangement::Compare { left: 1, right: 3 };
+        },
+        |harness| harness.state_mut().state.split = 0.25,
+    ),
+    (
+        "first",
+        [800.0, 600.0],
+        1.0,
+        egui::Theme::Light,
+        |model| {
+            model.greets = true;
+            model.generations = (0..40).collect();
+            model.parents.insert(20, parent(4));
+            model.generation = 20;
+            model.views[0].name = "trees of 2 · land of 3 × 1 · sky like 4".to_owned();
+            model.views[1].name = "Spruces by a mountain lake · land × 1 · sky varied".to_owned();
+        },
+        |harness| {
+            harness.state_mut().state.notify(super::super::Tone::Error, "The votes are not written");
+            harness.hover_at(egui::pos2(60.0, 65.0));
+        },
+    ),
+    (
+        "first-small",
+        [640.0, 400.0],
+        1.0,
+        egui::Theme::Dark,
+        |model| {
+            model.greets = true;
+            model.views[3].name = "Spruces by a mountain lake · land × 1 · sky varied".to_owned();
+        },
+        nothing,
+    ),
+    (
+        "error-small",
+        [800.0, 600.0],
+        1.0,
+        egui::Theme::Light,
+        |model| {
+            model.panels.genome = true;
+            model.errors = vec![file_error()];
+        },
+        nothing,
+    ),
+    (
+        "single",
+        [1280.0, 800.0],
+        1.0,
+        egui::Theme::Dark,
+        |model| (model.count, model.votable, model.arrangement) = (1, false, Arrangement::One(0)),
+        nothing,
+    ),
+    (
+        "stuck",
+        [800.0, 600.0],
+        1.0,
+        egui::Theme::Dark,
+        |model| {
+            (model.count, model.votable) = (1, false);
+            model.situation = Situation::Stuck {
+                title: "Nothing to show".to_owned(),
+                what: "tree.glb is no landscape of Genescape: it has no terrain".to_owned(),
+                remedy: "Drop a world here, a baked folder, or a scene.gltf that bake has written."
+                    .to_owned(),
+            };
         },
         nothing,
     ),
