@@ -21,6 +21,14 @@ pub struct CameraControl {
     gamepads: crate::gamepad::Gamepads,
 }
 
+/// What came of one step.
+pub struct Step {
+    /// The camera moves, or is about to.
+    pub moving: bool,
+    /// What a gamepad asked for meanwhile.
+    pub commands: Vec<Command>,
+}
+
 impl CameraControl {
     /// At rest in the middle. The text says why gamepads cannot be read, if so.
     pub fn new() -> (Self, Option<String>) {
@@ -59,8 +67,8 @@ impl CameraControl {
         self.rig.go(start_pose(lands), lands);
     }
 
-    /// Moves for a frame of `dt_s` seconds. Returns what a gamepad asked for meanwhile.
-    pub fn step(&mut self, dt_s: f32, comfort: &Comfort, lands: &[&Land]) -> Vec<Command> {
+    /// Moves for a frame of `dt_s` seconds.
+    pub fn step(&mut self, dt_s: f32, comfort: &Comfort, lands: &[&Land]) -> Step {
         let controls = self.held.controls();
         #[cfg(feature = "gamepad")]
         let (controls, commands) = {
@@ -77,8 +85,9 @@ impl CameraControl {
             invert: comfort.invert_y,
             ..usual
         };
+        let before = self.rig.clone();
         self.rig.step(dt_s, &controls, &feel, lands);
-        commands
+        Step { moving: !self.resting || self.rig != before, commands }
     }
 
     /// Goes on to the next of walk, fly and orbit, and returns it.
