@@ -36,6 +36,9 @@ pub struct Options {
     // Thesis, figures 12 and 13.
     #[arg(long)]
     pub overhead: bool,
+    /// Sides of pictures while the camera moves, as a part of full resolution; `None` follows the frame time
+    #[arg(skip)]
+    pub moving_resolution: Option<f32>,
     /// Clouds move
     #[arg(skip = true)]
     pub drift_clouds: bool,
@@ -112,6 +115,7 @@ impl Default for Options {
             wireframe: false,
             tint_levels: false,
             overhead: false,
+            moving_resolution: None,
             drift_clouds: true,
             draw_trees: true,
             grass: true,

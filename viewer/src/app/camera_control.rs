@@ -31,6 +31,14 @@ pub struct CameraControl {
     gamepads: crate::gamepad::Gamepads,
 }
 
+/// What came of one step.
+pub struct Step {
+    /// The camera moves, or is about to.
+    pub moving: bool,
+    /// What a gamepad asked for meanwhile.
+    pub commands: Vec<Command>,
+}
+
 impl CameraControl {
     /// At rest in the middle. The text says why gamepads cannot be read, if so.
     pub fn new() -> (Self, Option<String>) {
@@ -91,8 +99,8 @@ impl CameraControl {
         }
     }
 
-    /// Moves for a frame of `dt_s` seconds. Returns what a gamepad asked for meanwhile.
-    pub fn step(&mut self, dt_s: f32, comfort: &Comfort, lands: &[&Land]) -> Vec<Command> {
+    /// Moves for a frame of `dt_s` seconds.
+    pub fn step(&mut self, dt_s: f32, comfort: &Comfort, lands: &[&Land]) -> Step {
         let controls = self.held.controls();
         #[cfg(feature = "gamepad")]
         let (controls, commands) = {
@@ -111,8 +119,9 @@ impl CameraControl {
             invert: comfort.invert_y,
             ..usual
         };
+        let before = self.rig.clone();
         self.rig.step(dt_s, &controls, &feel, lands);
-        commands
+        Step { moving: !self.resting || self.rig != before, commands }
     }
 
     /// Something was held, or turned, at the last step.

@@ -16,6 +16,7 @@ use crate::ui::Tone;
 
 impl App {
     pub(super) fn dispatch(&mut self, event: Event, events: &ActiveEventLoop) {
+        self.redraw();
         if let Event::Command(command) = event {
             return self.command(command, events);
         }
@@ -76,7 +77,7 @@ impl App {
             Command::Stats => self.layout.toggle(Panel::Stats),
             Command::Settings => self.layout.toggle(Panel::Settings),
             Command::Fullscreen => self.toggle_fullscreen(),
-            Command::Screenshot => self.save_screenshot(),
+            Command::Screenshot => self.screenshot = true,
             Command::Quit => events.exit(),
             Command::NextTreeLod => {
                 options.tree_lod = options.tree_lod.next();
@@ -146,7 +147,7 @@ impl App {
     }
 
     /// Saves the pictures that are on the screen, side by side as they are there.
-    fn save_screenshot(&mut self) {
+    pub(super) fn save_screenshot(&mut self) {
         let Some(live) = &self.live else { return };
         let saved = live.viewports.pixels(&self.layout.shown()).and_then(|pictures| {
             let sheet = image_file::contact_sheet(&pictures, 2.min(pictures.len().max(1)));

@@ -52,6 +52,11 @@ impl LodReadback {
         });
     }
 
+    /// Whether some counters are still on their way.
+    pub fn is_pending(&self) -> bool {
+        self.views.iter().any(|view| view.pending)
+    }
+
     /// Takes what has come back into the statistics.
     pub fn read(&mut self, stats: &mut Stats) {
         for (view, trees) in self.replies.try_iter() {

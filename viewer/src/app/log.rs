@@ -35,6 +35,7 @@ pub struct Log {
     states: BTreeMap<&'static str, (Value, Instant)>,
     landscapes: [Weak<SceneBuffers>; INDIVIDUALS],
     frames: Frames,
+    behind: bool,
 }
 
 /// Frames since the last line about them.
@@ -76,6 +77,7 @@ impl Log {
             states: BTreeMap::new(),
             landscapes: Default::default(),
             frames: Frames { since: now, last: now, count: 0, worst_ms: 0.0 },
+            behind: false,
         })
     }
 
@@ -122,16 +124,25 @@ impl Log {
         );
         self.state("errors", json!({ "count": model.errors.len(), "errors": model.errors }));
         self.state("screen", screen(model, size_px));
+        self.behind = false;
         self.seldom("pose", || json!(pose));
-        if let Some(widgets) = widgets {
-            self.seldom("widgets", || widgets);
-        }
+        self.seldom("widgets", || widgets.unwrap_or_default());
         self.time_frame();
     }
 
     /// Whether it is time to look at what can be pressed.
     pub fn wants_widgets(&self) -> bool {
         self.is_on() && self.rested("widgets")
+    }
+
+    /// A change is not yet written, because it came too soon after another.
+    pub fn is_behind(&self) -> bool {
+        self.behind
+    }
+
+    /// Whether nothing will be drawn before something happens.
+    pub fn rest(&mut self, resting: bool) {
+        self.state("rest", json!({ "resting": resting }));
     }
 
     fn landscape(&mut self, view: usize, landscape: Option<&Arc<SceneBuffers>>, generation: u32) {
@@ -174,6 +185,8 @@ impl Log {
     fn seldom(&mut self, what: &'static str, value: impl FnOnce() -> Value) {
         if self.rested(what) {
             self.state(what, value());
+        } else {
+            self.behind = true;
         }
     }
 

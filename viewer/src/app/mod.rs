@@ -1,6 +1,6 @@
 //! The application: a window, and a loop that hands each event to its owner. What each does is in its own file: [`editor`]
-//! (the person's work), [`viewports`] (the pictures), [`camera_control`], [`screen`] (the window), [`log`] (what
-//! happened).
+//! (the person's work), [`viewports`] (the pictures), [`pace`] (when they are drawn), [`camera_control`], [`screen`] (the
+//! window), [`log`] (what happened).
 
 mod camera_control;
 mod dispatch;
@@ -9,7 +9,9 @@ mod layout;
 mod lod_readback;
 mod log;
 mod model;
+mod pace;
 mod screen;
+mod viewport;
 mod viewports;
 mod window_events;
 
@@ -36,11 +38,17 @@ use camera_control::CameraControl;
 use editor::{Editor, Task};
 use layout::Layout;
 use log::{Log, Moment};
+use pace::{Next, Pace, Sharpness, Shown};
 use screen::Screen;
 use viewports::Viewports;
 
 /// Between two looks at whether settings have to be saved.
 const SAVE_EVERY: Duration = Duration::from_secs(2);
+
+/// Until the device is asked again for what is on its way, and a change told that came too soon after another.
+const LOOK_AGAIN: Duration = Duration::from_millis(100);
+/// A frame that follows sooner belongs to the same motion.
+const CONTINUOUS: Duration = Duration::from_millis(50);
 
 /// Wakes the loop: something is new somewhere.
 #[derive(Clone, Copy, Debug)]
@@ -73,7 +81,11 @@ struct App {
     ui: ui::State,
     focus: Focus,
     background: Background,
-    clock: Clock,
+    pace: Pace,
+    /// When settings were saved last, if they had changed.
+    last_save: Instant,
+    /// A picture of the screen is to be saved as soon as one is drawn.
+    screenshot: bool,
     live: Option<Live>,
     /// Why no window could be opened.
     failure: Option<anyhow::Error>,
@@ -103,14 +115,6 @@ struct Focus {
     on_picture: bool,
 }
 
-struct Clock {
-    start: Instant,
-    /// When the camera moved last.
-    last_step: Instant,
-    /// When settings were saved last, if they had changed.
-    last_save: Instant,
-}
-
 impl App {
     fn new(cli: Cli, source: Source, log: Log, proxy: EventLoopProxy<Wake>) -> Self {
         let (file, problems) = SettingsFile::open(cli.settings.clone().or_else(SettingsFile::usual_path));
@@ -128,7 +132,9 @@ impl App {
             ui: ui::State::default(),
             focus: Focus::default(),
             background: Background::default(),
-            clock: Clock { start: now, last_step: now, last_save: now },
+            pace: Pace::new(now),
+            last_save: now,
+            screenshot: false,
             live: None,
             failure: None,
             log,
@@ -146,6 +152,14 @@ impl App {
         let text = text.into();
         self.log.note("told", json!({ "text": text }));
         self.ui.notify(tone, text);
+        self.redraw();
+    }
+
+    /// Asks for another frame.
+    fn redraw(&self) {
+        if let Some(live) = &self.live {
+            live.screen.window.request_redraw();
+        }
     }
 
     fn wake(&self) -> impl Fn() + Send + Sync + 'static {
@@ -192,18 +206,21 @@ impl App {
 
     /// One frame.
     fn frame(&mut self, events: &ActiveEventLoop) {
-        let start = Instant::now();
+        let passed = self.pace.begin(Instant::now());
         self.gather();
-        self.step_camera(events);
+        self.step_camera(passed, events);
         let model = self.model();
-        let Some(output) = self.draw(&model) else { return };
+        let Some((output, shown)) = self.draw(&model) else { return };
+        if std::mem::take(&mut self.screenshot) {
+            self.save_screenshot();
+        }
         self.focus = Focus { typing: output.typing, on_picture: output.views.free };
         self.drag(&output.views);
         output.events.into_iter().for_each(|event| self.dispatch(event, events));
-        if self.clock.last_save.elapsed() > SAVE_EVERY {
+        if self.last_save.elapsed() > SAVE_EVERY {
             self.save_settings();
         }
-        self.pace(events, start.elapsed());
+        self.wait(events, shown);
     }
 
     /// Takes in what other threads have brought.
@@ -268,20 +285,20 @@ impl App {
         }
     }
 
-    fn step_camera(&mut self, events: &ActiveEventLoop) {
-        let now = Instant::now();
-        let dt_s = (now - std::mem::replace(&mut self.clock.last_step, now)).as_secs_f32();
+    fn step_camera(&mut self, passed: Duration, events: &ActiveEventLoop) {
         let comfort = &self.file.settings.comfort.value;
-        let commands = self.camera.step(dt_s, comfort, &lands(&self.live));
+        let step = self.camera.step(passed.as_secs_f32(), comfort, &lands(&self.live));
         self.file.settings.greeted |= self.camera.is_steered() && self.live.is_some();
-        commands.into_iter().for_each(|command| self.dispatch(command.into(), events));
+        self.pace.camera(step.moving, &self.file.settings.options);
+        step.commands.into_iter().for_each(|command| self.dispatch(command.into(), events));
     }
 
     /// Draws the landscapes and the user interface; what the person did there.
-    fn draw(&mut self, model: &Model) -> Option<ui::Output> {
+    fn draw(&mut self, model: &Model) -> Option<(ui::Output, Shown)> {
         let Live { screen, gpu, viewports, .. } = self.live.as_mut()?;
         let options = self.file.settings.options;
-        let frame = FrameInput { options, time_s: self.clock.start.elapsed().as_secs_f32() };
+        let frame = FrameInput { options, time_s: self.pace.drifted_s() };
+        let sharpness = if self.screenshot { Sharpness::Full } else { self.pace.sharpness(&options) };
         if let Err(error) = viewports.set_samples(options.samples) {
             self.editor.shaders(Some(error.to_string()));
         }
@@ -294,7 +311,16 @@ impl App {
         let accessible = accessible.filter(|_| self.log.wants_widgets());
         let widgets = accessible.map(|update| log::widgets(update, full.pixels_per_point));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        viewports.record(&mut encoder, &mut screen.painter, &output.views.slots, &frame, &self.camera);
+        let slots = &output.views.slots;
+        let (drawn, blurred) =
+            viewports.record(&mut encoder, &mut screen.painter, slots, &frame, sharpness, &self.camera);
+        let again = if (0..model.views.len()).any(|view| viewports.picture(view) != model.views[view].picture)
+        {
+            // A first picture, which the user interface did not know of yet.
+            Some(Duration::ZERO)
+        } else {
+            full.viewport_output.get(&egui::ViewportId::ROOT).map(|viewport| viewport.repaint_delay)
+        };
         let visible = screen.present(full, encoder);
         viewports.end_frame();
         self.log.frame(Moment {
@@ -305,10 +331,9 @@ impl App {
             widgets,
         });
         if !visible {
-            viewports.pause();
             std::thread::sleep(Duration::from_millis(50));
         }
-        Some(output)
+        Some((output, Shown { drawn, blurred, again }))
     }
 
     /// Dragging a picture looks around without locking the pointer.
@@ -316,31 +341,38 @@ impl App {
         if views.dragged != egui::Vec2::ZERO && !self.camera.captured() {
             let scale = self.live.as_ref().map_or(1.0, |live| live.screen.ctx.pixels_per_point());
             self.camera.held.mouse_moved(-views.dragged.x * scale, -views.dragged.y * scale);
+            self.redraw();
         }
     }
 
-    /// When the next frame comes: at once, for clouds drift and waves run, but not while there is nothing to look at. Where
-    /// the processor draws while it also bakes or reads, each gets half of the time.
-    fn pace(&self, events: &ActiveEventLoop, frame: Duration) {
-        let Some(live) = &self.live else { return };
-        let idle = live.viewports.lands().is_empty();
+    /// Waits for the next frame or the next event.
+    fn wait(&mut self, events: &ActiveEventLoop, shown: Shown) {
+        let Some(live) = &mut self.live else { return };
+        let now = Instant::now();
         let waiting = self.editor.bake.baking.is_some() || self.editor.awaits_scenes();
-        let shared = live.gpu.software && waiting;
-        let rest = match (idle, shared) {
-            (true, _) => Duration::from_millis(100),
-            (false, true) => frame.min(Duration::from_secs(1)),
-            (false, false) => {
+        let next = self.pace.end(now, shown, live.gpu.software && waiting);
+        if !matches!(next, Next::At(at) if at <= now + CONTINUOUS) {
+            live.viewports.pause();
+        }
+        // What is not of this frame, but has to be done although nothing happens.
+        let unsaved = (self.last_save < self.pace.frame_began()).then_some(self.last_save + SAVE_EVERY);
+        let untold = (live.viewports.awaits_stats() || self.log.is_behind()).then_some(now + LOOK_AGAIN);
+        let next = if let Next::At(at) = next { Some(at) } else { None };
+        self.log.rest(next.is_none() && untold.is_none());
+        match [next, unsaved, untold].into_iter().flatten().min() {
+            Some(at) if at <= now => {
                 // Or a moment that has passed would wake the loop again and again.
                 events.set_control_flow(ControlFlow::Wait);
-                return live.screen.window.request_redraw();
+                live.screen.window.request_redraw();
             }
-        };
-        events.set_control_flow(ControlFlow::WaitUntil(Instant::now() + rest));
+            Some(at) => events.set_control_flow(ControlFlow::WaitUntil(at)),
+            None => events.set_control_flow(ControlFlow::Wait),
+        }
     }
 
     /// Writes settings down if they changed.
     fn save_settings(&mut self) {
-        self.clock.last_save = Instant::now();
+        self.last_save = Instant::now();
         let (source, settings) = (&self.source, &mut self.file.settings);
         let mut kept = settings.world(source);
         self.editor.keep(&mut kept);

@@ -12,6 +12,8 @@ use wgpu_profiler::{GpuProfiler, GpuProfilerSettings, GpuTimerQueryResult};
 
 use super::camera_control::CameraControl;
 use super::lod_readback::LodReadback;
+use super::pace::Sharpness;
+use super::viewport::Viewport;
 use crate::gpu::Gpu;
 use crate::image_file;
 use crate::options::FrameInput;
@@ -20,13 +22,10 @@ use crate::scene_loader::Loaded;
 use crate::ui::arrange::Slot;
 use crate::ui::model::{PassTime, Stats};
 use crate::upload::SceneBuffers;
-use crate::view::View;
 use crate::walk::Land;
 
 /// Frames that statistics look back on.
 const FRAMES: usize = 240;
-/// Before the window has given a view its size.
-const FIRST_SIZE_PX: [u32; 2] = [16, 16];
 /// Names of the views for times on the device.
 const LABELS: [&str; INDIVIDUALS] = ["view 1", "view 2", "view 3", "view 4"];
 
@@ -34,9 +33,7 @@ pub struct Viewports {
     gpu: Gpu,
     passes: Arc<Passes>,
     shaders: Shaders,
-    views: [View; INDIVIDUALS],
-    lands: [Option<Arc<Land>>; INDIVIDUALS],
-    pictures: [Option<TextureId>; INDIVIDUALS],
+    each: [Viewport; INDIVIDUALS],
     profiler: GpuProfiler,
     lod_readback: LodReadback,
     last_frame: Option<Instant>,
@@ -47,7 +44,7 @@ impl Viewports {
     /// Compiles the passes; nothing is shown yet.
     pub fn new(gpu: &Gpu, shaders: Shaders, samples: u32) -> Result<Self> {
         let passes = Arc::new(Passes::new(gpu, &shaders, samples)?);
-        let views = LABELS.map(|label| View::new(gpu, &passes, label, FIRST_SIZE_PX));
+        let each = LABELS.map(|label| Viewport::new(gpu, &passes, label));
         Ok(Self {
             profiler: GpuProfiler::new(&gpu.device, GpuProfilerSettings::default())?,
             lod_readback: LodReadback::new(),
@@ -55,9 +52,7 @@ impl Viewports {
             gpu: gpu.clone(),
             passes,
             shaders,
-            views,
-            lands: Default::default(),
-            pictures: Default::default(),
+            each,
             last_frame: None,
         })
     }
@@ -73,40 +68,38 @@ impl Viewports {
 
     /// What the user interface knows a picture by, if there is one.
     pub fn picture(&self, view: usize) -> Option<TextureId> {
-        self.pictures[view].filter(|_| self.views[view].scene().is_some())
+        self.each[view].picture()
     }
 
     /// The landscape of a view.
     pub fn scene(&self, view: usize) -> Option<&Arc<SceneBuffers>> {
-        self.views[view].scene()
+        self.each[view].view.scene()
     }
 
     /// The lands that a walker is in.
     pub fn lands(&self) -> Vec<&Land> {
-        self.lands.iter().flatten().map(Arc::as_ref).collect()
+        self.each.iter().filter_map(|one| one.land.as_deref()).collect()
     }
 
     /// What a walker meets in the landscape of a view.
     pub fn land(&self, view: usize) -> Option<&Land> {
-        self.lands[view].as_deref()
+        self.each[view].land.as_deref()
     }
 
     /// Shows a landscape from the next frame on.
     pub fn show(&mut self, view: usize, loaded: Loaded) {
-        self.views[view].show(&self.passes, loaded.buffers);
-        self.lands[view] = Some(loaded.land);
+        self.each[view].show(&self.passes, loaded);
     }
 
     /// Shows nothing any more.
     pub fn clear(&mut self) {
-        self.views.iter_mut().for_each(View::clear);
-        self.lands = Default::default();
+        self.each.iter_mut().for_each(Viewport::clear);
     }
 
     /// The finished pictures of some views, copied from the device; views without a landscape are left out.
     pub fn pixels(&self, views: &[usize]) -> Result<Vec<RgbaImage>> {
-        let shown = views.iter().filter(|view| self.views[**view].scene().is_some());
-        shown.map(|&view| image_file::read(&self.gpu, &self.views[view].targets().display)).collect()
+        let shown = views.iter().map(|view| &self.each[*view].view).filter(|view| view.scene().is_some());
+        shown.map(|view| image_file::read(&self.gpu, &view.targets().display)).collect()
     }
 
     /// Compiles the shaders again; if one is wrong the last good ones go on.
@@ -118,7 +111,7 @@ impl Viewports {
             return Err(ShaderError::Refused { text: error.to_string() });
         }
         self.passes = Arc::new(made?);
-        self.views.iter_mut().for_each(|view| view.adopt(&self.passes));
+        self.each.iter_mut().for_each(|one| one.adopt(&self.passes));
         Ok(())
     }
 
@@ -127,35 +120,44 @@ impl Viewports {
         if samples == self.passes.samples { Ok(()) } else { self.reload_shaders(samples) }
     }
 
-    /// Records the pictures that are on the screen.
+    /// Records the pictures that are on the screen and not yet as they should be. Whether any was recorded, and whether any
+    /// is not at full resolution.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         painter: &mut Renderer,
         slots: &[Slot],
         frame: &FrameInput,
+        sharpness: Sharpness,
         control: &CameraControl,
-    ) {
+    ) -> (bool, bool) {
         let start = Instant::now();
-        let fov_y_rad = frame.options.fov_y_deg.to_radians();
-        self.stats.triangles = [0; INDIVIDUALS];
-        self.stats.draws = [0; INDIVIDUALS];
+        let (mut drawn, mut blurred) = (false, false);
+        (self.stats.triangles, self.stats.draws) = Default::default();
+        self.each.iter_mut().for_each(|one| one.fresh = false);
+        // One after the other becomes sharp.
+        let mut sharpen = true;
         for slot in slots {
-            let index = slot.view;
-            let Some(land) = &self.lands[index] else { continue };
-            let view = &mut self.views[index];
-            if view.resize(&self.passes, slot.size_px) || self.pictures[index].is_none() {
-                let picture = view.targets().display.create_view(&Default::default());
-                register(&self.gpu, painter, &mut self.pictures[index], &picture);
+            let one = &mut self.each[slot.view];
+            if one.land.is_none() {
+                continue;
             }
-            let walker = control.rig.camera(land, fov_y_rad);
-            let camera = if frame.options.overhead { land.overhead(fov_y_rad) } else { walker };
-            let drawn = view.record(encoder, &self.passes, frame, &camera, &walker, &self.profiler);
-            self.stats.draws[index] = drawn.draws;
-            self.stats.triangles[index] = u64::from(drawn.land_triangles);
+            let part = match sharpness {
+                Sharpness::Part(part) => part,
+                Sharpness::Full => 1.0,
+                Sharpness::Sharpen if one.part < 1.0 && std::mem::take(&mut sharpen) => 1.0,
+                Sharpness::Sharpen => one.part,
+            };
+            one.fit(&self.gpu, &self.passes, painter, slot.size_px, part);
+            one.record(encoder, &self.passes, frame, control, &self.profiler);
+            drawn |= one.fresh;
+            blurred |= part < 1.0;
+            self.stats.draws[slot.view] = one.drawn.draws;
+            self.stats.triangles[slot.view] = u64::from(one.drawn.land_triangles);
         }
         self.profiler.resolve_queries(encoder);
         self.stats.cpu_record_ms = start.elapsed().as_secs_f32() * 1e3;
+        (drawn, blurred)
     }
 
     /// After the frame was submitted: gathers what the device has measured of this and earlier ones.
@@ -164,8 +166,8 @@ impl Viewports {
         let frames_ms = &mut self.stats.frames_ms;
         frames_ms.extend(self.last_frame.replace(now).map(|last| (now - last).as_secs_f32() * 1e3));
         frames_ms.drain(..frames_ms.len().saturating_sub(FRAMES));
-        for (index, view) in self.views.iter().enumerate().filter(|(view, _)| self.stats.draws[*view] > 0) {
-            if let Some((set, counts)) = view.tree_counts() {
+        for (index, one) in self.each.iter().enumerate().filter(|(_, one)| one.fresh) {
+            if let Some((set, counts)) = one.view.tree_counts() {
                 self.lod_readback.request(&self.gpu, index, set, counts);
             }
         }
@@ -179,17 +181,14 @@ impl Viewports {
         }
     }
 
-    /// Time went by without pictures: the next frame's duration means nothing.
+    /// Something of the last frames is still on its way back.
+    pub fn awaits_stats(&self) -> bool {
+        self.lod_readback.is_pending()
+    }
+
+    /// Time goes by without pictures: the next frame's duration means nothing.
     pub fn pause(&mut self) {
         self.last_frame = None;
-    }
-}
-
-fn register(gpu: &Gpu, painter: &mut Renderer, id: &mut Option<TextureId>, picture: &wgpu::TextureView) {
-    let filter = wgpu::FilterMode::Nearest;
-    match *id {
-        Some(id) => painter.update_egui_texture_from_wgpu_texture(&gpu.device, picture, filter, id),
-        None => *id = Some(painter.register_native_texture(&gpu.device, picture, filter)),
     }
 }
 

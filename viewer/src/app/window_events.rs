@@ -1,6 +1,7 @@
 //! winit's events → commands, camera and frames; opens the window.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use anyhow::{Context, Result};
 use serde_json::json;
@@ -25,8 +26,8 @@ const PIXELS_PER_LINE: f32 = 40.0;
 
 impl ApplicationHandler<Wake> for App {
     fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
-        if let (StartCause::ResumeTimeReached { .. }, Some(live)) = (cause, &self.live) {
-            live.screen.window.request_redraw();
+        if let StartCause::ResumeTimeReached { .. } = cause {
+            self.redraw();
         }
     }
 
@@ -45,17 +46,20 @@ impl ApplicationHandler<Wake> for App {
     }
 
     fn user_event(&mut self, _: &ActiveEventLoop, _: Wake) {
-        if let Some(live) = &self.live {
-            live.screen.window.request_redraw();
-        }
+        self.redraw();
     }
 
     fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         let Some(live) = &mut self.live else { return };
         let captured = self.camera.captured();
-        if !(captured && is_pointer(&event)) {
-            // What it has use for is known a frame later, as `Focus`.
-            let _ = live.screen.input.on_window_event(&live.screen.window, &event);
+        // What egui has use for is known a frame later, as `Focus`.
+        let seen = !(captured && is_pointer(&event))
+            && live.screen.input.on_window_event(&live.screen.window, &event).repaint;
+        if event != WindowEvent::RedrawRequested && (seen || is_touch(&event)) {
+            live.screen.window.request_redraw();
+        }
+        if is_touch(&event) {
+            self.pace.touch(Instant::now());
         }
         match event {
             WindowEvent::CloseRequested => self.dispatch(Command::Quit.into(), events),
@@ -84,6 +88,7 @@ impl ApplicationHandler<Wake> for App {
             && self.camera.captured()
         {
             self.camera.held.mouse_moved(x as f32, y as f32);
+            self.redraw();
         }
     }
 
@@ -129,12 +134,20 @@ impl App {
             // Before a person chooses: a card can afford smooth edges.
             self.file.settings.options.samples = 4;
         }
+        if gpu.software {
+            self.pace.expect_software();
+        }
         let shaders = Shaders::from(self.cli.shaders.clone());
         let viewports = Viewports::new(&gpu, shaders, self.file.settings.options.samples)?;
         let loader = Loader::start(&gpu, self.wake())?;
         screen.window.request_redraw();
         Ok(Live { screen, gpu, viewports, loader })
     }
+}
+
+/// Whether a person does something.
+fn is_touch(event: &WindowEvent) -> bool {
+    is_pointer(event) || matches!(event, WindowEvent::KeyboardInput { .. } | WindowEvent::Touch(_))
 }
 
 fn is_pointer(event: &WindowEvent) -> bool {

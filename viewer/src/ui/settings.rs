@@ -64,6 +64,14 @@ fn options(ui: &mut Ui, current: &Options) {
     switches(ui, &PICTURE_SWITCHES, &mut options);
     number(ui, &mut options.exposure, 0.125..=8.0, "Exposure", " ×");
     number(ui, &mut options.fov_y_deg, 20.0..=110.0, "Field of view", "°");
+    ui.label("Resolution while moving");
+    let parts = [
+        (None, "Auto", "As fine as 15 frames a second allow"),
+        (Some(1.0), "Full", "As sharp as at rest"),
+        (Some(0.75), "75 %", "Three quarters of the sides"),
+        (Some(0.5), "50 %", "Half of the sides"),
+    ];
+    segmented(ui, "Resolution while moving", &parts, &mut options.moving_resolution);
     ui.label("Samples a pixel");
     let samples = [(1, "1", "Fastest"), (4, "4", "Smooth edges")];
     segmented(ui, "Samples a pixel", &samples, &mut options.samples);

@@ -15,6 +15,8 @@ use crate::display::Display;
 
 /// The longest that anything may take: the machine may be slow and busy.
 const LIMIT: Duration = Duration::from_secs(120);
+/// Keys, clicks and files are noticed in that time.
+const ARRIVES_WITHIN: Duration = Duration::from_millis(500);
 /// Between two looks.
 const LOOK_EVERY: Duration = Duration::from_millis(10);
 
@@ -122,14 +124,22 @@ impl Viewer {
         told[told.len().saturating_sub(25)..].join("\n")
     }
 
-    /// Waits for that many more frames: what was asked for before is on the screen then.
+    /// Waits for that many more frames, or until none are drawn any more: what was asked for before is on the screen then.
     pub fn frames(&mut self, count: u64) {
         self.read();
-        let last = self.frame();
-        self.until("more frames", |viewer| viewer.frame() >= last + count);
+        let (last, start) = (self.frame(), Instant::now());
+        // What was asked for may not have arrived yet.
+        let waited = || start.elapsed() > ARRIVES_WITHIN;
+        self.until("more frames", |viewer| viewer.frame() >= last + count || viewer.rests() && waited());
     }
 
-    fn frame(&self) -> u64 {
+    /// Whether nothing will be drawn before something happens.
+    pub fn rests(&self) -> bool {
+        *self.get("rest", "resting") == true
+    }
+
+    /// How many frames were shown.
+    pub fn frame(&self) -> u64 {
         self.lines.last().and_then(|line| line["frame"].as_u64()).unwrap_or(0)
     }
 
@@ -140,6 +150,16 @@ impl Viewer {
         let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).expect("a process has memory");
         let kib: f64 = line.trim().trim_end_matches(" kB").parse().expect("a number");
         kib / 1024.0
+    }
+
+    /// Time that its threads have had of the processor.
+    pub fn processor_s(&self) -> f64 {
+        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.process.id()));
+        let stat = stat.expect("it runs, on a Linux");
+        let (_, fields) = stat.rsplit_once(')').expect("after the name");
+        let ticks = fields.split_whitespace().skip(11).take(2).map(|ticks| ticks.parse::<f64>());
+        // User and system; Linux tells programs hundredths, whatever it counts itself.
+        ticks.map(|ticks| ticks.expect("a number")).sum::<f64>() / 100.0
     }
 
     /// A value of the last line of a kind.

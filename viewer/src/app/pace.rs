@@ -1,0 +1,300 @@
+//! When the next frame comes, how sharp its pictures are, and whether clouds drift: as much as the device can do while the
+//! camera moves, nothing while nothing changes. Arithmetic on times that are handed in; knows neither window nor device.
+
+use std::time::{Duration, Instant};
+
+use crate::options::Options;
+
+/// A walk's frame may take that long: 15 frames a second are what the thesis asks of four views (section 7).
+const MOVING_FRAME: Duration = Duration::from_micros(66_667);
+/// No frame comes sooner after another: more than screens show only heats.
+const MIN_FRAME: Duration = Duration::from_micros(6_900);
+/// Sides of the pictures while the camera moves, as parts of full resolution.
+pub const PARTS: [f32; 4] = [1.0, 0.75, 0.5, 0.375];
+/// Where the processor draws, full resolution is out of reach; the first steps shall not show it.
+const FIRST_PART_IN_SOFTWARE: usize = 2;
+/// After the camera came to rest, pictures become sharp: not between two steps.
+const SHARP_AFTER: Duration = Duration::from_millis(200);
+/// Clouds and waves rest when nobody has touched anything for so long.
+const IDLE_AFTER: Duration = Duration::from_secs(10);
+/// Frames at a new resolution before it is judged: the first still show what came before.
+const WARM_UP: usize = 3;
+/// Frames that are judged together.
+const JUDGED: usize = 5;
+/// A finer resolution must promise to stay below this part of [`MOVING_FRAME`], or two would alternate.
+const MARGIN: f32 = 0.85;
+
+/// At which resolution the pictures of one frame are drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sharpness {
+    /// All at this part of full resolution, sideways and upwards.
+    Part(f32),
+    /// One picture that is not yet sharp becomes so: one a frame, so that none takes long.
+    Sharpen,
+    /// All at full resolution.
+    Full,
+}
+
+/// What came of a frame.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Shown {
+    /// Pictures were drawn, not only the user interface.
+    pub drawn: bool,
+    /// Some picture is not at full resolution.
+    pub blurred: bool,
+    /// When the user interface wants the next frame; `None` if it can wait for an event.
+    pub again: Option<Duration>,
+}
+
+/// When the next frame is due.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Next {
+    At(Instant),
+    /// Not before something happens.
+    OnEvent,
+}
+
+/// Follows the frames of a window.
+#[derive(Clone, Debug)]
+pub struct Pace {
+    /// Which of [`PARTS`].
+    part: usize,
+    /// How long moving frames took since `part` was chosen.
+    moving_frames: Vec<Duration>,
+    /// When this frame began.
+    now: Instant,
+    moving: bool,
+    /// When the camera moved last.
+    moved: Instant,
+    /// When the person did something last.
+    touched: Instant,
+    /// For how long clouds have drifted and waves have run.
+    drifted: Duration,
+    drifting: bool,
+    /// The last frame asked for one at once.
+    running: bool,
+}
+
+impl Pace {
+    pub fn new(now: Instant) -> Self {
+        Self {
+            part: 0,
+            moving_frames: Vec::new(),
+            now,
+            moving: false,
+            moved: now,
+            touched: now,
+            drifted: Duration::ZERO,
+            drifting: false,
+            running: false,
+        }
+    }
+
+    /// The processor draws.
+    pub fn expect_software(&mut self) {
+        self.part = FIRST_PART_IN_SOFTWARE;
+    }
+
+    /// The person did something.
+    pub fn touch(&mut self, now: Instant) {
+        self.touched = now;
+    }
+
+    /// Begins a frame; the time since the last one, none after a rest.
+    pub fn begin(&mut self, now: Instant) -> Duration {
+        let passed = now.saturating_duration_since(std::mem::replace(&mut self.now, now));
+        if !self.running {
+            return Duration::ZERO;
+        }
+        if self.moving {
+            self.judge(passed);
+        }
+        if self.drifting {
+            self.drifted += passed;
+        }
+        passed
+    }
+
+    /// When this frame began.
+    pub fn frame_began(&self) -> Instant {
+        self.now
+    }
+
+    /// Whether the camera moves in this frame.
+    pub fn camera(&mut self, moving: bool, options: &Options) {
+        self.moving = moving;
+        if moving {
+            self.moved = self.now;
+            self.touched = self.now;
+        }
+        let affordable = self.part == 0 && self.now.saturating_duration_since(self.touched) < IDLE_AFTER;
+        self.drifting = options.drift_clouds && (moving || affordable);
+    }
+
+    /// For how long clouds have drifted.
+    pub fn drifted_s(&self) -> f32 {
+        self.drifted.as_secs_f32()
+    }
+
+    /// How this frame's pictures are drawn.
+    pub fn sharpness(&self, options: &Options) -> Sharpness {
+        if self.rests_long_enough() {
+            return Sharpness::Sharpen;
+        }
+        Sharpness::Part(options.moving_resolution.unwrap_or(PARTS[self.part]).clamp(0.1, 1.0))
+    }
+
+    /// Ends a frame: when the next is due. `shared`: the processor draws and has other work besides, for which half of the
+    /// time is left.
+    pub fn end(&mut self, now: Instant, shown: Shown, shared: bool) -> Next {
+        let wait_for_sharpness = match (shown.blurred, self.rests_long_enough()) {
+            (false, _) => None,
+            (true, true) => Some(Duration::ZERO),
+            (true, false) => Some(SHARP_AFTER.saturating_sub(now.saturating_duration_since(self.moved))),
+        };
+        self.running = self.moving || self.drifting;
+        let at_once = self.running.then_some(Duration::ZERO);
+        let took = now.saturating_duration_since(self.now);
+        let rest = if shared && shown.drawn { took.min(Duration::from_secs(1)) } else { Duration::ZERO };
+        let wait = [at_once, wait_for_sharpness, shown.again].into_iter().flatten().min();
+        let pause = wait.map(|wait| wait.max(rest).max(MIN_FRAME.saturating_sub(took)));
+        // "Never" is a duration to egui.
+        pause.and_then(|pause| now.checked_add(pause)).map_or(Next::OnEvent, Next::At)
+    }
+
+    fn rests_long_enough(&self) -> bool {
+        !self.moving && self.now.saturating_duration_since(self.moved) >= SHARP_AFTER
+    }
+
+    /// Takes a moving frame's duration into account and chooses among [`PARTS`].
+    fn judge(&mut self, frame: Duration) {
+        self.moving_frames.push(frame);
+        if self.moving_frames.len() < WARM_UP + JUDGED {
+            return;
+        }
+        let mut judged = self.moving_frames.split_off(WARM_UP);
+        judged.sort();
+        let median = judged[JUDGED / 2].as_secs_f32();
+        // As if all of a frame's cost came from its pixels: too dear towards finer, too cheap towards coarser, which the next
+        // judgement mends.
+        let cost = |part: f32| median * (part / PARTS[self.part]).powi(2);
+        let target = MOVING_FRAME.as_secs_f32();
+        let fits =
+            |part: usize| cost(PARTS[part]) <= if part < self.part { MARGIN * target } else { 1.15 * target };
+        let best = (0..PARTS.len()).find(|part| fits(*part)).unwrap_or(PARTS.len() - 1);
+        if best != self.part {
+            self.part = best;
+            self.moving_frames.clear();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MS: Duration = Duration::from_millis(1);
+
+    /// A window whose frames take `base_ms` and `pixels_ms` more at full resolution.
+    struct Device {
+        pace: Pace,
+        now: Instant,
+        base_ms: f32,
+        pixels_ms: f32,
+        options: Options,
+    }
+
+    impl Device {
+        fn new(base_ms: f32, pixels_ms: f32) -> Self {
+            let now = Instant::now();
+            Self { pace: Pace::new(now), now, base_ms, pixels_ms, options: Options::default() }
+        }
+
+        /// A frame; blurred pictures become sharp in one.
+        fn frame(&mut self, moving: bool) -> (Sharpness, Next) {
+            self.pace.begin(self.now);
+            self.pace.camera(moving, &self.options);
+            let sharpness = self.pace.sharpness(&self.options);
+            let part = if let Sharpness::Part(part) = sharpness { part } else { 1.0 };
+            self.now += MS.mul_f32(self.base_ms + self.pixels_ms * part * part);
+            let shown = Shown { drawn: true, blurred: part < 1.0, again: None };
+            (sharpness, self.pace.end(self.now, shown, false))
+        }
+
+        /// Frames for as long as they follow upon each other; how many.
+        fn run(&mut self, mut moving: usize, limit: usize) -> usize {
+            for count in 0..limit {
+                moving = moving.saturating_sub(1);
+                match self.frame(moving > 0).1 {
+                    Next::At(at) => self.now = self.now.max(at),
+                    Next::OnEvent => return count + 1,
+                }
+            }
+            limit
+        }
+    }
+
+    #[test]
+    fn resolution_follows_the_frame_time_and_settles() {
+        for (pixels_ms, expected) in [(5.0, 1.0), (60.0, 1.0), (90.0, 0.75), (200.0, 0.5), (900.0, 0.375)] {
+            let mut device = Device::new(4.0, pixels_ms);
+            device.run(200, 199);
+            for _ in 0..50 {
+                assert_eq!(device.frame(true).0, Sharpness::Part(expected), "{pixels_ms} ms");
+            }
+        }
+    }
+
+    #[test]
+    fn a_device_that_becomes_faster_becomes_sharper() {
+        let mut device = Device::new(4.0, 500.0);
+        device.pace.expect_software();
+        device.run(100, 99);
+        device.pixels_ms = 10.0;
+        device.run(100, 99);
+        assert_eq!(device.frame(true).0, Sharpness::Part(1.0));
+    }
+
+    #[test]
+    fn a_slow_device_sharpens_its_pictures_after_a_walk_and_rests() {
+        let mut device = Device::new(10.0, 400.0);
+        device.pace.expect_software();
+        device.run(40, 39);
+        assert!(matches!(device.frame(true).0, Sharpness::Part(part) if part < 1.0));
+        let frames = device.run(0, 1000);
+        assert!(frames <= 4, "{frames} frames after a walk");
+        assert_eq!(device.frame(false), (Sharpness::Sharpen, Next::OnEvent));
+    }
+
+    #[test]
+    fn a_fast_device_lets_clouds_drift_until_nobody_has_touched_it_for_a_while() {
+        let mut device = Device::new(2.0, 3.0);
+        let start = device.now;
+        device.run(2, 1_000_000);
+        let ran = device.now - start;
+        assert!((IDLE_AFTER..IDLE_AFTER + 100 * MS).contains(&ran), "{ran:?}");
+        let drifted = device.pace.drifted_s();
+        device.now += Duration::from_secs(100);
+        device.frame(false);
+        assert_eq!(device.pace.drifted_s(), drifted, "a rest is no jump of the clouds");
+    }
+
+    #[test]
+    fn the_first_step_after_a_rest_is_none() {
+        let mut device = Device::new(2.0, 3.0);
+        device.options.drift_clouds = false;
+        device.run(0, 100);
+        device.now += Duration::from_secs(5);
+        assert_eq!(device.pace.begin(device.now), Duration::ZERO);
+    }
+
+    #[test]
+    fn where_the_processor_also_bakes_half_of_the_time_is_left() {
+        let mut device = Device::new(0.0, 0.0);
+        device.pace.begin(device.now);
+        device.pace.camera(true, &device.options);
+        let end = device.now + 80 * MS;
+        let shown = Shown { drawn: true, blurred: true, again: Some(Duration::ZERO) };
+        assert_eq!(device.pace.end(end, shown, true), Next::At(end + 80 * MS));
+    }
+}
