@@ -129,7 +129,7 @@ impl Change {
     /// Takes it back.
     ///
     /// # Errors
-    /// [`UndoError::Foreign`] if the file says something else than this change has left; then it is left as it is.
+    /// If the file says something else than this change has left; then it is left as it is.
     pub fn undo(&self, files: &World) -> Result<(), UndoError> {
         let [without, with] = &self.digests;
         self.replace(files, "undo", [with, without], [&self.after, &self.before])

@@ -118,7 +118,7 @@ fn what_needs_a_world_makes_none() {
         if folder_is_there {
             fs::create_dir(world.path()).expect("made");
         }
-        for words in [&["next"][..], &["next", "--from", "0"], &["export", "0", "a.glb"], &["explain"]] {
+        for words in [&["next"][..], &["next", "--from", "0"], &["export", "1", "a.glb"], &["explain"]] {
             let output = world.run(words);
             let said = String::from_utf8_lossy(&output.stderr).into_owned();
             assert!(

@@ -235,7 +235,8 @@ fn nothing_but_blobs_is_read_whoever_wrote_the_scene() {
     for secret in ["../../../space.ron", "../../current.ron", "../../blobs/../current.ron"] {
         fs::write(world.scene(0), [&text[..from], secret, &text[to..]].concat()).expect("written");
         let out = world.file("x.glb");
-        let output = world.run(&["export", "1", out.to_str().expect("a path")]);
+        let [scene, to] = [world.scene(0), out.clone()].map(|path| path.to_str().expect("a path").to_owned());
+        let output = world.run(&["export", &scene, &to]);
         let error = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(error.contains("which is no blob") && !out.exists(), "{error}");
     }

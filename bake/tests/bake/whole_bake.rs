@@ -143,7 +143,7 @@ fn explain_names_the_gene() {
     // A value that no decimal of a few digits is exactly, in the words of the file.
     world.edit(0, |text| set_gene(&text, 1, "height_m", "12.86"));
     world.bake(&[]).ok();
-    let text = String::from_utf8(world.run(&["explain", "1"]).stdout).expect("text");
+    let text = String::from_utf8(world.run(&["explain", "2"]).stdout).expect("text");
     assert!(text.contains("→ 12.86"), "{text}");
 }
 

@@ -177,7 +177,8 @@ impl Pace {
         let median = judged[JUDGED / 2].as_secs_f32();
         // As if all of a frame's cost came from its pixels: too dear towards finer, too cheap towards coarser, which the next
         // judgement mends.
-        let cost = |part: f32| median * (part / PARTS[self.part]).powi(2);
+        let area = |part: f32| part * part;
+        let cost = |part: f32| median * area(part) / area(PARTS[self.part]);
         let target = MOVING_FRAME.as_secs_f32();
         let fits =
             |part: usize| cost(PARTS[part]) <= if part < self.part { MARGIN * target } else { 1.15 * target };
