@@ -126,7 +126,7 @@ fn drawing_takes_no_more_memory(stage: &Stage, viewer: &mut Viewer) {
     let before_mib = walk_back_and_forth(viewer);
     let rounds = if std::env::var_os("GENESCAPE_LONG").is_some() { 38 } else { 1 };
     let after_mib = (0..rounds).map(|_| walk_back_and_forth(viewer)).last().expect("a round");
-    println!("{} frames: {before_mib:.0} MiB, then {after_mib:.0} MiB", 50 * rounds);
+    genescape_bake::say!("{} frames: {before_mib:.0} MiB, then {after_mib:.0} MiB", 50 * rounds);
     assert!(after_mib < 1.05 * before_mib, "{before_mib:.0} MiB became {after_mib:.0} MiB");
 }
 
