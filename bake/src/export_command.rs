@@ -8,31 +8,27 @@ use genescape_world::World;
 
 use crate::cache_commands;
 use crate::cli::{ExportArgs, RunArgs, SceneArg};
-use crate::events::{Event, Listener};
+use crate::events::Listener;
 use crate::export::{self, Audience, Exported};
-use crate::progress::JsonLines;
+use crate::progress::{JsonLines, ProgressBar};
 use crate::say;
 
 /// Writes a landscape into a folder or, for a name with an ending, as one file.
 pub fn run(scene: &SceneArg, out: &Path, args: ExportArgs, run: &RunArgs) -> Result<()> {
     let options = args.options()?;
     let scene = find(scene, &run.world)?;
-    let listener: &dyn Listener = if run.json { &JsonLines } else { &Quiet };
+    let listener: &dyn Listener = if run.json { &JsonLines } else { &ProgressBar::new() };
     let exported = match is_file(out) {
-        true => export::to_file(&scene, out, options, listener)?,
-        false => export::to_folder(&scene, out, options, listener)?,
+        true => export::to_file(&scene, out, options, listener),
+        false => export::to_folder(&scene, out, options, listener),
     };
+    // The bar must not stand between the person and a message.
+    listener.end();
+    let exported = exported?;
     if !run.json {
         report(&exported, options.audience);
     }
     Ok(())
-}
-
-/// The report says it all in the end.
-struct Quiet;
-
-impl Listener for Quiet {
-    fn tell(&self, _: &Event) {}
 }
 
 /// Whether a person means a file by that: whatever has an ending, unless it is a folder already or ends in a slash.

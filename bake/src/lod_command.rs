@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use bytesize::ByteSize;
 use genescape_world::{MAX_MODEL_BYTES, NamedFiles, atomic_write, output, regular_file};
 
 use crate::cli::BadInput;
@@ -46,7 +45,7 @@ pub fn convert(input: &Path, out: &Path, crease_deg: f32) -> Result<()> {
         let (vertices, triangles) = (level.mesh.positions.len(), level.mesh.triangle_count());
         say!("D_{index:<4} {vertices:>10} {triangles:>10} {:>12.6}", level.error_m);
     }
-    say!("wrote {} ({})", out.display(), ByteSize(glb.len() as u64).display().si());
+    say!("wrote {} ({})", out.display(), say::size(glb.len() as u64));
     Ok(())
 }
 

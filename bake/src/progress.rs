@@ -37,6 +37,12 @@ impl ProgressBar {
         Self { bar: bar.with_style(style), running: Mutex::default() }
     }
 
+    fn show(&self) {
+        if self.bar.is_hidden() && std::io::stderr().is_terminal() {
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
+    }
+
     fn update(&self, change: impl FnOnce(&mut Vec<String>)) {
         let mut running = self.running.lock().unwrap_or_else(PoisonError::into_inner);
         change(&mut running);
@@ -58,9 +64,7 @@ impl Listener for ProgressBar {
         match event {
             Event::Planned { stages, .. } => self.bar.set_length(*stages as u64),
             Event::Started { stage, scenes } => {
-                if self.bar.is_hidden() && std::io::stderr().is_terminal() {
-                    self.bar.set_draw_target(ProgressDrawTarget::stderr());
-                }
+                self.show();
                 self.update(|running| running.push(label(stage, scenes)));
             }
             Event::Finished { stage, scenes, .. } => {
@@ -73,7 +77,10 @@ impl Listener for ProgressBar {
                 self.bar
                     .suspend(|| say::warn(format_args!("bred {path} from the votes on generation {parent}")));
             }
-            Event::Exporting { files } => self.bar.set_length(*files as u64),
+            Event::Exporting { files } => {
+                self.show();
+                self.bar.set_length(*files as u64);
+            }
             Event::Written { .. } => self.bar.inc(1),
             Event::SceneReady { .. } | Event::Superseded | Event::Done { .. } | Event::Failed { .. } => {}
         }
@@ -84,10 +91,10 @@ impl Listener for ProgressBar {
     }
 }
 
-/// A stage with its scene, if only one uses it.
+/// A stage with its landscape as people count it, if only one uses it.
 fn label(stage: &str, scenes: &[usize]) -> String {
     match scenes {
-        [one] => format!("{stage} ({one})"),
+        [one] => format!("{stage} ({})", one + 1),
         _ => stage.to_owned(),
     }
 }

@@ -31,6 +31,11 @@ impl Gamepads {
         }
     }
 
+    /// Whether there is one to listen to.
+    pub fn any(&self) -> bool {
+        self.gilrs.as_ref().is_some_and(|gilrs| gilrs.gamepads().next().is_some())
+    }
+
     /// What is held now, and the commands since the last call.
     pub fn poll(&mut self) -> (Controls, Vec<Command>) {
         let mut asked = Vec::new();

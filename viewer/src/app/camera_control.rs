@@ -124,6 +124,15 @@ impl CameraControl {
         Step { moving: !self.resting || self.rig != before, commands }
     }
 
+    /// A gamepad may steer, whose presses wake no window: somebody has to look.
+    pub fn has_gamepad(&self) -> bool {
+        #[cfg(feature = "gamepad")]
+        let any = self.gamepads.any();
+        #[cfg(not(feature = "gamepad"))]
+        let any = false;
+        any
+    }
+
     /// Something was held, or turned, at the last step.
     pub fn is_steered(&self) -> bool {
         !self.resting

@@ -47,6 +47,8 @@ const SAVE_EVERY: Duration = Duration::from_secs(2);
 
 /// Until the device is asked again for what is on its way, and a change told that came too soon after another.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
+/// Between two looks at the gamepad while nothing else happens.
+const GAMEPAD_EVERY: Duration = Duration::from_millis(30);
 /// A frame that follows sooner belongs to the same motion.
 const CONTINUOUS: Duration = Duration::from_millis(50);
 
@@ -357,9 +359,10 @@ impl App {
         // What is not of this frame, but has to be done although nothing happens.
         let unsaved = (self.last_save < self.pace.frame_began()).then_some(self.last_save + SAVE_EVERY);
         let untold = (live.viewports.awaits_stats() || self.log.is_behind()).then_some(now + LOOK_AGAIN);
+        let unheard = self.camera.has_gamepad().then_some(now + GAMEPAD_EVERY);
         let next = if let Next::At(at) = next { Some(at) } else { None };
         self.log.rest(next.is_none() && untold.is_none());
-        match [next, unsaved, untold].into_iter().flatten().min() {
+        match [next, unsaved, untold, unheard].into_iter().flatten().min() {
             Some(at) if at <= now => {
                 // Or a moment that has passed would wake the loop again and again.
                 events.set_control_flow(ControlFlow::Wait);

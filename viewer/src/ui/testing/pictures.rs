@@ -92,6 +92,11 @@ fn voted(model: &mut Model) {
     model.ballots.set(Category::Sky, Ballot::NoFavourite);
 }
 
+fn broken(model: &mut Model) {
+    model.panels.genome = true;
+    model.errors = vec![file_error()];
+}
+
 fn edited(model: &mut Model) {
     model.panels.genome = true;
     if let Some(genes) = &mut model.genes {
@@ -135,17 +140,7 @@ const SCENES: [Scene; 20] = [
     ("genome-light-2x", [900.0, 700.0], 2.0, egui::Theme::Light, edited, |harness| {
         harness.hover_at(egui::pos2(640.0, 250.0))
     }),
-    (
-        "error",
-        [1280.0, 800.0],
-        1.0,
-        egui::Theme::Dark,
-        |model| {
-            model.panels.genome = true;
-            model.errors = vec![file_error()];
-        },
-        nothing,
-    ),
+    ("error", [1280.0, 800.0], 1.0, egui::Theme::Dark, broken, nothing),
     (
         "banner",
         [1280.0, 800.0],
@@ -248,17 +243,7 @@ const SCENES: [Scene; 20] = [
         },
         nothing,
     ),
-    (
-        "error-small",
-        [800.0, 600.0],
-        1.0,
-        egui::Theme::Light,
-        |model| {
-            model.panels.genome = true;
-            model.errors = vec![file_error()];
-        },
-        nothing,
-    ),
+    ("error-small", [800.0, 600.0], 1.0, egui::Theme::Light, broken, nothing),
     (
         "single",
         [1280.0, 800.0],
