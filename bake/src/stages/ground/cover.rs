@@ -81,6 +81,15 @@ const ROCKS: [Rgb; 5] = [
     [0.150, 0.158, 0.165],
 ];
 
+/// De Martonne's index of aridity, rain over temperature (1926), of the climate that the starters have: 9 °C, 800 mm.
+const TEMPERATE: f32 = 800.0 / 19.0;
+
+/// How much drier a climate is than that of the starters: 0.3 for each halving of De Martonne's index.
+fn drier(params: &GroundParams) -> f32 {
+    let index = params.rain_mm / (params.temperature_c + 10.0).max(1.0);
+    -0.3 * libm::log2f(index / TEMPERATE)
+}
+
 /// What all places of a land share.
 pub(super) struct Climate {
     water_m: f32,
@@ -106,6 +115,7 @@ impl Climate {
         let chance = |salt| hash01(seed, salt, 0, 0);
         // Where snow lies low it is cold and moist.
         let dryness = (chance(1) * 0.95 - 0.35 * (0.8 - params.snow_line).max(0.0)).clamp(0.0, 1.0);
+        let dryness = (dryness + drier(params)).clamp(0.0, 1.6);
         let kind = (chance(2) * ROCKS.len() as f32) as usize;
         let other = (kind + 1 + (chance(3) * 4.0) as usize) % ROCKS.len();
         let rock = ROCKS[kind.min(ROCKS.len() - 1)];

@@ -44,6 +44,10 @@ pub struct GroundParams {
     pub talus_angle_deg: f32,
     /// A low snow line means a cold land.
     pub snow_line: f32,
+    /// Mean of the year where the land lies lowest.
+    pub temperature_c: f32,
+    /// A year's rain.
+    pub rain_mm: f32,
 }
 
 /// Paints the field on `side_px`² texels: albedo and blend weights.

@@ -28,7 +28,13 @@ static LAND: LazyLock<Landform> = LazyLock::new(|| {
     landform(&params, 257)
 });
 
-const PARAMS: GroundParams = GroundParams { terrain_seed: 5, talus_angle_deg: 33.0, snow_line: 0.6 };
+const PARAMS: GroundParams = GroundParams {
+    terrain_seed: 5,
+    talus_angle_deg: 33.0,
+    snow_line: 0.6,
+    temperature_c: 9.0,
+    rain_mm: 800.0,
+};
 
 static TEXTURES: LazyLock<Vec<crate::model::GroundDetail<crate::model::Image8>>> = LazyLock::new(textures);
 
@@ -75,6 +81,20 @@ fn snow_lies_high_and_rock_is_steep() {
     assert!(mean(2, &height) > LAND.snow_line_m);
     assert!(mean(0, &flat) < everywhere - 0.05);
     assert!(mean(3, &height) < LAND.water_level_m.expect("a lake") + 10.0);
+}
+
+#[test]
+fn the_drier_the_land_the_paler_its_grass() {
+    let green = |rain_mm: f32| {
+        let made = maps(&GroundParams { rain_mm, ..PARAMS }, &LAND, 128);
+        let is_grass = |w: &[u8]| w.iter().all(|&w| w < 20);
+        let pixels = made.color.data.chunks_exact(3).zip(made.weights.data.chunks_exact(4));
+        let grass: Vec<u32> =
+            pixels.filter(|(_, weights)| is_grass(weights)).map(|(rgb, _)| rgb[1].into()).collect();
+        grass.iter().sum::<u32>() as f32 / grass.len() as f32
+    };
+    let [steppe, meadow, forest] = [200.0, 800.0, 2500.0].map(green);
+    assert!(steppe > meadow + 15.0 && meadow > forest + 5.0, "{steppe} {meadow} {forest}");
 }
 
 #[test]
