@@ -6,32 +6,43 @@ use std::str::FromStr;
 
 use bytesize::ByteSize;
 use clap::{Args, CommandFactory, Parser, Subcommand};
+use clap_complete::Shell;
 use genescape_schema::INDIVIDUALS;
 
 use crate::export::{Audience, Options};
 
 const EXAMPLES: &str = "\
 Examples:
-  bake                                   bake the newest population of ./world (made from the starters if absent)
-  bake world/population/g0003.ron        bake this population
-  bake --watch                           bake whenever a population file is saved, breed whenever one is voted on
-  bake random --seed 7                   make a population of four random genomes, and bake it
-  bake next                              breed the next population from the votes, and bake it
-  bake export 2 alps/                    landscape 2 with its sky and its trees, as files for other programs
-  bake export 2 alps.glb                 landscape 2 as one self-contained file, to send along
-  bake lod bunny.obj bunny.glb           progressive mesh and distinguished meshes of any model
-  bake explain 1                         why each stage of landscape 1 was or was not rebuilt
+  bake                             the newest population of ./world
+  bake world/population/g0003.ron  this population
+  bake --watch                     whatever is saved; breeds from votes
+  bake random --seed 7             four random genomes
+  bake next                        the generation bred from the votes
+  bake export 2 alps/              landscape 2, its sky and its trees
+  bake export 2 alps.glb           landscape 2 as one file
+  bake lod bunny.obj bunny.glb     levels of detail of any model
+  bake explain 1                   why landscape 1 was rebuilt
 
 Landscapes are counted 1 to 4; their folders are scene-0 to scene-3.
 
-Exit codes: 0 done, 1 failed, 2 wrong usage or bad input, 130 interrupted (Ctrl-C; what was finished is kept).";
+Exit codes: 0 done, 1 failed, 2 wrong usage or bad input, 130
+interrupted (Ctrl-C; what was finished is kept).";
 
 const EXPORT_EXAMPLES: &str = "\
 Examples:
-  bake export 1 valley/                  valley/oak-valley-in-june.glb, its sky, and valley/trees/oak-1.glb to oak-5.glb
-  bake export 1 valley/ --for blender    the same for Blender, and valley/oak-valley-in-june-blender.py
-  bake export 1 valley.glb               one self-contained file
+  bake export 1 valley/                a landscape, its sky, its trees
+  bake export 1 valley/ --for blender  and a script that sets up Blender
+  bake export 1 valley.glb             one self-contained file
   bake export world/baked/g0002/scene-1/scene.gltf alps.glb";
+
+const COMPLETIONS_EXAMPLE: &str = "\
+Example:
+  bake completions fish > ~/.config/fish/completions/bake.fish";
+
+const MAN_EXAMPLES: &str = "\
+Examples:
+  bake man | man -l -
+  bake man ~/.local/share/man/man1  from then on: man bake-export";
 
 /// Input that the person must correct, as against a failure of the program: exit code 2.
 #[derive(Debug, thiserror::Error)]
@@ -108,7 +119,7 @@ pub struct Cli {
     /// `bake next` would, unless there is one already.
     #[arg(long)]
     pub watch: bool,
-    /// With --watch: look every half second, for network folders that send no events.
+    /// With --watch: look several times a second, for network folders that send no events.
     #[arg(long, requires = "watch")]
     pub poll: bool,
 }
@@ -125,7 +136,7 @@ pub struct RunArgs {
     /// Samples a side of the heightfield: 65, 129, 257, 513, 1025 or 2049.
     #[arg(long, value_name = "N", default_value_t = 513, global = true, allow_negative_numbers = true)]
     pub size: u32,
-    /// Print events as JSON, one a line, instead of a progress bar.
+    /// Print events as JSON, one a line, instead of a progress bar: of bakes and exports.
     #[arg(long, global = true)]
     pub json: bool,
 }
@@ -200,6 +211,26 @@ pub enum Command {
         #[arg(long, default_value_t = 3)]
         runs: u32,
     },
+    /// Print what makes a shell complete this command line.
+    #[command(after_help = COMPLETIONS_EXAMPLE)]
+    Completions {
+        /// The shell.
+        shell: Shell,
+    },
+    /// Print the man page, or write one for each command.
+    #[command(after_help = MAN_EXAMPLES)]
+    Man {
+        /// Write bake.1, bake-export.1 and so on here.
+        #[arg(value_name = "DIR")]
+        folder: Option<PathBuf>,
+    },
+}
+
+impl Command {
+    /// Whether `--json` has events to print.
+    pub fn has_events(&self) -> bool {
+        matches!(self, Self::Random { .. } | Self::Next { .. } | Self::Export { .. })
+    }
 }
 
 /// What an export is for.
@@ -283,6 +314,14 @@ mod tests {
     #[test]
     fn the_command_line_is_consistent() {
         Cli::command().debug_assert();
+    }
+
+    /// A man page leaves 71 columns of a terminal's 80.
+    #[test]
+    fn examples_are_not_wrapped() {
+        for text in [EXAMPLES, EXPORT_EXAMPLES, COMPLETIONS_EXAMPLE, MAN_EXAMPLES] {
+            assert!(text.lines().all(|line| line.chars().count() <= 71), "{text}");
+        }
     }
 
     #[test]

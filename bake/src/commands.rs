@@ -21,7 +21,7 @@ use crate::run::RunError;
 use crate::say;
 use crate::session::{Baked, Publish, Session};
 use crate::watch_loop::{self, Host};
-use crate::{bench, cache_commands, export_command, lod_command};
+use crate::{bench, cache_commands, export_command, lod_command, manual};
 
 /// Set by Ctrl-C.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
@@ -72,6 +72,10 @@ fn dispatch(cli: &Cli) -> Result<()> {
         let text = "POPULATION.ron and --watch belong to `bake` without a command; see `bake --help`";
         return Err(BadInput(text.into()).into());
     }
+    if run.json && !command.has_events() {
+        let text = "--json prints the events of bakes and exports; this command has none and prints text";
+        return Err(BadInput(text.into()).into());
+    }
     match command {
         Command::Random { seed } => random(*seed, run),
         Command::Next { from } => next(*from, run),
@@ -81,6 +85,8 @@ fn dispatch(cli: &Cli) -> Result<()> {
         Command::Lod { input, out, crease_deg } => lod_command::convert(input, out, *crease_deg),
         Command::Cache { action } => cache_commands::look_after(&run.world, action, &stopped),
         Command::Bench { runs } => bench::bench(*runs, &pool(run.threads)?, resolution(run.size)?),
+        Command::Completions { shell } => manual::completions(*shell),
+        Command::Man { folder } => manual::man(folder.as_deref()),
     }
 }
 
@@ -231,6 +237,10 @@ fn next(from: Option<u32>, args: &RunArgs) -> Result<()> {
         None => world.newest_population()?,
     };
     let path = session.breed_file(&parents)?;
+    if args.json {
+        let parent = World::read_population(session.space(), &parents)?.population.generation;
+        JsonLines.tell(&Event::Bred { parent, path: path.display().to_string() });
+    }
     console.bake_new(&session, &path)
 }
 

@@ -1,8 +1,8 @@
 //! What a bake reports while it runs. As JSON (`bake --json`), an event is an object whose field `event` is its name.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
 pub enum Event {
     /// The bake of a population begins; it has `stages` stages. Each scene needs `of_scenes` of them, several scenes some.

@@ -14,6 +14,7 @@ pub mod gltf;
 pub mod graph;
 pub mod import;
 pub mod lod_command;
+mod manual;
 mod math;
 pub mod model;
 pub mod noise;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
+use clap_complete::Shell;
 
 use crate::baker::BakerOptions;
 use crate::image_file::parse_size;
@@ -51,9 +52,9 @@ pub struct Cli {
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<[u32; 2]>,
 
-    /// With --screenshot: which landscape, 0 to 3
-    #[arg(long, value_name = "N", conflicts_with = "all", value_parser = clap::value_parser!(u8).range(0..4))]
-    pub scene: Option<u8>,
+    /// With --screenshot: which landscape, 1 to 4
+    #[arg(long, value_name = "N", conflicts_with = "all", value_parser = clap::value_parser!(u8).range(1..=4))]
+    pub landscape: Option<u8>,
 
     /// With --screenshot: all landscapes in one picture, two by two
     #[arg(long)]
@@ -79,14 +80,25 @@ pub struct Cli {
 pub enum Command {
     /// Measure how long pictures take, as ratios of one run
     Bench(crate::bench::BenchArgs),
+    /// Print what makes a shell complete this command line
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+    /// Print the man page, or write one for each command
+    Man {
+        /// Write viewer.1, viewer-bench.1 and so on here
+        #[arg(value_name = "DIR")]
+        folder: Option<PathBuf>,
+    },
 }
 
 const EXAMPLES: &str = "Examples:
-  viewer                                       walk through the landscapes of ./world; they are baked if need be
-  viewer --world alps                          those of another world
-  viewer world/baked/g0003                     an older generation as it was baked
-  viewer --screenshot all.png --all            draw all four to a file, without a window
-  viewer --screenshot a.png --scene 2 --camera 0,20,1.6,45,-5 --size 1600x900";
+  viewer                             the landscapes of ./world
+  viewer --world alps                those of another world
+  viewer world/baked/g0003           an older generation as it was baked
+  viewer --screenshot all.png --all  all four to a file, without a window
+  viewer --screenshot a.png --landscape 2 --camera 0,20,1.6,45,-5";
 
 /// Where an eye is.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -21,6 +21,7 @@ pub mod load;
 pub mod loader;
 pub mod lod;
 pub mod lod_mode;
+pub mod manual;
 pub mod options;
 pub mod passes;
 pub mod scene;

@@ -6,7 +6,7 @@ use anyhow::Result;
 use clap::Parser;
 use genescape_schema::printable;
 use genescape_viewer::cli::{Cli, Command};
-use genescape_viewer::{app, bench, screenshot};
+use genescape_viewer::{app, bench, manual, screenshot};
 use genescape_world::output::BadOutput;
 use genescape_world::{Source, WorldError};
 
@@ -27,8 +27,11 @@ fn main() -> ExitCode {
 }
 
 fn run(cli: Cli) -> Result<()> {
-    if let Some(Command::Bench(args)) = &cli.command {
-        return bench::run(args);
+    match &cli.command {
+        Some(Command::Bench(args)) => return bench::run(args),
+        Some(Command::Completions { shell }) => return manual::completions(*shell),
+        Some(Command::Man { folder }) => return manual::man(folder.as_deref()),
+        None => {}
     }
     let source = Source::of(cli.path.as_ref().unwrap_or(&cli.world))?;
     if let Source::World(root) = &source

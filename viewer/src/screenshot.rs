@@ -52,9 +52,11 @@ pub fn take(cli: &Cli, source: &Source, out: &Path) -> Result<()> {
 /// The scenes to draw: the one asked for, all, or the first.
 fn chosen(cli: &Cli, mut paths: Vec<PathBuf>) -> Result<Vec<PathBuf>> {
     let count = paths.len();
-    match cli.scene.map(usize::from) {
-        Some(scene) if scene >= count => Err(anyhow!("there is no scene {scene}: there are {count}")),
-        Some(scene) => Ok(vec![paths.swap_remove(scene)]),
+    match cli.landscape.map(usize::from) {
+        Some(landscape) if landscape > count => {
+            Err(anyhow!("there is no landscape {landscape}: there are {count}"))
+        }
+        Some(landscape) => Ok(vec![paths.swap_remove(landscape - 1)]),
         None => {
             paths.truncate(if cli.all { count } else { 1 });
             Ok(paths)
@@ -71,5 +73,25 @@ fn camera(cli: &Cli, rig: &Rig, land: &Land, fov_y_rad: f32) -> Camera {
         yaw_rad: place.yaw_deg.to_radians(),
         pitch_rad: place.pitch_deg.to_radians(),
         fov_y_rad,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[test]
+    fn landscapes_are_counted_from_one() {
+        let chosen = |words: &[&str]| {
+            let cli = Cli::try_parse_from([&["viewer"], words].concat()).map_err(anyhow::Error::from)?;
+            chosen(&cli, vec!["a".into(), "b".into(), "c".into()])
+        };
+        assert_eq!(chosen(&["--landscape", "2"]).expect("there"), [PathBuf::from("b")]);
+        assert_eq!(chosen(&[]).expect("there"), [PathBuf::from("a")]);
+        assert_eq!(chosen(&["--all"]).expect("there").len(), 3);
+        for wrong in ["0", "4", "5"] {
+            assert!(chosen(&["--landscape", wrong]).is_err(), "{wrong}");
+        }
     }
 }

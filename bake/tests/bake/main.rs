@@ -6,6 +6,7 @@ mod export;
 mod faults;
 mod healing;
 mod library;
+mod manual;
 mod random_genomes;
 mod stage_digests;
 mod strangers;

@@ -124,6 +124,8 @@ fn next_breeds_from_votes() {
         text.replace("votes: None", "votes: Some((tree: Some(0), terrain: Some(1), sky: Some(2)))")
     });
     let next = world.bake(&["next"]).ok();
+    let bred = next.of("bred").next().expect("told");
+    assert!(bred["parent"] == 0 && bred["path"].as_str().is_some_and(|path| path.ends_with("g0001.ron")));
     assert_eq!(next.of("scene_ready").count(), 4);
     assert!(next.built().len() < next.planned(), "chromosomes that live on are not baked again");
     assert!(world.population(1).is_file());

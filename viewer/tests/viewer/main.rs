@@ -6,6 +6,7 @@ mod display;
 mod golden;
 mod lod_twin;
 mod made_up;
+mod manual;
 mod mistakes;
 mod program;
 mod shaders;
