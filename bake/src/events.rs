@@ -1,4 +1,5 @@
 //! What a bake reports while it runs. As JSON (`bake --json`), an event is an object whose field `event` is its name.
+//! `docs/json.md` says what each means and is held to this file by a test.
 
 use serde::{Deserialize, Serialize};
 

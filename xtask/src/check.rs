@@ -8,7 +8,9 @@ use anyhow::{Context, Result, ensure};
 use clap::ValueEnum;
 
 use crate::setup;
-use crate::tools::{cargo, files, fresh, program, python, release, root, run as execute, script};
+use crate::tools::{
+    cargo, files, fresh, is_installed, program, python, release, root, run as execute, script,
+};
 
 /// A step by its name.
 type Step<'a> = (&'a str, &'a dyn Fn() -> Result<()>);
@@ -169,7 +171,12 @@ fn tests(long: bool) -> Result<()> {
 
 fn documentation() -> Result<()> {
     let arguments = ["doc", "--quiet", "--workspace", "--no-deps", "--document-private-items"];
-    execute(cargo(&arguments).env("RUSTDOCFLAGS", "-D warnings -A rustdoc::private-intra-doc-links"))
+    execute(cargo(&arguments).env("RUSTDOCFLAGS", "-D warnings -A rustdoc::private-intra-doc-links"))?;
+    if !is_installed("mdbook") {
+        println!("left out: the book, for want of mdbook (cargo install mdbook)");
+        return Ok(());
+    }
+    execute(program("mdbook").args(["build", "docs"]))
 }
 
 /// Where the checked bake is.

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod eviction;
+mod exit_codes;
 mod export;
 mod faults;
 mod healing;

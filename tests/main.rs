@@ -1,0 +1,4 @@
+//! What crosses the crates.
+
+mod docs;
+mod round;
