@@ -148,8 +148,7 @@ const MAX_HELP: usize = 1000;
 /// No landscape is made of greater numbers, in whatever unit.
 const MAX_VALUE: f64 = 1e9;
 
-const FIELDS: [&str; 9] =
-    ["name", "category", "group", "bits", "range", "scale", "unit", "help", "default"];
+const FIELDS: [&str; 9] = ["name", "category", "group", "bits", "range", "scale", "unit", "help", "default"];
 
 fn read_parameter(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<Parameter> {
     let fields = checker.record(node, "a parameter", &FIELDS)?;

@@ -30,7 +30,11 @@ impl Population {
                 true => String::new(),
                 false => format!("            descent: {},\n", quoted(&one.descent)),
             };
-            format!("        (\n            name: {},\n{descent}{}        ),\n", quoted(&one.name), genes.concat())
+            format!(
+                "        (\n            name: {},\n{descent}{}        ),\n",
+                quoted(&one.name),
+                genes.concat()
+            )
         };
         let individuals: String = self.individuals.iter().map(individual).collect();
         format!(

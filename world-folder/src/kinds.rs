@@ -105,7 +105,10 @@ mod tests {
         let own = world.kinds(&space);
         assert!(own.faults.is_empty(), "{:?}", own.faults);
         assert_eq!(own.kinds.iter().count(), before.kinds.iter().count() + 1);
-        assert_eq!(own.kinds.called("my downs").map(|kind| kind.name.as_str()).collect::<Vec<_>>(), ["on downs"]);
+        assert_eq!(
+            own.kinds.called("my downs").map(|kind| kind.name.as_str()).collect::<Vec<_>>(),
+            ["on downs"]
+        );
         assert_eq!(world.kind_text(Category::Terrain, "my_downs").expect("there"), DOWNS);
     }
 

@@ -80,7 +80,8 @@ impl Allowed {
         let (min, max) = (min.max(low), max.min(high));
         match self {
             Self::OneOf(codes) => {
-                let left: Vec<u32> = codes.iter().copied().filter(|code| (low..=high).contains(code)).collect();
+                let left: Vec<u32> =
+                    codes.iter().copied().filter(|code| (low..=high).contains(code)).collect();
                 (!left.is_empty()).then_some(Self::OneOf(left))
             }
             _ if min > max => None,

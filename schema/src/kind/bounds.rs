@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use crate::genome::Chromosome;
 use crate::kind::Allowed;
-use crate::parameter::{Category, Parameter};
+use crate::parameter::{Category, Parameter, Scale};
 use crate::space::Space;
 
 /// What each gene of a category is allowed, in the space's order; seeds may be anything.
@@ -28,6 +28,15 @@ impl Bounds {
         };
         let genes = space.category(category).map(of).collect::<Option<_>>()?;
         Some(Self { category, genes })
+    }
+
+    /// Every chromosome.
+    pub fn whole(space: &Space, category: Category) -> Self {
+        let any = |gene: &Parameter| match gene.scale {
+            Scale::Choice => Allowed::OneOf((0..=gene.last_code()).collect()),
+            _ => Allowed::Anywhere { min: 0, max: gene.last_code() },
+        };
+        Self { category, genes: space.category(category).map(any).collect() }
     }
 
     /// Each gene with what it is allowed.

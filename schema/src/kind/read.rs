@@ -19,13 +19,7 @@ impl Kind {
     ///
     /// # Errors
     /// Everything that is wrong with it.
-    pub fn load(
-        space: &Space,
-        category: Category,
-        id: &str,
-        file: &str,
-        text: &str,
-    ) -> Result<Self, Report> {
+    pub fn load(space: &Space, category: Category, id: &str, file: &str, text: &str) -> Result<Self, Report> {
         Self::load_as(space, category, id, file, text, false)
     }
 
@@ -60,7 +54,15 @@ impl Reader<'_, '_> {
         let bounds = genes.and_then(|node| self.bounds(node));
         let goes_with = optional(&fields, "goes_with").map_or(Some(Vec::new()), |node| self.goes_with(node));
         let (category, id) = (self.category, id.to_owned());
-        Some(Kind { id, category, name: name?, source: source?, mixes: mixes?, bounds: bounds?, goes_with: goes_with? })
+        Some(Kind {
+            id,
+            category,
+            name: name?,
+            source: source?,
+            mixes: mixes?,
+            bounds: bounds?,
+            goes_with: goes_with?,
+        })
     }
 
     fn line(&mut self, node: &Node<'_>, what: &str, max: usize) -> Option<String> {
@@ -86,17 +88,19 @@ impl Reader<'_, '_> {
         };
         let fields = self.checker.fields(node, "genes", &known, hint)?;
         let mut missing = Vec::new();
-        let bounds = Bounds::new(space, category, |gene| match (optional(&fields, &gene.name), gene.default) {
-            // A fault must not hide those of the genes behind it.
-            (Some(node), _) => Some(self.gene(gene, node).unwrap_or_else(|| exactly(gene, 0))),
-            (None, Some(code)) => Some(exactly(gene, code)),
-            (None, None) => {
-                missing.push(format!("{} ({})", gene.name, gene.range_text()));
-                Some(exactly(gene, 0))
-            }
-        });
+        let bounds =
+            Bounds::new(space, category, |gene| match (optional(&fields, &gene.name), gene.default) {
+                // A fault must not hide those of the genes behind it.
+                (Some(node), _) => Some(self.gene(gene, node).unwrap_or_else(|| exactly(gene, 0))),
+                (None, Some(code)) => Some(exactly(gene, code)),
+                (None, None) => {
+                    missing.push(format!("{} ({})", gene.name, gene.range_text()));
+                    Some(exactly(gene, 0))
+                }
+            });
         if !missing.is_empty() {
-            let count = if missing.len() == 1 { "1 gene is" } else { &format!("{} genes are", missing.len()) };
+            let count =
+                if missing.len() == 1 { "1 gene is" } else { &format!("{} genes are", missing.len()) };
             let message = format!("genes: {count} missing: {}", missing.join(", "));
             self.checker.error(node.start..node.start + 1, message);
         }
@@ -110,7 +114,9 @@ impl Reader<'_, '_> {
         if is_choice != node.text.starts_with('[') {
             let name = &gene.name;
             let message = match is_choice {
-                true => format!("{name}: values between two choices mean something else; list them, as [1, 4]"),
+                true => {
+                    format!("{name}: values between two choices mean something else; list them, as [1, 4]")
+                }
                 false => format!("{name}: a range stands in round brackets, as (min, typical, max)"),
             };
             return self.checker.refuse(node.span(), message);
@@ -169,7 +175,9 @@ impl Reader<'_, '_> {
         };
         let (low, high) = (self.code(gene, low)?, self.code(gene, high)?);
         if low > high {
-            return self.checker.refuse(field.node.span(), format!("{what}: {} must rise", given(&field.node)));
+            return self
+                .checker
+                .refuse(field.node.span(), format!("{what}: {} must rise", given(&field.node)));
         }
         Some(Demand { gene: gene.name.clone(), category: gene.category, codes: low..=high })
     }
