@@ -14,13 +14,16 @@ pub enum Origin {
     Another(usize),
     /// A crossover, of the favourite first.
     Crossed(usize, usize),
+    /// A crossover with what is none of the parents.
+    Widened(usize),
     New,
 }
 
 impl Origin {
     fn favourite(self) -> Option<usize> {
         match self {
-            Self::Of(one) | Self::Like(one) | Self::Another(one) | Self::Crossed(one, _) => Some(one),
+            Self::Of(one) | Self::Like(one) | Self::Another(one) => Some(one),
+            Self::Crossed(one, _) | Self::Widened(one) => Some(one),
             Self::New => None,
         }
     }
@@ -32,6 +35,7 @@ impl Origin {
             Self::Like(one) => format!("{part} like {}", one + 1),
             Self::Another(one) => format!("{part} as {}, drawn anew", one + 1),
             Self::Crossed(one, other) => format!("{part} of {} × {}", one + 1, other + 1),
+            Self::Widened(one) => format!("{part} of {} × new", one + 1),
             Self::New => format!("new {part}"),
         }
     }

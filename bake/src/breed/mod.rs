@@ -147,10 +147,7 @@ impl<'a> Birth<'a, '_> {
         let (chromosome, origin) = match self.family.role(self.child, self.category) {
             Role::Kept => (self.family.parent(self.category, kept).0.clone(), Origin::Of(kept)),
             Role::Varied => self.varied(kept),
-            Role::Crossed => {
-                let other = (kept + 1 + self.dice.below(INDIVIDUALS as u32 - 1) as usize) % INDIVIDUALS;
-                (self.crossed(kept, other), Origin::Crossed(kept, other))
-            }
+            Role::Crossed => self.crossed(kept),
             Role::New => (self.newcomer(newcomers), Origin::New),
         };
         (self.with_locked(chromosome, kept), origin)
@@ -169,14 +166,38 @@ impl<'a> Birth<'a, '_> {
         (self.another(best), Origin::Another(favourite))
     }
 
-    /// From the favourite and another parent, see [`cross`].
-    fn crossed(&mut self, favourite: usize, other: usize) -> Chromosome {
+    /// From the favourite and another parent of another kind, see [`cross`]. Where all parents are of one kind, from the
+    /// favourite and what it mixes with, so that a population never becomes four times the same.
+    fn crossed(&mut self, favourite: usize) -> (Chromosome, Origin) {
+        let (_, home) = self.family.parent(self.category, favourite);
+        let is_other = |index: &usize| self.family.parent(self.category, *index).1.main() != home.main();
+        let others: Vec<usize> = (0..INDIVIDUALS).filter(|&index| index != favourite).collect();
+        let different: Vec<usize> = others.iter().copied().filter(is_other).collect();
+        if different.is_empty()
+            && let Some((stranger, of)) = home.main().and_then(|kind| self.stranger(kind))
+        {
+            return (self.child_of(favourite, (&stranger, of)), Origin::Widened(favourite));
+        }
+        let candidates = if different.is_empty() { others } else { different };
+        let other = *self.dice.one(&candidates).unwrap_or(&favourite);
+        let parent = self.family.parent(self.category, other);
+        (self.child_of(favourite, parent), Origin::Crossed(favourite, other))
+    }
+
+    /// A member of a kind that mixes with this one, and goes with the rest of the child.
+    fn stranger(&mut self, kind: &Kind) -> Option<(Chromosome, Home<'a>)> {
+        let Family { space, kinds, .. } = *self.family;
+        let pool = kinds.iter().filter(|other| other.id != kind.id && other.mixes_with(kind));
+        let picker = Picker { space, kinds, pool: pool.collect() };
+        let picked = picker.pick(self.category, self.company, &[], &mut self.dice)?;
+        picked.suits.then_some((picked.chromosome, picked.home))
+    }
+
+    fn child_of(&mut self, favourite: usize, other: (&Chromosome, Home<'_>)) -> Chromosome {
         let (best, home) = self.family.parent(self.category, favourite);
         let space = self.family.space;
-        let other = self.family.parent(self.category, other);
         let crossed = self.fresh(|birth| {
-            let (child, mut bounds) =
-                cross::crossed(space, birth.category, (best, home), other, &mut birth.dice);
+            let (child, mut bounds) = cross::crossed(space, birth.category, (best, home), other, &mut birth.dice);
             birth.company.demand(&mut bounds);
             let pace = step::Pace::of(home);
             birth.stepped(&child, &bounds, step::Pace { chance: 0.5 * pace.chance, ..pace })

@@ -5,6 +5,7 @@ mod eviction;
 mod export;
 mod faults;
 mod healing;
+mod kinds;
 mod library;
 mod random_genomes;
 mod stage_digests;
