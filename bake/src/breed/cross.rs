@@ -6,8 +6,8 @@ use genescape_schema::{Bounds, Category, Chromosome, Space};
 use crate::kinds::Home;
 use crate::seed::Dice;
 
-/// The child of a favourite and another, and where it may vary. The seed is the favourite's, and so is what a person set to
-/// a value outside its kind.
+/// The child of a favourite and another, and where it may vary. What a person set to a value outside its kind stays, unless
+/// its group comes from the other.
 ///
 /// - Of one kind, or of two that mix: groups of either, brought into what these two and all between them allow.
 /// - Of two that do not mix, as a palm and an oak: the favourite, with those traits of the other that its own kind may have.

@@ -134,8 +134,6 @@ struct Birth<'a, 'b> {
     dice: Dice,
 }
 
-/// Chance that a variation is another individual of the same genes.
-const ANOTHER: f32 = 0.125;
 /// Tries until a chromosome differs from all parents', which the person has seen.
 const TRIES: u32 = 8;
 
@@ -153,32 +151,35 @@ impl<'a> Birth<'a, '_> {
         (self.with_locked(chromosome, kept), origin)
     }
 
-    /// As the favourite, with some steps within what its kind may be. Its seed stays, or nothing but its seed changes.
+    /// As the favourite, with some steps within what its kind may be; it stays the same individual. Where there is nothing
+    /// to step to, another one.
     fn varied(&mut self, favourite: usize) -> (Chromosome, Origin) {
         let (best, home) = self.family.parent(self.category, favourite);
-        let (bounds, pace) = self.surroundings(home);
-        if !self.dice.chance(ANOTHER) {
-            let varied = self.fresh(|birth| birth.stepped(best, &bounds, pace));
-            if let Some(varied) = varied {
-                return (varied, Origin::Like(favourite));
-            }
+        let mut bounds = home.bounds().unwrap_or_else(|| Bounds::whole(self.family.space, self.category));
+        self.company.demand(&mut bounds);
+        match self.fresh(|birth| birth.stepped(best, &bounds, step::Pace::of(home))) {
+            Some(varied) => (varied, Origin::Like(favourite)),
+            None => (self.another(best), Origin::Another(favourite)),
         }
-        (self.another(best), Origin::Another(favourite))
     }
 
-    /// From the favourite and another parent of another kind, see [`cross`]. Where all parents are of one kind, from the
-    /// favourite and what it mixes with, so that a population never becomes four times the same.
+    /// From the favourite and a parent whose kind mixes with its own or, where there is none, something new that does: else
+    /// a population that agrees would become four times the same. Another individual, as children are. See [`cross`].
     fn crossed(&mut self, favourite: usize) -> (Chromosome, Origin) {
         let (_, home) = self.family.parent(self.category, favourite);
-        let is_other = |index: &usize| self.family.parent(self.category, *index).1.main() != home.main();
+        let of = |index: usize| self.family.parent(self.category, index).1;
         let others: Vec<usize> = (0..INDIVIDUALS).filter(|&index| index != favourite).collect();
-        let different: Vec<usize> = others.iter().copied().filter(is_other).collect();
-        if different.is_empty()
-            && let Some((stranger, of)) = home.main().and_then(|kind| self.stranger(kind))
+        let mixes = |index: &usize| {
+            home.main().is_some_and(|kind| of(*index).kinds().any(|other| is_apart(kind, other)))
+        };
+        let mixing: Vec<usize> = others.iter().copied().filter(mixes).collect();
+        if mixing.is_empty()
+            && let Some(kind) = home.main()
+            && let Some((stranger, home)) = self.stranger(kind)
         {
-            return (self.child_of(favourite, (&stranger, of)), Origin::Widened(favourite));
+            return (self.child_of(favourite, (&stranger, home)), Origin::Widened(favourite));
         }
-        let candidates = if different.is_empty() { others } else { different };
+        let candidates = if mixing.is_empty() { others } else { mixing };
         let other = *self.dice.one(&candidates).unwrap_or(&favourite);
         let parent = self.family.parent(self.category, other);
         (self.child_of(favourite, parent), Origin::Crossed(favourite, other))
@@ -187,7 +188,7 @@ impl<'a> Birth<'a, '_> {
     /// A member of a kind that mixes with this one, and goes with the rest of the child.
     fn stranger(&mut self, kind: &Kind) -> Option<(Chromosome, Home<'a>)> {
         let Family { space, kinds, .. } = *self.family;
-        let pool = kinds.iter().filter(|other| other.id != kind.id && other.mixes_with(kind));
+        let pool = kinds.iter().filter(|other| is_apart(kind, other));
         let picker = Picker { space, kinds, pool: pool.collect() };
         let picked = picker.pick(self.category, self.company, &[], &mut self.dice)?;
         picked.suits.then_some((picked.chromosome, picked.home))
@@ -196,13 +197,11 @@ impl<'a> Birth<'a, '_> {
     fn child_of(&mut self, favourite: usize, other: (&Chromosome, Home<'_>)) -> Chromosome {
         let (best, home) = self.family.parent(self.category, favourite);
         let space = self.family.space;
-        let crossed = self.fresh(|birth| {
-            let (child, mut bounds) = cross::crossed(space, birth.category, (best, home), other, &mut birth.dice);
-            birth.company.demand(&mut bounds);
-            let pace = step::Pace::of(home);
-            birth.stepped(&child, &bounds, step::Pace { chance: 0.5 * pace.chance, ..pace })
-        });
-        crossed.unwrap_or_else(|| self.another(best))
+        let (child, mut bounds) = cross::crossed(space, self.category, (best, home), other, &mut self.dice);
+        self.company.demand(&mut bounds);
+        let pace = step::Pace::of(home);
+        let child = self.stepped(&child, &bounds, step::Pace { chance: 0.5 * pace.chance, ..pace });
+        self.another(&child)
     }
 
     /// Of a kind that neither the parents nor the children before have shown, and that goes with the rest of this child.
@@ -223,14 +222,6 @@ impl<'a> Birth<'a, '_> {
             cross::crossed(space, self.category, parent(mother), parent(father), &mut self.dice);
         let child = self.another(&child);
         step::stepped(space, &child, &bounds, step::Pace::STRONG, &mut self.dice)
-    }
-
-    /// Where what belongs there may go, as far as the rest of the child allows, and how fast.
-    fn surroundings(&self, home: Home<'_>) -> (Bounds, step::Pace) {
-        let whole = || Bounds::whole(self.family.space, self.category);
-        let mut bounds = home.bounds().unwrap_or_else(whole);
-        self.company.demand(&mut bounds);
-        (bounds, step::Pace::of(home))
     }
 
     fn stepped(&mut self, from: &Chromosome, bounds: &Bounds, pace: step::Pace) -> Chromosome {
@@ -267,4 +258,9 @@ impl<'a> Birth<'a, '_> {
         }
         chromosome
     }
+}
+
+/// Whether two kinds mix and are not the same.
+fn is_apart(kind: &Kind, other: &Kind) -> bool {
+    kind.id != other.id && kind.mixes_with(other)
 }

@@ -30,10 +30,11 @@ impl Pace {
 /// Chance that a changed gene gets any allowed value instead of one nearby, and that a choice changes.
 const LEAP: f32 = 0.12;
 
-/// A chromosome with some genes changed, seeds never: they say which individual it is, and it is still the same one.
+/// A chromosome with some genes changed. Seeds never are: they say which individual it is, and it is still the same one. Nor is
+/// what a person set to a value that is not allowed: it is meant.
 pub fn stepped(space: &Space, from: &Chromosome, bounds: &Bounds, pace: Pace, dice: &mut Dice) -> Chromosome {
     let may_change = |(gene, allowed): &(&Parameter, &Allowed)| {
-        !gene.is_seed() && !(allowed.is_fixed() && allowed.contains(from.code(gene)))
+        !gene.is_seed() && !allowed.is_fixed() && allowed.contains(from.code(gene))
     };
     let genes: Vec<_> = bounds.genes(space).filter(may_change).collect();
     let mut child = from.clone();
@@ -46,14 +47,12 @@ pub fn stepped(space: &Space, from: &Chromosome, bounds: &Bounds, pace: Pace, di
     child
 }
 
-/// Another code, mostly a near one; what a person set to a value outside goes towards what is allowed.
+/// Another allowed code, mostly a near one.
 fn changed(code: u32, allowed: &Allowed, reach: f32, dice: &mut Dice) -> u32 {
     let (min, max) = allowed.ends();
     match allowed {
-        Allowed::OneOf(_) if !allowed.contains(code) || !dice.chance(LEAP) => code,
+        Allowed::OneOf(_) if !dice.chance(LEAP) => code,
         Allowed::OneOf(codes) => *dice.one(codes).unwrap_or(&code),
-        _ if code < min => code + 1 + dice.below((min - code).div_ceil(2)),
-        _ if code > max => code - 1 - dice.below((code - max).div_ceil(2)),
         _ if dice.chance(LEAP) => draw::code(allowed, 1.0, dice),
         _ => near(code, min, max, reach, dice),
     }

@@ -31,8 +31,7 @@ impl<'a> Company<'a> {
     /// and then that gene is left as it is.
     pub fn demand(&self, bounds: &mut Bounds) -> bool {
         let category = bounds.category;
-        let demands =
-            self.parts.iter().flat_map(|(_, _, home)| home.kinds()).flat_map(|kind| &kind.goes_with);
+        let demands = self.parts.iter().flat_map(|(_, _, home)| home.demands());
         let mut all = true;
         for demand in demands.filter(|demand| demand.category == category) {
             all &= bounds.cut(self.space, &demand.gene, &demand.codes);

@@ -1,7 +1,7 @@
 //! A chromosome → the kinds that it belongs to. Computed from its genes alone, so that edits by hand and old worlds need
 //! nothing stored.
 
-use genescape_schema::{Bounds, Chromosome, Kind, Kinds, Space};
+use genescape_schema::{Bounds, Category, Chromosome, Demand, Kind, Kinds, Space};
 
 /// Where a chromosome lies among the kinds of its category.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,12 +22,7 @@ const LIKE: f32 = 0.25;
 
 impl<'a> Home<'a> {
     /// The kinds of its category that hold a chromosome best.
-    pub fn of(
-        space: &Space,
-        kinds: &'a Kinds,
-        category: genescape_schema::Category,
-        genes: &Chromosome,
-    ) -> Self {
+    pub fn of(space: &Space, kinds: &'a Kinds, category: Category, genes: &Chromosome) -> Self {
         let mut near: Vec<(f32, f32, &Kind)> = kinds
             .of(category)
             .map(|kind| (kind.bounds.excess(space, genes), kind.bounds.deviation(space, genes), kind))
@@ -60,6 +55,20 @@ impl<'a> Home<'a> {
             Self::Wild => (None, None),
         };
         one.into_iter().chain(other)
+    }
+
+    /// What genes of other categories must be. Between two kinds, where both ask for something, either or what lies between.
+    pub fn demands(self) -> Vec<Demand> {
+        let mut demands: Vec<Demand> = Vec::new();
+        for demand in self.kinds().flat_map(|kind| &kind.goes_with) {
+            match demands.iter_mut().find(|known| known.gene == demand.gene) {
+                Some(Demand { codes, .. }) => {
+                    *codes = *codes.start().min(demand.codes.start())..=*codes.end().max(demand.codes.end());
+                }
+                None => demands.push(demand.clone()),
+            }
+        }
+        demands
     }
 
     /// Where its relatives may be; `None` for what is wild.

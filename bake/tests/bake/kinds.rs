@@ -89,11 +89,18 @@ fn random_landscapes_are_of_different_kinds_that_go_together() {
         assert_eq!(drawn.notices, [""; 0]);
         let all = drawn.population.individuals.each_ref().map(|one| homes(&space, &kinds, one));
         for category in Category::ALL {
-            let of = |homes: &[Home<'_>; 3]| homes[category as usize].main().expect("drawn of a kind").id.clone();
-            assert_eq!(all.iter().map(of).collect::<BTreeSet<_>>().len(), INDIVIDUALS, "seed {seed}: {category}");
+            let of =
+                |homes: &[Home<'_>; 3]| homes[category as usize].main().expect("drawn of a kind").id.clone();
+            assert_eq!(
+                all.iter().map(of).collect::<BTreeSet<_>>().len(),
+                INDIVIDUALS,
+                "seed {seed}: {category}"
+            );
         }
         for (one, homes) in drawn.population.individuals.iter().zip(all) {
-            for (kind, category) in homes.into_iter().flat_map(Home::kinds).flat_map(|kind| Category::ALL.map(|c| (kind, c))) {
+            for (kind, category) in
+                homes.into_iter().flat_map(Home::kinds).flat_map(|kind| Category::ALL.map(|c| (kind, c)))
+            {
                 let goes = kind.goes_with(&space, category, one.genome.chromosome(category));
                 assert!(goes, "{}: {} does not go with its {category}", one.name, kind.id);
             }
@@ -155,14 +162,17 @@ fn a_person_draws_from_a_kind_of_their_own_and_hears_of_broken_ones() {
     let (code, listed, _) = run(&["kinds"]);
     assert!(code == Some(0) && listed.contains("My birches") && listed.contains("(your own)"), "{listed}");
     // A mistake in one file stops neither the list nor a bake.
-    fs::write(world.file("kinds/tree/broken.ron"), text.replacen("genes: (", "genes: (hight_m: 3, ", 1)).expect("written");
+    fs::write(world.file("kinds/tree/broken.ron"), text.replacen("genes: (", "genes: (hight_m: 3, ", 1))
+        .expect("written");
     let (code, listed, told) = run(&["kinds"]);
     assert!(code == Some(2) && listed.contains("My birches"), "{listed}");
     assert!(told.contains("broken.ron:") && told.contains("did you mean height_m?"), "{told}");
     let baked = world.bake(&["random", "--seed", "1", "--kind", "my_birch"]).ok();
     let names: Vec<&str> = baked.of("scene_ready").filter_map(|event| event["name"].as_str()).collect();
     assert!(names.iter().all(|name| name.starts_with("My birches ")) && names.len() == 4, "{names:?}");
-    let told = |event: &serde_json::Value| event["message"].as_str().is_some_and(|text| text.contains("broken.ron:"));
+    let told = |event: &serde_json::Value| {
+        event["message"].as_str().is_some_and(|text| text.contains("broken.ron:"))
+    };
     assert!(baked.of("notice").any(told));
     let (code, _, told) = run(&["random", "--kind", "my_brich"]);
     assert!(code == Some(2) && told.contains("did you mean my_birch?"), "{told}");
