@@ -15,8 +15,8 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// Within a kind, whose members are all what was liked.
-    const KIN: Self = Self { chance: 0.3, reach: 0.35 };
+    /// Within a kind, whose members are all what was liked: steps that one can see.
+    const KIN: Self = Self { chance: 0.5, reach: 0.5 };
     /// Where any value is allowed and most are not liked.
     const GENTLE: Self = Self { chance: 0.15, reach: 0.125 };
     /// For what is new and of no kind.

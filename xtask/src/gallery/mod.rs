@@ -1,5 +1,6 @@
 //! Contact sheets for the eye: random landscapes as they come, and generations bred by random votes, each with its name.
-//! Every population has a world of its own below `target/gallery`, whose cache makes the next gallery quick.
+//! Every population has a world of its own below `target/gallery`, whose cache makes the next gallery quick, and takes some
+//! 250 MB.
 
 mod sheet;
 
