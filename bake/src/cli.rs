@@ -16,7 +16,8 @@ Examples:
   bake                             the newest population of ./world
   bake world/population/g0003.ron  this population
   bake --watch                     whatever is saved; breeds from votes
-  bake random --seed 7             four random genomes
+  bake random --seed 7             four random landscapes
+  bake random --kind birch         four, all with birches
   bake next                        the generation bred from the votes
   bake export 2 alps/              landscape 2, its sky and its trees
   bake export 2 alps.glb           landscape 2 as one file
@@ -27,6 +28,13 @@ Landscapes are counted 1 to 4; their folders are scene-0 to scene-3.
 
 Exit codes: 0 done, 1 failed, 2 wrong usage or bad input, 130
 interrupted (Ctrl-C; what was finished is kept).";
+
+const KINDS_EXAMPLES: &str = "\
+Examples:
+  bake kinds                      all, and what is wrong with your own
+  bake kinds show fjord           the file of one
+  bake kinds copy fjord my_fjord  world/kinds/terrain/my_fjord.ron
+  bake random --kind my_fjord     four landscapes by that fjord";
 
 const EXPORT_EXAMPLES: &str = "\
 Examples:
@@ -144,12 +152,29 @@ pub struct RunArgs {
 /// Everything else.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Make a population of four random genomes and bake it.
-    #[command(after_help = "Example:\n  bake random --seed 7 --world /tmp/seven")]
+    /// Make a population of four random landscapes and bake it: lands of some kind, with trees and skies that go with them.
+    #[command(
+        after_help = "Examples:\n  bake random --seed 7 --world /tmp/seven\n  bake random --kind birch --kind fjord"
+    )]
     Random {
         /// The same seed makes the same population [default: drawn by chance, and told].
         #[arg(long, value_name = "N", allow_negative_numbers = true)]
         seed: Option<u64>,
+        /// Draw only this kind, as `oak` or `fjord`; several of a category are drawn in turn. `bake kinds` lists them.
+        #[arg(long = "kind", value_name = "KIND", conflicts_with = "uniform")]
+        kinds: Vec<String>,
+        /// Every value of every gene equally likely, as in the thesis, instead of kinds.
+        #[arg(long)]
+        uniform: bool,
+    },
+    /// List the kinds of trees, lands and skies that landscapes are drawn and bred from.
+    ///
+    /// Those of your own are files in the world's folder: kinds/tree/NAME.ron, kinds/terrain and kinds/sky. A file with the
+    /// name of a kind that ships takes its place. One that is wrong is told here, with its line, and left out.
+    #[command(after_help = KINDS_EXAMPLES)]
+    Kinds {
+        #[command(subcommand)]
+        action: Option<KindsCommand>,
     },
     /// Breed the next population from votes and bake it.
     Next {
@@ -227,9 +252,10 @@ pub enum Command {
 }
 
 impl Command {
-    /// Whether `--json` has events to print.
-    pub fn has_events(&self) -> bool {
-        matches!(self, Self::Random { .. } | Self::Next { .. } | Self::Export { .. })
+    /// Whether `--json` has something to print: events, or the list of kinds.
+    pub fn has_json(&self) -> bool {
+        let lists_kinds = matches!(self, Self::Kinds { action: None });
+        lists_kinds || matches!(self, Self::Random { .. } | Self::Next { .. } | Self::Export { .. })
     }
 }
 
@@ -269,6 +295,23 @@ impl ExportArgs {
         let apron = apron || audience == Audience::Blender && !no_apron;
         Ok(Options { audience, apron, instancing })
     }
+}
+
+/// `bake kinds …`
+#[derive(Debug, Subcommand)]
+pub enum KindsCommand {
+    /// Print a kind's file.
+    Show {
+        /// As `bake kinds` lists it.
+        kind: String,
+    },
+    /// Copy a kind's file into the world, to change it or to start a kind of your own from it.
+    Copy {
+        /// As `bake kinds` lists it.
+        kind: String,
+        /// The new kind's name [default: the same, whose place it takes].
+        name: Option<String>,
+    },
 }
 
 /// `bake cache …`

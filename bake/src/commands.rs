@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result};
 use genescape_cache::{Change, Explanation};
-use genescape_schema::{Population, Space};
+use genescape_schema::{Kinds, Population, Space};
 use genescape_world::output::BadOutput;
 use genescape_world::{World, WorldError, names};
 
@@ -21,7 +21,7 @@ use crate::run::RunError;
 use crate::say;
 use crate::session::{Baked, Publish, Session};
 use crate::watch_loop::{self, Host};
-use crate::{bench, cache_commands, export_command, lod_command, manual};
+use crate::{bench, cache_commands, export_command, kinds_command, lod_command, manual, random};
 
 /// Set by Ctrl-C.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
@@ -72,12 +72,13 @@ fn dispatch(cli: &Cli) -> Result<()> {
         let text = "POPULATION.ron and --watch belong to `bake` without a command; see `bake --help`";
         return Err(BadInput(text.into()).into());
     }
-    if run.json && !command.has_events() {
-        let text = "--json prints the events of bakes and exports; this command has none and prints text";
+    if run.json && !command.has_json() {
+        let text = "--json prints the events of bakes and exports, and kinds; this command has none and prints text";
         return Err(BadInput(text.into()).into());
     }
     match command {
-        Command::Random { seed } => random(*seed, run),
+        Command::Random { seed, kinds, uniform } => random(*seed, kinds, *uniform, run),
+        Command::Kinds { action } => kinds_command::run(action.as_ref(), run),
         Command::Next { from } => next(*from, run),
         Command::Params { markdown } => params(&run.world, *markdown),
         Command::Explain { landscape } => explain(&run.world, *landscape),
@@ -210,12 +211,20 @@ fn bake(Cli { run, population, watch, poll, .. }: &Cli) -> Result<()> {
     console.bake(&session, &path)
 }
 
-fn random(seed: Option<u64>, args: &RunArgs) -> Result<()> {
+fn random(seed: Option<u64>, wanted: &[String], uniform: bool, args: &RunArgs) -> Result<()> {
     let seed = seed.unwrap_or_else(drawn_seed);
     let (session, console) = (session(args)?, Console::new(args));
-    let space = session.space();
-    let make = |generation| Population::random(space, seed, generation);
+    let (space, listener) = (session.space(), console.listener());
+    let kinds = if uniform { Kinds::default() } else { session.kinds(&*listener) };
+    let wanted = kinds_command::called(&kinds, wanted)?;
+    let make = |generation| {
+        let drawn = random::population(space, &kinds, &wanted, seed, generation)?;
+        drawn.notices.into_iter().for_each(|message| listener.tell(&Event::Notice { message }));
+        Some(drawn.population)
+    };
+    let make = |generation| make(generation).unwrap_or_else(|| Population::random(space, seed, generation));
     let path = session.world().create_next_population(space, make)?;
+    listener.end();
     if !args.json {
         say!("seed {seed}");
     }
@@ -236,7 +245,7 @@ fn next(from: Option<u32>, args: &RunArgs) -> Result<()> {
         Some(generation) => world.population_path(generation),
         None => world.newest_population()?,
     };
-    let path = session.breed_file(&parents)?;
+    let path = session.breed_file(&parents, &*console.listener())?;
     if args.json {
         let parent = World::read_population(session.space(), &parents)?.population.generation;
         JsonLines.tell(&Event::Bred { parent, path: path.display().to_string() });

@@ -25,7 +25,7 @@ pub struct Dice(Pcg64Mcg);
 
 impl Dice {
     /// Those of one item of one stage, see [`rng`].
-    pub fn new(seed: u32, stage: &str, item: u64) -> Self {
+    pub fn new(seed: impl Into<u64>, stage: &str, item: u64) -> Self {
         Self(rng(seed.into(), stage, item))
     }
 
@@ -42,5 +42,20 @@ impl Dice {
     /// In (-1, 1), most often near 0.
     pub fn around_zero(&mut self) -> f32 {
         self.unit() + self.unit() - 1.0
+    }
+
+    /// Evenly in 0 .. `count`.
+    pub fn below(&mut self, count: u32) -> u32 {
+        ((u64::from(self.0.next_u32()) * u64::from(count)) >> 32) as u32
+    }
+
+    pub fn chance(&mut self, chance: f32) -> bool {
+        self.unit() < chance
+    }
+
+    /// One of them, all alike; `None` of nothing.
+    pub fn one<'a, T>(&mut self, of: &'a [T]) -> Option<&'a T> {
+        let count = u32::try_from(of.len()).unwrap_or(u32::MAX);
+        of.get(self.below(count) as usize)
     }
 }

@@ -7,8 +7,8 @@ use std::time::Instant;
 
 use anyhow::Result;
 use genescape_cache::{BlobRef, Cache, How};
-use genescape_schema::{Population, Space};
-use genescape_world::{PopulationFile, World, names};
+use genescape_schema::{Kinds, Population, Space};
+use genescape_world::{PopulationFile, World, WorldKinds, names};
 
 use crate::breed;
 use crate::events::{Event, Listener};
@@ -120,13 +120,23 @@ impl Session {
         Ok(Baked { file, scenes, built, reused, ms, publish })
     }
 
+    /// The kinds that landscapes are drawn and bred from. What is wrong with a file of a kind is told, and it is left out.
+    pub fn kinds(&self, listener: &dyn Listener) -> Kinds {
+        let WorldKinds { kinds, faults } = self.world.kinds(&self.space);
+        for fault in faults {
+            listener.tell(&Event::Notice { message: format!("a kind is left out: {fault}") });
+        }
+        kinds
+    }
+
     /// Breeds from the votes in a population file, and writes the child as a new file with the next free number.
     ///
     /// # Errors
     /// Faults of the file, [`breed::NoVotes`], a file that cannot be written.
-    pub fn breed_file(&self, path: &Path) -> Result<PathBuf> {
+    pub fn breed_file(&self, path: &Path, listener: &dyn Listener) -> Result<PathBuf> {
         let parents = World::read_population(&self.space, path)?.population;
-        let children = breed::breed(&self.space, &parents, self.world.next_generation()?)?;
+        let kinds = self.kinds(listener);
+        let children = breed::breed(&self.space, &kinds, &parents, self.world.next_generation()?)?;
         Ok(self.world.create_population(&self.space, &children)?)
     }
 

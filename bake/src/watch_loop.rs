@@ -170,7 +170,7 @@ impl State<'_> {
         loop {
             let path = known.lineages().find(|(_, lineage)| lineage.wanted() == Some(parent));
             let (path, _) = path.ok_or_else(|| anyhow!("generation {} vanished", parent.generation))?;
-            match self.session.breed_file(path) {
+            match self.session.breed_file(path, &*self.host.listener()) {
                 Ok(child) => return Ok(Some(child)),
                 // Two may breed at the same time; the number is then taken, and by a sibling if not by the child itself.
                 Err(_) if !wanted(&Snapshot::take(&self.scope, known)).contains(&parent) => return Ok(None),

@@ -4,7 +4,7 @@ use serde::de::value::{Error as ValueError, MapDeserializer};
 use serde::de::{DeserializeOwned, Deserializer, IntoDeserializer, Visitor};
 use serde::forward_to_deserialize_any;
 
-use crate::parameter::{Category, Parameter, Scale};
+use crate::parameter::{Category, Parameter};
 use crate::space::Space;
 
 /// The genes of one category: their codes side by side in the order of the space, least significant bit first.
@@ -96,7 +96,7 @@ impl Genome {
     pub fn read<T: DeserializeOwned>(&self, space: &Space) -> Result<T, GenomeError> {
         let genes = space.parameters().iter().map(|parameter| {
             let value = parameter.value(self.code(parameter));
-            (parameter.name.as_str(), Gene { value, whole: parameter.scale == Scale::Integer })
+            (parameter.name.as_str(), Gene { value, whole: parameter.scale.is_whole() })
         });
         let deserializer = MapDeserializer::<_, ValueError>::new(genes);
         T::deserialize(deserializer)

@@ -9,7 +9,7 @@ mod current;
 mod decode;
 pub mod edit;
 mod genome;
-
+mod kind;
 mod lineage;
 mod load;
 mod parameter;
@@ -25,6 +25,7 @@ mod write;
 pub use current::Current;
 pub use decode::decode;
 pub use genome::{Chromosome, Genome, GenomeError};
+pub use kind::{Allowed, Bounds, Demand, Kind, Kinds, SHIPPED, ShippedKind};
 pub use lineage::{Lineage, unanswered};
 pub use parameter::{Category, Parameter, Scale};
 pub use population::{INDIVIDUALS, Individual, Loaded, LoadedPreset, Parent, Population, TreePreset, Votes};

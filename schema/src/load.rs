@@ -95,14 +95,16 @@ impl Loader<'_, '_> {
 
     fn individual(&mut self, index: usize, node: &Node<'_>) -> Option<Individual> {
         let what = format!("individual {index}");
-        let fields = self.checker.record(node, &what, &["name", "tree", "terrain", "sky"])?;
-        let name = optional(&fields, "name").and_then(|node| self.checker.line(node, "name", MAX_NAME));
-        let name = name.unwrap_or_default().to_owned();
+        let fields = self.checker.record(node, &what, &["name", "descent", "tree", "terrain", "sky"])?;
+        let [name, descent] = ["name", "descent"].map(|what| {
+            let line = optional(&fields, what).and_then(|node| self.checker.line(node, what, MAX_NAME));
+            line.unwrap_or_default().to_owned()
+        });
         let [tree, terrain, sky] = Category::ALL.map(|category| {
             let node = self.checker.need(&fields, node, &what, category.name())?;
             self.chromosome(category, node)
         });
-        Some(Individual { name, genome: Genome { chromosomes: [tree?, terrain?, sky?] } })
+        Some(Individual { name, descent, genome: Genome { chromosomes: [tree?, terrain?, sky?] } })
     }
 
     fn preset(&mut self, root: &Node<'_>) -> Option<TreePreset> {
@@ -168,7 +170,7 @@ impl Loader<'_, '_> {
 }
 
 /// What to say to a name that is no gene of its chromosome.
-fn unknown_gene(space: &Space, name: &str, category: Category, known: &[&str]) -> Option<String> {
+pub(crate) fn unknown_gene(space: &Space, name: &str, category: Category, known: &[&str]) -> Option<String> {
     if let Some(parameter) = space.find(name) {
         return Some(format!("; it belongs into {}", parameter.category));
     }

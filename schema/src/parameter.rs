@@ -43,15 +43,22 @@ pub enum Scale {
     Logarithmic,
     /// One code for each whole number.
     Integer,
+    /// One code for each whole number, which is a name: what lies between two of them is no mean of both.
+    Choice,
 }
 
 impl Scale {
-    /// All three.
-    pub const ALL: [Self; 3] = [Self::Linear, Self::Logarithmic, Self::Integer];
+    /// All four.
+    pub const ALL: [Self; 4] = [Self::Linear, Self::Logarithmic, Self::Integer, Self::Choice];
 
     /// Its name in files.
     pub fn name(self) -> &'static str {
-        ["linear", "logarithmic", "integer"][self as usize]
+        ["linear", "logarithmic", "integer", "choice"][self as usize]
+    }
+
+    /// Whether values are whole numbers.
+    pub fn is_whole(self) -> bool {
+        matches!(self, Self::Integer | Self::Choice)
     }
 
     /// The scale of that name.
@@ -67,6 +74,8 @@ pub struct Parameter {
     pub name: String,
     /// The chromosome that it belongs to.
     pub category: Category,
+    /// What it belongs together with: a child of two parents takes each group of genes whole from one of them. May be empty.
+    pub group: String,
     /// 1 to 16; there are 2^bits codes.
     pub bits: u32,
     /// Values of the first and of the last code.
@@ -88,6 +97,11 @@ pub struct Parameter {
 const TOLERANCE_STEPS: f64 = 0.1;
 
 impl Parameter {
+    /// Whether it says which individual of its kind this is: no trait that a kind could have.
+    pub fn is_seed(&self) -> bool {
+        self.name.strip_suffix("_seed") == Some(self.category.name())
+    }
+
     /// The greatest code.
     pub fn last_code(&self) -> u32 {
         (1 << self.bits) - 1
@@ -103,7 +117,7 @@ impl Parameter {
             (code, _) if code >= last => high,
             (_, Scale::Linear) => low + (high - low) * part,
             (_, Scale::Logarithmic) => low * libm::pow(high / low, part),
-            (code, Scale::Integer) => low + f64::from(code),
+            (code, Scale::Integer | Scale::Choice) => low + f64::from(code),
         }
     }
 
@@ -155,7 +169,7 @@ impl Parameter {
         match self.scale {
             Scale::Linear => (value - low) / (high - low) * last,
             Scale::Logarithmic => libm::log(value / low) / libm::log(high / low) * last,
-            Scale::Integer => value - low,
+            Scale::Integer | Scale::Choice => value - low,
         }
     }
 }

@@ -12,8 +12,10 @@ pub const INDIVIDUALS: usize = 4;
 /// One landscape.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Individual {
-    /// For people.
+    /// For people: what kind of place it is, or what a person calls it.
     pub name: String,
+    /// For people: what it has of which parent, as "trees of 2 · land like 3 · new sky"; empty for one that was not bred.
+    pub descent: String,
     /// Its genes.
     pub genome: Genome,
 }
@@ -76,7 +78,7 @@ impl Population {
             for parameter in space.parameters() {
                 genome.set_code(parameter, (split_mix(&mut state) >> (64 - parameter.bits)) as u32);
             }
-            Individual { name: format!("Random {seed}.{}", index + 1), genome }
+            Individual { name: format!("Random {seed}.{}", index + 1), descent: String::new(), genome }
         });
         Self { generation, seed, parent: None, individuals, votes: None, locked: BTreeSet::new() }
     }

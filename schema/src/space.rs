@@ -94,7 +94,13 @@ fn compare(
         let near = did_you_mean(&gene.name, &names);
         return Some(checker.note(node, format!("{} is a gene that nothing reads{near}", gene.name)));
     };
-    let (is_whole, must_be) = (gene.scale == Scale::Integer, known.scale == Scale::Integer);
+    if gene.group.is_empty() {
+        gene.group.clone_from(&known.group);
+    }
+    if known.scale == Scale::Choice && gene.scale == Scale::Integer {
+        gene.scale = Scale::Choice;
+    }
+    let (is_whole, must_be) = (gene.scale.is_whole(), known.scale.is_whole());
     let fault = match (is_whole, must_be) {
         (false, true) => "landscapes are made from whole numbers here: the scale must be integer",
         (true, false) => "the scale must be linear or logarithmic here; integer is for what is counted",
@@ -142,7 +148,7 @@ const MAX_HELP: usize = 1000;
 /// No landscape is made of greater numbers, in whatever unit.
 const MAX_VALUE: f64 = 1e9;
 
-const FIELDS: [&str; 8] = ["name", "category", "bits", "range", "scale", "unit", "help", "default"];
+const FIELDS: [&str; 9] = ["name", "category", "group", "bits", "range", "scale", "unit", "help", "default"];
 
 fn read_parameter(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<Parameter> {
     let fields = checker.record(node, "a parameter", &FIELDS)?;
@@ -159,9 +165,11 @@ fn read_parameter(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<Paramete
     let ends = range.and_then(|node| read_range(checker, node));
     let unit = unit.and_then(|node| checker.line(node, "unit", MAX_NAME))?.to_owned();
     let help = help.and_then(|node| checker.line(node, "help", MAX_HELP))?.to_owned();
+    let group = optional(&fields, "group").map(|node| checker.line(node, "group", MAX_NAME));
+    let group = group.map_or(Some(""), |group| group)?.to_owned();
     let (name, category, bits, scale) = (name?, category?, bits?, scale?);
     let mut gene =
-        Parameter { name, category, bits, range: ends?, scale, unit, help, default: None, offset: 0 };
+        Parameter { name, category, group, bits, range: ends?, scale, unit, help, default: None, offset: 0 };
     if let Some(fault) = range_fault(&gene) {
         return checker.refuse(range?.span(), format!("{}: {fault}", gene.name));
     }
@@ -221,10 +229,10 @@ fn range_fault(parameter: &Parameter) -> Option<String> {
         Scale::Logarithmic if low <= 0.0 => {
             return Some(format!("a logarithmic range must be above 0, but begins at {low}"));
         }
-        Scale::Integer if low.fract() != 0.0 || high.fract() != 0.0 => {
+        Scale::Integer | Scale::Choice if low.fract() != 0.0 || high.fract() != 0.0 => {
             return Some("an integer range must have whole ends".into());
         }
-        Scale::Integer if high - low != f64::from(codes) => {
+        Scale::Integer | Scale::Choice if high - low != f64::from(codes) => {
             let (bits, count, fit) = (parameter.bits, high - low + 1.0, low + f64::from(codes));
             let all = u64::from(codes) + 1;
             return Some(format!(

@@ -26,7 +26,15 @@ impl Population {
         };
         let individual = |one: &Individual| {
             let genes = Category::ALL.map(|category| genes_text(space, category, &one.genome));
-            format!("        (\n            name: {},\n{}        ),\n", quoted(&one.name), genes.concat())
+            let descent = match one.descent.is_empty() {
+                true => String::new(),
+                false => format!("            descent: {},\n", quoted(&one.descent)),
+            };
+            format!(
+                "        (\n            name: {},\n{descent}{}        ),\n",
+                quoted(&one.name),
+                genes.concat()
+            )
         };
         let individuals: String = self.individuals.iter().map(individual).collect();
         format!(

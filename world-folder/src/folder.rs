@@ -299,7 +299,7 @@ pub(crate) fn list<T>(path: &Path, meaning: impl Fn(&str) -> Option<T>) -> Resul
     Ok(found)
 }
 
-fn read(path: &Path) -> Result<String, WorldError> {
+pub(crate) fn read(path: &Path) -> Result<String, WorldError> {
     let bytes = regular_file::read(path, MAX_TEXT_BYTES);
     let bytes = bytes.map_err(|error| WorldError::Read { path: path.to_owned(), error })?;
     Ok(decode(&path.display().to_string(), bytes)?)

@@ -4,6 +4,7 @@
 //! ```text
 //! world/space.ron                              the parameter space, free to edit
 //! world/population/g0000.ron …                 what the person made: only created, or edited in place
+//! world/kinds/tree/oak.ron …                  kinds of trees, lands and skies of a person's own, if there are any
 //! world/baked/g0000/scene-0/scene.gltf …       what can be made again
 //! world/baked/current.ron                      which scenes are ready
 //! ```
@@ -17,6 +18,7 @@
 pub mod atomic_write;
 mod error;
 mod folder;
+mod kinds;
 mod named_files;
 pub mod names;
 mod near_name;
@@ -28,6 +30,7 @@ mod watch;
 
 pub use error::WorldError;
 pub use folder::{MAX_TEXT_BYTES, PopulationFile, STARTER_RON, World};
+pub use kinds::WorldKinds;
 pub use named_files::{MAX_MODEL_BYTES, NamedFiles};
 pub use snapshot::{Change, Scope, Snapshot};
 pub use source::Source;

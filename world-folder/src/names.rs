@@ -2,18 +2,27 @@
 
 use std::path::Path;
 
+use genescape_schema::Category;
+
 /// This world's copy of the parameter space.
 pub const SPACE: &str = "space.ron";
 /// Folder of what the person made.
 pub const POPULATIONS: &str = "population";
 /// Folder of what can be made again.
 pub const BAKED: &str = "baked";
+/// Folder of a person's own kinds.
+pub const KINDS: &str = "kinds";
 /// Which scenes are ready.
 pub const CURRENT: &str = "baked/current.ron";
 
 /// The population file of a generation: `population/g0012.ron`.
 pub fn population(generation: u32) -> String {
     format!("{POPULATIONS}/g{generation:04}.ron")
+}
+
+/// The file of a kind: `kinds/tree/oak.ron`.
+pub fn kind(category: Category, id: &str) -> String {
+    format!("{KINDS}/{category}/{id}.ron")
 }
 
 /// The generation of a population file, from its name with or without folders; `None` for other files.

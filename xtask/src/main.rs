@@ -1,10 +1,11 @@
 //! A developer's chores: the whole check (`test`) and what it compares with (`bless`), lines of code (`lines`), times
-//! beside those of a peer (`bench`), set-up of the programs that these need (`setup`), and the picture in the README
-//! (`pictures`). Knows nothing of landscapes: it runs other programs and reports.
+//! beside those of a peer (`bench`), set-up of the programs that these need (`setup`), contact sheets of landscapes
+//! (`gallery`), and the picture in the README (`pictures`). Knows nothing of landscapes: it runs other programs and reports.
 #![expect(clippy::print_stdout, reason = "a command line program")]
 
 mod bench;
 mod check;
+mod gallery;
 mod lines;
 mod pictures;
 mod setup;
@@ -47,6 +48,8 @@ enum Chore {
         #[arg(long, default_value_t = 3)]
         runs: u32,
     },
+    /// Contact sheets of random landscapes as they come, and of generations bred by random votes.
+    Gallery(gallery::Options),
     /// Bake the starters and render all four with Blender into docs/pictures/starters.jpg.
     Pictures {
         /// Samples a pixel.
@@ -61,6 +64,7 @@ fn main() -> ExitCode {
         Chore::Bless { what } => check::bless(what).map(|()| true),
         Chore::Lines { largest } => lines::run(largest).map(|()| true),
         Chore::Bench { runs } => bench::bench(runs).map(|()| true),
+        Chore::Gallery(options) => gallery::run(&options).map(|()| true),
         Chore::Setup => setup::all().map(|()| true),
         Chore::Pictures { samples } => pictures::run(samples).map(|()| true),
     };

@@ -23,6 +23,7 @@ const RULES: &[Rule] = &[
         except: &[
             "cache/",
             "world-folder/",
+            "schema/build.rs",
             "xtask/",
             "bake/src/bench.rs",
             "bake/src/cache_commands.rs",

@@ -6,6 +6,7 @@ mod exit_codes;
 mod export;
 mod faults;
 mod healing;
+mod kinds;
 mod library;
 mod manual;
 mod random_genomes;

@@ -2,7 +2,8 @@
 
 use std::fs;
 
-use genescape_schema::{Population, Space};
+use genescape_bake::random;
+use genescape_schema::{Kinds, Space};
 
 use crate::world::World;
 
@@ -171,9 +172,10 @@ fn random_without_a_seed_draws_one_and_tells_it() {
     let output = world.run(&["random", "--size", "65"]);
     let said = String::from_utf8(output.stdout).expect("text");
     let seed = said.lines().find_map(|line| line.strip_prefix("seed ")).expect("a seed is told");
-    let seed = seed.parse().expect("a number");
-    let text = Population::random(&Space::builtin(), seed, 1).to_ron(&Space::builtin());
-    assert_eq!(fs::read_to_string(world.population(1)).expect("a population"), text);
+    let again = World::starters();
+    again.bake(&["random", "--seed", seed]).ok();
+    let text = |world: &World| fs::read_to_string(world.population(1)).expect("a population");
+    assert_eq!(text(&world), text(&again));
 }
 
 #[test]
@@ -207,7 +209,11 @@ fn a_seed_makes_the_same_world_on_every_machine() {
     let world = World::starters();
     let baked = world.bake(&["random", "--seed", "7"]).ok();
     assert_eq!(baked.of("scene_ready").count(), 4);
-    let text = |seed: u64| Population::random(&Space::builtin(), seed, 1).to_ron(&Space::builtin());
+    let space = Space::builtin();
+    let (kinds, _) = Kinds::shipped(&space);
+    let text = |seed: u64| {
+        random::population(&space, &kinds, &[], seed, 1).expect("kinds").population.to_ron(&space)
+    };
     assert_eq!(fs::read_to_string(world.population(1)).expect("a population"), text(7));
     assert_ne!(text(7), text(8));
 }

@@ -199,11 +199,11 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
 
     #[test]
-    fn any_valid_space_goes_round(bits in 1..=9u32, low in -1e4..1e4f64, span in 1e-1..1e5f64, kind in 0..3usize) {
+    fn any_valid_space_goes_round(bits in 1..=9u32, low in -1e4..1e4f64, span in 1e-1..1e5f64, kind in 0..4usize) {
         let (scale, low, high) = match Scale::ALL[kind] {
             Scale::Linear => (Scale::Linear, low, low + span),
             Scale::Logarithmic => (Scale::Logarithmic, span / 10.0, span * (1.5 + low.abs())),
-            Scale::Integer => (Scale::Integer, low.round(), low.round() + f64::from((1u32 << bits) - 1)),
+            whole => (whole, low.round(), low.round() + f64::from((1u32 << bits) - 1)),
         };
         // Ranges too narrow for single precision are refused, which another test checks.
         if let Ok(space) = space_of(bits, low, high, scale) {

@@ -15,6 +15,7 @@ impl App {
             let own_name =
                 || viewports.and_then(|viewports| viewports.scene(view)).map(|scene| scene.name.clone());
             ViewModel {
+                descent: editor.descent(view).to_owned(),
                 name: editor.name(view).map(str::to_owned).or_else(own_name).unwrap_or_default(),
                 picture: viewports.and_then(|viewports| viewports.picture(view)),
                 state: editor.state(view),

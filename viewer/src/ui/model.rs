@@ -94,6 +94,8 @@ pub enum Situation {
 pub struct ViewModel {
     /// The individual's name.
     pub name: String,
+    /// What it has of which parent, in a few words; empty for one that was not bred.
+    pub descent: String,
     /// The last good picture, if there ever was one. It fills the view.
     pub picture: Option<TextureId>,
     /// Whether that picture is the current generation's.

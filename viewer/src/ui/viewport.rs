@@ -6,7 +6,7 @@ use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, p
 use genescape_schema::INDIVIDUALS;
 
 use super::icon::Icon;
-use super::model::{Model, ViewState};
+use super::model::{Model, ViewModel, ViewState};
 use super::theme;
 use super::widgets::{Asks, ask, painted_button, progress_ring};
 use crate::event::{Arrangement, Event};
@@ -95,14 +95,16 @@ fn name_tag(ui: &mut Ui, model: &Model, view: usize, rect: Rect, room: f32) -> P
     ui.painter().rect_filled(tag, 13, theme::SCRIM);
     ui.painter().galley(tag.min + vec2(10.0, 4.5), galley, theme::ON_SCRIM);
     let told = ui.interact(tag, ui.scope_id().with(("name", view)), Sense::hover());
-    told.on_hover_text(legend(model, name));
+    told.on_hover_text(legend(model, view));
     tag.left_bottom()
 }
 
-/// A whole name, and who is meant by its numbers.
-fn legend(model: &Model, name: &str) -> String {
+/// A whole name, what descends from whom, and who is meant by the numbers.
+fn legend(model: &Model, view: usize) -> String {
+    let ViewModel { name, descent, .. } = &model.views[view];
+    let name = if descent.is_empty() { name.clone() } else { format!("{name}\n{descent}") };
     let Some((parent, ancestors)) = model.parents.get(&model.generation).zip(model.ancestors.as_ref()) else {
-        return name.to_owned();
+        return name;
     };
     let line = |(index, name): (usize, &String)| format!("\n{} {name}", index + 1);
     let lines: String = ancestors.iter().enumerate().map(line).collect();

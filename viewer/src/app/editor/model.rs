@@ -47,6 +47,11 @@ impl Editor {
         Some(self.population.as_ref()?.individuals[view].name.as_str())
     }
 
+    /// What a landscape has of which parent; empty for one that was not bred.
+    pub fn descent(&self, view: usize) -> &str {
+        self.population.as_ref().map_or("", |population| &population.individuals[view].descent)
+    }
+
     pub fn state(&self, view: usize) -> ViewState {
         let failed = |fault, remedy: &str| {
             let what = self.faults.get(&fault)?.report.clone();

@@ -87,6 +87,7 @@ pub fn model() -> Model {
         undo: Some("vote on trees".to_owned()),
         redo: None,
         views: names.map(|name| ViewModel {
+            descent: String::new(),
             name: name.to_owned(),
             picture: Some(egui::TextureId::default()),
             state: ViewState::Ready,

@@ -154,6 +154,7 @@ fn a_name_is_whole_and_its_numbers_are_explained() {
     let mut world = model();
     let name = "trees of 2 · land of 3 × 1 · sky like 4";
     world.views[0].name = name.to_owned();
+    world.views[0].descent = "trees like 2".to_owned();
     let mut harness = bench(world, [640.0, 400.0], 1.0);
     let drawn = harness.output().shapes.iter().find_map(|clipped| match &clipped.shape {
         egui::Shape::Text(shape) if shape.galley.text().ends_with(name) => Some(shape.galley.clone()),
@@ -163,7 +164,7 @@ fn a_name_is_whole_and_its_numbers_are_explained() {
     harness.hover_at(pos2(40.0, 66.0));
     harness.run_steps(8);
     let legend = format!(
-        "{name}\n\nNumbers are those of generation 2:\n1 Old oaks\n2 Wet birches\n3 A ridge\n4 Pines"
+        "{name}\ntrees like 2\n\nNumbers are those of generation 2:\n1 Old oaks\n2 Wet birches\n3 A ridge\n4 Pines"
     );
     assert!(text_rect(&harness, &legend).is_some());
 }

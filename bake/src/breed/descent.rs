@@ -1,0 +1,90 @@
+//! What children are called, and where their parts come from.
+
+use genescape_schema::{Category, INDIVIDUALS, Kinds, Population};
+
+use crate::kinds::{Home, name};
+
+/// Where a chromosome comes from; parents count from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    Of(usize),
+    /// A variation.
+    Like(usize),
+    /// Another individual of the same genes.
+    Another(usize),
+    /// A crossover, of the favourite first.
+    Crossed(usize, usize),
+    /// A crossover with what is none of the parents.
+    Widened(usize),
+    New,
+}
+
+impl Origin {
+    fn favourite(self) -> Option<usize> {
+        match self {
+            Self::Of(one) | Self::Like(one) | Self::Another(one) => Some(one),
+            Self::Crossed(one, _) | Self::Widened(one) => Some(one),
+            Self::New => None,
+        }
+    }
+
+    /// With the numbers that landscapes have under their pictures, from 1.
+    fn phrase(self, part: &str) -> String {
+        match self {
+            Self::Of(one) => format!("{part} of {}", one + 1),
+            Self::Like(one) => format!("{part} like {}", one + 1),
+            Self::Another(one) => format!("{part} as {}, drawn anew", one + 1),
+            Self::Crossed(one, other) => format!("{part} of {} × {}", one + 1, other + 1),
+            Self::Widened(one) => format!("{part} of {} × new", one + 1),
+            Self::New => format!("new {part}"),
+        }
+    }
+}
+
+/// What parts of a landscape are called, as in [`Category::ALL`].
+const PARTS: [&str; 3] = ["trees", "land", "sky"];
+/// Between the parts of a descent or a name.
+const SEPARATOR: &str = " · ";
+
+/// "trees of 2 · land like 3 · new sky": where each part comes from.
+pub fn descent(origins: [Origin; 3]) -> String {
+    let parts = PARTS.into_iter().zip(origins).map(|(part, origin)| origin.phrase(part));
+    parts.collect::<Vec<_>>().join(SEPARATOR)
+}
+
+/// What kind of place a child is: "Birches on karst, mackerel sky". One that has two or three parts of a parent that a person
+/// gave a name keeps that, and says only what differs: "Grandmother's valley · mackerel sky". Parts of no kind are called by
+/// their descent.
+pub fn name(kinds: &Kinds, parents: &Population, origins: [Origin; 3], homes: [Home<'_>; 3]) -> String {
+    let descends = |parent: usize| origins.iter().filter(|origin| origin.favourite() == Some(parent)).count();
+    let main = (0..INDIVIDUALS).find(|parent| descends(*parent) >= 2);
+    let given = main.and_then(|main| given_name(kinds, &parents.individuals[main].name));
+    if let (None, Some(name)) = (given, name::landscape(homes)) {
+        return name;
+    }
+    let is_said = |origin: Origin| given.is_some() && origin.favourite() == main;
+    let differ = (0..3).filter(|&part| !is_said(origins[part]));
+    let called = |part: usize| {
+        name::part(Category::ALL[part], homes[part]).unwrap_or_else(|| origins[part].phrase(PARTS[part]))
+    };
+    given.map(str::to_owned).into_iter().chain(differ.map(called)).collect::<Vec<_>>().join(SEPARATOR)
+}
+
+/// The part of a name that a person gave; none of a name that this program made, now or in an older version.
+fn given_name<'a>(kinds: &Kinds, name: &'a str) -> Option<&'a str> {
+    let first = name.split(SEPARATOR).next().unwrap_or_default();
+    let is_descent = |part: &&str| first.starts_with(&format!("{part} ")) || first == format!("new {part}");
+    let is_phrase = PARTS.iter().any(is_descent) && (name.contains(SEPARATOR) || first.starts_with("new "));
+    let is_older = first.starts_with(|c: char| c.is_ascii_digit()) && first.contains(": tree ");
+    let is_made = is_phrase || is_older || is_of_kinds(kinds, first);
+    (!first.is_empty() && !is_made).then_some(first)
+}
+
+/// Whether a name is "TREES LAND, SKY", or one of these parts alone.
+fn is_of_kinds(kinds: &Kinds, name: &str) -> bool {
+    let ends = |sky: &str| name.strip_suffix(sky).is_some_and(|rest| rest.ends_with(", "));
+    let is_whole = kinds.of(Category::Tree).any(|tree| name.starts_with(&format!("{} ", tree.name)))
+        && kinds.of(Category::Sky).any(|sky| ends(&sky.name));
+    let is_part = |kind| name::part(Category::Tree, Home::Of(kind)).is_some_and(|part| part == name);
+    is_whole || kinds.iter().any(|kind| kind.name == name || is_part(kind))
+}

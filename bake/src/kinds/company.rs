@@ -1,0 +1,41 @@
+//! What goes together in one landscape: palms with warm lands, fog with wet ones. The parts that are decided already say
+//! what the others may be, and the others say what they go with.
+
+use genescape_schema::{Bounds, Category, Chromosome, Kind, Space};
+
+use super::Home;
+
+/// The parts of a landscape that are decided.
+#[derive(Clone)]
+pub struct Company<'a> {
+    space: &'a Space,
+    parts: Vec<(Category, Chromosome, Home<'a>)>,
+}
+
+impl<'a> Company<'a> {
+    pub fn new(space: &'a Space) -> Self {
+        Self { space, parts: Vec::new() }
+    }
+
+    pub fn add(&mut self, category: Category, chromosome: Chromosome, home: Home<'a>) {
+        self.parts.push((category, chromosome, home));
+    }
+
+    /// Whether a kind goes with all parts, and they with some of its members.
+    pub fn suits(&self, kind: &Kind) -> bool {
+        let goes = |(category, genes, _): &(_, _, _)| kind.goes_with(self.space, *category, genes);
+        self.parts.iter().all(goes) && self.demand(&mut kind.bounds.clone())
+    }
+
+    /// Keeps of what a chromosome may be as much as the parts go with; `false` if they demand of a gene what it may not be,
+    /// and then that gene is left as it is.
+    pub fn demand(&self, bounds: &mut Bounds) -> bool {
+        let category = bounds.category;
+        let demands = self.parts.iter().flat_map(|(_, _, home)| home.demands());
+        let mut all = true;
+        for demand in demands.filter(|demand| demand.category == category) {
+            all &= bounds.cut(self.space, &demand.gene, &demand.codes);
+        }
+        all
+    }
+}

@@ -1,0 +1,13 @@
+//! Chromosomes as members of kinds: which one a chromosome belongs to, what goes together in a landscape, how a member is
+//! drawn, and what the whole is called. No kind is named here: `configs/kinds` and people's own files say all.
+
+pub mod company;
+pub mod draw;
+pub mod home;
+pub mod name;
+pub mod pick;
+#[cfg(test)]
+pub mod testing;
+
+pub use company::Company;
+pub use home::Home;
