@@ -332,7 +332,8 @@ impl Land {
             let mut levels = lod::levels(&template.mesh, &lod::LodOptions::default()).levels;
             made.casters.extend(levels.pop().map(|level| level.mesh));
         }
-        made.trees = placement::place(&genomes.read(genome), &made.form, &made.footprints);
+        let snow = ground::snow_map(colors.terrain_seed, &made.form);
+        made.trees = placement::place(&genomes.read(genome), &made.form, snow.as_ref(), &made.footprints);
         made
     }
 

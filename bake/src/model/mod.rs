@@ -2,6 +2,7 @@
 //!
 //! Right-handed, y up, metres, radians; counter-clockwise front faces; colours linear unless a name says `_srgb`.
 
+mod climate;
 mod ground;
 mod image;
 mod light;
@@ -13,6 +14,7 @@ pub use genescape_schema::scene::{
     CloudLayer, GroundDetail, Heightfield, Instance, SkyLight, StartView, TerrainLod, rotation_from_z,
 };
 
+pub use climate::{Climate, SnowMap};
 pub use ground::{Foreground, GroundMaps};
 pub use image::{Image8, ImageF16};
 pub use light::LightMap;

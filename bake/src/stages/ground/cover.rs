@@ -2,9 +2,11 @@
 //! reflectance.
 
 use super::GroundParams;
+use super::palette::Palette;
+use super::snow::Snow;
 use super::traits::Traits;
 use crate::math::{hermite, lerp_array as lerp};
-use crate::model::Landform;
+use crate::model::{Climate, Landform};
 use crate::noise::hash01;
 use crate::seed::noise_seed;
 
@@ -29,14 +31,19 @@ impl Noise {
 /// Grass, rock, scree, snow and mud.
 pub(super) const KINDS: usize = 5;
 
-/// Parts of the ground: rock, scree, snow and mud, which sum to 1 with grass.
-pub(super) struct Cover([f32; KINDS - 1]);
+/// Parts of the ground.
+pub(super) struct Cover {
+    /// Rock, scree, snow and mud, which sum to 1 with grass.
+    parts: [f32; KINDS - 1],
+    /// How much of the mud is dry soil or sand.
+    soil: f32,
+}
 
 impl Cover {
     /// The part of each kind, grass first.
     #[inline]
     pub fn parts(&self) -> [f32; KINDS] {
-        let [rock, scree, snow, mud] = self.0;
+        let [rock, scree, snow, mud] = self.parts;
         [1.0 - rock - scree - snow - mud, rock, scree, snow, mud]
     }
 
@@ -44,32 +51,29 @@ impl Cover {
     #[inline]
     pub fn bytes(&self) -> [u8; 4] {
         // Rounded down, so that four of them cannot pass 255.
-        self.0.map(|w| (w * 255.0) as u8)
+        self.parts.map(|w| (w * 255.0) as u8)
     }
 
     /// Lays `part` of a kind over the others.
     #[inline]
     fn over(&mut self, kind: usize, part: f32) {
-        self.0 = self.0.map(|other| other * (1.0 - part));
-        self.0[kind] += part;
+        self.parts = self.parts.map(|other| other * (1.0 - part));
+        self.parts[kind] += part;
+        self.soil *= 1.0 - part;
     }
 }
 
-type Rgb = [f32; 3];
+const ROCK: usize = 0;
+const SCREE: usize = 1;
+const SNOW: usize = 2;
+const MUD: usize = 3;
 
-const SNOW: Rgb = [0.80, 0.83, 0.87];
+pub(super) type Rgb = [f32; 3];
+
+const SNOW_WHITE: Rgb = [0.80, 0.83, 0.87];
 const WET_MUD: Rgb = [0.062, 0.054, 0.037];
 const SAND: Rgb = [0.37, 0.30, 0.20];
 const GRAVEL: Rgb = [0.185, 0.176, 0.150];
-/// Grass from lush to dry and at last to bare sand; climate and moisture choose between neighbours.
-const GRASS: [Rgb; 6] = [
-    [0.030, 0.056, 0.016],
-    [0.048, 0.076, 0.023],
-    [0.078, 0.094, 0.033],
-    [0.130, 0.120, 0.052],
-    [0.205, 0.168, 0.080],
-    [0.290, 0.230, 0.135],
-];
 /// Heath and moss, which grow in patches of their own.
 const HEATH: Rgb = [0.082, 0.060, 0.034];
 /// Kinds of rock: granite, limestone, basalt, sandstone, slate.
@@ -81,26 +85,20 @@ const ROCKS: [Rgb; 5] = [
     [0.150, 0.158, 0.165],
 ];
 
-/// De Martonne's index of aridity, rain over temperature (1926), of the climate that the starters have: 9 °C, 800 mm.
-const TEMPERATE: f32 = 800.0 / 19.0;
-
-/// How much drier a climate is than that of the starters: 0.3 for each halving of De Martonne's index.
-fn drier(params: &GroundParams) -> f32 {
-    let index = params.rain_mm / (params.temperature_c + 10.0).max(1.0);
-    -0.3 * libm::log2f(index / TEMPERATE)
-}
-
 /// What all places of a land share.
-pub(super) struct Climate {
+pub(super) struct Painter {
+    climate: Climate,
+    dryness: f32,
+    palette: Palette,
+    snow: Snow,
     water_m: f32,
-    snow_line_m: f32,
     relief_m: f32,
     lowest_m: f32,
     talus: f32,
     /// Tangent of the slope beyond which grass finds no hold.
     bare_slope: f32,
-    /// 0 lush, 1 arid.
-    dryness: f32,
+    /// How dry it is beside other lands of its climate: 0 lush, 1 arid.
+    thirst: f32,
     rock: Rgb,
     rock_band: Rgb,
     shore: Rgb,
@@ -108,30 +106,35 @@ pub(super) struct Climate {
     shore_scale: f32,
 }
 
-impl Climate {
+impl Painter {
     pub fn new(params: &GroundParams, land: &Landform) -> Self {
         let seed = noise_seed(params.terrain_seed.into(), "ground climate", 0);
         let [lo, hi] = land.field.range_m();
         let chance = |salt| hash01(seed, salt, 0, 0);
+        let climate = Climate::new(params.temperature_c, params.rain_mm, land);
+        let palette = Palette::new(&climate);
         // Where snow lies low it is cold and moist.
-        let dryness = (chance(1) * 0.95 - 0.35 * (0.8 - params.snow_line).max(0.0)).clamp(0.0, 1.0);
-        let dryness = (dryness + drier(params)).clamp(0.0, 1.6);
+        let thirst = (chance(1) * 0.95 - 0.35 * (0.8 - params.snow_line).max(0.0)).clamp(0.0, 1.0);
         let kind = (chance(2) * ROCKS.len() as f32) as usize;
         let other = (kind + 1 + (chance(3) * 4.0) as usize) % ROCKS.len();
-        let rock = ROCKS[kind.min(ROCKS.len() - 1)];
+        let [rock, other] = [kind.min(ROCKS.len() - 1), other].map(|kind| palette.rock(ROCKS[kind]));
         let talus = libm::tanf(params.talus_angle_deg.to_radians());
+        let shore = lerp(lerp(WET_MUD, GRAVEL, 0.5), SAND, step(0.25, 0.6, thirst));
         Self {
+            dryness: climate.dryness(),
+            snow: Snow::new(land),
             water_m: land.water_level_m.unwrap_or(lo - 1e4),
-            snow_line_m: land.snow_line_m,
             relief_m: (hi - lo).max(1.0),
             lowest_m: lo,
             talus,
             bare_slope: 0.42 + 0.5 * talus,
-            dryness,
+            thirst,
             rock,
-            rock_band: lerp(rock, ROCKS[other], 0.3),
+            rock_band: lerp(rock, other, 0.3),
             shore_scale: (80.0 / (hi - lo).max(1.0)).clamp(1.6, 3.2),
-            shore: lerp(lerp(WET_MUD, GRAVEL, 0.5), SAND, step(0.25, 0.6, dryness)),
+            shore: palette.shore(shore),
+            climate,
+            palette,
         }
     }
 
@@ -149,35 +152,45 @@ impl Climate {
             step(0.46, 0.62, loose) * step(0.52, 0.74, (t.slope + 0.10 * broken) * 0.62 / self.talus.max(0.3))
         };
         let above_water = t.height_m - self.water_m;
-        let wetness = (above_water - 0.3 * self.dryness) * self.shore_scale - 0.5 * broken - 0.3 * t.tuft;
+        let wetness = (above_water - 0.3 * self.thirst) * self.shore_scale - 0.5 * broken - 0.3 * t.tuft;
         let shore = if wetness > 0.75 { 0.0 } else { 1.0 - step(0.35, 0.75, wetness) };
         let wash = t.flow + 0.05 * broken;
         let bed = if wash < 0.84 { 0.0 } else { step(0.84, 0.92, wash) * (1.0 - step(0.25, 0.6, t.slope)) };
         let mud = shore.max(bed);
-        let snow = self.snow(t, broken);
         // Each lies over the ones before it.
-        let mut cover = Cover([0.0, 0.0, 0.0, mud]);
-        cover.over(1, scree);
-        cover.over(0, rock);
-        cover.over(2, snow);
+        let mut cover = self.bare(t, broken);
+        cover.over(MUD, mud);
+        cover.over(SCREE, scree);
+        cover.over(ROCK, rock);
+        cover.over(SNOW, self.snow.part(t, broken));
         cover
     }
 
-    /// Snow fills hollows below its line and slides off what is steep above it.
+    /// Soil and stones where water or warmth is too short for growth to close.
     #[inline]
-    fn snow(&self, t: &Traits, broken: f32) -> f32 {
-        let spread_m = 0.05 * self.relief_m + 2.0;
-        let wander = 1.1 * t.patch + 0.8 * t.tuft + 0.9 * broken + 1.2 * t.hollow - 1.0 * (t.slope - 0.6);
-        let depth = (t.height_m - self.snow_line_m) / spread_m + wander;
-        if depth <= -0.1 {
-            return 0.0;
+    fn bare(&self, t: &Traits, broken: f32) -> Cover {
+        let Palette { thirst, frost, heat, .. } = self.palette;
+        if thirst + frost == 0.0 {
+            return Cover { parts: [0.0; 4], soil: 0.0 };
         }
-        let high = ((t.height_m - self.snow_line_m) / (6.0 * spread_m)).clamp(0.0, 1.0);
-        // Higher up, snow clings to steeper rock.
-        let holds = 0.95 + 0.5 * high + 0.16 * broken + 0.15 * t.hollow;
-        step(-0.1, 0.25, depth)
-            * (1.0 - step(holds, holds + 0.16, t.slope))
-            * step(0.0, 0.4, t.height_m - self.water_m)
+        let patchy = 0.35 * t.patch + 0.45 * t.tuft + 0.5 * broken;
+        let parched = step(1.1, 2.4, self.dryness + 0.4 * t.sunny + patchy - 1.8 * self.damp(t)) * thirst;
+        // Less where snow and rain leave more than a desert's share of water.
+        let chill = -4.0 - self.climate.at_c(t.height_m) - 2.0 * t.sunny + 1.5 * self.dryness;
+        let frozen = step(0.0, 1.0, 0.12 * chill + 0.5 * patchy + 0.3 * t.slope - 0.1) * frost;
+        let bare = 0.97 * (1.0 - (1.0 - parched) * (1.0 - frozen));
+        // Frost heaves stones up, wind blows sand away from them; dunes bury them.
+        let stones =
+            step(0.0, 0.8, t.outcrop + 0.4 * t.patch + 0.6 * broken + 0.5 * frost - 0.5 * heat + 0.2);
+        let (scree, soil) = (bare * stones, bare * (1.0 - stones));
+        Cover { parts: [0.0, scree, 0.0, soil], soil }
+    }
+
+    /// How much more water a place has than the land around: above 0 in hollows, by streams and shores.
+    #[inline]
+    fn damp(&self, t: &Traits) -> f32 {
+        let by_water = 1.0 - step(0.4, 5.0, t.height_m - self.water_m);
+        0.75 * t.flow + 0.35 * t.hollow + 0.12 * t.deposit - 0.25 + 0.5 * by_water
     }
 
     /// Its colour.
@@ -197,11 +210,14 @@ impl Climate {
             add(&mut color, stone, rock);
             add(&mut color, scale(lerp(stone, GRAVEL, 0.35), 1.12 + 0.35 * n.grain), scree);
         }
-        if mud > 0.0 {
-            add(&mut color, self.mud(t, n), mud);
+        if mud > cover.soil {
+            add(&mut color, self.mud(t, n), mud - cover.soil);
+        }
+        if cover.soil > 0.0 {
+            add(&mut color, self.soil(t, n), cover.soil);
         }
         if snow > 0.0 {
-            add(&mut color, scale(SNOW, 1.0 + 0.03 * n.broad + 0.05 * n.grain), snow);
+            add(&mut color, scale(SNOW_WHITE, 1.0 + 0.03 * n.broad + 0.05 * n.grain), snow);
         }
         color.map(|c| if c > 0.0 { c } else { 0.0 })
     }
@@ -211,17 +227,28 @@ impl Climate {
     pub fn grass(&self, t: &Traits, n: &Noise) -> Rgb {
         let altitude = (t.height_m - self.lowest_m) / self.relief_m;
         let moist = 0.75 * t.flow + 0.35 * t.hollow + 0.12 * t.deposit;
-        let dry = 0.7 + 2.9 * self.dryness + 1.0 * t.patch + 0.45 * t.tuft + 0.5 * altitude
+        let dry = 0.7 + 2.9 * self.thirst + 1.0 * t.patch + 0.45 * t.tuft + 0.5 * altitude
             - 1.5 * (moist - 0.25)
             + 0.35 * t.slope
             + 0.42 * n.broad
             + 0.34 * n.fine
             + 0.25 * n.grain;
-        let dry = dry.clamp(0.0, 4.999);
+        // The sun dries what lacks water, and warms what lacks warmth.
+        let Palette { growth, thirst, frost, heat, .. } = &self.palette;
+        let dry = (dry + t.sunny * (0.9 * thirst - 0.5 * frost)).clamp(0.0, 4.999);
         let k = dry as usize;
-        let grass = lerp(GRASS[k], GRASS[k + 1], dry - k as f32);
+        let grass = lerp(growth[k], growth[k + 1], dry - k as f32);
         let heath = step(0.45, 0.85, t.outcrop - 0.5 * t.patch + 0.3 * n.broad) * 0.6;
+        let heath = heath * (1.0 - thirst.max(*heat));
         scale(lerp(grass, HEATH, heath), 1.0 + 0.16 * n.fine + 0.10 * n.broad + 0.18 * n.grain)
+    }
+
+    /// Bare earth or sand, paler on crests.
+    #[inline]
+    fn soil(&self, t: &Traits, n: &Noise) -> Rgb {
+        let [.., below, bare] = self.palette.growth;
+        let pale = (0.75 + 0.25 * t.patch - 0.3 * t.hollow + 0.12 * n.broad).clamp(0.0, 1.2);
+        scale(lerp(below, bare, pale), 1.0 + 0.04 * n.fine + 0.08 * n.grain)
     }
 
     /// Shores and beds: wet and dark at the water, paler above and in deeper water.
@@ -250,7 +277,7 @@ fn add(sum: &mut Rgb, a: Rgb, weight: f32) {
 
 /// [`crate::math::smoothstep`] by a multiplication, which is not the same to the last bit.
 #[inline]
-fn step(lo: f32, hi: f32, x: f32) -> f32 {
+pub(super) fn step(lo: f32, hi: f32, x: f32) -> f32 {
     let t = (x - lo) * (1.0 / (hi - lo));
     let t = if t > 0.0 { t } else { 0.0 };
     hermite(if t < 1.0 { t } else { 1.0 })

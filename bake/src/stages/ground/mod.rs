@@ -10,8 +10,10 @@ mod cover;
 mod foreground;
 mod grain;
 mod grass;
+mod palette;
 mod patch;
 mod patterns;
+mod snow;
 mod stage;
 #[cfg(test)]
 mod tests;
@@ -25,11 +27,12 @@ use serde::{Deserialize, Serialize};
 use crate::math::lerp_array;
 use crate::model::{GroundMaps, Image8, Landform};
 use crate::raster::square;
-use cover::{Climate, Noise};
+use cover::{Noise, Painter};
 pub use foreground::foreground;
 use grain::Grain;
 pub use grass::BLADE_WHITE;
 pub use patch::BLOCK_M;
+pub use snow::snow_map;
 pub use stage::{ForegroundStage, GroundMapsStage, GroundTextureFiles, GroundTexturesStage};
 use textures::SrgbTable;
 pub use textures::{TEXTURES, textures, tile_srgb};
@@ -38,7 +41,7 @@ use traits::{Patches, Traits, TraitsMap};
 /// The genes that colour the ground; names, ranges and meanings as in the parameter space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GroundParams {
-    /// Chooses the rock, how dry the climate is, where patches lie.
+    /// Chooses the rock, how dry the land is for its climate, where patches lie.
     pub terrain_seed: u32,
     /// Scree lies up to it.
     pub talus_angle_deg: f32,
@@ -53,7 +56,7 @@ pub struct GroundParams {
 /// Paints the field on `side_px`² texels: albedo and blend weights.
 pub fn maps(params: &GroundParams, land: &Landform, side_px: u32) -> GroundMaps<Image8> {
     let side_px = side_px.max(1);
-    let climate = Climate::new(params, land);
+    let painter = Painter::new(params, land);
     let traits =
         TraitsMap::new(&Patches::new(params.terrain_seed, land.field.extent_m(), 0.0..=1.0), land, 0.0..=1.0);
     let grain = Grain::new(params.terrain_seed, side_px);
@@ -67,8 +70,8 @@ pub fn maps(params: &GroundParams, land: &Landform, side_px: u32) -> GroundMaps<
         for i in 0..n {
             let here = row.at((i as f32 + 0.5) / side_px as f32);
             let noise = grain.at(i, j);
-            let cover = climate.cover(&here, &noise);
-            let color = climate.color(&here, &cover, &noise);
+            let cover = painter.cover(&here, &noise);
+            let color = painter.color(&here, &cover, &noise);
             colors[3 * i..][..3].copy_from_slice(&color.map(|c| encode.byte(c)));
             weights[4 * i..][..4].copy_from_slice(&cover.bytes());
         }
@@ -79,7 +82,7 @@ pub fn maps(params: &GroundParams, land: &Landform, side_px: u32) -> GroundMaps<
 /// Colours the apron: linear red, green, blue and 255 for each of its samples, row by row, 0 to 255 for 0 to 1. On
 /// the field's border they are the mean of the map around.
 pub fn apron_colors(params: &GroundParams, land: &Landform) -> Vec<[u8; 4]> {
-    let climate = Climate::new(params, land);
+    let painter = Painter::new(params, land);
     let patches = Patches::new(params.terrain_seed, land.field.extent_m(), 0.0..=1.0);
     let apron = &land.apron;
     let half_m = 0.5 * land.field.extent_m();
@@ -90,10 +93,10 @@ pub fn apron_colors(params: &GroundParams, land: &Landform) -> Vec<[u8; 4]> {
         let away_m = (x - inner_x).abs().max((z - inner_z).abs());
         let own = || {
             let here = traits::far(&patches, land, i, j);
-            mean_color(&climate, |_| here)
+            mean_color(&painter, |_| here)
         };
         let border = || {
-            mean_color(&climate, |s| {
+            mean_color(&painter, |s| {
                 let (dx, dz) = ((s % 4) as f32 - 1.5, (s / 4) as f32 - 1.5);
                 let at = |v: f32, d: f32| ((v + d * 14.0) / (2.0 * half_m) + 0.5).clamp(0.0, 1.0);
                 traits::near(&patches, land, at(inner_x, dx), at(inner_z, dz))
@@ -111,12 +114,12 @@ pub fn apron_colors(params: &GroundParams, land: &Landform) -> Vec<[u8; 4]> {
 }
 
 /// The mean colour of sixteen texels that differ in grain.
-fn mean_color(climate: &Climate, traits: impl Fn(u32) -> Traits) -> [f32; 3] {
+fn mean_color(painter: &Painter, traits: impl Fn(u32) -> Traits) -> [f32; 3] {
     let mut sum = [0.0; 3];
     for s in 0..16 {
         let here = traits(s);
         let noise = Noise::sample(s);
-        let color = climate.color(&here, &climate.cover(&here, &noise), &noise);
+        let color = painter.color(&here, &painter.cover(&here, &noise), &noise);
         sum = [0, 1, 2].map(|c| sum[c] + color[c] * 0.0625);
     }
     sum

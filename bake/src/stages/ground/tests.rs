@@ -97,6 +97,48 @@ fn the_drier_the_land_the_paler_its_grass() {
     assert!(steppe > meadow + 15.0 && meadow > forest + 5.0, "{steppe} {meadow} {forest}");
 }
 
+/// Mean cover of rock, scree, snow and mud, and mean colour, of the land in a climate.
+fn of_climate(temperature_c: f32, rain_mm: f32) -> ([f32; 4], [f32; 3]) {
+    let made = maps(&GroundParams { temperature_c, rain_mm, ..PARAMS }, &LAND, 128);
+    let mean = |bytes: &[u8], channels: usize, k: usize| {
+        let all = bytes.iter().skip(k).step_by(channels);
+        all.map(|&byte| f32::from(byte)).sum::<f32>() / (bytes.len() / channels) as f32
+    };
+    let (weights, color) = (&made.weights.data, &made.color.data);
+    ([0, 1, 2, 3].map(|k| mean(weights, 4, k)), [0, 1, 2].map(|k| mean(color, 3, k)))
+}
+
+#[test]
+fn neighbouring_climates_look_alike_and_distant_ones_do_not() {
+    let temperature_c = |k: usize| -9.0 + 1.2 * k as f32;
+    let rain_mm = |k: usize| 100.0 * libm::exp2f(k as f32 / 3.0);
+    let apart = |a: &([f32; 4], [f32; 3]), b: &([f32; 4], [f32; 3])| {
+        let parts = (0..4).map(|k| (a.0[k] - b.0[k]).abs());
+        parts.chain((0..3).map(|k| (a.1[k] - b.1[k]).abs())).fold(0.0, f32::max)
+    };
+    let along: Vec<_> = (0..32).map(|k| of_climate(temperature_c(k), 400.0)).collect();
+    let down: Vec<_> = (0..16).map(|k| of_climate(20.0, rain_mm(k))).collect();
+    for line in [along, down] {
+        for pair in line.windows(2) {
+            assert!(apart(&pair[0], &pair[1]) < 24.0, "{pair:?}");
+        }
+        assert!(apart(&line[0], &line[line.len() - 1]) > 40.0);
+    }
+}
+
+#[test]
+fn deserts_are_bare_and_rainforests_are_not() {
+    let mud_and_scree = |(cover, _): ([f32; 4], [f32; 3])| cover[1] + cover[3];
+    let [desert, polar, meadow, jungle] = [(26.0, 100.0), (-9.0, 100.0), (9.0, 800.0), (26.0, 3000.0)]
+        .map(|(temperature_c, rain_mm)| mud_and_scree(of_climate(temperature_c, rain_mm)));
+    assert!(desert > meadow + 60.0 && polar > meadow + 30.0, "{desert} {polar} {meadow}");
+    assert!((jungle - meadow).abs() < 1.0, "{jungle} {meadow}");
+    let [r, g, b] = of_climate(26.0, 3000.0).1;
+    assert!(g > r && r > b, "{r} {g} {b}");
+    let [r, g, b] = of_climate(26.0, 100.0).1;
+    assert!(r > g + 15.0 && g > b + 15.0, "{r} {g} {b}");
+}
+
 #[test]
 fn albedo_is_that_of_real_ground() {
     let made = maps(&PARAMS, &LAND, 256);

@@ -33,12 +33,14 @@ pub(super) struct Traits {
     pub tuft: f32,
     /// Where rock shows more readily, about [-1, 1].
     pub outcrop: f32,
+    /// How far the slope faces the noon sun in the south: 1 is a cliff in the sun, -1 one in the shade.
+    pub sunny: f32,
 }
 
 impl Traits {
     /// [`lerp_array`] of each.
     fn lerp(self, other: Self, t: f32) -> Self {
-        bytemuck::cast(lerp_array::<8>(bytemuck::cast(self), bytemuck::cast(other), t))
+        bytemuck::cast(lerp_array::<9>(bytemuck::cast(self), bytemuck::cast(other), t))
     }
 }
 
@@ -110,15 +112,15 @@ pub(super) fn near(patches: &Patches, land: &Landform, u: f32, v: f32) -> Traits
 fn sample(patches: &Patches, land: &Landform, i: u32, j: u32, step: u32) -> Traits {
     let at = (j * land.field.side + i) as usize;
     let [height_m, flow, deposit] = [&land.field.heights_m, &land.flow, &land.deposit].map(|grid| grid[at]);
-    let (slope, hollow) = shape_at(&land.field, i, j, step);
+    let Form { slope, hollow, sunny } = form_at(&land.field, i, j, step);
     let last = (land.field.side - 1) as f32;
     let [patch, tuft, outcrop] = patches.at(i as f32 / last, j as f32 / last);
-    Traits { height_m, slope, flow, deposit, hollow, patch, tuft, outcrop }
+    Traits { height_m, slope, flow, deposit, hollow, patch, tuft, outcrop, sunny }
 }
 
 /// Traits of a sample of the apron, whose spacing hides much of the slope.
 pub(super) fn far(patches: &Patches, land: &Landform, i: u32, j: u32) -> Traits {
-    let (slope, hollow) = shape_at(&land.apron, i, j, 1);
+    let Form { slope, hollow, sunny } = form_at(&land.apron, i, j, 1);
     let seed = |k: usize| patches.seeds[k];
     let (x, z) = (i as f32 * land.apron.spacing_m, j as f32 * land.apron.spacing_m);
     Traits {
@@ -130,11 +132,19 @@ pub(super) fn far(patches: &Patches, land: &Landform, i: u32, j: u32) -> Traits 
         patch: fbm2(seed(0), x / 700.0, z / 700.0, 3, 0.5, 0) * 1.6,
         tuft: fbm2(seed(1), x / 150.0, z / 150.0, 2, 0.5, 0),
         outcrop: fbm2(seed(2), x / 300.0, z / 300.0, 2, 0.5, 0),
+        sunny,
     }
 }
 
-/// Tangent of the slope and hollowness at a sample, from neighbours `step` samples away.
-fn shape_at(field: &Heightfield, i: u32, j: u32, step: u32) -> (f32, f32) {
+/// The form of the land at a sample, as [`Traits`] have it.
+struct Form {
+    slope: f32,
+    hollow: f32,
+    sunny: f32,
+}
+
+/// From neighbours `step` samples away.
+fn form_at(field: &Heightfield, i: u32, j: u32, step: u32) -> Form {
     let last = field.side - 1;
     let (w, e) = (i.saturating_sub(step), (i + step).min(last));
     let (n, s) = (j.saturating_sub(step), (j + step).min(last));
@@ -142,7 +152,12 @@ fn shape_at(field: &Heightfield, i: u32, j: u32, step: u32) -> (f32, f32) {
     let dx = (east - west) / ((e - w) as f32 * field.spacing_m);
     let dz = (south - north) / ((s - n) as f32 * field.spacing_m);
     let rise = 0.25 * (west + east + north + south) - field.at(i, j);
-    ((dx * dx + dz * dz).sqrt(), (rise * 6.0 / (step as f32 * field.spacing_m)).clamp(-1.0, 1.0))
+    let steep = dx * dx + dz * dz;
+    Form {
+        slope: steep.sqrt(),
+        hollow: (rise * 6.0 / (step as f32 * field.spacing_m)).clamp(-1.0, 1.0),
+        sunny: -dz / (1.0 + steep).sqrt(),
+    }
 }
 
 /// Three layers of noise on a coarse grid.

@@ -5,7 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec2;
 
 use super::GroundParams;
-use super::cover::{Climate, KINDS};
+use super::cover::{KINDS, Painter};
 use super::grain::Grain;
 use super::patch::SIDE_M;
 use super::traits::{Patches, TraitsMap};
@@ -39,7 +39,7 @@ impl MapWindow {
         let texel_m = extent_m / map_px as f32;
         let across = (SIDE_M / texel_m) as usize + 3;
         let first = [corner.x, corner.y].map(|m| ((m + 0.5 * extent_m) / texel_m) as i32 - 1);
-        let climate = Climate::new(params, land);
+        let painter = Painter::new(params, land);
         let place = |k: i32| (k.clamp(0, map_px as i32 - 1) as f32 + 0.5) / map_px as f32;
         let rows = place(first[1])..=place(first[1] + across as i32);
         // Traits are kept on a grid, so patches are needed as far as the samples around.
@@ -49,12 +49,12 @@ impl MapWindow {
         let grain = Grain::new(params.terrain_seed, map_px);
         let values = raster(across, across, |j| {
             let j = (first[1] + j as i32).clamp(0, map_px as i32 - 1);
-            let (traits, grain, climate, place) = (traits.row(place(j)), &grain, &climate, &place);
+            let (traits, grain, painter, place) = (traits.row(place(j)), &grain, &painter, &place);
             move |i| {
                 let i = (first[0] + i as i32).clamp(0, map_px as i32 - 1);
                 let (here, noise) = (traits.at(place(i)), grain.at(i as usize, j as usize));
-                let cover = climate.cover(&here, &noise);
-                let (color, grass) = (climate.color(&here, &cover, &noise), climate.grass(&here, &noise));
+                let cover = painter.cover(&here, &noise);
+                let (color, grass) = (painter.color(&here, &cover, &noise), painter.grass(&here, &noise));
                 bytemuck::cast(Look { color, parts: cover.parts(), grass })
             }
         });

@@ -1,6 +1,7 @@
 //! Landform and templates → where the trees stand: instances with affine transforms, metres.
 //!
-//! 1. `site` says how well trees grow at a point, 0 to 1: slope, altitude, water, river beds, groves and clearings.
+//! 1. `site` says how well trees grow at a point, 0 to 1: slope, altitude, water, river beds, climate, groves and
+//!    clearings.
 //! 2. `scatter` draws points by that weight and keeps those that are far enough from the others: Poisson-disc
 //!    sampling by dart throwing (Cook, "Stochastic Sampling in Computer Graphics", 1986) with a radius a tree.
 //! 3. `stand` gives each its transform: size, stretch, turn, lean, and a foot that is in the ground all around.
@@ -17,7 +18,7 @@ mod tests;
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::{Instance, Landform};
+use crate::model::{Instance, Landform, SnowMap};
 
 pub use stage::{PlacementFiles, PlacementStage};
 
@@ -42,6 +43,14 @@ pub struct PlacementParams {
     pub steepest_slope_deg: f32,
     /// Tree line as part of the relief (above the water, if there is a lake).
     pub altitude_limit: f32,
+    /// Mean temperature of a year that they need.
+    pub hardiness_c: f32,
+    /// Chooses where snow lies in patches.
+    pub terrain_seed: u32,
+    /// Mean of the year where the land lies lowest.
+    pub temperature_c: f32,
+    /// A year's rain.
+    pub rain_mm: f32,
 }
 
 /// The size of a template of trees, in metres at scale 1.
@@ -58,10 +67,15 @@ pub struct TreeFootprint {
 }
 
 /// Plants a scene: up to [`MAX_TREES`] instances of `trees`, in a fixed order. None if there are no templates or
-/// no tree can grow on this land.
-pub fn place(params: &PlacementParams, land: &Landform, trees: &[TreeFootprint]) -> Vec<Instance> {
+/// no tree can grow on this land. `snow` says where it may lie.
+pub fn place(
+    params: &PlacementParams,
+    land: &Landform,
+    snow: Option<&SnowMap>,
+    trees: &[TreeFootprint],
+) -> Vec<Instance> {
     if trees.is_empty() {
         return Vec::new();
     }
-    scatter::scatter(params, &site::Site::new(params, land), trees)
+    scatter::scatter(params, &site::Site::new(params, land, snow), trees)
 }

@@ -3,8 +3,8 @@
 //! Each limit has a soft edge, so that forests thin out rather than end at a line; at the limit itself the weight is
 //! exactly 0, so no tree ever stands beyond it.
 
-use crate::math::smoothstep;
-use crate::model::Landform;
+use crate::math::{lerp, smoothstep};
+use crate::model::{Climate, Landform, SnowMap};
 use crate::noise::gradient2;
 use crate::seed::noise_seed;
 
@@ -22,6 +22,16 @@ const TREE_LINE_EDGE: f32 = 0.2;
 /// Metres: the size of groves, and of the bays in their edges.
 const GROVE_M: f32 = 130.0;
 const BAY_M: f32 = 47.0;
+/// Degrees below their hardiness at which trees are thinnest and smallest, and what is left of density and size there.
+const CHILL_C: f32 = 8.0;
+const CHILLED: f32 = 0.08;
+const STUNTED: f32 = 0.5;
+/// Mean temperature that ground under snow counts as, if it is not colder.
+const SNOW_C: f32 = -2.0;
+/// Snow cover from which a place counts as under snow.
+const SNOWY: f32 = 0.3;
+/// Density far from water in a desert, as a part of that by a stream.
+const PARCHED: f32 = 0.06;
 /// Density of single trees in a clearing, as a part of that in a grove.
 const SOLITARY: f32 = 0.012;
 
@@ -44,11 +54,17 @@ pub(super) struct Site<'a> {
     /// Altitudes where trees begin to get fewer and where they end, in metres.
     tree_line_m: [f32; 2],
     shore_m: f32,
+    climate: Climate,
+    hardiness_c: f32,
+    snow: Option<&'a SnowMap>,
+    /// How much trees keep to water: 0 where there is rain enough, 1 in a desert.
+    thirst: f32,
     seed: u32,
 }
 
 impl<'a> Site<'a> {
-    pub fn new(params: &PlacementParams, land: &'a Landform) -> Self {
+    pub fn new(params: &PlacementParams, land: &'a Landform, snow: Option<&'a SnowMap>) -> Self {
+        let climate = Climate::new(params.temperature_c, params.rain_mm, land);
         let [low, high] = land.field.range_m();
         let shore_m = land.water_level_m.map_or(f32::NEG_INFINITY, |level| level + WATER_MARGIN_M);
         // Of the relief above water: under a deep lake, a low tree line would leave no land at all.
@@ -66,6 +82,10 @@ impl<'a> Site<'a> {
             slopes: [tan(slope - SLOPE_EDGE_DEG), tan(slope)],
             tree_line_m,
             shore_m,
+            thirst: smoothstep(0.4, 2.6, climate.dryness()),
+            climate,
+            hardiness_c: params.hardiness_c,
+            snow,
             seed: noise_seed(u64::from(params.tree_seed), "placement/groves", 0),
         }
     }
@@ -80,16 +100,37 @@ impl<'a> Site<'a> {
             return None;
         }
         let gentle = 1.0 - smoothstep(self.slopes[0], self.slopes[1], self.slope(x_m, z_m));
-        let dry = 1.0 - smoothstep(EDGE_FLOW, MAX_FLOW, self.flow(x_m, z_m));
+        let flow = self.flow(x_m, z_m);
+        let dry = 1.0 - smoothstep(EDGE_FLOW, MAX_FLOW, flow);
         let mild = 1.0 - smoothstep(self.tree_line_m[0], self.tree_line_m[1], y);
         let limits = gentle * dry * mild;
         if limits <= 0.0 {
             return None;
         }
+        let cold = self.cold([x_m, y, z_m])?;
+        let limits = limits * lerp(1.0, CHILLED, cold) * self.watered(y, flow);
         let grove = self.grove(x_m, z_m);
         let weight = limits * (1.0 - self.clustering * (1.0 - SOLITARY) * (1.0 - grove));
         let sheltered = 1.0 - 0.3 * self.clustering * (1.0 - grove);
-        Some(Spot { weight, vigour: sheltered * (0.5 + 0.5 * mild) })
+        Some(Spot { weight, vigour: sheltered * (0.5 + 0.5 * mild) * lerp(1.0, STUNTED, cold) })
+    }
+
+    /// 0 where it is as warm as these trees need, 1 where it is far too cold; `None` on snow that they do not bear.
+    fn cold(&self, [x_m, y_m, z_m]: [f32; 3]) -> Option<f32> {
+        let air_c = self.climate.at_c(y_m);
+        if self.hardiness_c > air_c.min(SNOW_C) && self.snow.is_some_and(|snow| snow.at(x_m, z_m) > SNOWY) {
+            return None;
+        }
+        Some(smoothstep(self.hardiness_c, self.hardiness_c - CHILL_C, air_c))
+    }
+
+    /// Part of the density that water allows: where rain is short, trees stand by streams and shores.
+    fn watered(&self, y_m: f32, flow: f32) -> f32 {
+        if self.thirst == 0.0 {
+            return 1.0;
+        }
+        let damp = smoothstep(0.3, 0.65, flow).max(1.0 - smoothstep(1.0, 6.0, y_m - self.shore_m));
+        lerp(1.0, lerp(PARCHED, 1.0, damp), self.thirst)
     }
 
     /// Tangent of the slope, over the two metres around the point.

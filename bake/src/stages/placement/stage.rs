@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{PlacementParams, TreeFootprint, place};
 use crate::graph::{Context, File, Input, Stage, StageError};
 use crate::model::{Landform, Placement};
+use crate::stages::ground::snow_map;
 use crate::stages::start::{clear_around, start_spot};
 
 /// Placement genes, landform, trees → where trees stand, and where a person may first stand among them.
@@ -32,7 +33,8 @@ impl Stage for PlacementStage {
         let footprints = self.footprints.iter().map(|footprint| Ok(*context.get(footprint)?));
         let footprints = footprints.collect::<Result<Vec<_>, StageError>>()?;
         let landform = context.get(&self.landform)?;
-        let mut instances = place(&self.params, &landform, &footprints);
+        let snow = snow_map(self.params.terrain_seed, &landform);
+        let mut instances = place(&self.params, &landform, snow.as_ref(), &footprints);
         let start_m = start_spot(&landform, &instances);
         clear_around(start_m, &mut instances);
         let file = context.file("bin", write_instances(&instances));

@@ -3,8 +3,9 @@
 use glam::{Mat3, Vec2, Vec3};
 use proptest::prelude::*;
 
-use crate::model::{Heightfield, Instance, Landform};
+use crate::model::{Heightfield, Instance, Landform, SnowMap};
 use crate::noise::fbm2;
+use crate::stages::ground::{self, GroundParams};
 use crate::stages::start::{CLEARING_M, clear_around, start_spot};
 
 use super::site::{MAX_FLOW, Site, WATER_MARGIN_M};
@@ -41,6 +42,7 @@ fn params() -> impl Strategy<Value = PlacementParams> {
                 clustering,
                 steepest_slope_deg,
                 altitude_limit,
+                ..usual()
             }
         },
     )
@@ -89,7 +91,7 @@ proptest! {
 
     #[test]
     fn nobody_floats_drowns_or_is_buried(params in params(), land in lands(), trees in trees()) {
-        for instance in place(&params, &land, &trees) {
+        for instance in place(&params, &land, None, &trees) {
             let tree = trees[instance.template as usize];
             let (foot, size) = (origin(&instance), linear(&instance).y_axis.y);
             for p in ring(&instance, tree.trunk_radius_m, 0.0) {
@@ -104,11 +106,11 @@ proptest! {
 
     #[test]
     fn limits_hold(params in params(), land in lands(), trees in trees()) {
-        let site = Site::new(&params, &land);
+        let site = Site::new(&params, &land, None);
         let [low, high] = land.field.range_m();
         let base = land.water_level_m.map_or(low, |level| level + WATER_MARGIN_M).min(high);
         let half = 0.5 * land.field.extent_m() - EDGE_MARGIN_M;
-        let mut instances = place(&params, &land, &trees);
+        let mut instances = place(&params, &land, None, &trees);
         prop_assert!(instances.len() < MAX_TREES as usize);
         for instance in &instances {
             let p = origin(instance);
@@ -130,7 +132,7 @@ proptest! {
 
     #[test]
     fn trunks_never_meet_and_cylinders_hold_them(params in params(), land in lands(), trees in trees()) {
-        let mut instances = place(&params, &land, &trees);
+        let mut instances = place(&params, &land, None, &trees);
         for instance in &instances {
             let [x, z, radius] = instance.trunk_cylinder_m;
             let foot = origin(instance);
@@ -157,7 +159,7 @@ proptest! {
     fn transforms_are_affine_in_earnest_and_well_conditioned(params in params(), trees in trees()) {
         let land = land(3, 60.0, 0.0, 129);
         let mut skewed = 0;
-        let instances = place(&params, &land, &trees);
+        let instances = place(&params, &land, None, &trees);
         for instance in &instances {
             let m = linear(instance);
             prop_assert!(m.is_finite() && m.determinant() > 0.0);
@@ -173,10 +175,10 @@ proptest! {
 
     #[test]
     fn same_genes_same_forest_another_seed_another(params in params(), land in lands(), trees in trees()) {
-        let first = place(&params, &land, &trees);
-        prop_assert_eq!(&first, &place(&params, &land, &trees));
+        let first = place(&params, &land, None, &trees);
+        prop_assert_eq!(&first, &place(&params, &land, None, &trees));
         let other = PlacementParams { tree_seed: params.tree_seed ^ 1, ..params };
-        prop_assert!(first.is_empty() || first != place(&other, &land, &trees));
+        prop_assert!(first.is_empty() || first != place(&other, &land, None, &trees));
     }
 }
 
@@ -191,6 +193,10 @@ fn usual() -> PlacementParams {
         clustering: 0.5,
         steepest_slope_deg: 35.0,
         altitude_limit: 0.8,
+        hardiness_c: -10.0,
+        terrain_seed: 0,
+        temperature_c: 9.0,
+        rain_mm: 800.0,
     }
 }
 
@@ -199,7 +205,7 @@ fn hundreds_to_thousands_and_more_where_more_are_asked_for() {
     let land = land(3, 60.0, 0.1, 257);
     let mut before = 0;
     for density_per_ha in [5.0, 10.0, 20.0, 60.0, 200.0, 600.0] {
-        let count = place(&PlacementParams { density_per_ha, ..usual() }, &land, &[OAK]).len();
+        let count = place(&PlacementParams { density_per_ha, ..usual() }, &land, None, &[OAK]).len();
         assert!(count > before.max(150) && count < MAX_TREES as usize, "{density_per_ha}/ha: {count}");
         before = count;
     }
@@ -223,7 +229,7 @@ fn clustering_goes_from_even_to_groves() {
     land.flow.fill(0.0);
     let index = |clustering| {
         let params = PlacementParams { clustering, density_per_ha: 8.0, altitude_limit: 1.0, ..usual() };
-        clark_evans(&place(&params, &land, &[OAK]))
+        clark_evans(&place(&params, &land, None, &[OAK]))
     };
     let (even, half, groves) = (index(0.0), index(0.5), index(1.0));
     // Even groves stay above 1 themselves: the index is of both. What counts is how far it falls.
@@ -236,7 +242,7 @@ fn trees_are_smaller_at_the_tree_line() {
     let params = PlacementParams { clustering: 0.0, altitude_limit: 0.6, ..usual() };
     let [low, high] = land.field.range_m();
     let (mut near, mut below) = (Vec::new(), Vec::new());
-    for instance in place(&params, &land, &[OAK]) {
+    for instance in place(&params, &land, None, &[OAK]) {
         let altitude = (origin(&instance).y - low) / (high - low);
         let size = libm::cbrtf(linear(&instance).determinant());
         if altitude > 0.56 {
@@ -252,7 +258,85 @@ fn trees_are_smaller_at_the_tree_line() {
 #[test]
 fn hopeless_land_and_no_templates_give_no_trees() {
     let mut drowned = land(1, 50.0, 0.0, 129);
-    assert!(place(&usual(), &drowned, &[]).is_empty());
+    assert!(place(&usual(), &drowned, None, &[]).is_empty());
     drowned.water_level_m = Some(1000.0);
-    assert!(place(&usual(), &drowned, &[OAK]).is_empty());
+    assert!(place(&usual(), &drowned, None, &[OAK]).is_empty());
+}
+
+#[test]
+fn only_hardy_trees_stand_on_snow() {
+    let land = land(3, 200.0, 0.1, 257);
+    // Snow in the northern half.
+    let parts = (0..129 * 129).map(|k| if k < 64 * 129 { 1.0 } else { 0.0 }).collect();
+    let snow = SnowMap { side: 129, extent_m: 1024.0, parts };
+    let on_snow = |hardiness_c: f32, temperature_c: f32| {
+        let params = PlacementParams { hardiness_c, temperature_c, ..usual() };
+        let instances = place(&params, &land, Some(&snow), &[OAK]);
+        let on_snow = instances.iter().filter(|tree| snow.at(origin(tree).x, origin(tree).z) > 0.3).count();
+        (on_snow, instances.len())
+    };
+    for (hardiness_c, temperature_c) in [(4.0, 9.0), (-1.0, 25.0), (-4.0, -5.0), (20.0, -9.0)] {
+        let (on_snow, all) = on_snow(hardiness_c, temperature_c);
+        assert!(on_snow == 0 && all > 40, "{hardiness_c} at {temperature_c}: {on_snow} of {all}");
+    }
+    for (hardiness_c, temperature_c) in [(-10.0, 9.0), (-6.0, 3.0), (-10.0, -5.0)] {
+        let (on_snow, all) = on_snow(hardiness_c, temperature_c);
+        assert!(on_snow > all / 4, "{hardiness_c} at {temperature_c}: {on_snow} of {all}");
+    }
+}
+
+#[test]
+fn trees_in_the_cold_are_few_and_small() {
+    let land = land(3, 60.0, 0.0, 257);
+    let forest = |temperature_c: f32| {
+        let params = PlacementParams { hardiness_c: 10.0, temperature_c, density_per_ha: 150.0, ..usual() };
+        let made = place(&params, &land, None, &[OAK]);
+        let size = made.iter().map(|tree| libm::cbrtf(linear(tree).determinant())).sum::<f32>();
+        (made.len() as f32, size / made.len() as f32)
+    };
+    let [warm, cool, cold] = [12.0, 7.0, -9.0].map(forest);
+    assert_eq!(warm, forest(13.2), "warm enough is warm enough");
+    assert!(cool.0 < warm.0 && cold.0 < 0.5 * warm.0, "{warm:?} {cool:?} {cold:?}");
+    assert!(cool.1 < 0.95 * warm.1 && cold.1 < 0.6 * warm.1, "{warm:?} {cool:?} {cold:?}");
+}
+
+#[test]
+fn trees_of_a_desert_stand_by_water() {
+    let land = land(4, 60.0, 0.2, 257);
+    let mean_flow = |rain_mm: f32| {
+        let params = PlacementParams { rain_mm, temperature_c: 25.0, clustering: 0.0, ..usual() };
+        let made = place(&params, &land, None, &[OAK]);
+        let shore = land.water_level_m.expect("a lake") + 6.0;
+        let site = Site::new(&params, &land, None);
+        let near =
+            |tree: &&Instance| site.flow(origin(tree).x, origin(tree).z) > 0.3 || origin(tree).y < shore;
+        made.iter().filter(near).count() as f32 / made.len() as f32
+    };
+    let (forest, desert) = (mean_flow(2500.0), mean_flow(100.0));
+    assert!(desert > 0.7 && forest < 0.6, "{desert} by water, {forest} where it rains");
+}
+
+#[test]
+fn no_tree_that_needs_warmth_stands_where_the_ground_is_white() {
+    let land = Landform { snow_line_m: 90.0, ..land(6, 200.0, 0.1, 257) };
+    let genes = GroundParams {
+        terrain_seed: 5,
+        talus_angle_deg: 33.0,
+        snow_line: 0.45,
+        temperature_c: 6.0,
+        rain_mm: 1000.0,
+    };
+    let white = ground::maps(&genes, &land, 1024).weights;
+    let snow = ground::snow_map(genes.terrain_seed, &land);
+    let params = PlacementParams { terrain_seed: 5, hardiness_c: 2.0, altitude_limit: 1.0, ..usual() };
+    let made = place(&params, &land, snow.as_ref(), &[OAK]);
+    assert!(made.len() > 100, "{}", made.len());
+    for tree in &made {
+        let [x, z] = [origin(tree).x, origin(tree).z].map(|m| (m + 512.0) as u32);
+        let part = white.pixel(x, z)[2];
+        assert!(part < 150, "{part}/255 of snow at {x}, {z}");
+    }
+    let hardy = place(&PlacementParams { hardiness_c: -10.0, ..params }, &land, snow.as_ref(), &[OAK]);
+    let in_white = hardy.iter().filter(|tree| origin(tree).y > 110.0).count();
+    assert!(in_white > 20, "{in_white}");
 }

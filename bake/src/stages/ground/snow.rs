@@ -1,0 +1,62 @@
+//! The snow line and the traits of a place → how much snow lies there.
+
+use super::cover::step;
+use super::traits::{Patches, Traits, TraitsMap};
+use crate::model::{Landform, SnowMap};
+use crate::raster::raster;
+
+/// Samples a side of a [`SnowMap`]: one in four metres.
+const SIDE: usize = 257;
+/// Noise of single texels is unknown to a map: wherever they might be white, it says so.
+const BROKEN: f32 = 0.9;
+
+/// Where snow may lie on the field; `None` if it lies nowhere.
+pub fn snow_map(terrain_seed: u32, land: &Landform) -> Option<SnowMap> {
+    let highest = land.field.range_m()[1];
+    let snow = Snow::new(land);
+    // As far below its line as snow lies in any hollow.
+    if land.snow_line_m > highest + 6.0 * snow.spread_m {
+        return None;
+    }
+    let extent_m = land.field.extent_m();
+    let traits = TraitsMap::new(&Patches::new(terrain_seed, extent_m, 0.0..=1.0), land, 0.0..=1.0);
+    let place = |k: usize| k as f32 / (SIDE - 1) as f32;
+    let parts = raster(SIDE, SIDE, |j| {
+        let (row, snow) = (traits.row(place(j)), &snow);
+        move |i| snow.part(&row.at(place(i)), BROKEN)
+    });
+    Some(SnowMap { side: SIDE, extent_m, parts })
+}
+
+pub(super) struct Snow {
+    line_m: f32,
+    spread_m: f32,
+    water_m: f32,
+}
+
+impl Snow {
+    pub fn new(land: &Landform) -> Self {
+        let [low, high] = land.field.range_m();
+        Self {
+            line_m: land.snow_line_m,
+            spread_m: 0.05 * (high - low).max(1.0) + 2.0,
+            water_m: land.water_level_m.unwrap_or(low - 1e4),
+        }
+    }
+
+    /// Snow fills hollows below its line and slides off what is steep above it. `broken` is noise of about [-1, 1].
+    #[inline]
+    pub fn part(&self, t: &Traits, broken: f32) -> f32 {
+        let wander = 1.1 * t.patch + 0.8 * t.tuft + 0.9 * broken + 1.2 * t.hollow - 1.0 * (t.slope - 0.6);
+        let depth = (t.height_m - self.line_m) / self.spread_m + wander;
+        if depth <= -0.1 {
+            return 0.0;
+        }
+        let high = ((t.height_m - self.line_m) / (6.0 * self.spread_m)).clamp(0.0, 1.0);
+        // Higher up, snow clings to steeper rock.
+        let holds = 0.95 + 0.5 * high + 0.16 * broken + 0.15 * t.hollow;
+        step(-0.1, 0.25, depth)
+            * (1.0 - step(holds, holds + 0.16, t.slope))
+            * step(0.0, 0.4, t.height_m - self.water_m)
+    }
+}
