@@ -39,7 +39,7 @@ Examples:
 const EXPORT_EXAMPLES: &str = "\
 Examples:
   bake export 1 valley/                a landscape, its sky, its trees
-  bake export 1 valley/ --for blender  and a script that sets up Blender
+  bake export 1 valley/ --for blender  and a script for Blender
   bake export 1 valley.glb             one self-contained file
   bake export world/baked/g0002/scene-1/scene.gltf alps.glb";
 
@@ -362,7 +362,7 @@ mod tests {
     /// A man page leaves 71 columns of a terminal's 80.
     #[test]
     fn examples_are_not_wrapped() {
-        for text in [EXAMPLES, EXPORT_EXAMPLES, COMPLETIONS_EXAMPLE, MAN_EXAMPLES] {
+        for text in [EXAMPLES, KINDS_EXAMPLES, EXPORT_EXAMPLES, COMPLETIONS_EXAMPLE, MAN_EXAMPLES] {
             assert!(text.lines().all(|line| line.chars().count() <= 71), "{text}");
         }
     }

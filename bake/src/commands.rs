@@ -73,7 +73,8 @@ fn dispatch(cli: &Cli) -> Result<()> {
         return Err(BadInput(text.into()).into());
     }
     if run.json && !command.has_json() {
-        let text = "--json prints the events of bakes and exports, and kinds; this command has none and prints text";
+        let text =
+            "--json prints the events of bakes and exports, and kinds; this command has none and prints text";
         return Err(BadInput(text.into()).into());
     }
     match command {
