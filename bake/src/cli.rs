@@ -178,7 +178,8 @@ pub enum Command {
     },
     /// Breed the next population from votes and bake it.
     Next {
-        /// The generation that was voted on [default: the newest]. The child gets the next free number.
+        /// The generation that was voted on [default: the newest]. The child gets the next free number; for votes that
+        /// were answered before, it is another child.
         #[arg(long, value_name = "N")]
         from: Option<u32>,
     },

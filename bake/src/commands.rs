@@ -19,7 +19,7 @@ use crate::plan::Resolution;
 use crate::progress::{JsonLines, ProgressBar};
 use crate::run::RunError;
 use crate::say;
-use crate::session::{Baked, Publish, Session};
+use crate::session::{self, Baked, Publish, Session};
 use crate::watch_loop::{self, Host};
 use crate::{bench, cache_commands, export_command, kinds_command, lod_command, manual, random};
 
@@ -101,7 +101,7 @@ fn resolution(size: u32) -> Result<Resolution> {
     Resolution::of_side(size).map_err(|text| BadInput(text).into())
 }
 
-fn session(args: &RunArgs) -> Result<Session> {
+fn open_session(args: &RunArgs) -> Result<Session> {
     let resolution = resolution(args.size)?;
     Session::new(World::open_or_create(&args.world)?, pool(args.threads)?, resolution)
 }
@@ -200,7 +200,7 @@ fn bake(Cli { run, population, watch, poll, .. }: &Cli) -> Result<()> {
         // Before a world is made for it.
         return Err(WorldError::NoFile(path.clone()).into());
     }
-    let (mut session, console) = (session(run)?, Console::new(run));
+    let (mut session, console) = (open_session(run)?, Console::new(run));
     if population.is_none() && session.world().begin()? && !run.json {
         say!("made {} from the starter landscapes", session.world().root().display());
     }
@@ -214,7 +214,7 @@ fn bake(Cli { run, population, watch, poll, .. }: &Cli) -> Result<()> {
 
 fn random(seed: Option<u64>, wanted: &[String], uniform: bool, args: &RunArgs) -> Result<()> {
     let seed = seed.unwrap_or_else(drawn_seed);
-    let (session, console) = (session(args)?, Console::new(args));
+    let (session, console) = (open_session(args)?, Console::new(args));
     let (space, listener) = (session.space(), console.listener());
     let kinds = if uniform { Kinds::default() } else { session.kinds(&*listener) };
     let wanted = kinds_command::called(&kinds, wanted)?;
@@ -223,7 +223,10 @@ fn random(seed: Option<u64>, wanted: &[String], uniform: bool, args: &RunArgs) -
         drawn.notices.into_iter().for_each(|message| listener.tell(&Event::Notice { message }));
         Some(drawn.population)
     };
-    let make = |generation| make(generation).unwrap_or_else(|| Population::random(space, seed, generation));
+    let make = |generation| {
+        let drawn = make(generation).unwrap_or_else(|| Population::random(space, seed, generation));
+        Ok::<_, WorldError>(drawn)
+    };
     let path = session.world().create_next_population(space, make)?;
     listener.end();
     if !args.json {
@@ -240,16 +243,18 @@ fn drawn_seed() -> u64 {
 fn next(from: Option<u32>, args: &RunArgs) -> Result<()> {
     // Nothing can be bred in a world that would have to be made.
     World::open(&args.world)?;
-    let (session, console) = (session(args)?, Console::new(args));
+    let (session, console) = (open_session(args)?, Console::new(args));
     let world = session.world();
     let parents = match from {
         Some(generation) => world.population_path(generation),
         None => world.newest_population()?,
     };
-    let path = session.breed_file(&parents, &*console.listener())?;
+    let parents = World::read_population(session.space(), &parents)?.population;
+    let kinds = session.kinds(&*console.listener());
+    let path = session::breed_another(world, session.space(), &kinds, &parents)?;
     if args.json {
-        let parent = World::read_population(session.space(), &parents)?.population.generation;
-        JsonLines.tell(&Event::Bred { parent, path: path.display().to_string() });
+        let (parent, path) = (parents.generation, path.display().to_string());
+        JsonLines.tell(&Event::Bred { parent, path });
     }
     console.bake_new(&session, &path)
 }

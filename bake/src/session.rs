@@ -132,7 +132,8 @@ impl Session {
     /// Breeds from the votes in a population file, and writes the child as a new file with the next free number.
     ///
     /// # Errors
-    /// Faults of the file, [`breed::NoVotes`], a file that cannot be written.
+    /// Faults of the file, [`breed::NoVotes`], a number that somebody else has taken meanwhile, a file that cannot be
+    /// written.
     pub fn breed_file(&self, path: &Path, listener: &dyn Listener) -> Result<PathBuf> {
         let parents = World::read_population(&self.space, path)?.population;
         let kinds = self.kinds(listener);
@@ -179,6 +180,27 @@ impl Session {
         }
         Ok(())
     }
+}
+
+/// Breeds from the votes on a population, and writes the child as a new file with the next free number. If there are
+/// children of these votes already, it is another: its seed is the parents' plus their number. Who breeds at the same time
+/// gets a number and a child of his own.
+///
+/// # Errors
+/// [`breed::NoVotes`], a folder that cannot be read or written to.
+pub fn breed_another(world: &World, space: &Space, kinds: &Kinds, parents: &Population) -> Result<PathBuf> {
+    world.create_next_population(space, |generation| {
+        // All files with lower numbers are there by now, so that every number has a seed of its own.
+        let is_sibling = |other: &u32| {
+            let parent = world.parent_of(*other);
+            parent.is_some_and(|parent| {
+                parent.generation == parents.generation && Some(parent.votes) == parents.votes
+            })
+        };
+        let siblings = (0..generation).filter(is_sibling).count();
+        let seed = parents.seed.wrapping_add(siblings as u64);
+        Ok(breed::breed(space, kinds, &Population { seed, ..parents.clone() }, generation)?)
+    })
 }
 
 /// A name in the world as one in the cache's folder.

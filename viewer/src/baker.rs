@@ -1,13 +1,15 @@
 //! Starts the bake in the background: a thread that watches the world folder as `bake --watch` does, at a lower priority
-//! than what draws. The only file of the viewer that knows the bake; its results are in the world's files, and its
-//! progress comes as [`Event`]s.
+//! than what draws. With [`export`] the only file of the viewer that knows the bake; its results are in the world's files,
+//! and its progress comes as [`Event`]s.
 //!
 //! Nothing that happens in here ends the viewer: a mistake in a file, a full disk, even a panic is reported as
 //! [`Event::Failed`], and the watch begins again.
 
+pub mod export;
+
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryIter, channel};
@@ -18,8 +20,9 @@ use anyhow::{Context, Error, Result};
 use genescape_bake::cli::threads;
 use genescape_bake::events::Listener;
 use genescape_bake::plan::Resolution;
-use genescape_bake::session::Session;
+use genescape_bake::session::{self, Session};
 use genescape_bake::watch_loop::{self, Host};
+use genescape_schema::{Parent, Population, Space};
 use genescape_world::World;
 use thread_priority::{ThreadPriority, set_current_thread_priority};
 
@@ -132,6 +135,17 @@ pub fn lower_priority() {
     if let Ok(priority) = PRIORITY.try_into() {
         let _ = set_current_thread_priority(ThreadPriority::Crossplatform(priority));
     }
+}
+
+/// Breeds once more from votes that were answered already: the new file's path. The bake finds it by itself.
+///
+/// # Errors
+/// Parents that cannot be read, a file that cannot be written.
+pub fn breed_another(world: &World, space: &Space, parent: &Parent) -> Result<PathBuf> {
+    let parents = world.population(space, parent.generation)?.population;
+    // The bake tells what is wrong with them.
+    let kinds = world.kinds(space).kinds;
+    session::breed_another(world, space, &kinds, &Population { votes: Some(parent.votes), ..parents })
 }
 
 /// Sends the bake's events to the owner of the [`Baker`].

@@ -7,6 +7,7 @@ use genescape_schema::Category;
 use serde::{Deserialize, Serialize};
 
 use crate::ballots::Ballot;
+use crate::export_choice::ExportChoice;
 use crate::input::Command;
 use crate::options::Options;
 use crate::settings::Comfort;
@@ -33,6 +34,18 @@ pub enum Event {
     Options(Options),
     /// The new comfort, all of it.
     Comfort(Comfort),
+    /// What exports are like from now on, all of it.
+    ExportChoice(ExportChoice),
+    /// Write that landscape as files for other programs.
+    Export(usize),
+    /// The same, for the program over which the pointer lets go.
+    DragOut(usize),
+    /// Choose the folder for exports in a dialogue of the desktop.
+    ChooseExportFolder,
+    /// Show the files of the last export in the desktop's file manager.
+    ShowExported,
+    /// Put them on the clipboard.
+    CopyExported,
     /// Options and comfort as they were at the first start.
     ResetSettings,
     /// Show or hide a panel.
@@ -76,4 +89,6 @@ pub enum Panel {
     Help,
     /// Options and comfort.
     Settings,
+    /// Landscapes as files for other programs.
+    Export,
 }

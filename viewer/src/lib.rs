@@ -11,6 +11,7 @@ pub mod camera;
 pub mod cli;
 pub mod edit_history;
 pub mod event;
+pub mod export_choice;
 #[cfg(feature = "gamepad")]
 pub mod gamepad;
 pub mod gpu;

@@ -15,7 +15,12 @@ const FAILED: u8 = 1;
 const BAD_INPUT: u8 = 2;
 
 fn main() -> ExitCode {
-    match run(Cli::parse()) {
+    let cli = Cli::parse();
+    #[cfg(target_os = "linux")]
+    if cli.screenshot.is_some() || matches!(cli.command, Some(Command::Bench(_))) {
+        leave_the_desktop_alone();
+    }
+    match run(cli) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             let is_bad_input =
@@ -23,6 +28,24 @@ fn main() -> ExitCode {
             eprintln!("error: {}", printable(&format!("{error:#}")));
             ExitCode::from(if is_bad_input { BAD_INPUT } else { FAILED })
         }
+    }
+}
+
+/// Begins again, with one more variable, where no desktop is there. Mesa's layer that orders devices asks Wayland for its
+/// opinion as soon as Vulkan is opened, which complains on the terminal of the folder it lacks. A process must not change
+/// its own variables while drivers' threads may read them, so it is replaced by one that has another.
+#[cfg(target_os = "linux")]
+fn leave_the_desktop_alone() {
+    use std::os::unix::process::CommandExt;
+    const NO_ORDER: &str = "NODEVICE_SELECT";
+    let is_set = |name: &str| std::env::var_os(name).is_some();
+    if is_set("XDG_RUNTIME_DIR") || is_set(NO_ORDER) {
+        return;
+    }
+    let mut words = std::env::args_os();
+    if let (Ok(program), Some(name)) = (std::env::current_exe(), words.next()) {
+        // It comes back only if it cannot; then the line is printed, and all else is as it was.
+        let _ = std::process::Command::new(program).arg0(name).args(words).env(NO_ORDER, "1").exec();
     }
 }
 

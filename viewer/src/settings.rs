@@ -14,6 +14,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::edit_history::Steps;
+use crate::export_choice::ExportChoice;
 use crate::input::Bindings;
 use crate::options;
 
@@ -32,6 +33,8 @@ pub struct Settings {
     pub options: options::Options,
     pub comfort: Part<Comfort>,
     pub bindings: Part<Bindings>,
+    /// How landscapes were exported last.
+    pub export: Part<ExportChoice>,
     /// The window.
     pub window: Window,
     /// The person has walked or voted once.
@@ -75,8 +78,12 @@ impl Settings {
     /// What is wrong with parts of them.
     fn faults(&self) -> Vec<String> {
         let steps = self.worlds.values().map(|world| ("steps", &world.steps.fault));
-        [("comfort", &self.comfort.fault), ("bindings", &self.bindings.fault)]
-            .into_iter()
+        let own = [
+            ("comfort", &self.comfort.fault),
+            ("bindings", &self.bindings.fault),
+            ("export", &self.export.fault),
+        ];
+        own.into_iter()
             .chain(steps)
             .filter_map(|(part, fault)| Some((part, fault.as_ref()?)))
             .map(|(part, fault)| format!("{part} in the settings: {fault}; defaults are used"))

@@ -187,19 +187,19 @@ impl World {
     /// at the same time gets another number.
     ///
     /// # Errors
-    /// The end of numbers, or a folder that cannot be written to.
-    pub fn create_next_population(
+    /// Those of `make`; the end of numbers, or a folder that cannot be written to.
+    pub fn create_next_population<E: From<WorldError>>(
         &self,
         space: &Space,
-        make: impl Fn(u32) -> Population,
-    ) -> Result<PathBuf, WorldError> {
+        make: impl Fn(u32) -> Result<Population, E>,
+    ) -> Result<PathBuf, E> {
         let mut generation = self.next_generation()?;
         loop {
-            match self.create_population(space, &make(generation)) {
+            match self.create_population(space, &make(generation)?) {
                 Err(WorldError::Write { error, .. }) if error.kind() == ErrorKind::AlreadyExists => {
                     generation = generation.checked_add(1).ok_or(WorldError::LastGeneration(generation))?;
                 }
-                result => return result,
+                result => return Ok(result?),
             }
         }
     }
@@ -398,7 +398,8 @@ mod tests {
         let (_folder, world) = world();
         put(&world, 0, None);
         let space = Space::builtin();
-        let make = || world.create_next_population(&space, |number| Population::random(&space, 7, number));
+        let random = |number| Ok::<_, WorldError>(Population::random(&space, 7, number));
+        let make = || world.create_next_population(&space, random);
         let mut made: Vec<PathBuf> = std::thread::scope(|scope| {
             let threads: Vec<_> = (0..6).map(|_| scope.spawn(make)).collect();
             threads.into_iter().map(|thread| thread.join().expect("no panic").expect("made")).collect()

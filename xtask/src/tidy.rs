@@ -61,7 +61,7 @@ const RULES: &[Rule] = &[
         words: &["genescape_bake"],
         why: "knows the bake",
         inside: &["viewer/", "cache/", "schema/", "world-folder/"],
-        except: &["viewer/src/baker.rs"],
+        except: &["viewer/src/baker"],
     },
     Rule {
         words: &["wgpu", "egui", "winit"],

@@ -79,6 +79,14 @@ enum Content {
     BlenderScript,
 }
 
+/// What names of a scene's files begin with: "oak-valley-in-june".
+///
+/// # Errors
+/// A scene that cannot be read.
+pub fn stem(scene: &Path) -> Result<String> {
+    Ok(Names::of(&SceneFile::open(scene)?.json).stem)
+}
+
 /// Writes a scene, its sky and its trees into a folder, which is made if it isn't there.
 ///
 /// # Errors

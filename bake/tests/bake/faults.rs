@@ -1,5 +1,6 @@
 //! What may go wrong around a bake: damage, interruption, a full or forbidden disk, two at once.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -94,6 +95,24 @@ fn ctrl_c_keeps_what_was_finished() {
     assert!(!world.file("baked/current.ron").exists(), "half a generation is not announced");
     let baked = world.bake(&[]).ok();
     assert!(baked.of("finished").any(|event| event["reused"] == true), "what was finished is reused");
+}
+
+#[test]
+fn several_that_breed_at_the_same_time_get_a_number_each() {
+    let world = World::starters();
+    let votes = "votes: Some((tree: Some(0), terrain: Some(1), sky: Some(2)))";
+    world.edit(0, |text| text.replace("votes: None", votes));
+    let breed = || world.spawn(&["next", "--from", "0"]);
+    let processes: Vec<_> = (0..5).map(|_| breed()).collect();
+    for (mut process, lines) in processes {
+        let lines: Vec<String> = lines.collect();
+        assert!(process.wait().expect("our child").success(), "{lines:?}");
+    }
+    let text = |generation| fs::read_to_string(world.population(generation)).expect("a child");
+    let genes = |text: String| text.split_once("individuals").expect("genes").1.to_owned();
+    let children: BTreeSet<String> = (1..=5).map(text).map(genes).collect();
+    assert_eq!(children.len(), 5, "no two are the same");
+    assert!(!world.population(6).exists());
 }
 
 #[test]

@@ -5,6 +5,7 @@ use genescape_world::Source;
 use winit::event_loop::ActiveEventLoop;
 use winit::window::Fullscreen;
 
+use super::exports::Then;
 use super::{App, lands};
 use crate::ballots::Ballot;
 use crate::event::{Arrangement, Event, Panel};
@@ -33,6 +34,12 @@ impl App {
             Event::LockCategory { category, locked } => self.editor.lock(category.name(), locked),
             Event::Options(options) => settings.options = options,
             Event::Comfort(comfort) => settings.comfort.value = comfort,
+            Event::ExportChoice(choice) => settings.export.value = choice,
+            Event::Export(view) => self.export(view, Then::Tell),
+            Event::DragOut(view) => self.drag_out(view),
+            Event::ChooseExportFolder => self.exports.choose_folder(self.wake()),
+            Event::ShowExported => self.show_exported(),
+            Event::CopyExported => self.copy_exported(),
             Event::ResetSettings => {
                 settings.options = Options::default();
                 settings.comfort = Default::default();
@@ -66,6 +73,7 @@ impl App {
             Command::Compare => self.layout.compare(),
             Command::Vote(Best { category, landscape }) => self.vote_by_key(category, landscape),
             Command::NextGeneration => self.editor.breed(),
+            Command::BreedAgain => self.editor.breed_again(),
             Command::Undo => self.editor.undo(),
             Command::Redo => self.editor.redo(),
             Command::OlderGeneration => self.step_generation(-1),
@@ -78,6 +86,7 @@ impl App {
             Command::Settings => self.layout.toggle(Panel::Settings),
             Command::Fullscreen => self.toggle_fullscreen(),
             Command::Screenshot => self.screenshot = true,
+            Command::Export => self.layout.toggle(Panel::Export),
             Command::Quit => events.exit(),
             Command::NextTreeLod => {
                 options.tree_lod = options.tree_lod.next();

@@ -4,7 +4,9 @@
 
 mod camera_control;
 mod dispatch;
+mod drag_out;
 mod editor;
+mod exports;
 mod layout;
 mod lod_readback;
 mod log;
@@ -26,6 +28,7 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy}
 
 use crate::baker::Baker;
 use crate::cli::Cli;
+use crate::event::Event;
 use crate::gpu::Gpu;
 use crate::input::Bindings;
 use crate::loader::{Loader, Request};
@@ -36,6 +39,7 @@ use crate::ui::{self, Tone};
 use crate::walk::Land;
 use camera_control::CameraControl;
 use editor::{Editor, Task};
+use exports::Exports;
 use layout::Layout;
 use log::{Log, Moment};
 use pace::{Next, Pace, Sharpness, Shown};
@@ -83,6 +87,7 @@ struct App {
     ui: ui::State,
     focus: Focus,
     background: Background,
+    exports: Exports,
     pace: Pace,
     /// When settings were saved last, if they had changed.
     last_save: Instant,
@@ -134,6 +139,7 @@ impl App {
             ui: ui::State::default(),
             focus: Focus::default(),
             background: Background::default(),
+            exports: Exports::default(),
             pace: Pace::new(now),
             last_save: now,
             screenshot: false,
@@ -151,9 +157,14 @@ impl App {
     }
 
     fn tell(&mut self, tone: Tone, text: impl Into<String>) {
+        self.offer(tone, text, None);
+    }
+
+    /// Tells something; a click on the notice asks for `event`.
+    fn offer(&mut self, tone: Tone, text: impl Into<String>, event: impl Into<Option<Event>>) {
         let text = text.into();
         self.log.note("told", json!({ "text": text }));
-        self.ui.notify(tone, text);
+        self.ui.notify(tone, text, event.into());
         self.redraw();
     }
 
@@ -237,6 +248,7 @@ impl App {
             self.editor.changed(change);
         }
         self.show_loaded();
+        self.hear_exports();
         if self.live.is_some() {
             self.editor.take_tasks().into_iter().for_each(|task| self.carry_out(task));
         }
@@ -266,6 +278,7 @@ impl App {
     fn carry_out(&mut self, task: Task) {
         match task {
             Task::Tell(tone, text) => self.tell(tone, text),
+            Task::Offer(text, event) => self.offer(Tone::Info, text, event),
             Task::BeginWalk if self.file.settings.comfort.value.stay => {}
             Task::BeginWalk => self.camera.await_landscapes(),
             Task::Load { view, generation, path } => {

@@ -44,6 +44,7 @@ impl App {
             greets: !settings.greeted,
             options: settings.options,
             comfort: settings.comfort.value,
+            export: self.exports.model(&settings.export.value, &self.source),
             panels: self.layout.panels,
             captured: self.camera.captured(),
         }

@@ -213,13 +213,18 @@ mod tests {
         "vote_tree_4": ["P"], "vote_tree_none": ["["], "walk_fly_orbit": ["F"], "wireframe": ["F7"],
     }"#;
 
+    /// Commands that the first version did not have.
+    const SINCE_THEN: [&str; 2] = ["breed_again", "export"];
+
     #[test]
     fn the_first_versions_settings_are_read_and_are_still_the_defaults() {
         let bindings = read(FIRST_DEFAULTS).expect("valid");
         assert_eq!(bindings, Bindings::default());
         type File = BTreeMap<String, Vec<String>>;
         let file: File = ron::from_str(FIRST_DEFAULTS).expect("valid");
-        assert_eq!(File::from(bindings), file, "they are written as they were read");
+        let mut written = File::from(bindings);
+        written.retain(|command, _| !SINCE_THEN.contains(&command.as_str()));
+        assert_eq!(written, file, "they are written as they were read");
     }
 
     #[test]
@@ -321,6 +326,6 @@ mod tests {
         assert_eq!(keys("best tree: landscape 1 to 4"), Some("U I O P"));
         assert_eq!(keys("best sky: none of them"), Some("\\"));
         assert_eq!(keys("go to a bookmark"), Some("Alt+1 … Alt+9"));
-        assert_eq!(lines.len(), 38);
+        assert_eq!(lines.len(), 40);
     }
 }

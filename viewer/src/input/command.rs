@@ -72,6 +72,9 @@ pub enum Command {
     /// breed the next generation
     #[strum(props(keys = "N"))]
     NextGeneration,
+    /// breed once more from the same votes
+    #[strum(props(keys = "Shift+N"))]
+    BreedAgain,
     /// undo
     #[strum(props(keys = "Ctrl+Z"))]
     Undo,
@@ -108,6 +111,9 @@ pub enum Command {
     /// save a picture
     #[strum(props(keys = "F12"))]
     Screenshot,
+    /// export a landscape
+    #[strum(props(keys = "E"))]
+    Export,
     /// close the window
     #[strum(props(keys = "Ctrl+Q"))]
     Quit,
@@ -263,9 +269,9 @@ mod tests {
             fixed("forward back left right up down run walk_fly_orbit release_mouse start"),
             fixed("maximise_1 maximise_2 maximise_3 maximise_4 show_all compare"),
             ["tree", "terrain", "sky"].into_iter().flat_map(votes).collect(),
-            fixed("next_generation undo redo older_generation newer_generation"),
+            fixed("next_generation breed_again undo redo older_generation newer_generation"),
             marks("set").chain(marks("go")).collect(),
-            fixed("help genome stats settings fullscreen screenshot quit"),
+            fixed("help genome stats settings fullscreen screenshot export quit"),
             fixed("tree_scheme terrain_scheme wireframe tint overhead"),
         ];
         assert_eq!(names, known.concat());

@@ -1,5 +1,6 @@
-//! WGSL sources: built in, or from a folder while one works on them. Each is `common.wgsl` followed by a pass's own,
-//! checked by naga so that errors are reported with file and line before the driver sees anything.
+//! WGSL sources: built in, or from a folder while one works on them. Each is a pass's own, whose lines so keep their
+//! numbers, followed by `common.wgsl`; checked by naga so that errors are reported with file and line before the driver
+//! sees anything.
 
 use std::path::PathBuf;
 
@@ -7,7 +8,7 @@ use thiserror::Error;
 
 use super::SHADERS;
 
-/// What every pass's shader starts with.
+/// What every pass's shader ends with.
 const COMMON: &str = include_str!("common.wgsl");
 
 /// Where sources come from.
@@ -56,27 +57,33 @@ impl Shaders {
         }
     }
 
-    /// The whole text of a shader: common part, then its own.
+    /// The whole text of a shader: its own, then the common part.
     pub fn text(&self, name: &str) -> Result<String, ShaderError> {
+        Ok(self.own_text(name)? + &self.source("common", COMMON)?)
+    }
+
+    fn own_text(&self, name: &str) -> Result<String, ShaderError> {
         let builtin = SHADERS.iter().find(|shader| shader.name == name).map_or("", |shader| shader.source);
-        Ok(self.source("common", COMMON)? + &self.source(name, builtin)?)
+        Ok(self.source(name, builtin)? + "\n")
     }
 
     /// Parses and checks a shader.
     pub fn check(&self, name: &str) -> Result<(naga::Module, naga::valid::ModuleInfo), ShaderError> {
-        let text = self.text(name)?;
-        let common_lines = self.source("common", COMMON)?.lines().count();
-        let wrong = |error: String| ShaderError::Wrong {
-            name: name.to_owned(),
-            text: format!("{error}(its first {common_lines} lines are those of common.wgsl)"),
+        let (own_lines, text) = (self.own_text(name)?.lines().count(), self.text(name)?);
+        let wrong = |mut text: String, place: Option<naga::SourceLocation>| {
+            let line = place.and_then(|place| (place.line_number as usize).checked_sub(own_lines));
+            if let Some(line @ 1..) = line {
+                text += &format!("(that is line {line} of common.wgsl)");
+            }
+            ShaderError::Wrong { name: name.to_owned(), text }
         };
         let path = format!("{name}.wgsl");
         let module = naga::front::wgsl::parse_str(&text)
-            .map_err(|error| wrong(error.emit_to_string_with_path(&text, &path)))?;
+            .map_err(|error| wrong(error.emit_to_string_with_path(&text, &path), error.location(&text)))?;
         let flags = naga::valid::ValidationFlags::all();
         let info = naga::valid::Validator::new(flags, naga::valid::Capabilities::all())
             .validate(&module)
-            .map_err(|error| wrong(error.emit_to_string_with_path(&text, &path)))?;
+            .map_err(|error| wrong(error.emit_to_string_with_path(&text, &path), error.location(&text)))?;
         Ok((module, info))
     }
 

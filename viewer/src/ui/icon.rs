@@ -28,6 +28,7 @@ pub enum Icon {
     Reset,
     Warning,
     Copy,
+    Export,
 }
 
 impl From<Category> for Icon {

@@ -4,11 +4,13 @@
 pub mod arrange;
 mod bake_log;
 mod empty;
+mod export;
 mod gene_row;
 mod genome;
 mod help;
 pub mod icon;
 pub mod model;
+mod notices;
 mod report;
 mod settings;
 pub mod stats;
@@ -22,18 +24,14 @@ mod votes;
 mod widgets;
 
 use egui::{Rect, Ui};
-use egui_notify::{Anchor, Toasts};
 
+pub use notices::Tone;
 pub use views::Views;
 
 use crate::event::{Event, Panel};
 use model::Model;
+use notices::Notices;
 use widgets::{Asks, ask, asked};
-
-/// Notices that are shown at a time: more would reach up to the next picture's buttons.
-const NOTICES: usize = 3;
-/// Space between notices and the lower left corner of the pictures: there are vote buttons.
-const NOTICES_AT: egui::Vec2 = egui::vec2(14.0, 56.0);
 
 /// What the panels remember between frames.
 pub struct State {
@@ -41,43 +39,19 @@ pub struct State {
     pub split: f32,
     /// Search field and what is being dragged.
     pub genome: genome::State,
-    toasts: Toasts,
+    notices: Notices,
 }
 
 impl Default for State {
     fn default() -> Self {
-        let toasts = Toasts::default().with_anchor(Anchor::BottomLeft).with_margin(NOTICES_AT);
-        Self { split: 0.5, genome: genome::State::default(), toasts }
+        Self { split: 0.5, genome: genome::State::default(), notices: Notices::default() }
     }
 }
 
-/// How a notice looks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Tone {
-    /// For information.
-    Info,
-    /// Something was done.
-    Success,
-    /// Something deserves attention.
-    Warning,
-    /// Something failed; stays longer.
-    Error,
-}
-
 impl State {
-    /// Shows a notice for some seconds.
-    pub fn notify(&mut self, tone: Tone, text: impl Into<String>) {
-        let text = text.into();
-        if self.toasts.len() >= NOTICES {
-            self.toasts.dismiss_oldest_toast();
-        }
-        let (toast, seconds) = match tone {
-            Tone::Info => (self.toasts.info(text), 4),
-            Tone::Success => (self.toasts.success(text), 4),
-            Tone::Warning => (self.toasts.warning(text), 7),
-            Tone::Error => (self.toasts.error(text), 12),
-        };
-        toast.duration(std::time::Duration::from_secs(seconds)).show_progress_bar(false);
+    /// Shows a notice for some seconds; a click on it takes it away or, if there is one, asks for `event`.
+    pub fn notify(&mut self, tone: Tone, text: impl Into<String>, event: Option<Event>) {
+        self.notices.add(tone, text.into(), event);
     }
 }
 
@@ -114,16 +88,16 @@ pub fn show(ui: &mut Ui, model: &Model, state: &mut State) -> Output {
     if model.panels.settings {
         settings::show(ui, model, area);
     }
+    if model.panels.export {
+        export::show(ui, model, area);
+    }
     if model.panels.help {
         help::show(ui, model);
     }
     empty::drop_target(ui);
     let dropped = ui.input(|input| input.raw.dropped_files.clone());
     dropped.into_iter().for_each(|file| ask(ui, Event::OpenFolder(file.path().to_path_buf())));
-    let below = ui.ctx().content_rect().bottom() - area.bottom();
-    let margin = NOTICES_AT + egui::vec2(area.left(), below);
-    state.toasts = std::mem::take(&mut state.toasts).with_margin(margin);
-    state.toasts.show(ui.ctx());
+    state.notices.show(ui, area);
     output.events = asked(ui);
     output.typing = ui.ctx().text_edit_focused();
     output

@@ -9,6 +9,7 @@ use genescape_schema::{Genome, INDIVIDUALS, Parameter, Parent, Space};
 
 use crate::ballots::Ballots;
 use crate::event::{Arrangement, Panel};
+use crate::export_choice::ExportChoice;
 use crate::input::{Bindings, Command};
 use crate::options::Options;
 use crate::settings::Comfort;
@@ -60,6 +61,8 @@ pub struct Model {
     pub options: Options,
     /// How the program handles.
     pub comfort: Comfort,
+    /// Landscapes as files for other programs.
+    pub export: ExportModel,
     /// The panels that are shown.
     pub panels: Panels,
     /// The pointer is locked into the picture: nothing reacts to it.
@@ -215,6 +218,18 @@ pub struct PassTime {
     pub ms: [f32; INDIVIDUALS],
 }
 
+/// What the export card shows.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ExportModel {
+    pub choice: ExportChoice,
+    /// Where files go while no folder is chosen.
+    pub default_folder: String,
+    /// Files that are written, and all, while an export is on its way.
+    pub progress: Option<(usize, usize)>,
+    /// What the last export has written, in words.
+    pub written: Option<String>,
+}
+
 /// Which panels are shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Panels {
@@ -226,6 +241,8 @@ pub struct Panels {
     pub help: bool,
     /// Options and comfort.
     pub settings: bool,
+    /// Landscapes as files.
+    pub export: bool,
 }
 
 impl Panels {
@@ -235,6 +252,7 @@ impl Panels {
             Panel::Stats => &mut self.stats,
             Panel::Help => &mut self.help,
             Panel::Settings => &mut self.settings,
+            Panel::Export => &mut self.export,
         }
     }
 
@@ -243,8 +261,13 @@ impl Panels {
         *self.one(panel)
     }
 
-    /// Shows or hides a panel.
+    /// Shows or hides a panel. Settings and export have one place.
     pub fn set(&mut self, panel: Panel, open: bool) {
         *self.one(panel) = open;
+        match panel {
+            Panel::Settings => self.export &= !open,
+            Panel::Export => self.settings &= !open,
+            _ => {}
+        }
     }
 }

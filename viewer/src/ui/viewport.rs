@@ -2,32 +2,25 @@
 //! when it does not show what it should, why and what to do.
 
 use egui::text::{LayoutJob, TextFormat, TextWrapping};
-use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
+use egui::{Align2, Color32, CursorIcon, FontId, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 use genescape_schema::INDIVIDUALS;
 
 use super::icon::Icon;
 use super::model::{Model, ViewModel, ViewState};
 use super::theme;
 use super::widgets::{Asks, ask, painted_button, progress_ring};
-use crate::event::{Arrangement, Event};
+use crate::event::{Arrangement, Event, Panel};
+use crate::input::Command;
 
 /// Side of a button on a picture, in points.
 const BUTTON: f32 = 26.0;
+/// A part of a picture narrower than this, beside a splitter, has no handle to export it by, in points.
+const NARROW: f32 = 140.0;
 
 /// Draws name, buttons and state over the picture in `rect`; `lively` when the pointer is over it. Where the name ends.
 pub fn show(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool) -> Pos2 {
     if view >= model.count {
         return rect.min;
-    }
-    // Where they would be, so that the name stays as it is when they come.
-    let buttons = if matches!(model.arrangement, Arrangement::Grid) { 2.0 * (BUTTON + 4.0) } else { 0.0 };
-    let below = name_tag(ui, model, view, rect, rect.width() - 20.0 - buttons);
-    match &model.views[view].state {
-        ViewState::Ready => {}
-        ViewState::Waiting => progress(ui, rect, 0.0, "…", "waiting to grow".to_owned()),
-        ViewState::Baking { done, total, stage } => baking(ui, rect, *done, *total, stage),
-        ViewState::Loading => progress(ui, rect, 1.0, "100%", "loading".to_owned()),
-        ViewState::Failed { what, remedy } => failed(ui, view, rect, what, remedy),
     }
     let compared = Arrangement::Compare { left: view, right: (view + 1) % INDIVIDUALS };
     let tools: &[(Icon, &str, Arrangement)] = match model.arrangement {
@@ -38,6 +31,17 @@ pub fn show(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool) -
         Arrangement::One(_) if model.count > 1 => &[(Icon::Grid, "Show all four", Arrangement::Grid)],
         Arrangement::One(_) | Arrangement::Compare { .. } => &[],
     };
+    // Where they would be, so that the name stays as it is when they come.
+    let exports = rect.width() >= NARROW;
+    let buttons = (tools.len() + usize::from(exports)) as f32 * (BUTTON + 4.0);
+    let below = name_tag(ui, model, view, rect, rect.width() - 20.0 - buttons);
+    match &model.views[view].state {
+        ViewState::Ready => {}
+        ViewState::Waiting => progress(ui, rect, 0.0, "…", "waiting to grow".to_owned()),
+        ViewState::Baking { done, total, stage } => baking(ui, rect, *done, *total, stage),
+        ViewState::Loading => progress(ui, rect, 1.0, "100%", "loading".to_owned()),
+        ViewState::Failed { what, remedy } => failed(ui, view, rect, what, remedy),
+    }
     let mut corner = rect.right_top() + vec2(-10.0 - BUTTON, 10.0);
     for &(icon, label, arrangement) in tools.iter().filter(|_| lively) {
         let rect = Rect::from_min_size(corner, vec2(BUTTON, BUTTON));
@@ -48,7 +52,26 @@ pub fn show(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool) -
         response.on_hover_text(label).asks(Event::Arrange(arrangement));
         corner.x -= BUTTON + 4.0;
     }
+    if lively && exports && matches!(model.views[view].state, ViewState::Ready) {
+        export_handle(ui, model, view, Rect::from_min_size(corner, vec2(BUTTON, BUTTON)));
+    }
     below
+}
+
+/// A click shows the export card; a drag leads out of the window, to the program that gets the landscape.
+fn export_handle(ui: &mut Ui, model: &Model, view: usize, rect: Rect) {
+    let name = format!("Export: {}", view + 1);
+    let (response, lit) = painted_button(ui, rect, ("export", view), &name, false);
+    ui.painter().rect_filled(rect, 13, scrim(lit));
+    Icon::Export.paint(ui.painter(), rect.shrink(7.0), theme::ON_SCRIM);
+    response.asks(Event::Choose(view));
+    response.asks(Event::Panel { panel: Panel::Export, open: true });
+    let response = response.interact(Sense::drag()).on_hover_and_drag_cursor(CursorIcon::Grab);
+    if response.drag_started() {
+        ask(ui, Event::DragOut(view));
+    }
+    let text = model.with_key("Export as files", Command::Export);
+    response.on_hover_text(format!("{text}, or drag it to another program"));
 }
 
 /// The ground of a button on a picture.

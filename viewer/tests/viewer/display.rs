@@ -23,7 +23,7 @@ pub mod keys {
         };
     }
     keys! {
-        ESCAPE = 1, U = 22, Y = 21, ENTER = 28, CTRL = 29, A = 30, G = 34, Z = 44, N = 49, DOT = 52, W = 17, S = 31, F5 = 63,
+        ESCAPE = 1, E = 18, U = 22, Y = 21, ENTER = 28, CTRL = 29, A = 30, G = 34, Z = 44, N = 49, DOT = 52, W = 17, S = 31, F5 = 63,
         F12 = 88,
         TAB = 15, PAGE_UP = 104, PAGE_DOWN = 109,
     }

@@ -2,7 +2,9 @@
 //! without a screen: `cargo xtask test` installs both where it may, and runs them.
 
 mod cracks;
+mod desktop;
 mod display;
+mod exports;
 mod golden;
 mod lod_twin;
 mod made_up;

@@ -32,3 +32,19 @@ fn mistakes_are_told_and_leave_nothing() {
     let left = fs::read_dir(folder.path()).expect("ours").count();
     assert!(left == 2 && !at("alps/population/a.png").exists(), "{left} things lie there");
 }
+
+#[test]
+#[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
+fn where_no_window_is_opened_nothing_is_said_of_a_desktop() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    fs::write(folder.path().join("empty.gltf"), r#"{"asset": {"version": "2.0"}}"#).expect("written");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_viewer"));
+    for name in ["XDG_RUNTIME_DIR", "DISPLAY", "WAYLAND_DISPLAY"] {
+        command.env_remove(name);
+    }
+    let words = ["empty.gltf", "--screenshot", "a.png", "--size", "64x64"];
+    let output = command.args(words).current_dir(folder.path()).output().expect("the viewer is built");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("empty.gltf") && !said.contains("XDG_RUNTIME_DIR"), "{said}");
+    assert_eq!(said.lines().count(), 1, "{said}");
+}

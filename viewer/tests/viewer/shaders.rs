@@ -53,8 +53,19 @@ fn every_shader_is_valid_and_one_that_is_not_is_told_with_its_line() {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("sky.wgsl"), "\n\nfn broken() -> f32 { return 1u; }\n")
         .expect("written");
-    let error = Shaders::from(Some(folder.path().to_owned())).check("sky").expect_err("it is wrong");
-    assert!(error.to_string().contains("sky.wgsl") && error.to_string().contains("1u"), "{error}");
+    let told = || {
+        let shaders = Shaders::from(Some(folder.path().to_owned()));
+        shaders.check("sky").expect_err("it is wrong").to_string()
+    };
+    assert!(
+        told().contains("sky.wgsl:3:") && told().contains("1u") && !told().contains("common"),
+        "{}",
+        told()
+    );
+    std::fs::write(folder.path().join("sky.wgsl"), "\n\n").expect("written");
+    std::fs::write(folder.path().join("common.wgsl"), "\nfn broken() -> f32 { return 1u; }\n")
+        .expect("written");
+    assert!(told().contains("line 2 of common.wgsl"), "{}", told());
 }
 
 #[test]

@@ -18,6 +18,7 @@ use genescape_world::{Change, Source, World, names};
 use crate::baker;
 use crate::ballots::Ballots;
 use crate::edit_history::Steps;
+use crate::event::Event;
 use crate::settings::WorldSettings;
 use crate::ui::Tone;
 use crate::ui::model::FileError;
@@ -42,6 +43,8 @@ pub enum Task {
     Load { view: usize, generation: u32, path: PathBuf },
     /// Tell the person.
     Tell(Tone, String),
+    /// Tell them, and do this if they click on it.
+    Offer(String, Event),
     /// A new generation is on show: walks begin at its start.
     BeginWalk,
 }
@@ -218,6 +221,14 @@ impl Editor {
         };
         self.ancestors = self.parents.get(&generation).and_then(names);
         (0..INDIVIDUALS).for_each(|view| self.load(view));
+    }
+
+    /// The scene file of a landscape on show; it need not exist.
+    pub fn scene(&self, view: usize) -> Option<PathBuf> {
+        match &self.source {
+            Source::World(_) => Some(self.world.scene_path(self.generation, view)),
+            Source::Scenes(scenes) => scenes.get(view).cloned(),
+        }
     }
 
     fn load(&mut self, view: usize) {

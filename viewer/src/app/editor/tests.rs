@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::ballots::Ballot;
+use crate::input::Command;
 use crate::ui::model::ViewState;
 use genescape_schema::{Category, Parent};
 
@@ -240,4 +241,39 @@ fn a_scene_that_cannot_be_shown_is_read_again_when_one_tries_again() {
     assert!(matches!(editor.state(0), ViewState::Failed { .. }) && editor.count() == 1);
     editor.retry();
     assert_eq!((editor.take_tasks(), editor.state(0)), (vec![load], ViewState::Loading));
+}
+
+#[test]
+fn breeding_again_gives_other_children_of_the_same_votes() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (mut editor, _) = starter(folder.path());
+    editor.breed_again();
+    assert!(
+        matches!(&editor.take_tasks()[..], [.., Task::Tell(_, text)] if text.starts_with("Vote and breed"))
+    );
+    Category::ALL.into_iter().for_each(|category| editor.vote(category, Ballot::For(1)));
+    editor.breed();
+    let votes = editor.world.population(&editor.space, 0).expect("valid").population.votes.expect("written");
+    let parent = Parent { generation: 0, votes };
+    // As the bake does when it sees the votes.
+    crate::baker::breed_another(&editor.world, &editor.space, &parent).expect("bred");
+    editor.changed(Change::Population(1));
+    editor.visit(0);
+    Category::ALL.into_iter().for_each(|category| editor.vote(category, Ballot::For(1)));
+    editor.take_tasks();
+    editor.breed();
+    assert_eq!(editor.generations().0, 1, "they are there already");
+    let offered = editor.take_tasks();
+    let again = |task: &Task| matches!(task, Task::Offer(_, event) if *event == Command::BreedAgain.into());
+    assert!(offered.iter().any(again), "{offered:?}");
+    editor.breed_again();
+    editor.changed(Change::Population(2));
+    assert_eq!(editor.generations(), (2, [0, 1, 2].as_slice()));
+    let genomes = [1, 2].map(|generation| {
+        assert_eq!(editor.world.parent_of(generation), Some(parent));
+        let population = editor.world.population(&editor.space, generation).expect("valid").population;
+        population.individuals.map(|individual| individual.genome)
+    });
+    assert_eq!(genomes[0][0], genomes[1][0], "the favourites are united in both");
+    assert!((1..4).all(|child| genomes[0][child] != genomes[1][child]), "the others are others");
 }

@@ -1,11 +1,14 @@
 //! Votes: cast, and written into the population's file.
 
+use anyhow::Error;
 use genescape_schema::{Category, Parent};
 use genescape_world::WorldError;
 
 use super::{Editor, Task};
+use crate::baker::breed_another;
 use crate::ballots::{Ballot, Ballots};
 use crate::edit_history::{Change, Edit, Step};
+use crate::input::Command;
 use crate::ui::Tone;
 
 impl Editor {
@@ -39,6 +42,26 @@ impl Editor {
         }
     }
 
+    /// Breeds once more from votes that were answered: those on the generation on show or, as long as there are none, those
+    /// it was bred from itself.
+    pub fn breed_again(&mut self) {
+        let generation = self.generation;
+        let here = self.ballots.votes().map(|votes| Parent { generation, votes });
+        let parent = here.or_else(|| self.parents.get(&generation).copied());
+        let Some(parent) = parent.filter(|_| self.world().is_some()) else {
+            return self
+                .tell(Tone::Info, "Vote and breed first: then this breeds once more from the same votes");
+        };
+        let known = self.world.child_of(&parent);
+        if let (Ok(None), Some(_)) = (&known, here) {
+            return self.breed();
+        }
+        match known.map_err(Error::from).and_then(|_| breed_another(&self.world, &self.space, &parent)) {
+            Ok(_) => self.follows = true,
+            Err(error) => self.tell(Tone::Error, format!("Nothing is bred: {error:#}")),
+        }
+    }
+
     /// Shows the generation bred from another by these ballots, all of which are cast, or asks for it.
     pub(super) fn breed_from(&mut self, from: u32, ballots: Ballots) -> Result<Step, WorldError> {
         let votes = ballots.votes().unwrap_or_default();
@@ -48,7 +71,9 @@ impl Editor {
             Some(child) => {
                 self.visit(child);
                 self.tasks.push(Task::BeginWalk);
-                self.tell(Tone::Info, format!("Generation {child} was bred from these votes"));
+                let text =
+                    format!("Generation {child} was bred from these votes. Click to breed four others");
+                self.tasks.push(Task::Offer(text, Command::BreedAgain.into()));
             }
             None => {
                 self.show_ballots(from, ballots);

@@ -38,11 +38,12 @@ fn worlds() -> Vec<(&'static str, Model)> {
                 model.panels.settings = true;
             }),
         ),
+        ("export", change(|model| model.panels.export = true)),
         ("help", change(|model| model.panels.help = true)),
         (
             "all",
             change(|model| {
-                model.panels = Panels { genome: true, stats: true, help: false, settings: true };
+                model.panels = Panels { genome: true, stats: true, settings: true, ..Panels::default() };
             }),
         ),
         (

@@ -1,6 +1,7 @@
 //! A made-up world for the interface's tests, and a bench that shows it without a window.
 
 mod behaviour;
+mod export;
 mod layout;
 mod pictures;
 mod shown;
@@ -12,7 +13,9 @@ use egui::{Color32, ColorImage, TextureHandle, TextureOptions, Vec2};
 use egui_kittest::{Harness, HarnessBuilder};
 use genescape_schema::{Parent, Population, Space, Votes};
 
-use super::model::{Baking, FileError, Genes, Model, Panels, PassTime, Situation, StageEntry, Stats};
+use super::model::{
+    Baking, ExportModel, FileError, Genes, Model, Panels, PassTime, Situation, StageEntry, Stats,
+};
 use super::model::{ViewModel, ViewState};
 use super::{Output, State, theme};
 use crate::ballots::Ballots;
@@ -113,6 +116,7 @@ pub fn model() -> Model {
         greets: false,
         options: Options::default(),
         comfort: Comfort::default(),
+        export: ExportModel { default_folder: "exports".to_owned(), ..ExportModel::default() },
         panels: Panels::default(),
         captured: false,
     }

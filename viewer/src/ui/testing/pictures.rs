@@ -182,11 +182,12 @@ const SCENES: [Scene; 20] = [
             model.panels.stats = true;
         },
         |harness| {
-            harness
-                .state_mut()
-                .state
-                .notify(super::super::Tone::Success, "Screenshot saved: world/screenshots/g0003.png");
-            harness.state_mut().state.notify(super::super::Tone::Error, "space.ron: 2 errors");
+            harness.state_mut().state.notify(
+                super::super::Tone::Success,
+                "Screenshot saved: world/screenshots/g0003.png",
+                None,
+            );
+            harness.state_mut().state.notify(super::super::Tone::Error, "space.ron: 2 errors", None);
         },
     ),
     ("help", [1280.0, 800.0], 1.0, egui::Theme::Dark, |model| model.panels.help = true, nothing),
@@ -228,7 +229,7 @@ const SCENES: [Scene; 20] = [
             model.views[1].name = "Spruces by a mountain lake · land × 1 · sky varied".to_owned();
         },
         |harness| {
-            harness.state_mut().state.notify(super::super::Tone::Error, "The votes are not written");
+            harness.state_mut().state.notify(super::super::Tone::Error, "The votes are not written", None);
             harness.hover_at(egui::pos2(60.0, 65.0));
         },
     ),

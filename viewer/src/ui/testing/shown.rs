@@ -64,7 +64,7 @@ fn notices_lie_on_no_vote_button() {
             world.panels.stats = stats;
             let mut harness = bench(world, size, 1.0);
             for text in NOTICES {
-                harness.state_mut().state.notify(crate::ui::Tone::Info, text);
+                harness.state_mut().state.notify(crate::ui::Tone::Info, text, None);
             }
             harness.run_steps(6);
             let told: Vec<_> = NOTICES.iter().filter_map(|text| text_rect(&harness, text)).collect();
