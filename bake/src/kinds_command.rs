@@ -15,7 +15,7 @@ pub fn run(action: Option<&KindsCommand>, args: &RunArgs) -> Result<()> {
     let (space, _) = world.space()?;
     let found = world.kinds(&space);
     match action {
-        None => list(&world, &space, &found, args.json),
+        None => list(&space, &found, args.json),
         Some(KindsCommand::Show { kind }) => {
             let kind = only(&found.kinds, kind)?;
             say!("{}", world.kind_text(kind.category, &kind.id)?.trim_end());
@@ -66,13 +66,12 @@ fn only<'a>(kinds: &'a Kinds, word: &str) -> Result<&'a Kind, BadInput> {
     }
 }
 
-fn list(world: &World, space: &Space, found: &WorldKinds, json: bool) -> Result<()> {
+fn list(space: &Space, found: &WorldKinds, json: bool) -> Result<()> {
     let WorldKinds { kinds, faults } = found;
-    let own = |kind: &Kind| world.kind_path(kind.category, &kind.id).is_file();
     if json {
-        kinds.iter().for_each(|kind| say!("{}", object(space, kind, own(kind))));
+        kinds.iter().for_each(|kind| say!("{}", object(space, kind)));
     } else {
-        Category::ALL.into_iter().for_each(|category| table(space, kinds, category, &own));
+        Category::ALL.into_iter().for_each(|category| table(space, kinds, category));
     }
     match faults.len() {
         0 => Ok(()),
@@ -84,7 +83,7 @@ fn list(world: &World, space: &Space, found: &WorldKinds, json: bool) -> Result<
     }
 }
 
-fn table(space: &Space, kinds: &Kinds, category: Category, own: &dyn Fn(&Kind) -> bool) {
+fn table(space: &Space, kinds: &Kinds, category: Category) {
     let all: Vec<&Kind> = kinds.of(category).collect();
     let width = |of: &dyn Fn(&Kind) -> usize| all.iter().map(|kind| of(kind)).max().unwrap_or(0);
     let [ids, names, groups] = [
@@ -95,7 +94,7 @@ fn table(space: &Space, kinds: &Kinds, category: Category, own: &dyn Fn(&Kind) -
     say!("{category}: {} kinds\n", all.len());
     for kind in all {
         let goes_with: Vec<String> = kind.goes_with.iter().map(|demand| demand_text(space, demand)).collect();
-        let own = if own(kind) { "  (your own)" } else { "" };
+        let own = if kind.ships { "" } else { "  (your own)" };
         let (id, name, mixes, goes_with) = (&kind.id, &kind.name, kind.mixes.join(" "), goes_with.join(", "));
         let line = format!("  {id:ids$}  {name:names$}  {mixes:groups$}  {goes_with}{own}");
         say!("{}", line.trim_end());
@@ -109,17 +108,17 @@ fn demand_text(space: &Space, Demand { gene, codes, .. }: &Demand) -> String {
     format!("{gene} {} … {}", parameter.text(*codes.start()), parameter.value_text(*codes.end()))
 }
 
-fn object(space: &Space, kind: &Kind, own: bool) -> serde_json::Value {
+fn object(space: &Space, kind: &Kind) -> serde_json::Value {
     let range = |demand: &Demand| {
         let gene = space.find(&demand.gene)?;
         let ends = json!([gene.value(*demand.codes.start()), gene.value(*demand.codes.end())]);
         Some((gene.name.clone(), ends))
     };
-    let Kind { id, category, name, source, mixes, goes_with, .. } = kind;
+    let Kind { id, category, ships, name, source, mixes, goes_with, .. } = kind;
     let goes_with: Map<String, serde_json::Value> = goes_with.iter().filter_map(range).collect();
     json!({
         "category": category.name(), "kind": id, "name": name, "source": source, "mixes": mixes,
-        "goes_with": goes_with, "own": own,
+        "goes_with": goes_with, "own": !ships,
     })
 }
 

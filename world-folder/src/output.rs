@@ -17,7 +17,7 @@ pub enum BadOutput {
 }
 
 /// Whether `path`, which need not exist, may be written: its name ends in `ending`, it is none of `inputs`, and it lies
-/// in no world's folder of populations or of baked files.
+/// in no world's folder of populations, of kinds or of baked files.
 ///
 /// # Errors
 /// What is wrong with it.
@@ -47,9 +47,9 @@ fn real(path: &Path) -> PathBuf {
     }
 }
 
-/// Whether a folder is a world's `population` or `baked`.
+/// Whether a folder is a world's `population`, `kinds` or `baked`.
 fn is_of_world(folder: &Path) -> bool {
-    let is_named = [names::POPULATIONS, names::BAKED].iter().any(|name| folder.ends_with(name));
+    let is_named = [names::POPULATIONS, names::BAKED, names::KINDS].iter().any(|name| folder.ends_with(name));
     let world = folder.parent().filter(|_| is_named);
     world.is_some_and(|world| world.join(names::SPACE).is_file() || world.join(names::CURRENT).is_file())
 }
@@ -77,7 +77,12 @@ mod tests {
         for input in ["model.glb", "./model.glb", "world/../model.glb"] {
             assert!(matches!(check(&at(input)), Err(BadOutput::Input(_))), "{input}");
         }
-        for of_world in ["world/population/a.glb", "world/baked/blobs/ab/a.glb", "world/population/x/a.glb"] {
+        for of_world in [
+            "world/population/a.glb",
+            "world/baked/blobs/ab/a.glb",
+            "world/population/x/a.glb",
+            "world/kinds/a.glb",
+        ] {
             assert!(matches!(check(&at(of_world)), Err(BadOutput::OfWorld { .. })), "{of_world}");
         }
     }

@@ -139,7 +139,7 @@ const PROPTEST_SEED: &str = "20261122";
 
 /// Tests of the workspace. Of one package alone, dependencies would have other features and be compiled again.
 fn test(arguments: &[&str]) -> Command {
-    let mut command = cargo(&["test", "--quiet", "--workspace"]);
+    let mut command = cargo(&["test", "--quiet", "--workspace", "--no-fail-fast"]);
     command.args(arguments);
     if cfg!(target_os = "linux") && std::env::var_os("XDG_RUNTIME_DIR").is_none() {
         // Otherwise each window complains.

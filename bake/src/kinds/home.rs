@@ -21,18 +21,18 @@ const MEMBER: f32 = 0.08;
 const LIKE: f32 = 0.25;
 
 impl<'a> Home<'a> {
-    /// The kinds of its category that hold a chromosome best.
+    /// The kinds of its category that hold a chromosome best; of two that hold it alike, a person's own.
     pub fn of(space: &Space, kinds: &'a Kinds, category: Category, genes: &Chromosome) -> Self {
         let mut near: Vec<(f32, f32, &Kind)> = kinds
             .of(category)
             .map(|kind| (kind.bounds.excess(space, genes), kind.bounds.deviation(space, genes), kind))
             .collect();
-        near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.ships.cmp(&b.2.ships)));
         let Some(&(excess, _, nearest)) = near.first() else { return Self::Wild };
         if excess == 0.0 {
             return Self::Of(nearest);
         }
-        near.sort_by(|a, b| a.1.total_cmp(&b.1));
+        near.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.2.ships.cmp(&b.2.ships)));
         let pair = nearest_pair(space, genes, &near).filter(|(outside, _, _)| *outside < excess);
         match pair {
             Some((outside, a, b)) if outside == 0.0 || excess > MEMBER && outside <= MEMBER => {

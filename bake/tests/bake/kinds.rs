@@ -98,11 +98,9 @@ fn random_landscapes_are_of_different_kinds_that_go_together() {
             );
         }
         for (one, homes) in drawn.population.individuals.iter().zip(all) {
-            for (kind, category) in
-                homes.into_iter().flat_map(Home::kinds).flat_map(|kind| Category::ALL.map(|c| (kind, c)))
-            {
-                let goes = kind.goes_with(&space, category, one.genome.chromosome(category));
-                assert!(goes, "{}: {} does not go with its {category}", one.name, kind.id);
+            for demand in homes.into_iter().flat_map(Home::demands) {
+                let met = demand.is_met(&space, demand.category, one.genome.chromosome(demand.category));
+                assert!(met, "{}: {} is not what its kinds ask for", one.name, demand.gene);
             }
         }
     }

@@ -23,6 +23,8 @@ pub struct Kind {
     /// The name of its file, without folder and ending: what a person types.
     pub id: String,
     pub category: Category,
+    /// Whether it comes with Genescape, rather than from a person's own file.
+    pub ships: bool,
     /// How a landscape's name says it: "Oaks", "on karst", "mackerel sky".
     pub name: String,
     /// Where its values come from.

@@ -57,6 +57,7 @@ impl Reader<'_, '_> {
         Some(Kind {
             id,
             category,
+            ships: self.ships,
             name: name?,
             source: source?,
             mixes: mixes?,

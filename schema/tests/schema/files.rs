@@ -280,7 +280,8 @@ fn population() -> impl Strategy<Value = Population> {
             let mut named = names.into_iter().zip(random.individuals);
             let individuals = std::array::from_fn(|_| {
                 let (name, individual) = named.next().expect("four");
-                Individual { name, ..individual }
+                let descent = if seed % 2 == 0 { String::new() } else { format!("trees of 2 · {name}") };
+                Individual { name, descent, ..individual }
             });
             let parent = parent.map(|(generation, votes)| Parent { generation, votes });
             let locked = ["height_m", "sky", "terrain_seed", "tree"];

@@ -92,3 +92,37 @@ impl Sheet {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn four_pictures_hang_in_order_each_over_its_caption() {
+        let (width, height) = (90, height(90));
+        let colours = [Rgb([200u8, 0, 0]), Rgb([0, 200, 0]), Rgb([0, 0, 200]), Rgb([200, 200, 0])];
+        let four =
+            RgbImage::from_fn(2 * width, 2 * height, |x, y| colours[(x / width + y / height * 2) as usize]);
+        let path = std::env::temp_dir().join(format!("genescape-sheet-{}.png", std::process::id()));
+        four.save(&path).expect("written");
+        // There is room for three of the four.
+        let mut sheet = Sheet::new(width, 2, 3);
+        let captions =
+            ["1  Oaks", "", "3  Birches on karst, mackerel sky, far too long", "4"].map(str::to_owned);
+        sheet.hang(&path, &captions).expect("hung");
+        std::fs::remove_file(&path).expect("there");
+        let middle = |column: u32, row: u32| {
+            let (x, y) = (column * (width + GAP_PX), row * (height + CAPTION_PX + GAP_PX));
+            *sheet.image.get_pixel(GAP_PX + x + width / 2, GAP_PX + y + height / 2)
+        };
+        assert_eq!([middle(0, 0), middle(1, 0), middle(0, 1)], [colours[0], colours[1], colours[2]]);
+        assert_eq!(middle(1, 1), PAPER);
+        let ink = |column: u32, row: u32| {
+            let (x, y) = (column * (width + GAP_PX), row * (height + CAPTION_PX + GAP_PX) + GAP_PX + height);
+            let caption = sheet.image.view(x, y, GAP_PX + width, CAPTION_PX);
+            caption.pixels().filter(|(_, _, pixel)| *pixel != PAPER).count()
+        };
+        assert!(ink(0, 0) > 20 && ink(0, 1) > ink(0, 0), "{} {}", ink(0, 0), ink(0, 1));
+        assert_eq!((ink(1, 0), ink(1, 1)), (0, 0));
+    }
+}
