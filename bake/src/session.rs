@@ -10,7 +10,7 @@ use genescape_cache::{BlobRef, Cache, How};
 use genescape_schema::{Kinds, Population, Space};
 use genescape_world::{PopulationFile, World, WorldKinds, names};
 
-use crate::breed;
+use crate::audition;
 use crate::events::{Event, Listener};
 use crate::graph::Done;
 use crate::plan::{Plan, Resolution};
@@ -132,11 +132,16 @@ impl Session {
     /// Breeds from the votes in a population file, and writes the child as a new file with the next free number.
     ///
     /// # Errors
-    /// Faults of the file, [`breed::NoVotes`], a file that cannot be written.
+    /// Faults of the file, [`crate::breed::NoVotes`], a file that cannot be written.
     pub fn breed_file(&self, path: &Path, listener: &dyn Listener) -> Result<PathBuf> {
         let parents = World::read_population(&self.space, path)?.population;
         let kinds = self.kinds(listener);
-        let children = breed::breed(&self.space, &kinds, &parents, self.world.next_generation()?)?;
+        let next = self.world.next_generation()?;
+        let first = audition::bred(&self.space, &kinds, &parents, next, 0)?;
+        let again = |attempt| audition::bred(&self.space, &kinds, &parents, next, attempt);
+        let draw = |attempt| again(attempt).unwrap_or_else(|_| first.clone());
+        let children = audition::audition(&self.space, draw);
+        audition::tell(listener, &audition::redrawn(&self.space, draw, &children));
         Ok(self.world.create_population(&self.space, &children)?)
     }
 
