@@ -6,10 +6,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result};
 use genescape_cache::{Change, Explanation};
-use genescape_schema::{Kinds, Population, Space};
+use genescape_schema::{Genome, Kinds, Population, Space};
 use genescape_world::output::BadOutput;
 use genescape_world::{World, WorldError, names};
 
+use crate::audition::{self, Auditioned, Redrawn};
 use crate::breed::NoVotes;
 use crate::cache_commands::GaveUp;
 use crate::cli::{BadInput, Cli, Command, Landscape, RunArgs, meant_command};
@@ -21,7 +22,7 @@ use crate::run::RunError;
 use crate::say;
 use crate::session::{self, Baked, Publish, Session};
 use crate::watch_loop::{self, Host};
-use crate::{bench, cache_commands, export_command, kinds_command, lod_command, manual, random};
+use crate::{bench, cache_commands, export_command, kinds_command, lod_command, manual};
 
 /// Set by Ctrl-C.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
@@ -219,13 +220,16 @@ fn random(seed: Option<u64>, wanted: &[String], uniform: bool, args: &RunArgs) -
     let kinds = if uniform { Kinds::default() } else { session.kinds(&*listener) };
     let wanted = kinds_command::called(&kinds, wanted)?;
     let make = |generation| {
-        let drawn = random::population(space, &kinds, &wanted, seed, generation)?;
-        drawn.notices.into_iter().for_each(|message| listener.tell(&Event::Notice { message }));
-        Some(drawn.population)
-    };
-    let make = |generation| {
-        let drawn = make(generation).unwrap_or_else(|| Population::random(space, seed, generation));
-        Ok::<_, WorldError>(drawn)
+        // The thesis's flat space stays as flat as it is.
+        if uniform {
+            return Ok(Population::random(space, seed, generation));
+        }
+        let draw = |attempt| audition::drawn(space, &kinds, &wanted, seed, generation, attempt);
+        draw(0).notices.into_iter().for_each(|message| listener.tell(&Event::Notice { message }));
+        let Auditioned { population, redrawn } =
+            audition::audition(space, |attempt| draw(attempt).population);
+        audition::tell(&*listener, &redrawn);
+        Ok::<_, WorldError>(population)
     };
     let path = session.world().create_next_population(space, make)?;
     listener.end();
@@ -251,7 +255,7 @@ fn next(from: Option<u32>, args: &RunArgs) -> Result<()> {
     };
     let parents = World::read_population(session.space(), &parents)?.population;
     let kinds = session.kinds(&*console.listener());
-    let path = session::breed_another(world, session.space(), &kinds, &parents)?;
+    let path = session::breed_another(world, session.space(), &kinds, &parents, &*console.listener())?;
     if args.json {
         let (parent, path) = (parents.generation, path.display().to_string());
         JsonLines.tell(&Event::Bred { parent, path });
@@ -274,14 +278,53 @@ fn explain(world: &Path, landscape: Option<Landscape>) -> Result<()> {
     let (world, cache) = cache_commands::open(world)?;
     let current = export_command::current(&world)?;
     let (space, _) = world.space()?;
+    // What was baked may be looked at still when its file is gone.
+    let file = World::read_population(&space, &world.population_path(current.generation)).ok();
+    if let Some(file) = &file {
+        tell_redrawn(&space, &file.population, &world);
+    }
     for landscape in landscape.map_or_else(|| Landscape::all().collect(), |one| vec![one]) {
         say!("landscape {landscape} ({}) in the last bake:", current.scenes[landscape.index()]);
+        if let Some(file) = &file {
+            tell_first_look(&space, &file.population.individuals[landscape.index()].genome);
+        }
         let history = cache.history(&names::scene_id(current.generation, landscape.index()))?;
         for (stage, explanation) in history.last() {
             say!("  {stage:<16} {}", as_in_files(&space, explanation));
         }
     }
     Ok(())
+}
+
+/// Says which landscapes were drawn again because nobody would have looked at the first draw.
+fn tell_redrawn(space: &Space, population: &Population, world: &World) {
+    redrawn_of(space, population, world).iter().for_each(|redrawn| say!("{redrawn}"));
+}
+
+/// As far as draws can be repeated: none where parents are no longer to be read, or only some kinds were asked for.
+fn redrawn_of(space: &Space, population: &Population, world: &World) -> Vec<Redrawn> {
+    let Population { seed, generation, parent, .. } = *population;
+    let kinds = world.kinds(space).kinds;
+    let Some(parent) = parent else {
+        let of = |kinds: &Kinds| {
+            let draw = |attempt| audition::drawn(space, kinds, &[], seed, generation, attempt).population;
+            audition::redrawn(space, draw, population)
+        };
+        return [of(&kinds), of(&Kinds::default())].concat();
+    };
+    let parents = World::read_population(space, &world.population_path(parent.generation));
+    let Ok(parents) = parents else { return Vec::new() };
+    let parents = Population { votes: Some(parent.votes), ..parents.population };
+    let again = |attempt| audition::bred(space, &kinds, &parents, generation, attempt);
+    audition::redrawn(space, |attempt| again(attempt).unwrap_or_else(|_| parents.clone()), population)
+}
+
+/// Says how good the best first look at a landscape is.
+fn tell_first_look(space: &Space, genome: &Genome) {
+    if let Ok(first_look) = audition::appraise(space, genome) {
+        let (score, lacks) = (100.0 * first_look.score(), first_look.weakest().lack());
+        say!("  {:<16} {score:.0} of 100 for the best view; its weakest side: {lacks}", "first look");
+    }
 }
 
 /// An explanation with genes' values as population files say them: 12.86, where a stage reads 12.857142448425293.

@@ -38,3 +38,10 @@ pub trait Listener: Sync {
     /// The last event of a run has been told.
     fn end(&self) {}
 }
+
+/// For work of which nobody wants to hear.
+pub struct Untold;
+
+impl Listener for Untold {
+    fn tell(&self, _: &Event) {}
+}

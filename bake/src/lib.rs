@@ -2,6 +2,7 @@
 
 pub mod say;
 
+pub mod audition;
 pub mod bench;
 pub mod breed;
 mod cache_commands;

@@ -4,8 +4,8 @@
 //!  terrain genes ─► landform ─┬─► terrain (mesh, levels of detail, 16-bit heights)
 //!                             ├─► ground maps          ground textures (shared by every scene)
 //!  tree genes ─┬─► tree textures ─► tree 0…4 (template, levels, progressive mesh, file)
-//!              └──────────────┬─► placement (and the spot to start from) ◄── landform, trees
-//!  landform, placement, sky light ─► start ─► foreground ◄── terrain
+//!              └──────────────┬─► placement ◄── landform, trees
+//!  landform, trees, placement, sky light ─► start ─► foreground ◄── terrain
 //!  sky genes ─► sky light ─┬─► sky pictures
 //!                          └─► light map ◄── landform, placement, trees
 //!                                                           all of them ─► scene
@@ -23,7 +23,7 @@ use crate::stages::light::LightMapStage;
 use crate::stages::placement::{PlacementFiles, PlacementStage};
 use crate::stages::scene::SceneStage;
 use crate::stages::sky::{SkyImagesStage, SkyLightStage, SkyParams};
-use crate::stages::start::StartStage;
+use crate::stages::start::{StartFiles, StartStage};
 use crate::stages::terrain_lod::{TerrainFiles, TerrainStage};
 use crate::stages::tree::{TreeFiles, TreeParams, TreeStage, TreeTexturesStage};
 
@@ -115,14 +115,16 @@ fn add_scene(
     let ground_textures = graph.add(scene, GroundTexturesStage);
 
     let footprints = trees.map(|tree| graph.part(tree, |tree: &TreeFiles| tree.footprint)).to_vec();
-    let placed = graph.add(scene, PlacementStage { params: genome.read(space)?, landform, footprints });
-    let placement = graph.part(placed, |placed: &PlacementFiles| placed.placement.clone());
-    let start = graph.add(scene, StartStage { landform, placement, light });
+    let placed = graph
+        .add(scene, PlacementStage { params: genome.read(space)?, landform, footprints: footprints.clone() });
+    let standing = graph.part(placed, |placed: &PlacementFiles| placed.placement.instances.clone());
+    let start = graph.add(scene, StartStage { landform, footprints, trees: standing, light });
+    let view = graph.part(start, |start: &StartFiles| start.view);
     let near = graph.part(terrain, |terrain: &TerrainFiles| terrain.near.clone());
-    let foreground = graph.add(scene, ForegroundStage { params: ground, map_px, landform, near, start });
+    let foreground =
+        graph.add(scene, ForegroundStage { params: ground, map_px, landform, near, start: view });
 
     let casters = trees.map(|tree| graph.part(tree, |tree: &TreeFiles| tree.caster.clone())).to_vec();
-    let standing = graph.part(placed, |placed: &PlacementFiles| placed.placement.instances.clone());
     let light_map =
         graph.add(scene, LightMapStage { side_px: map_px, landform, casters, trees: standing, light });
 

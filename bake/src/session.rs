@@ -10,7 +10,7 @@ use genescape_cache::{BlobRef, Cache, How};
 use genescape_schema::{Kinds, Population, Space};
 use genescape_world::{PopulationFile, World, WorldKinds, names};
 
-use crate::breed;
+use crate::audition::{self, Auditioned};
 use crate::events::{Event, Listener};
 use crate::graph::Done;
 use crate::plan::{Plan, Resolution};
@@ -132,13 +132,16 @@ impl Session {
     /// Breeds from the votes in a population file, and writes the child as a new file with the next free number.
     ///
     /// # Errors
-    /// Faults of the file, [`breed::NoVotes`], a number that somebody else has taken meanwhile, a file that cannot be
+    /// Faults of the file, [`crate::breed::NoVotes`], a number that somebody else has taken meanwhile, a file that cannot be
     /// written.
     pub fn breed_file(&self, path: &Path, listener: &dyn Listener) -> Result<PathBuf> {
         let parents = World::read_population(&self.space, path)?.population;
         let kinds = self.kinds(listener);
-        let children = breed::breed(&self.space, &kinds, &parents, self.world.next_generation()?)?;
-        Ok(self.world.create_population(&self.space, &children)?)
+        let next = self.world.next_generation()?;
+        let Auditioned { population, redrawn } =
+            audition::next_generation(&self.space, &kinds, &parents, next)?;
+        audition::tell(listener, &redrawn);
+        Ok(self.world.create_population(&self.space, &population)?)
     }
 
     fn run(
@@ -187,8 +190,14 @@ impl Session {
 /// gets a number and a child of his own.
 ///
 /// # Errors
-/// [`breed::NoVotes`], a folder that cannot be read or written to.
-pub fn breed_another(world: &World, space: &Space, kinds: &Kinds, parents: &Population) -> Result<PathBuf> {
+/// [`crate::breed::NoVotes`], a folder that cannot be read or written to.
+pub fn breed_another(
+    world: &World,
+    space: &Space,
+    kinds: &Kinds,
+    parents: &Population,
+    listener: &dyn Listener,
+) -> Result<PathBuf> {
     world.create_next_population(space, |generation| {
         // All files with lower numbers are there by now, so that every number has a seed of its own.
         let is_sibling = |other: &u32| {
@@ -199,7 +208,11 @@ pub fn breed_another(world: &World, space: &Space, kinds: &Kinds, parents: &Popu
         };
         let siblings = (0..generation).filter(is_sibling).count();
         let seed = parents.seed.wrapping_add(siblings as u64);
-        Ok(breed::breed(space, kinds, &Population { seed, ..parents.clone() }, generation)?)
+        let parents = Population { seed, ..parents.clone() };
+        let Auditioned { population, redrawn } =
+            audition::next_generation(space, kinds, &parents, generation)?;
+        audition::tell(listener, &redrawn);
+        Ok(population)
     })
 }
 

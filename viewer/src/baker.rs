@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Error, Result};
 use genescape_bake::cli::threads;
-use genescape_bake::events::Listener;
+use genescape_bake::events::{Listener, Untold};
 use genescape_bake::plan::Resolution;
 use genescape_bake::session::{self, Session};
 use genescape_bake::watch_loop::{self, Host};
@@ -145,7 +145,8 @@ pub fn breed_another(world: &World, space: &Space, parent: &Parent) -> Result<Pa
     let parents = world.population(space, parent.generation)?.population;
     // The bake tells what is wrong with them.
     let kinds = world.kinds(space).kinds;
-    session::breed_another(world, space, &kinds, &Population { votes: Some(parent.votes), ..parents })
+    let parents = Population { votes: Some(parent.votes), ..parents };
+    session::breed_another(world, space, &kinds, &parents, &Untold)
 }
 
 /// Sends the bake's events to the owner of the [`Baker`].

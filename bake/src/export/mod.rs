@@ -8,6 +8,8 @@ mod look;
 mod names;
 mod receipts;
 mod sky_preview;
+#[cfg(test)]
+pub(crate) use sky_preview::film;
 mod source;
 
 use std::path::{Path, PathBuf};

@@ -2,8 +2,8 @@
 //! which shows the scene in any viewer, without any extension but KHR_lights_punctual and KHR_texture_transform.
 
 use genescape_schema::scene::{
-    GSC_HEIGHTFIELD, GSC_SKY, HeightfieldExtension, Resource, START_NODE, SkyExtension, SkyLight, StartView,
-    rotation_from_z,
+    GSC_HEIGHTFIELD, GSC_LOOKOUTS, GSC_SKY, HeightfieldExtension, LookoutsExtension, Resource, START_NODE,
+    SkyExtension, SkyLight, rotation_from_z,
 };
 use glam::Vec3;
 use serde_json::{Value, json};
@@ -24,7 +24,7 @@ use super::terrain::{TERRAIN_MESHES, apron_material, ground_material, water_mate
 pub fn scene_gltf(parts: &SceneParts<'_>) -> Result<Vec<u8>, ExportError> {
     let view = parts.view;
     let mut document = Document::default();
-    let mut roots = vec![add_camera(&mut document, &view), add_sun(&mut document, parts.light)];
+    let mut roots = vec![add_camera(&mut document, parts), add_sun(&mut document, parts.light)];
     roots.extend(add_terrain(&mut document, parts)?);
     roots.push(add_trees(&mut document, parts, &view)?);
     document.extensions_used.insert(GSC_SKY.into());
@@ -36,7 +36,11 @@ pub fn scene_gltf(parts: &SceneParts<'_>) -> Result<Vec<u8>, ExportError> {
     Ok(document.json())
 }
 
-fn add_camera(document: &mut Document, view: &StartView) -> usize {
+/// The first look, with what is known of others.
+fn add_camera(document: &mut Document, parts: &SceneParts<'_>) -> usize {
+    let view = parts.view;
+    document.extensions_used.insert(GSC_LOOKOUTS.into());
+    let lookouts = LookoutsExtension { prospects: parts.lookouts.clone() };
     let camera = push(
         &mut document.cameras,
         json!({ "name": START_NODE, "type": "perspective",
@@ -47,6 +51,7 @@ fn add_camera(document: &mut Document, view: &StartView) -> usize {
         camera: Some(camera),
         translation: Some(view.position_m.to_array()),
         rotation: Some(view.rotation().to_array()),
+        extensions: Some(json!({ GSC_LOOKOUTS: lookouts })),
         ..Node::default()
     })
 }

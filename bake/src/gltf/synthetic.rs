@@ -13,7 +13,12 @@ use crate::model::{
     Part, PartKind, Placement, SkyLight, TerrainMesh, TreeTextures,
 };
 use crate::noise::{gradient2, hash01};
-use crate::stages::start::start_view;
+use crate::stages::placement::TreeFootprint;
+use crate::stages::start::first_look;
+
+/// Of the two templates.
+const FOOTPRINTS: [TreeFootprint; 2] =
+    [TreeFootprint { height_m: 8.0, trunk_radius_m: 0.3, crown_radius_m: 3.0, root_depth_m: 0.2 }; 2];
 
 /// Files by URI, as the cache would hold them.
 #[derive(Default)]
@@ -230,7 +235,7 @@ pub fn placement(land: &Landform, count: u32) -> Placement {
             trunk_cylinder_m: [x, z, 0.3],
         });
     }
-    Placement { instances, start_m: [0.0; 2] }
+    Placement { instances }
 }
 
 fn exr(width: usize, height: usize, sun: Vec3) -> Vec<u8> {
@@ -313,6 +318,7 @@ pub fn synthetic(count: u32) -> Synthetic {
         ("leaf-1.png", leaf.clone()),
         ("instances.bin", write_instances(&placement.instances)),
         ("lod.bin", vec![7; 100]),
+        ("lookouts.bin", vec![7; 100]),
         ("sky.exr", exr(128, 64, sun)),
         ("face.exr", exr(8, 8, sun)),
         ("cloud.png", png(16, 4, false, |_, _, _| 0.8)),
@@ -356,7 +362,8 @@ impl Synthetic {
             land: &self.land,
             terrain: GlbBlob { uri: "blobs/terrain.glb".into(), bytes: &self.terrain },
             foreground: None,
-            view: start_view(&self.land, &self.placement, self.light.sun_direction),
+            view: first_look(&self.land, &self.placement.instances, &FOOTPRINTS, &self.light).view,
+            lookouts: Resource::file(uri("lookouts.bin"), "application/octet-stream"),
             heights: png("heights.png"),
             lod: Resource::file(uri("lod.bin"), "application/octet-stream"),
             surface: GroundSurface {

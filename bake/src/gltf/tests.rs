@@ -5,8 +5,7 @@ use serde_json::Value;
 
 use super::synthetic::*;
 use super::*;
-use crate::model::{Landform, LevelledMesh, Material, Mesh, Placement, TreeTextures};
-use crate::stages::start::{start_spot, start_view};
+use crate::model::{LevelledMesh, Material, Mesh, TreeTextures};
 
 fn gltf_of(glb: &[u8]) -> (gltf::Document, Vec<u8>) {
     let gltf = gltf::Gltf::from_slice(glb).expect("the gltf crate reads it");
@@ -233,21 +232,6 @@ fn far_trees_are_coarser_and_the_budget_holds() {
         at.iter().sum::<f32>() / at.len() as f32
     };
     assert!(mean("D1") > mean("D0"), "{} {}", mean("D1"), mean("D0"));
-}
-
-#[test]
-fn the_start_is_dry_and_at_eye_height() {
-    let land = landform();
-    let mut placement = placement(&land, 100);
-    placement.start_m = start_spot(&land, &placement.instances);
-    let view = start_view(&land, &placement, Vec3::Y);
-    let ground = land.field.height_m(view.position_m.x, view.position_m.z);
-    assert!(ground > land.water_level_m.unwrap());
-    assert!((view.position_m.y - ground - 1.6).abs() < 1e-4);
-    // Land that is all under water still gives a camera above it.
-    let sunk = Landform { water_level_m: Some(1000.0), ..land };
-    let sunk = start_view(&sunk, &Placement::default(), Vec3::Y);
-    assert!(sunk.position_m.is_finite() && sunk.position_m.y > 1000.0);
 }
 
 #[test]

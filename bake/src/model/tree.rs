@@ -97,6 +97,4 @@ pub struct LevelledMesh {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Placement {
     pub instances: Vec<Instance>,
-    /// Where a walk starts: x and z in metres. Trunks keep away from it.
-    pub start_m: [f32; 2],
 }

@@ -6,10 +6,11 @@ use serde_json::Value;
 
 use super::ground::GroundTextureFiles;
 use super::placement::PlacementFiles;
+use super::start::StartFiles;
 use super::terrain_lod::TerrainFiles;
 use crate::gltf::{Blob, GlbBlob, Picture, SceneParts, scene_gltf};
 use crate::graph::{Context, File, Input, Stage, StageError};
-use crate::model::{GroundMaps, Landform, SkyLight, StartView, TreeTextures};
+use crate::model::{GroundMaps, Landform, SkyLight, TreeTextures};
 
 /// Extension of the blobs that `scene.gltf` files are copies of.
 pub const SCENE_EXT: &str = "json";
@@ -24,7 +25,7 @@ pub struct SceneStage {
     pub landform: Input<Landform>,
     pub terrain: Input<TerrainFiles>,
     pub foreground: Input<File>,
-    pub start: Input<StartView>,
+    pub start: Input<StartFiles>,
     pub ground_maps: Input<GroundMaps<File>>,
     pub ground_textures: Input<Vec<GroundTextureFiles>>,
     pub light_map: Input<File>,
@@ -38,7 +39,7 @@ pub struct SceneStage {
 
 impl Stage for SceneStage {
     const NAME: &'static str = "scene";
-    const VERSION: u32 = 3;
+    const VERSION: u32 = 4;
     type Output = File;
 
     fn run(&self, context: &Context<'_>) -> Result<File, StageError> {
@@ -54,6 +55,7 @@ impl Stage for SceneStage {
         let tree_bytes = trees.iter().map(|tree| context.bytes(tree)).collect::<Result<Vec<_>, _>>()?;
         let templates = trees.iter().zip(&tree_bytes);
         let placed = context.get(&self.placed)?;
+        let (start, light) = (context.get(&self.start)?, context.get(&self.light)?);
         let (foreground, near) = (context.get(&self.foreground)?, &terrain.mesh);
         let parts = SceneParts {
             name: self.name.clone(),
@@ -61,7 +63,8 @@ impl Stage for SceneStage {
             land: &*context.get(&self.landform)?,
             terrain: GlbBlob { uri: uri(near), bytes: &context.bytes(near)? },
             foreground: Some(GlbBlob { uri: uri(&foreground), bytes: &context.bytes(&foreground)? }),
-            view: *context.get(&self.start)?,
+            view: start.view,
+            lookouts: resource(&start.lookouts)?,
             heights: resource(&terrain.heights)?,
             lod: resource(&terrain.lod)?,
             surface: surface.try_map(resource)?,
@@ -75,7 +78,7 @@ impl Stage for SceneStage {
                 uri: uri(&placed.instances),
                 byte_length: placed.instances.blob().len as usize,
             },
-            light: &*context.get(&self.light)?,
+            light: &SkyLight { exposure: light.exposure * start.exposure, ..(*light).clone() },
             sky: context.get(&self.sky)?.try_map(resource, resource)?,
         };
         Ok(context.file(SCENE_EXT, scene_gltf(&parts)?))

@@ -4,7 +4,7 @@
 //! a file of the cache once they are encoded, a [`Resource`] in the JSON of `scene.gltf`, a decoded image in the viewer.
 //! `try_map` leads from one to the next.
 //!
-//! The JSON forms are those of our glTF extensions; each has a page under `schema/docs/` for everyone else. All four
+//! The JSON forms are those of our glTF extensions; each has a page under `schema/docs/` for everyone else. All five
 //! are listed in `extensionsUsed` only, never in `extensionsRequired`: a program that does not know them shows the
 //! whole scene without them. Property names are those of the fields here in camelCase, so a unit suffix stays visible
 //! (`spacing_m` is `spacingM`). Every index refers to the arrays of the glTF file it stands in.
@@ -17,6 +17,7 @@ mod ground;
 mod heightfield;
 mod heightfield_bytes;
 mod instances;
+mod lookouts;
 mod progressive_mesh;
 mod resource;
 mod sky;
@@ -30,10 +31,12 @@ pub use instances::{
     GSC_INSTANCES, Instance, InstancesError, InstancesExtension, InstancesTemplate, read_instances,
     write_instances,
 };
+pub use lookouts::{GSC_LOOKOUTS, Lookout, Lookouts, LookoutsError, LookoutsExtension, Prospect, SharedView};
 pub use progressive_mesh::{GSC_PROGRESSIVE_MESH, ProgressiveLevel, ProgressiveMeshExtension};
 pub use resource::Resource;
 pub use sky::{CloudLayer, GSC_SKY, SkyExtension, SkyImages, SkyLight};
 pub use view::{START_NODE, StartView, rotation_from_z};
 
 /// Names of all our extensions, in the order in which files list them.
-pub const EXTENSIONS: [&str; 4] = [GSC_HEIGHTFIELD, GSC_INSTANCES, GSC_PROGRESSIVE_MESH, GSC_SKY];
+pub const EXTENSIONS: [&str; 5] =
+    [GSC_HEIGHTFIELD, GSC_INSTANCES, GSC_LOOKOUTS, GSC_PROGRESSIVE_MESH, GSC_SKY];

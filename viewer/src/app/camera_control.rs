@@ -203,16 +203,19 @@ impl CameraControl {
 
 #[cfg(test)]
 mod tests {
-    use glam::{Vec2, Vec3};
-
     use super::*;
-    use crate::walk::testing::{land_with, ramp, trunk};
-    use genescape_schema::scene::StartView;
+    use crate::walk::testing::land_with;
+    use genescape_schema::scene::{Lookout, Lookouts, Prospect};
 
-    /// Level land whose walks start at that `x_m`, with room there.
-    fn land(x_m: f32, trunks: &[Vec2]) -> Land {
-        let start = StartView { position_m: Vec3::new(x_m, 1.6, 0.0), direction: Vec3::NEG_Z };
-        Land { start, ..land_with(trunks.iter().map(|&place| trunk(place, 0.5))) }
+    /// Level land, as good as each number says from the lookout of that number.
+    fn land(scores: &[(usize, u8)]) -> Land {
+        let mut prospects = vec![Prospect::default(); Lookout::COUNT];
+        scores.iter().for_each(|&(lookout, score)| prospects[lookout].score = score);
+        Land { lookouts: Lookouts::new(prospects).map(std::sync::Arc::new), ..land_with([]) }
+    }
+
+    fn x_of(lookout: usize) -> f32 {
+        Lookout::all().nth(lookout).expect("one of the list").place_m(128.0).x
     }
 
     fn control() -> CameraControl {
@@ -233,29 +236,30 @@ mod tests {
 
     #[test]
     fn a_new_generation_is_entered_once_and_corrected_only_where_it_must() {
-        let (old, first) = (land(0.0, &[]), land(10.0, &[]));
-        for trunks in [vec![], vec![Vec2::new(10.0, 0.5)]] {
-            let second = land(20.0, &trunks);
+        let (old, first) = (land(&[(24, 200)]), land(&[(48, 200), (72, 90)]));
+        for (score, expected) in [(150, 48), (20, 72)] {
+            let second = land(&[(48, score), (72, 90)]);
             let mut control = control();
             control.lands_changed(&[&old], &[&old], true);
             walk(&mut control, &[&old]);
             control.await_landscapes();
             walk(&mut control, &[&old]);
             control.lands_changed(&[&first, &old], &[&first], false);
-            assert_eq!(x_m(&control), 10.0, "whoever walked while it grew is taken along");
+            assert_eq!(x_m(&control), x_of(48), "whoever walked while it grew is taken along");
             control.lands_changed(&[&first, &second], &[&first, &second], false);
-            assert!((x_m(&control) - 10.0).abs() < 2.0, "out of the trunk, not to another start");
-            let last = land(30.0, &[]);
-            let lands = [&first, &second, &last];
-            control.lands_changed(&lands, &lands, true);
-            let expected = if trunks.is_empty() { 10.0 } else { 20.0 };
-            assert_eq!(x_m(&control), expected, "a trunk before the eyes: {trunks:?}");
+            assert_eq!(x_m(&control), x_of(48), "not before the last is there");
+            control.lands_changed(&[&first, &second], &[&first, &second], true);
+            assert_eq!(
+                x_m(&control),
+                x_of(expected),
+                "which the second scores {score} from the first's place"
+            );
         }
     }
 
     #[test]
     fn whoever_walks_on_in_the_new_generation_is_left_alone_and_so_is_whoever_stays() {
-        let (old, first, wall) = (land(0.0, &[]), land(10.0, &[]), ramp(-0.5));
+        let (old, first, wall) = (land(&[(24, 200)]), land(&[(48, 200)]), land(&[(72, 200)]));
         let mut control = control();
         control.lands_changed(&[&old], &[&old], true);
         walk(&mut control, &[&old]);

@@ -10,8 +10,11 @@ mod store;
 mod trees;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use genescape_schema::scene::{GSC_SKY, START_NODE, SkyExtension, StartView};
+use genescape_schema::scene::{
+    GSC_LOOKOUTS, GSC_SKY, Lookouts, LookoutsExtension, START_NODE, SkyExtension, StartView,
+};
 use glam::Vec3;
 use thiserror::Error;
 
@@ -52,7 +55,8 @@ pub fn load(path: &Path, store: &Store) -> Result<Scene> {
     let ground = ground::read(&document)?;
     let trees = trees::read(&document)?;
     let name = scene.name().unwrap_or("a landscape").to_owned();
-    Ok(Scene { name, start: start(&document, &ground), ground, trees, sky: sky(&document)? })
+    let (start, lookouts) = (start(&document, &ground), lookouts(&document)?);
+    Ok(Scene { name, start, lookouts, ground, trees, sky: sky(&document)? })
 }
 
 /// The camera of the bake; without one, the middle of the land, looking north.
@@ -63,6 +67,18 @@ fn start(document: &Document, ground: &Ground) -> StartView {
     }
     let position_m = Vec3::Y * (ground.field.height_m(0.0, 0.0) + StartView::EYE_HEIGHT_M);
     StartView { position_m, direction: Vec3::NEG_Z }
+}
+
+/// What the camera of the bake says of other views; a file of an older bake says nothing.
+fn lookouts(document: &Document) -> Result<Option<Arc<Lookouts>>> {
+    let node = document.node(START_NODE);
+    let Some(object) = node.as_ref().and_then(|node| node.extension_value(GSC_LOOKOUTS)) else {
+        return Ok(None);
+    };
+    let extension: LookoutsExtension = document.extension(Some(object), GSC_LOOKOUTS)?;
+    let bytes = document.bytes(&extension.prospects)?;
+    let lookouts = Lookouts::from_bytes(&bytes).map_err(|what| document.wrong(what.to_string()))?;
+    Ok(Some(Arc::new(lookouts)))
 }
 
 fn sky(document: &Document) -> Result<Sky> {

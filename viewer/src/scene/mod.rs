@@ -6,8 +6,10 @@ mod image;
 mod sky;
 mod trees;
 
+use std::sync::Arc;
+
 pub use genescape_schema::scene::{
-    GroundDetail, GroundSurface, Heightfield, Instance, StartView, TerrainLod,
+    GroundDetail, GroundSurface, Heightfield, Instance, Lookout, Lookouts, StartView, TerrainLod,
 };
 pub use ground::{Apron, Ground};
 pub use image::{HdrImage, Image};
@@ -27,4 +29,6 @@ pub struct Scene {
     pub sky: Sky,
     /// Where a walk starts.
     pub start: StartView,
+    /// How good it looks from elsewhere, if the file says so.
+    pub lookouts: Option<Arc<Lookouts>>,
 }

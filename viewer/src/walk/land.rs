@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 
 use super::Trunks;
 use crate::camera::Camera;
-use crate::scene::{Heightfield, Scene, StartView};
+use crate::scene::{Heightfield, Lookouts, Scene, StartView};
 
 /// Height of a walker's eyes above what it stands on.
 pub const EYE_HEIGHT_M: f32 = StartView::EYE_HEIGHT_M;
@@ -32,6 +32,8 @@ pub struct Land {
     pub trunks: Trunks,
     /// Where a walk starts, if it is the only landscape.
     pub start: StartView,
+    /// How good it looks from elsewhere, if its file says so.
+    pub lookouts: Option<Arc<Lookouts>>,
 }
 
 impl Land {
@@ -43,6 +45,7 @@ impl Land {
             water_level_m: scene.ground.water_level_m,
             trunks: Trunks::of(&scene.trees.instances),
             start: scene.start,
+            lookouts: scene.lookouts.clone(),
         }
     }
 

@@ -1,38 +1,23 @@
-//! Where a walk begins: where the bake says, in the camera of a landscape's file (`StartView`).
-//!
-//! Four landscapes share one place, and each file names its own. The one taken is the start that suits the worst of the
-//! four best, for one cannot vote on a landscape that is not to be seen; then the one that suits all of them best, and of
-//! several the first.
+//! Where a walk begins: at the view that suits the worst of the landscapes best, for one cannot vote on a landscape that
+//! is not to be seen. How good each looks from where the bake has found out, and `Lookouts::shared` chooses.
 
-use genescape_schema::scene::StartView;
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
-use super::{BODY_RADIUS_M, EYE_HEIGHT_M, Land, Pose, nearest_free};
+use super::{EYE_HEIGHT_M, Land, Pose, nearest_free};
+use crate::scene::{Lookout, Lookouts};
 
-/// Air around a walker at the start, so that no trunk fills the picture.
-const ROOM_M: f32 = 1.5;
-/// Ground that rises by more than [`WALL_SLOPE`] above the eye within this distance fills the picture.
-const WALL_M: f32 = 25.0;
-const WALL_SLOPE: f32 = 0.27;
-/// A tree between these distances, no farther to the side than [`SIDEWARDS`] of it, can be judged.
-const TREE_M: [f32; 2] = [6.0, 60.0];
-const SIDEWARDS: f32 = 0.5;
+/// A view that is worth at least this part of the best one is good enough to stay at.
+const GOOD_ENOUGH: f32 = 0.6;
 
-/// Where to begin: one of the landscapes' own starts, moved no farther than trunks make necessary.
+/// Where to begin: the view for all of these landscapes, moved no farther than trunks make necessary. Where no file says
+/// how good views are, it is the first landscape's start.
 pub fn start_pose(lands: &[&Land]) -> Pose {
-    let merit = |start: &StartView| {
-        let merits = lands.iter().map(|land| merit(land, place_m(start), ahead(start)));
-        (merits.clone().min(), merits.sum::<u32>())
-    };
-    // Of equal ones `max_by_key` would take the last.
-    let starts = lands.iter().rev().map(|land| land.start);
-    let Some(start) = starts.max_by_key(merit) else {
+    let Some((wanted_m, direction)) = start(lands) else {
         return Pose { altitude_m: EYE_HEIGHT_M, ..Pose::default() };
     };
-    let wanted_m = place_m(&start);
     let place_m = nearest_free(lands, wanted_m).unwrap_or(wanted_m);
     let top_m = lands.iter().map(|land| land.footing_m(place_m)).fold(f32::NEG_INFINITY, f32::max);
-    let [x, y, z] = start.direction.to_array();
+    let [x, y, z] = direction.to_array();
     Pose {
         x_m: place_m.x,
         z_m: place_m.y,
@@ -43,57 +28,43 @@ pub fn start_pose(lands: &[&Land]) -> Pose {
     }
 }
 
-/// Whether a walker there stands in all landscapes on dry ground with room around, and before no wall.
+/// Whether no start would show the worst of these landscapes much better.
 pub fn suits_all(lands: &[&Land], pose: &Pose) -> bool {
-    lands.iter().all(|land| stands(land, pose.place_m()) && !faces_a_wall(land, pose.place_m(), pose.ahead()))
+    let (known, Some(extent_m)) = lookouts(lands) else { return true };
+    let here = Lookout::nearest(pose.place_m(), pose.ahead(), extent_m);
+    let best = Lookouts::shared(&known).map_or(0.0, |view| f32::from(view.worst));
+    Lookouts::worst(&known, here).is_none_or(|worst| f32::from(worst) >= GOOD_ENOUGH * best)
 }
 
-fn place_m(start: &StartView) -> Vec2 {
-    Vec2::new(start.position_m.x, start.position_m.z)
-}
-
-/// Level unit vector (x, z) of the direction of view.
-fn ahead(start: &StartView) -> Vec2 {
-    Vec2::new(start.direction.x, start.direction.z).normalize_or(Vec2::NEG_Y)
-}
-
-/// How well a landscape suits a walker who begins there: to stand weighs more than to see, land more than trees.
-fn merit(land: &Land, place_m: Vec2, ahead: Vec2) -> u32 {
-    4 * u32::from(stands(land, place_m))
-        + 2 * u32::from(!faces_a_wall(land, place_m, ahead))
-        + u32::from(sees_a_tree(land, place_m, ahead))
-}
-
-/// Whether the ground is dry and has room to stand.
-fn stands(land: &Land, place_m: Vec2) -> bool {
-    let dry = land.water_level_m.is_none_or(|water_m| land.ground_m(place_m) > water_m);
-    dry && land.trunks.clear(place_m, BODY_RADIUS_M + ROOM_M)
-}
-
-fn faces_a_wall(land: &Land, place_m: Vec2, ahead: Vec2) -> bool {
-    let eye_m = land.footing_m(place_m) + EYE_HEIGHT_M;
-    let rises = |distance_m: f32| {
-        land.ground_m(place_m + ahead * distance_m) - eye_m > WALL_SLOPE * distance_m.max(0.25 * WALL_M)
-    };
-    (1..=5u8).any(|step| rises(WALL_M * f32::from(step) / 5.0))
-}
-
-fn sees_a_tree(land: &Land, place_m: Vec2, ahead: Vec2) -> bool {
-    let [near_m, far_m] = TREE_M;
-    land.trunks.near(place_m, far_m).any(|trunk| {
-        let way_m = trunk.center_m - place_m;
-        let along_m = way_m.dot(ahead);
-        (near_m..far_m).contains(&along_m) && way_m.perp_dot(ahead).abs() < SIDEWARDS * along_m
+/// Place and direction.
+fn start(lands: &[&Land]) -> Option<(Vec2, Vec3)> {
+    let (known, extent_m) = lookouts(lands);
+    let shared = extent_m.zip(Lookouts::shared(&known));
+    let shared = shared.map(|(extent_m, view)| (view.lookout.place_m(extent_m), view.direction()));
+    shared.or_else(|| {
+        let start = lands.first()?.start;
+        Some((Vec2::new(start.position_m.x, start.position_m.z), start.direction))
     })
+}
+
+/// What is known of these landscapes' views, and the extent that those have in common.
+fn lookouts<'a>(lands: &[&'a Land]) -> (Vec<&'a Lookouts>, Option<f32>) {
+    let known = |land: &&&Land| land.lookouts.is_some();
+    let extent_m = lands.iter().find(known).map(|land| land.field.extent_m());
+    let alike = lands.iter().filter(|land| Some(land.field.extent_m()) == extent_m);
+    (alike.filter_map(|land| land.lookouts.as_deref()).collect(), extent_m)
 }
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
+    use std::sync::Arc;
+
+    use genescape_schema::scene::{Prospect, StartView};
     use proptest::prelude::*;
 
     use super::*;
-    use crate::walk::testing::{hilly, land_with, ramp, trunk};
+    use crate::walk::BODY_RADIUS_M;
+    use crate::walk::testing::{hilly, trunk};
 
     fn with_start(mut land: Land, place_m: Vec2, direction: Vec3) -> Land {
         let position_m = Vec3::new(place_m.x, land.ground_m(place_m) + EYE_HEIGHT_M, place_m.y);
@@ -118,29 +89,37 @@ mod tests {
         }
     }
 
-    #[test]
-    fn the_start_that_suits_most_landscapes_is_taken() {
-        let (here, there) = (Vec2::new(10.0, 5.0), Vec2::new(-20.0, 0.0));
-        let one = with_start(hilly(3, []), here, Vec3::X);
-        let other = with_start(hilly(4, [trunk(here, 0.5)]), there, Vec3::Z);
-        assert_eq!(start_pose(&[&one, &other]).place_m(), there);
-        assert_eq!(start_pose(&[&one]).place_m(), here);
+    /// That land, as good as `score` says from each lookout.
+    fn scored(land: Land, score: impl Fn(Lookout) -> u8) -> Land {
+        let prospects = Lookout::all().map(|at| Prospect { score: score(at), pitch_deg: 0 }).collect();
+        Land { lookouts: Lookouts::new(prospects).map(Arc::new), ..land }
     }
 
     #[test]
-    fn a_start_before_a_wall_or_without_a_tree_gives_way_to_one_with_a_view() {
-        let level = |tree: Vec2| land_with([trunk(tree, 0.3)]);
-        let (here, there) = (Vec2::ZERO, Vec2::new(0.0, 20.0));
-        // From here, the second landscape's tree is behind.
-        let first = with_start(level(Vec2::new(0.0, -30.0)), here, Vec3::NEG_Z);
-        let second = with_start(level(Vec2::new(0.0, 10.0)), there, Vec3::NEG_Z);
-        assert_eq!(start_pose(&[&first, &second]).place_m(), there);
-        // Uphill to the east.
-        let slope = ramp(0.5);
-        let up = with_start(slope.clone(), here, Vec3::X);
-        let down = with_start(slope, there, Vec3::NEG_X);
-        assert_eq!(start_pose(&[&up, &down]).place_m(), there);
-        assert!(!suits_all(&[&up, &down], &start_pose(&[&up])) && suits_all(&[&up], &start_pose(&[&down])));
+    fn four_begin_where_the_worst_of_them_looks_best_and_one_as_its_file_says() {
+        let [fine, fair] = [1000, 2000].map(|k| Lookout::all().nth(k).expect("a lookout"));
+        let one = scored(hilly(3, []), |at| {
+            if at == fine {
+                250
+            } else if at == fair {
+                120
+            } else {
+                9
+            }
+        });
+        let other = scored(hilly(4, []), |at| if at == fair { 100 } else { 10 });
+        let extent_m = one.field.extent_m();
+        let both = start_pose(&[&one, &other]);
+        assert!(
+            both.place_m().distance(fair.place_m(extent_m)) < 1e-3 && both.ahead().dot(fair.ahead()) > 0.999
+        );
+        assert!(start_pose(&[&one]).place_m().distance(fine.place_m(extent_m)) < 1e-3);
+        assert!(suits_all(&[&one, &other], &both) && !suits_all(&[&one, &other], &start_pose(&[&one])));
+        // What an older bake made says nothing, and is asked nothing.
+        let silent = with_start(hilly(5, []), Vec2::ZERO, Vec3::X);
+        assert_eq!(start_pose(&[&silent, &one, &other]).place_m(), both.place_m());
+        assert_eq!(start_pose(&[&silent]).place_m(), Vec2::ZERO);
+        assert!(suits_all(&[&silent], &both));
     }
 
     #[test]

@@ -19,11 +19,6 @@ pub fn land_with(trunks: impl IntoIterator<Item = Trunk>) -> Land {
     land(|_, _| 0.0, trunks)
 }
 
-/// 128 m × 128 m that rise by `slope` to the east.
-pub fn ramp(slope: f32) -> Land {
-    land(|x, _| slope * x, [])
-}
-
 /// 128 m × 128 m of hills of up to 20 m, different for each seed.
 pub fn hilly(seed: u64, trunks: impl IntoIterator<Item = Trunk>) -> Land {
     let mut rng = Pcg32::seed_from_u64(seed);
@@ -54,5 +49,12 @@ fn land(height_m: impl Fn(f32, f32) -> f32, trunks: impl IntoIterator<Item = Tru
         .collect();
     let [_, top_m] = field.range_m();
     let start = StartView { position_m: Vec3::ZERO, direction: Vec3::NEG_Z };
-    Land { field: Arc::new(field), top_m, water_level_m: None, trunks: Trunks::new(trunks), start }
+    Land {
+        field: Arc::new(field),
+        top_m,
+        water_level_m: None,
+        trunks: Trunks::new(trunks),
+        start,
+        lookouts: None,
+    }
 }

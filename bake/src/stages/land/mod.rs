@@ -27,10 +27,18 @@ pub use stage::LandStage;
 
 /// Metres from edge to edge of the walkable field.
 pub const FIELD_M: f32 = 1024.0;
-/// Samples a side of the grid that droplets and sliding stone work on (2 m spacing).
-const FINE: u32 = 513;
-/// Samples a side of the grids that rivers work on, coarse to fine (8 m and 4 m spacing).
-const COARSE: [u32; 2] = [129, 257];
+/// The grids that erosion works on.
+struct Grids {
+    /// Samples a side for rivers, coarse to fine.
+    rivers: [u32; 2],
+    /// Samples a side for droplets and sliding stone.
+    slopes: u32,
+}
+
+/// 8 m and 4 m, then 2 m from sample to sample.
+const FULL: Grids = Grids { rivers: [129, 257], slopes: 513 };
+/// 16 m and 8 m: a sixteenth of the work.
+const SKETCH: Grids = Grids { rivers: [65, 129], slopes: 129 };
 
 /// The genes that shape the land; names, units, ranges and meanings as in `configs/space.ron`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -54,10 +62,18 @@ pub struct LandParams {
 /// Shapes the land on a grid of `size`² samples; `size` is 2^k+1 and at least 3 (513, 1025 and 2049 are in use).
 /// The lowest point of the field lies at about 0 m, the highest at about `relief_m`.
 pub fn landform(params: &LandParams, size: u32) -> Landform {
-    let size = size.max(3);
+    shaped(params, size.max(3), &FULL)
+}
+
+/// The same land drawn with a broad brush, with samples 8 m apart and without gullies: to judge it before it is made.
+pub fn sketch(params: &LandParams) -> Landform {
+    shaped(&LandParams { droplets: 0.0, ..params.clone() }, SKETCH.slopes, &SKETCH)
+}
+
+fn shaped(params: &LandParams, size: u32, grids: &Grids) -> Landform {
     let mut shape = Shape::new(params);
-    let raw = shape.fit(FINE);
-    let (worn, loose) = erode(params, &raw);
+    let raw = shape.fit(grids.slopes);
+    let (worn, loose) = erode(params, &raw, grids);
     let level = water::Level::new(params, &worn);
 
     let mut field = shape.sample(size, &raw);
@@ -68,7 +84,7 @@ pub fn landform(params: &LandParams, size: u32) -> Landform {
     level.settle(&mut apron.values);
     apron::join(&mut apron, &field);
 
-    let flow = streams::flow(&worn, COARSE[1]);
+    let flow = streams::flow(&worn, grids.rivers[1]);
     let peak = apron.values.iter().chain(&field.values).fold(f32::MIN, |a, &b| a.max(b));
     Landform {
         flow: flow.resized(size).map(|f| f.clamp(0.0, 1.0)).values,
@@ -85,11 +101,11 @@ fn into_field(grid: Grid) -> Heightfield {
 }
 
 /// The raw land after rivers, rain and gravity, and the thickness in metres of the loose material that they left.
-fn erode(params: &LandParams, raw: &Grid) -> (Grid, Grid) {
+fn erode(params: &LandParams, raw: &Grid, grids: &Grids) -> (Grid, Grid) {
     let mut land = raw.clone();
     let mut loose = raw.map(|_| 0.0);
-    let guard = grid::border_guard(FINE);
-    streams::carve_valleys(&mut land, &mut loose, params, COARSE);
+    let guard = grid::border_guard(grids.slopes);
+    streams::carve_valleys(&mut land, &mut loose, params, grids.rivers);
     droplets::rain(&mut land, &mut loose, &guard, params);
     // Before the slopes slide, so that stretching makes none too steep; and again for the relief lost by sliding.
     rescale(&mut land, params.relief_m);

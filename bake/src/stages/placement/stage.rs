@@ -7,9 +7,9 @@ use super::{PlacementParams, TreeFootprint, place};
 use crate::graph::{Context, File, Input, Stage, StageError};
 use crate::model::{Landform, Placement};
 use crate::stages::ground::snow_map;
-use crate::stages::start::{clear_around, start_spot};
+use crate::stages::start::clear_around;
 
-/// Placement genes, landform, trees → where trees stand, and where a person may first stand among them.
+/// Placement genes, landform, trees → where trees stand: none where a person may first stand.
 #[derive(Serialize)]
 pub struct PlacementStage {
     pub params: PlacementParams,
@@ -26,7 +26,7 @@ pub struct PlacementFiles {
 
 impl Stage for PlacementStage {
     const NAME: &'static str = "placement";
-    const VERSION: u32 = 2;
+    const VERSION: u32 = 3;
     type Output = PlacementFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<PlacementFiles, StageError> {
@@ -35,9 +35,8 @@ impl Stage for PlacementStage {
         let landform = context.get(&self.landform)?;
         let snow = snow_map(self.params.terrain_seed, &landform);
         let mut instances = place(&self.params, &landform, snow.as_ref(), &footprints);
-        let start_m = start_spot(&landform, &instances);
-        clear_around(start_m, &mut instances);
+        clear_around(&landform, &mut instances);
         let file = context.file("bin", write_instances(&instances));
-        Ok(PlacementFiles { placement: Placement { instances, start_m }, instances: file })
+        Ok(PlacementFiles { placement: Placement { instances }, instances: file })
     }
 }

@@ -1,12 +1,13 @@
 //! No tree floats, drowns, clings to a cliff or stands in another; and the same genes give the same forest.
 
+use genescape_schema::scene::Lookout;
 use glam::{Mat3, Vec2, Vec3};
 use proptest::prelude::*;
 
 use crate::model::{Heightfield, Instance, Landform, SnowMap};
 use crate::noise::fbm2;
 use crate::stages::ground::{self, GroundParams};
-use crate::stages::start::{CLEARING_M, clear_around, start_spot};
+use crate::stages::start::{CLEARING_M, clear_around};
 
 use super::site::{MAX_FLOW, Site, WATER_MARGIN_M};
 use super::{EDGE_MARGIN_M, MAX_TREES, PlacementParams, TreeFootprint, place};
@@ -121,12 +122,12 @@ proptest! {
             prop_assert!(site.flow(p.x, p.z) < MAX_FLOW);
             prop_assert!(p.x.abs().max(p.z.abs()) <= half);
         }
-        let start = start_spot(&land, &instances);
-        clear_around(start, &mut instances);
+        clear_around(&land, &mut instances);
         for instance in &instances {
             let [x, z, radius] = instance.trunk_cylinder_m;
-            let free = Vec2::new(x - start[0], z - start[1]).length() - radius;
-            prop_assert!(free >= CLEARING_M, "{free} m from the start");
+            let to = |place: Vec2| place.distance(Vec2::new(x, z)) - radius;
+            let free = Lookout::places_m(land.field.extent_m()).map(to).fold(f32::MAX, f32::min);
+            prop_assert!(free >= CLEARING_M, "{free} m from a lookout");
         }
     }
 

@@ -11,7 +11,7 @@ use super::SkyParams;
 use super::clear::{ClearSky, pale};
 use super::field::{CloudField, Shape};
 use super::math::{dot, exp, henyey_greenstein, normalize};
-use crate::math::smoothstep;
+use crate::math::{lerp, smoothstep};
 
 const EARTH_M: f32 = 6_360_000.0;
 /// Extinction inside a cloud per metre: droplets of 10 µm, 0.2 g/m³.
@@ -54,8 +54,11 @@ impl Clouds {
         let field = CloudField::new(params)?;
         let middle_km = 0.001 * (field.base_m + 0.6 * field.height_m);
         let sky_light = sky.irradiance() * std::f32::consts::FRAC_1_PI;
-        // Under a deck, light has been scattered so often that its colours have mixed.
-        let sun_light = pale(sky.sun_at(middle_km), 0.5 * field.deck);
+        // A deck is lit from above, where a low sun is less red; below it, light has been scattered so often that its
+        // colours have mixed.
+        let top_km = 0.001 * (field.base_m + field.height_m);
+        let sun_light = sky.sun_at(lerp(middle_km, top_km, field.deck));
+        let sun_light = pale(sun_light, 0.8 * field.deck);
         Some(Self { field, sun: sky.sun, sun_light, sky_light, ground_light: sky.ground })
     }
 

@@ -1,0 +1,160 @@
+//! A picture, its footing and light → how good it is, as terms from 0 to 1 that are multiplied.
+//!
+//! A term that somebody could do without (water) never falls far below 1; one that spoils all (a wall) falls
+//! nearly to 0. What
+//! each wants is said at [`Want`].
+
+use serde::{Deserialize, Serialize};
+
+use super::panorama::{Kind, ROWS, Seen};
+use super::picture::{HALF_HEIGHT, Picture};
+
+/// What a view is wanted to have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Want {
+    /// Dry and level ground under the feet, with a few steps of it on all sides.
+    Footing,
+    /// No wall: rays at eye level and below reach as far as they would on level ground.
+    Open,
+    /// Far land, and several distances before it.
+    Depth,
+    /// Trees between 10 m and 60 m; none in the face, and not nothing but trees.
+    Trees,
+    /// Water in sight, but not at the feet and not everywhere.
+    Water,
+    /// Sun from the side, on the ground before the eyes; if it shines at all.
+    Light,
+    /// The skyline in the upper part of the picture, and sky above it.
+    Horizon,
+    /// Something other than snow.
+    Green,
+}
+
+impl Want {
+    pub const ALL: [Self; 8] = [
+        Self::Footing,
+        Self::Open,
+        Self::Depth,
+        Self::Trees,
+        Self::Water,
+        Self::Light,
+        Self::Horizon,
+        Self::Green,
+    ];
+
+    /// What is to be said of a view that lacks it.
+    pub fn lack(self) -> &'static str {
+        match self {
+            Self::Footing => "nowhere dry and level to stand",
+            Self::Open => "a wall before the eyes",
+            Self::Depth => "no depth",
+            Self::Trees => "no trees at a good distance",
+            Self::Water => "water at the feet or nothing but water",
+            Self::Light => "no light on the ground, or the sun in the eyes",
+            Self::Horizon => "no horizon in the picture",
+            Self::Green => "snow from edge to edge",
+        }
+    }
+}
+
+/// How a view meets each of [`Want::ALL`], 0 … 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Appraisal {
+    pub terms: [f32; Want::ALL.len()],
+    /// Slope of the look.
+    pub pitch: f32,
+}
+
+impl Appraisal {
+    /// The root of the product of all terms: spread more evenly over 0 … 1 than the product.
+    pub fn score(&self) -> f32 {
+        self.terms.iter().product::<f32>().sqrt()
+    }
+
+    pub fn term(&self, want: Want) -> f32 {
+        self.terms[want as usize]
+    }
+
+    /// What is lacking most.
+    pub fn weakest(&self) -> Want {
+        let weaker = |a: &Want, b: &Want| self.term(*a).total_cmp(&self.term(*b));
+        Want::ALL.into_iter().min_by(weaker).unwrap_or(Want::Footing)
+    }
+}
+
+/// Appraises a picture; `footing` and `light` are known from elsewhere.
+pub(super) fn appraise(picture: &Picture<'_>, footing: f32, light: f32) -> Appraisal {
+    let terms = [
+        footing,
+        picture.open(),
+        picture.depth(),
+        picture.trees(),
+        picture.water(),
+        light,
+        picture.horizon(),
+        picture.green(),
+    ];
+    Appraisal { terms, pitch: picture.pitch }
+}
+
+impl Picture<'_> {
+    fn open(&self) -> f32 {
+        let land = |seen: &Seen| !matches!(seen.kind, Kind::Sky | Kind::Tree);
+        let wall = self.part([-0.04, HALF_HEIGHT], |_, seen| land(seen) && seen.depth_m < 40.0);
+        // On level ground a ray of slope −s reaches 1.6 m / s.
+        let bank = self.part([-0.28, -0.04], |slope, seen| land(seen) && seen.depth_m * -slope < 0.7);
+        // Not 0: of four landscapes, all of walls, one still begins where there is least of them.
+        0.02 + 0.98 * ramp(0.25, 0.03, wall) * ramp(0.7, 0.2, bank) * (1.0 - wall)
+    }
+
+    fn depth(&self) -> f32 {
+        let farthest = |column: &&[Seen; ROWS]| {
+            let land = column.iter().filter(|seen| !matches!(seen.kind, Kind::Sky | Kind::Tree));
+            land.map(|seen| seen.depth_m).fold(1.0, f32::max)
+        };
+        let far = self.columns().iter().map(|column| libm::logf(farthest(column))).sum::<f32>();
+        let far = ramp(libm::logf(40.0), libm::logf(600.0), far / self.columns().len() as f32);
+        let between = |low: f32, high: f32| {
+            let here = self.share(|seen| (low..high).contains(&seen.depth_m));
+            ramp(0.0, 0.04, here)
+        };
+        let bands = between(10.0, 30.0) + between(30.0, 90.0) + between(90.0, 270.0) + between(270.0, 1e4);
+        0.2 + 0.4 * far + 0.4 * ramp(0.8, 3.0, bands)
+    }
+
+    fn trees(&self) -> f32 {
+        let between = |low: f32, high: f32| {
+            self.share(|seen| seen.kind == Kind::Tree && (low..high).contains(&seen.depth_m))
+        };
+        let (near, good, far) = (between(0.0, 10.0), between(10.0, 60.0), between(60.0, 1e4));
+        let some = 0.2 + 0.8 * ramp(0.0, 0.1, good + 0.3 * far);
+        let none_near = 0.2 + 0.8 * ramp(0.2, 0.04, near);
+        let not_all = 0.4 + 0.6 * ramp(0.7, 0.4, near + good + far);
+        some * none_near * not_all
+    }
+
+    fn water(&self) -> f32 {
+        let share = self.share(|seen| seen.kind == Kind::Water);
+        let at_feet = self.share(|seen| seen.kind == Kind::Water && seen.depth_m < 6.0);
+        let some = 0.85 + 0.15 * ramp(0.0, 0.03, share);
+        some * (0.4 + 0.6 * ramp(0.45, 0.3, share)) * (0.4 + 0.6 * ramp(0.1, 0.0, at_feet))
+    }
+
+    fn horizon(&self) -> f32 {
+        let from_top = 0.5 - (self.skyline - self.pitch) / (2.0 * HALF_HEIGHT);
+        let sky = self.share(|seen| seen.kind == Kind::Sky);
+        let well = ramp(0.1, 0.33, from_top) * ramp(0.75, 0.52, from_top);
+        (0.15 + 0.85 * well) * (0.2 + 0.8 * ramp(0.03, 0.2, sky))
+    }
+
+    fn green(&self) -> f32 {
+        let snow = self.share(|seen| seen.kind == Kind::Snow);
+        let land = self.share(|seen| !matches!(seen.kind, Kind::Sky | Kind::Tree));
+        1.0 - 0.5 * ramp(0.4, 1.0, snow / land.max(0.05))
+    }
+}
+
+/// 0 at `from` and beyond, 1 at `to` and beyond, straight between.
+pub(super) fn ramp(from: f32, to: f32, x: f32) -> f32 {
+    ((x - from) / (to - from)).clamp(0.0, 1.0)
+}

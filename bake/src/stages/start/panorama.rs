@@ -1,0 +1,200 @@
+//! Land, water, trees, and a place → what can be seen around it: a coarse picture of depths, by one ray a column that
+//! marches over the heightfield, with trees as ellipsoids before it. Metres; no renderer.
+
+use core::f32::consts::TAU;
+
+use glam::Vec2;
+
+use crate::model::{Instance, Landform, StartView};
+use crate::stages::placement::TreeFootprint;
+
+/// Columns around, the first towards north (−z), clockwise.
+pub(super) const COLUMNS: usize = 96;
+/// Rows from bottom to top, evenly spaced by slope, as pixels of an upright picture are.
+pub(super) const ROWS: usize = 28;
+/// Slope of the lower edge of the lowest row; the picture is as high as deep.
+const REACH: f32 = 0.84;
+const ROW_STEP: f32 = 2.0 * REACH / ROWS as f32;
+
+/// The ray's first step and its growth: about 80 steps to the end.
+const FIRST_M: f32 = 1.5;
+const GROWTH: f32 = 1.09;
+/// Farthest land that counts.
+const FAR_M: f32 = 3000.0;
+/// Farthest tree that can be told from the ground.
+const FAR_TREE_M: f32 = 250.0;
+/// Part of a tree's height at which its crown begins, for all kinds.
+const CLEAR_TRUNK: f32 = 0.12;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Sky,
+    Ground,
+    /// Ground above the snow line.
+    Snow,
+    Water,
+    Tree,
+}
+
+/// What a ray meets first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Seen {
+    pub kind: Kind,
+    /// Metres along the ground; infinite for sky.
+    pub depth_m: f32,
+}
+
+const SKY: Seen = Seen { kind: Kind::Sky, depth_m: f32::INFINITY };
+
+/// The land with what stands on it.
+pub(super) struct Surroundings<'a> {
+    pub land: &'a Landform,
+    trees: Vec<Tree>,
+}
+
+/// A tree as an ellipsoid on a stem that is too thin to count.
+struct Tree {
+    foot: Vec2,
+    radius_m: f32,
+    bottom_m: f32,
+    top_m: f32,
+}
+
+impl Tree {
+    fn of(instance: &Instance, footprints: &[TreeFootprint]) -> Option<Self> {
+        let footprint = footprints.get(instance.template as usize)?;
+        let rows = &instance.world_from_tree;
+        let (foot_m, height_m) = (rows[1][3], footprint.height_m * rows[1][1]);
+        Some(Self {
+            foot: Vec2::new(rows[0][3], rows[2][3]),
+            radius_m: footprint.crown_radius_m * libm::hypotf(rows[0][0], rows[2][0]),
+            bottom_m: foot_m + CLEAR_TRUNK * height_m,
+            top_m: foot_m + height_m,
+        })
+    }
+}
+
+impl<'a> Surroundings<'a> {
+    pub fn new(land: &'a Landform, trees: &[Instance], footprints: &[TreeFootprint]) -> Self {
+        Self { land, trees: trees.iter().filter_map(|tree| Tree::of(tree, footprints)).collect() }
+    }
+
+    /// Height of the land, or of the water on it, near or at the horizon.
+    pub fn surface_m(&self, p: Vec2) -> f32 {
+        self.ground_m(p).max(self.water_m())
+    }
+
+    /// Height of the land.
+    pub fn ground_m(&self, p: Vec2) -> f32 {
+        let near = p.abs().max_element() <= 0.5 * self.land.field.extent_m();
+        let field = if near { &self.land.field } else { &self.land.apron };
+        field.height_m(p.x, p.y)
+    }
+
+    /// Level of the lake, far below if there is none.
+    pub fn water_m(&self) -> f32 {
+        self.land.water_level_m.unwrap_or(f32::MIN)
+    }
+
+    fn kind(&self, p: Vec2, surface_m: f32) -> Kind {
+        if self.ground_m(p) < self.water_m() {
+            Kind::Water
+        } else if surface_m > self.land.snow_line_m {
+            Kind::Snow
+        } else {
+            Kind::Ground
+        }
+    }
+}
+
+/// What is seen around a place.
+pub(super) struct Panorama {
+    /// Height of the eye.
+    pub eye_m: f32,
+    /// Column by column, from bottom to top.
+    seen: Vec<[Seen; ROWS]>,
+    /// For each column the slope of the skyline: of land, not of trees.
+    skyline: Vec<f32>,
+}
+
+impl Panorama {
+    pub fn new(scene: &Surroundings<'_>, place: Vec2) -> Self {
+        let eye_m = scene.surface_m(place) + StartView::EYE_HEIGHT_M;
+        let mut panorama = Self { eye_m, seen: Vec::with_capacity(COLUMNS), skyline: Vec::new() };
+        for column in 0..COLUMNS {
+            panorama.add_column(scene, place, column_towards(column));
+        }
+        for tree in &scene.trees {
+            panorama.add_tree(tree, place);
+        }
+        panorama
+    }
+
+    fn add_column(&mut self, scene: &Surroundings<'_>, place: Vec2, along: Vec2) {
+        let (mut seen, mut row, mut skyline) = ([SKY; ROWS], 0, -REACH);
+        let mut depth_m = FIRST_M;
+        while depth_m < FAR_M {
+            let p = place + along * depth_m;
+            let surface_m = scene.surface_m(p);
+            let slope = (surface_m - self.eye_m) / depth_m;
+            while row < ROWS && slope_of(row) <= slope {
+                seen[row] = Seen { kind: scene.kind(p, surface_m), depth_m };
+                row += 1;
+            }
+            skyline = slope.max(skyline);
+            depth_m *= GROWTH;
+        }
+        self.seen.push(seen);
+        self.skyline.push(skyline);
+    }
+
+    fn add_tree(&mut self, tree: &Tree, place: Vec2) {
+        let way = tree.foot - place;
+        let depth_m = way.length();
+        if depth_m > FAR_TREE_M || depth_m < 0.5 {
+            return;
+        }
+        let step = TAU / COLUMNS as f32;
+        let middle = libm::atan2f(way.x, -way.y) / step;
+        let half = libm::atanf(tree.radius_m / depth_m) / step;
+        let (low, high) = ((tree.bottom_m - self.eye_m) / depth_m, (tree.top_m - self.eye_m) / depth_m);
+        let reach = half.max(0.5) as i32 + 1;
+        for offset in -reach..=reach {
+            let column = libm::roundf(middle) as i32 + offset;
+            let aside = (column as f32 - middle) / half.max(0.5);
+            if aside * aside >= 1.0 {
+                continue;
+            }
+            let part = (1.0 - aside * aside).sqrt();
+            let (centre, span) = (0.5 * (low + high), 0.5 * (high - low) * part);
+            self.fill(column.rem_euclid(COLUMNS as i32) as usize, [centre - span, centre + span], depth_m);
+        }
+    }
+
+    /// A tree before a column's rows, unless land hides it.
+    fn fill(&mut self, column: usize, [low, high]: [f32; 2], depth_m: f32) {
+        for (row, seen) in self.seen[column].iter_mut().enumerate() {
+            let slope = slope_of(row);
+            if slope > low - 0.5 * ROW_STEP && slope < high + 0.5 * ROW_STEP && depth_m < seen.depth_m {
+                *seen = Seen { kind: Kind::Tree, depth_m };
+            }
+        }
+    }
+
+    /// The columns within `half` of one.
+    pub fn columns(&self, middle: usize, half: usize) -> impl Iterator<Item = (&[Seen; ROWS], f32)> + Clone {
+        let around = (0..=2 * half).map(move |k| (middle + COLUMNS + k - half) % COLUMNS);
+        around.map(|column| (&self.seen[column], self.skyline[column]))
+    }
+}
+
+/// Slope of a row's middle.
+pub(super) fn slope_of(row: usize) -> f32 {
+    (row as f32 + 0.5) * ROW_STEP - REACH
+}
+
+/// Unit vector (x, z) of a column.
+fn column_towards(column: usize) -> Vec2 {
+    let (sin, cos) = libm::sincosf(column as f32 * (TAU / COLUMNS as f32));
+    Vec2::new(sin, -cos)
+}

@@ -1,0 +1,44 @@
+//! The first look as a stage: results of earlier stages → a view, and a file of all prospects.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Appraisal, first_look};
+use crate::graph::{Context, File, Input, Stage, StageError};
+use crate::model::{Instance, Landform, SkyLight, StartView};
+use crate::stages::placement::TreeFootprint;
+
+/// Landform, trees, light → where the walk starts, and how good all lookouts are.
+#[derive(Serialize)]
+pub struct StartStage {
+    pub landform: Input<Landform>,
+    pub footprints: Vec<Input<TreeFootprint>>,
+    pub trees: Input<Vec<Instance>>,
+    pub light: Input<SkyLight>,
+}
+
+#[derive(Serialize, Deserialize)]
+pub struct StartFiles {
+    /// The best view.
+    pub view: StartView,
+    /// How good it is.
+    pub appraisal: Appraisal,
+    /// Factor by which its picture is to be made brighter: `SkyLight::exposure` without the gene's offset.
+    pub exposure: f32,
+    /// The binary data of `GSC_lookouts`.
+    pub lookouts: File,
+}
+
+impl Stage for StartStage {
+    const NAME: &'static str = "start";
+    const VERSION: u32 = 3;
+    type Output = StartFiles;
+
+    fn run(&self, context: &Context<'_>) -> Result<StartFiles, StageError> {
+        let footprints = self.footprints.iter().map(|footprint| Ok(*context.get(footprint)?));
+        let footprints = footprints.collect::<Result<Vec<_>, StageError>>()?;
+        let (landform, trees) = (context.get(&self.landform)?, context.get(&self.trees)?);
+        let look = first_look(&landform, &trees, &footprints, &*context.get(&self.light)?);
+        let lookouts = context.file("bin", look.lookouts.to_bytes());
+        Ok(StartFiles { view: look.view, appraisal: look.appraisal, exposure: look.exposure, lookouts })
+    }
+}

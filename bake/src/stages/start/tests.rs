@@ -1,0 +1,307 @@
+//! What a person wants of a first look holds on made-up lands, told by marching over the heights once more, and on random
+//! ones.
+
+use genescape_schema::scene::{Lookout, Lookouts, SharedView};
+use genescape_schema::{Genome, Kinds, Space};
+use glam::{Vec2, Vec3};
+
+use super::{CLEARING_M, FirstLook, Want, clear_around, first_look};
+use crate::export::film;
+use crate::model::{Heightfield, Instance, Landform, SkyLight, StartView};
+use crate::random;
+use crate::stages::ground::snow_map;
+use crate::stages::land::landform;
+use crate::stages::placement::{PlacementParams, TreeFootprint, place};
+use crate::stages::sky::{self, SkyParams};
+
+const TREE: TreeFootprint =
+    TreeFootprint { height_m: 12.0, trunk_radius_m: 0.25, crown_radius_m: 3.0, root_depth_m: 0.3 };
+
+/// 1024 m of land of those heights, level beyond, with no snow.
+fn land(height_m: impl Fn(f32, f32) -> f32, water_level_m: Option<f32>) -> Landform {
+    let field = |side: u32, spacing_m: f32| {
+        let place = |line: u32| (line as f32 - 0.5 * (side - 1) as f32) * spacing_m;
+        let heights_m = (0..side * side).map(|k| height_m(place(k % side), place(k / side))).collect();
+        Heightfield { side, spacing_m, heights_m }
+    };
+    let (field, apron) = (field(129, 8.0), field(65, 64.0));
+    let flat = vec![0.0; field.heights_m.len()];
+    Landform { field, flow: flat.clone(), deposit: flat, water_level_m, snow_line_m: 1e4, apron }
+}
+
+/// Trees of 12 m, upright.
+fn trees(places: impl IntoIterator<Item = Vec2>) -> Vec<Instance> {
+    let tree = |p: Vec2| Instance {
+        world_from_tree: [[1.0, 0.0, 0.0, p.x], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, p.y]],
+        template: 0,
+        trunk_cylinder_m: [p.x, p.y, 0.3],
+    };
+    places.into_iter().map(tree).collect()
+}
+
+/// Under a clear sky with the sun there.
+fn light(elevation_deg: f32, azimuth_deg: f32) -> SkyLight {
+    let (elevation, azimuth) = (elevation_deg.to_radians(), azimuth_deg.to_radians());
+    let flat = libm::cosf(elevation);
+    SkyLight {
+        sun_direction: Vec3::new(
+            flat * libm::sinf(azimuth),
+            libm::sinf(elevation),
+            -flat * libm::cosf(azimuth),
+        ),
+        sun_angular_radius_rad: 0.0047,
+        sun_irradiance_linear: [3.2, 2.9, 2.4],
+        sky_irradiance_linear: [0.5, 0.7, 1.0],
+        zonal_radiance_linear: vec![[0.5, 0.6, 0.7], [0.2, 0.3, 0.5]],
+        haze_linear: [0.5, 0.6, 0.7],
+        haze_extinction_per_m: 0.0002,
+        exposure: 1.0,
+    }
+}
+
+fn look(land: &Landform, trees: &[Instance], light: &SkyLight) -> FirstLook {
+    first_look(land, trees, &[TREE], light)
+}
+
+fn foot(view: &StartView) -> Vec2 {
+    Vec2::new(view.position_m.x, view.position_m.z)
+}
+
+/// Metres to the ground along a ray of that turn and slope from the look's azimuth; 500 at most.
+fn reach_m(land: &Landform, view: &StartView, turn: f32, slope: f32) -> f32 {
+    let along = Vec2::from_angle(turn).rotate(Vec2::new(view.direction.x, view.direction.z).normalize());
+    let steps = (1..1000).map(|step| 0.5 * step as f32);
+    let hits = |distance_m: &f32| {
+        let p = foot(view) + along * *distance_m;
+        land.field.height_m(p.x, p.y).max(land.water_level_m.unwrap_or(f32::MIN))
+            > view.position_m.y + slope * distance_m
+    };
+    steps.clone().find(hits).unwrap_or(500.0)
+}
+
+/// Whether land within 25 m fills more than a third of the middle of the picture above the eye.
+fn faces_a_wall(land: &Landform, view: &StartView) -> bool {
+    let rays =
+        (-4..=4).flat_map(|turn| (0..6).map(move |row| (turn as f32 * 0.08, 0.02 + 0.06 * row as f32)));
+    let (mut all, mut near) = (0, 0);
+    for (turn, slope) in rays {
+        (all, near) = (all + 1, near + i32::from(reach_m(land, view, turn, slope) < 25.0));
+    }
+    3 * near > all
+}
+
+/// Trees between two distances in the middle half of the picture.
+fn trees_ahead(view: &StartView, trees: &[Instance], [from_m, to_m]: [f32; 2]) -> usize {
+    let ahead = Vec2::new(view.direction.x, view.direction.z).normalize();
+    let is_ahead = |tree: &&Instance| {
+        let way = Vec2::new(tree.trunk_cylinder_m[0], tree.trunk_cylinder_m[1]) - foot(view);
+        (from_m..to_m).contains(&way.length()) && way.normalize().dot(ahead) > 0.8
+    };
+    trees.iter().filter(is_ahead).count()
+}
+
+#[test]
+fn nobody_starts_before_a_wall() {
+    // A plain between cliffs, and a cone in its middle.
+    let height_m = |x: f32, z: f32| {
+        let cone = 120.0 - libm::hypotf(x, z);
+        cone.max(3.0 * (x.abs() - 330.0)).max(0.0)
+    };
+    let land = land(height_m, None);
+    let look = look(&land, &[], &light(40.0, 130.0));
+    assert!(!faces_a_wall(&land, &look.view), "{:?}", look.view);
+    assert!(reach_m(&land, &look.view, 0.0, 0.0) > 150.0);
+    assert!(look.appraisal.term(Want::Open) > 0.9);
+    // The test can tell: into the cone, and into the cliff.
+    let wall = |x: f32, z: f32, ahead: Vec3| {
+        let position_m = Vec3::new(x, land.field.height_m(x, z) + 1.6, z);
+        faces_a_wall(&land, &StartView { position_m, direction: ahead })
+    };
+    assert!(wall(128.0, 0.0, Vec3::NEG_X) && wall(328.0, 300.0, Vec3::X) && !wall(200.0, 300.0, Vec3::NEG_Z));
+}
+
+#[test]
+fn one_stands_dry_by_the_lake_and_sees_it() {
+    let land = land(|x, z| 0.05 * (libm::hypotf(x, z) - 180.0), Some(0.0));
+    let look = look(&land, &[], &light(40.0, 130.0));
+    let place = foot(&look.view);
+    assert!(land.field.height_m(place.x, place.y) > 0.3, "dry");
+    let ahead = Vec2::new(look.view.direction.x, look.view.direction.z).normalize();
+    let wet = |distance_m: f32| {
+        let p = place + ahead * distance_m;
+        land.field.height_m(p.x, p.y) < 0.0
+    };
+    assert!(!wet(5.0) && (8..300).any(|distance_m| wet(distance_m as f32)), "{:?}", look.view);
+}
+
+#[test]
+fn a_grove_is_seen_from_outside_at_a_good_distance() {
+    let grid = (0..12).flat_map(|i| (0..12).map(move |j| Vec2::new(i as f32, j as f32)));
+    let land = land(|_, _| 0.0, None);
+    let mut trees = trees(grid.map(|cell| Vec2::new(120.0, -60.0) + 9.0 * cell));
+    clear_around(&land, &mut trees);
+    let look = look(&land, &trees, &light(40.0, 130.0));
+    assert!(trees_ahead(&look.view, &trees, [10.0, 60.0]) >= 3, "{:?}", look.view);
+    assert_eq!(trees_ahead(&look.view, &trees, [0.0, CLEARING_M]), 0);
+    assert!(look.appraisal.score() > 0.3);
+}
+
+#[test]
+fn the_skyline_lies_in_the_upper_half_of_the_picture() {
+    for hills_m in [0.0, 15.0, 40.0] {
+        let height_m = |x: f32, z: f32| hills_m * (libm::cosf(x / 90.0) + libm::cosf(z / 110.0));
+        let land = land(height_m, None);
+        let view = look(&land, &[], &light(40.0, 130.0)).view;
+        let pitch = view.direction.y / Vec2::new(view.direction.x, view.direction.z).length();
+        // For each column the lowest slope that passes over all land; in the middle of the field, land is all around.
+        let skyline = |turn: i32| {
+            let slopes = (-60..60).map(|k| 0.01 * k as f32);
+            slopes
+                .into_iter()
+                .find(|&slope| reach_m(&land, &view, 0.1 * turn as f32, slope) >= 500.0)
+                .expect("sky")
+        };
+        let mean = (-7..=7).map(skyline).sum::<f32>() / 15.0;
+        let from_top = 0.5 - (mean - pitch) / (2.0 * 0.577);
+        assert!((0.3..0.55).contains(&from_top), "{hills_m} m: {from_top}");
+    }
+}
+
+#[test]
+fn the_sun_is_not_in_the_eyes_and_lights_the_ground() {
+    let ridge = land(|x, z| if z > 300.0 { 0.0 } else { (80.0 - (x + 100.0).abs()).max(0.0) }, None);
+    for azimuth_deg in [0.0, 90.0, 200.0] {
+        let light = light(15.0, azimuth_deg);
+        let look = look(&ridge, &[], &light);
+        let sun = Vec2::new(light.sun_direction.x, light.sun_direction.z).normalize();
+        let ahead = Vec2::new(look.view.direction.x, look.view.direction.z).normalize();
+        assert!(ahead.dot(sun) < 0.9, "{azimuth_deg}°: {ahead}");
+        let place = foot(&look.view) + ahead * 15.0;
+        let shaded = (1..300).any(|step| {
+            let p = place + sun * (2.0 * step as f32);
+            ridge.field.height_m(p.x, p.y)
+                > ridge.field.height_m(place.x, place.y) + 0.5 + 0.268 * 2.0 * step as f32
+        });
+        assert!(!shaded, "{azimuth_deg}°");
+    }
+}
+
+#[test]
+fn where_nobody_can_stand_there_is_still_a_view_and_it_is_worth_nothing() {
+    let look = look(&land(|_, _| -5.0, Some(1000.0)), &[], &light(40.0, 130.0));
+    assert!(look.view.position_m.is_finite() && look.view.position_m.y > 1000.0);
+    assert_eq!((look.appraisal.score(), look.appraisal.weakest()), (0.0, Want::Footing));
+}
+
+#[test]
+fn the_best_lookout_is_the_view_and_its_prospect_is_its_score() {
+    let land = land(|x, z| 10.0 * (libm::cosf(x / 90.0) + libm::cosf(z / 110.0)), None);
+    let look = look(&land, &[], &light(30.0, 60.0));
+    let ahead = Vec2::new(look.view.direction.x, look.view.direction.z).normalize();
+    let at = Lookout::nearest(foot(&look.view), ahead, land.field.extent_m());
+    let best = look.lookouts.prospect(at).score;
+    assert!(Lookout::all().all(|other| look.lookouts.prospect(other).score <= best));
+    assert!((f32::from(best) / 255.0 - look.appraisal.score()).abs() < 0.003);
+}
+
+/// A landscape of some kind, drawn as `bake random` draws it.
+struct Drawn {
+    land: Landform,
+    trees: Vec<Instance>,
+    look: FirstLook,
+}
+
+impl Drawn {
+    fn new(space: &Space, genome: &Genome) -> Self {
+        let land = landform(&genome.read(space).expect("genes"), 129);
+        let placement: PlacementParams = genome.read(space).expect("genes");
+        let snow = snow_map(placement.terrain_seed, &land);
+        let mut trees = place(&placement, &land, snow.as_ref(), &[TREE]);
+        clear_around(&land, &mut trees);
+        let look = look(&land, &trees, &sky::light(&genome.read(space).expect("genes")));
+        Self { land, trees, look }
+    }
+
+    fn faces_a_wall(&self, view: &SharedView) -> bool {
+        faces_a_wall(&self.land, &view.on(&self.land.field, self.land.water_level_m))
+    }
+}
+
+/// Ten random populations: what the four of each look like from their shared view, and from the view of its first.
+#[test]
+fn of_forty_random_landscapes_hardly_one_is_first_seen_before_a_wall_and_most_have_trees() {
+    let space = Space::builtin();
+    let (kinds, _) = Kinds::shipped(&space);
+    let (mut walls, mut bare, mut of_the_first) = (Vec::new(), Vec::new(), 0);
+    for seed in 0..10 {
+        let population = random::population(&space, &kinds, &[], seed, 0).expect("kinds").population;
+        let four = population.individuals.each_ref().map(|one| Drawn::new(&space, &one.genome));
+        let lookouts = four.each_ref().map(|one| &one.look.lookouts);
+        let [shared, first] =
+            [&lookouts[..], &lookouts[..1]].map(|lands| Lookouts::shared(lands).expect("a view"));
+        for (k, one) in four.iter().enumerate() {
+            let view = shared.on(&one.land.field, one.land.water_level_m);
+            walls.extend(one.faces_a_wall(&shared).then_some((seed, k)));
+            of_the_first += u32::from(one.faces_a_wall(&first));
+            bare.extend((trees_ahead(&view, &one.trees, [8.0, 80.0]) == 0).then_some((seed, k)));
+        }
+    }
+    assert!(walls.is_empty(), "walls: {walls:?}");
+    assert!(of_the_first >= 2, "nothing to avoid: {of_the_first}");
+    assert!(bare.len() <= 4, "without trees: {bare:?}");
+}
+
+/// What the viewer's film curve makes of the sky and of the ground, as colours from 0 to 1.
+fn shown(sky: &SkyParams, snow: bool) -> [Vec3; 2] {
+    let mut land = land(|_, _| 0.0, None);
+    land.snow_line_m = if snow { -1.0 } else { 1e4 };
+    let light = sky::light(sky);
+    let exposure = look(&land, &[], &light).exposure;
+    let albedo = if snow { Vec3::new(0.80, 0.83, 0.87) } else { Vec3::new(0.09, 0.10, 0.04) };
+    let [sun, around] = [light.sun_irradiance_linear, light.sky_irradiance_linear].map(Vec3::from);
+    let ground = albedo * (sun * light.sun_direction.y + around) / core::f32::consts::PI;
+    let above = Vec3::from(light.zonal_radiance_linear[3]);
+    [above, ground].map(|radiance| Vec3::from(film((exposure * radiance).to_array())))
+}
+
+fn luma(color: Vec3) -> f32 {
+    color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
+}
+
+#[test]
+fn metered_pictures_are_neither_dark_nor_burnt_and_dusk_has_colour() {
+    let noon = SkyParams {
+        sky_seed: 5,
+        sun_elevation_deg: 50.0,
+        sun_azimuth_deg: 130.0,
+        turbidity: 3.0,
+        sun_size_deg: 0.53,
+        exposure_ev: 0.0,
+        cloud_cover: 0.2,
+        cloud_base_m: 1400.0,
+        cloud_thickness_m: 900.0,
+        cloud_scale_m: 1500.0,
+        cirrus: 0.0,
+        haze_m: 30_000.0,
+    };
+    let overcast = SkyParams { cloud_cover: 1.0, ..noon };
+    let dusk = SkyParams { sun_elevation_deg: 3.0, ..noon };
+    let dull_dusk = SkyParams { cloud_cover: 1.0, ..dusk };
+    let means = [&noon, &overcast, &dusk, &dull_dusk].map(|sky| {
+        let [above, ground] = shown(sky, false);
+        let mean = 0.5 * (luma(above) + luma(ground));
+        assert!((0.3..0.68).contains(&mean) && luma(above) < 0.93, "{sky:?}: {above}, {ground}");
+        mean
+    });
+    assert!(means[2] < means[0] && means[1] > 0.38, "{means:?}");
+    for sky in [&noon, &overcast] {
+        let ([_, snow], [_, grass]) = (shown(sky, true), shown(sky, false));
+        assert!((0.6..0.93).contains(&luma(snow)), "{sky:?}: {snow}");
+        assert!((0.2..0.6).contains(&luma(grass)), "{sky:?}: {grass}");
+    }
+    let chroma = |color: Vec3| color.max_element() - color.min_element();
+    assert!(chroma(shown(&dusk, false)[0]) > 0.08, "{:?}", shown(&dusk, false));
+    // Under a deck there is little colour, and no brown.
+    let [above, _] = shown(&dull_dusk, false);
+    assert!(above.x - above.z < 0.1, "{above}");
+}
