@@ -151,7 +151,7 @@ impl Panorama {
     fn add_tree(&mut self, tree: &Tree, place: Vec2) {
         let way = tree.foot - place;
         let depth_m = way.length();
-        if depth_m > FAR_TREE_M || depth_m < 0.5 {
+        if !(0.5..=FAR_TREE_M).contains(&depth_m) {
             return;
         }
         let step = TAU / COLUMNS as f32;
