@@ -45,8 +45,8 @@ fn shadows_that_come_later_are_those_that_come_at_once() {
         bake.land();
         bake.trees_around(Vec2::new(20.0, -10.0), reach_m);
     };
-    let all = picture(&studio, &scene, ShadowBake::all);
-    let of_land = picture(&studio, &scene, ShadowBake::land);
+    let all = picture(&studio, &scene, |bake| bake.all());
+    let of_land = picture(&studio, &scene, |bake| bake.land());
     let of_some = picture(&studio, &scene, |bake| near(bake, 20.0));
     let (some, missing) = (differing(&of_some, &of_land), differing(&of_some, &all));
     assert!(some > 30 && missing > 2 * some, "{some} pixels have got shadows, {missing} have not");
