@@ -28,9 +28,11 @@ use thread_priority::{ThreadPriority, set_current_thread_priority};
 
 pub use genescape_bake::events::Event;
 
-/// Priority of threads in the background, from 0 to 99: half way down. At the very bottom a bake would never get on where
-/// the pictures are drawn by the processor, too.
-const PRIORITY: u8 = 25;
+/// Priority of threads that bake, from 0 to 99: half way down. At the very bottom a bake would never get on where the
+/// pictures are drawn by the processor, too.
+const BAKING: u8 = 25;
+/// What was baked is read before more is baked: somebody waits for it.
+const READING: u8 = 40;
 /// Until the first new attempt after a failure; each further pause is twice as long.
 const MIN_PAUSE: Duration = Duration::from_millis(250);
 /// The longest of these pauses. An attempt that lasted longer was a good one.
@@ -42,7 +44,7 @@ const END_TIMEOUT: Duration = Duration::from_millis(500);
 /// How to bake: a part of the command line, whose help these comments are.
 #[derive(Clone, Debug, clap::Args)]
 pub struct BakerOptions {
-    /// Threads that bake [default: all cores but one]
+    /// Threads that bake, at a lower priority than what draws [default: as many as there are cores]
     #[arg(long, value_name = "N", value_parser = threads)]
     pub threads: Option<usize>,
 
@@ -87,7 +89,7 @@ impl Baker {
         let root = root.to_owned();
         thread::Builder::new().name("baker".into()).spawn(move || {
             let _alive: Sender<()> = alive;
-            lower_priority();
+            lower_priority_to(BAKING);
             let attempt = || bake(&root, &options, &reporter);
             supervise(attempt, |message| (&reporter).tell(&Event::Failed { message }), &|| {
                 reporter.stopped()
@@ -120,19 +122,25 @@ fn bake(root: &Path, options: &BakerOptions, reporter: &Reporter) -> Result<()> 
 }
 
 fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
+    // None is left to what draws: where that is the processor, it rests meanwhile.
     let cores = || thread::available_parallelism().map_or(1, |cores| cores.get());
-    let threads = threads.unwrap_or_else(|| cores() - 1).max(1);
+    let threads = threads.unwrap_or_else(cores).max(1);
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .thread_name(|index| format!("baker {index}"))
-        .start_handler(|_| lower_priority())
+        .start_handler(|_| lower_priority_to(BAKING))
         .build()
         .context("cannot start threads")
 }
 
-/// Puts the calling thread behind the one that draws. Without the right to do so it is merely less polite.
+/// Puts the calling thread, which reads what was baked, behind the one that draws and before those that bake.
 pub fn lower_priority() {
-    if let Ok(priority) = PRIORITY.try_into() {
+    lower_priority_to(READING);
+}
+
+/// Without the right to do so a thread is merely less polite.
+fn lower_priority_to(priority: u8) {
+    if let Ok(priority) = priority.try_into() {
         let _ = set_current_thread_priority(ThreadPriority::Crossplatform(priority));
     }
 }

@@ -83,6 +83,17 @@ impl Gpu {
         Ok(Self::open(&instance(), None)?.0)
     }
 
+    /// A device that draws to memory only; where there is none, tests are skipped unless they must not be.
+    #[cfg(test)]
+    pub fn for_tests() -> Option<Self> {
+        let gpu = Self::headless();
+        if let Err(error) = &gpu {
+            assert!(std::env::var_os("GENESCAPE_NEEDS_GPU").is_none(), "{error}");
+            crate::say!("SKIPPED, for nothing can draw here: {error}");
+        }
+        gpu.ok()
+    }
+
     /// A buffer with these contents.
     pub fn buffer<T: NoUninit>(&self, label: &str, contents: &[T], usage: BufferUsages) -> Buffer {
         use wgpu::util::DeviceExt;
@@ -117,12 +128,13 @@ impl Gpu {
     }
 }
 
-/// A picture to draw into, black at first.
+/// A picture to draw into, all `color` at first.
 pub fn cleared<'a>(
     view: &'a TextureView,
     resolve_target: Option<&'a TextureView>,
+    color: wgpu::Color,
 ) -> Option<wgpu::RenderPassColorAttachment<'a>> {
-    let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store };
+    let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(color), store: wgpu::StoreOp::Store };
     Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target, ops })
 }
 

@@ -128,9 +128,17 @@ impl Default for Options {
 }
 
 /// What one frame is drawn from; the same for all views.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameInput {
     pub options: Options,
     /// Seconds for which clouds have drifted and waves have run.
     pub time_s: f32,
+    /// Sides of the picture as a part of full resolution, (0, 1]: less of what its pixels do not show is drawn, too.
+    pub part: f32,
+}
+
+impl Default for FrameInput {
+    fn default() -> Self {
+        Self { options: Options::default(), time_s: 0.0, part: 1.0 }
+    }
 }

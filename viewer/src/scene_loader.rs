@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::{Error, Result};
+use glam::{Vec2, Vec3Swizzles};
 
 use crate::gpu::Gpu;
 use crate::load::{self, Store};
@@ -18,7 +19,12 @@ use crate::walk::Land;
 pub struct Loaded {
     pub buffers: Arc<SceneBuffers>,
     pub land: Arc<Land>,
+    /// Only trees near by throw shadows on others yet.
+    pub lacks_shadows: bool,
 }
+
+/// How far around the eye shadows are drawn before a landscape is shown: what is farther is a few pixels high.
+const NEAR_M: f32 = 150.0;
 
 /// Reads landscapes and brings them to one device.
 pub struct SceneLoader {
@@ -40,14 +46,31 @@ impl SceneLoader {
     /// Brings a landscape to the device. Its shadows are done when this returns: no picture has to wait for them.
     pub fn upload(&self, scene: &Scene, passes: &Passes) -> Result<Arc<SceneBuffers>> {
         let buffers = self.uploader.upload(scene).map_err(Error::msg)?;
-        passes.shadow.bake(&self.gpu, &passes.layouts, &passes.cull, &buffers);
-        self.gpu.wait();
+        passes.shadow.begin(&self.gpu, passes, &buffers).all();
         Ok(Arc::new(buffers))
     }
 
     /// Both.
     pub fn load(&self, path: &Path, passes: &Passes) -> Result<Loaded> {
         let scene = self.read(path)?;
-        Ok(Loaded { buffers: self.upload(&scene, passes)?, land: Arc::new(Land::of(&scene)) })
+        let buffers = self.upload(&scene, passes)?;
+        Ok(Loaded { buffers, land: Arc::new(Land::of(&scene)), lacks_shadows: false })
+    }
+
+    /// Both, with those shadows only that are seen from `eye_m` (x and z), or from where walks start.
+    pub fn load_with_near_shadows(
+        &self,
+        path: &Path,
+        passes: &Passes,
+        eye_m: Option<Vec2>,
+    ) -> Result<Loaded> {
+        let scene = self.read(path)?;
+        let buffers = self.uploader.upload(&scene).map_err(Error::msg)?;
+        let bake = passes.shadow.begin(&self.gpu, passes, &buffers);
+        bake.land();
+        bake.trees_around(eye_m.unwrap_or(scene.start.position_m.xz()), NEAR_M);
+        drop(bake);
+        let land = Arc::new(Land::of(&scene));
+        Ok(Loaded { buffers: Arc::new(buffers), land, lacks_shadows: true })
     }
 }

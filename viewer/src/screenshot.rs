@@ -33,7 +33,7 @@ pub fn take(cli: &Cli, source: &Source, out: &Path) -> Result<()> {
     let columns = if loaded.len() > 1 { 2 } else { 1 };
     let rows = loaded.len().div_ceil(columns) as u32;
     let size = [(width / columns as u32).max(1), (height / rows).max(1)];
-    let frame = FrameInput { options, time_s: cli.time };
+    let frame = FrameInput { options, time_s: cli.time, ..FrameInput::default() };
     let mut pictures = Vec::new();
     for one in &loaded {
         let mut view = headless.view(one.buffers.clone(), size);

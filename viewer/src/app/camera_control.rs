@@ -1,5 +1,6 @@
 //! Keys, mouse and gamepad → where the one camera of all views is.
 
+use glam::Vec2;
 use winit::window::{CursorGrabMode, Window};
 
 use crate::input::{Command, Held};
@@ -84,6 +85,11 @@ impl CameraControl {
         } else {
             self.rig.settle(all);
         }
+    }
+
+    /// From where landscapes that are to come will be seen, x and z in metres, unless they decide that themselves.
+    pub fn eye_m(&self) -> Option<Vec2> {
+        (self.place != Place::Awaited).then(|| self.rig.pose().place_m())
     }
 
     /// Goes to where every walk starts.

@@ -37,7 +37,7 @@ impl App {
             Event::ExportChoice(choice) => settings.export.value = choice,
             Event::Export(view) => self.export(view, Then::Tell),
             Event::DragOut(view) => self.drag_out(view),
-            Event::ChooseExportFolder => self.exports.choose_folder(self.wake()),
+            Event::ChooseExportFolder => self.exports.choose_folder(self.wake(super::Wake::Now)),
             Event::ShowExported => self.show_exported(),
             Event::CopyExported => self.copy_exported(),
             Event::ResetSettings => {

@@ -108,7 +108,7 @@ impl App {
             Source::World(_) => format!("g{:04}-{}-", self.editor.generations().0, view + 1),
             Source::Scenes(_) => String::new(),
         };
-        match export::start(Job { scene, folder, prefix, choice }, self.wake()) {
+        match export::start(Job { scene, folder, prefix, choice }, self.wake(super::Wake::Now)) {
             Ok(news) => self.exports.running = Some(Running { news, view, done: 0, files: 1, then }),
             Err(error) => self.tell(Tone::Error, format!("Nothing is exported: {error}")),
         }

@@ -12,7 +12,9 @@ mod lod_readback;
 mod log;
 mod model;
 mod pace;
+mod picture_painter;
 mod screen;
+mod sharpness;
 mod viewport;
 mod viewports;
 mod window_events;
@@ -42,8 +44,9 @@ use editor::{Editor, Task};
 use exports::Exports;
 use layout::Layout;
 use log::{Log, Moment};
-use pace::{Next, Pace, Sharpness, Shown};
+use pace::{Next, Pace, Shown};
 use screen::Screen;
+use sharpness::Sharpness;
 use viewports::Viewports;
 
 /// Between two looks at whether settings have to be saved.
@@ -57,8 +60,12 @@ const GAMEPAD_EVERY: Duration = Duration::from_millis(30);
 const CONTINUOUS: Duration = Duration::from_millis(50);
 
 /// Wakes the loop: something is new somewhere.
-#[derive(Clone, Copy, Debug)]
-struct Wake;
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Wake {
+    Now,
+    /// When there is time.
+    Soon,
+}
 
 /// Opens the window with the landscapes of `source` and stays until it is closed.
 pub fn run(cli: Cli, source: Source) -> Result<()> {
@@ -175,11 +182,11 @@ impl App {
         }
     }
 
-    fn wake(&self) -> impl Fn() + Send + Sync + 'static {
+    fn wake(&self, wake: Wake) -> impl Fn() + Send + Sync + 'static {
         let proxy = self.proxy.clone();
         // The loop is gone only when the program ends.
         move || {
-            let _ = proxy.send_event(Wake);
+            let _ = proxy.send_event(wake);
         }
     }
 
@@ -189,14 +196,14 @@ impl App {
         let Source::World(root) = self.source.clone() else { return };
         let shaders = self.cli.shaders.clone();
         let scope = Scope { scenes: true, shaders, ..Scope::of(World::new(&root)) };
-        match Watch::start(scope, self.cli.bake.poll, self.wake()) {
+        match Watch::start(scope, self.cli.bake.poll, self.wake(Wake::Now)) {
             Ok(watch) => self.background.watch = Some(watch),
             Err(error) => self.tell(Tone::Error, format!("{} cannot be watched: {error}", root.display())),
         }
         if self.cli.no_bake {
             return;
         }
-        match Baker::start(&root, self.cli.bake.clone(), self.wake()) {
+        match Baker::start(&root, self.cli.bake.clone(), self.wake(Wake::Soon)) {
             Ok(baker) => self.background.baker = Some(baker),
             Err(error) => self.tell(Tone::Error, format!("nothing can be baked: {error}")),
         }
@@ -221,6 +228,7 @@ impl App {
     fn frame(&mut self, events: &ActiveEventLoop) {
         let passed = self.pace.begin(Instant::now());
         self.gather();
+        self.share_processor();
         self.step_camera(passed, events);
         let model = self.model();
         let Some((output, shown)) = self.draw(&model) else { return };
@@ -251,6 +259,18 @@ impl App {
         self.hear_exports();
         if self.live.is_some() {
             self.editor.take_tasks().into_iter().for_each(|task| self.carry_out(task));
+        }
+        self.finish_shadows();
+    }
+
+    /// When no landscape is on its way, those on show get the rest of their shadows.
+    fn finish_shadows(&mut self) {
+        let Some(live) = &mut self.live else { return };
+        live.loader.shadowed().for_each(|buffers| live.viewports.shadowed(&buffers));
+        if !self.editor.is_busy() {
+            let passes = live.viewports.passes();
+            let lacking = live.viewports.ask_for_shadows();
+            lacking.into_iter().for_each(|buffers| live.loader.finish_shadows(buffers, passes.clone()));
         }
     }
 
@@ -283,7 +303,8 @@ impl App {
             Task::BeginWalk => self.camera.await_landscapes(),
             Task::Load { view, generation, path } => {
                 if let Some(live) = &self.live {
-                    live.loader.ask(Request { view, generation, path, passes: live.viewports.passes() });
+                    let (eye_m, passes) = (self.camera.eye_m(), live.viewports.passes());
+                    live.loader.ask(Request { view, generation, path, eye_m, passes });
                 }
             }
         }
@@ -300,6 +321,13 @@ impl App {
         }
     }
 
+    /// Where the processor draws, pictures leave it to what a person waits for.
+    fn share_processor(&mut self) {
+        let Some(live) = self.live.as_ref().filter(|live| live.gpu.software) else { return };
+        self.pace
+            .share(self.editor.is_busy() || self.editor.awaits_scenes() || live.viewports.awaits_shadows());
+    }
+
     fn step_camera(&mut self, passed: Duration, events: &ActiveEventLoop) {
         let comfort = &self.file.settings.comfort.value;
         let step = self.camera.step(passed.as_secs_f32(), comfort, &lands(&self.live));
@@ -312,7 +340,7 @@ impl App {
     fn draw(&mut self, model: &Model) -> Option<(ui::Output, Shown)> {
         let Live { screen, gpu, viewports, .. } = self.live.as_mut()?;
         let options = self.file.settings.options;
-        let frame = FrameInput { options, time_s: self.pace.drifted_s() };
+        let frame = FrameInput { options, time_s: self.pace.drifted_s(), part: 1.0 };
         let sharpness = if self.screenshot { Sharpness::Full } else { self.pace.sharpness(&options) };
         if let Err(error) = viewports.set_samples(options.samples) {
             self.editor.shaders(Some(error.to_string()));
@@ -326,9 +354,11 @@ impl App {
         let accessible = accessible.filter(|_| self.log.wants_widgets());
         let widgets = accessible.map(|update| log::widgets(update, full.pixels_per_point));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let slots = &output.views.slots;
+        let (slots, pictures) = (&output.views.slots, &mut screen.pictures);
+        let is_outdated = |view: usize| self.pace.is_shared() && model.views[view].state.is_to_come();
+        let outdated = std::array::from_fn(is_outdated);
         let (drawn, blurred) =
-            viewports.record(&mut encoder, &mut screen.painter, slots, &frame, sharpness, &self.camera);
+            viewports.record(&mut encoder, pictures, slots, &frame, sharpness, outdated, &self.camera);
         let again = if (0..model.views.len()).any(|view| viewports.picture(view) != model.views[view].picture)
         {
             // A first picture, which the user interface did not know of yet.
@@ -337,7 +367,7 @@ impl App {
             full.viewport_output.get(&egui::ViewportId::ROOT).map(|viewport| viewport.repaint_delay)
         };
         let visible = screen.present(full, encoder);
-        viewports.end_frame();
+        viewports.end_frame(self.layout.panels.stats);
         self.log.frame(Moment {
             model,
             landscapes: std::array::from_fn(|view| viewports.scene(view)),
@@ -364,8 +394,7 @@ impl App {
     fn wait(&mut self, events: &ActiveEventLoop, shown: Shown) {
         let Some(live) = &mut self.live else { return };
         let now = Instant::now();
-        let waiting = self.editor.bake.baking.is_some() || self.editor.awaits_scenes();
-        let next = self.pace.end(now, shown, live.gpu.software && waiting);
+        let next = self.pace.end(now, shown);
         if !matches!(next, Next::At(at) if at <= now + CONTINUOUS) {
             live.viewports.pause();
         }

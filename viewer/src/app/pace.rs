@@ -1,8 +1,10 @@
 //! When the next frame comes, how sharp its pictures are, and whether clouds drift: as much as the device can do while the
-//! camera moves, nothing while nothing changes. Arithmetic on times that are handed in; knows neither window nor device.
+//! camera moves, nothing while nothing changes, and as little as will do while the processor that draws also bakes.
+//! Arithmetic on times that are handed in; knows neither window nor device.
 
 use std::time::{Duration, Instant};
 
+use super::sharpness::Sharpness;
 use crate::options::Options;
 
 /// A walk's frame may take that long: 15 frames a second are what the thesis asks of four views (section 7).
@@ -15,6 +17,10 @@ pub const PARTS: [f32; 4] = [1.0, 0.75, 0.5, 0.375];
 const FIRST_PART_IN_SOFTWARE: usize = 2;
 /// After the camera came to rest, pictures become sharp: not between two steps.
 const SHARP_AFTER: Duration = Duration::from_millis(200);
+/// The same while the processor has better things to do, and since the last picture was drawn.
+const SHARP_BESIDE_WORK_AFTER: Duration = Duration::from_secs(2);
+/// Between two frames that nobody asked for, while the processor has better things to do.
+const BESIDE_WORK: Duration = Duration::from_millis(250);
 /// Clouds and waves rest when nobody has touched anything for so long.
 const IDLE_AFTER: Duration = Duration::from_secs(10);
 /// Frames at a new resolution before it is judged: the first still show what came before.
@@ -23,17 +29,6 @@ const WARM_UP: usize = 3;
 const JUDGED: usize = 5;
 /// A finer resolution must promise to stay below this part of [`MOVING_FRAME`], or two would alternate.
 const MARGIN: f32 = 0.85;
-
-/// At which resolution the pictures of one frame are drawn.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Sharpness {
-    /// All at this part of full resolution, sideways and upwards.
-    Part(f32),
-    /// One picture that is not yet sharp becomes so: one a frame, so that none takes long.
-    Sharpen,
-    /// All at full resolution.
-    Full,
-}
 
 /// What came of a frame.
 #[derive(Clone, Copy, Debug, Default)]
@@ -66,6 +61,12 @@ pub struct Pace {
     moving: bool,
     /// When the camera moved last.
     moved: Instant,
+    /// When pictures were drawn last.
+    drawn: Instant,
+    /// When the last frame ended.
+    ended: Instant,
+    /// The processor draws and has other work besides.
+    shared: bool,
     /// When the person did something last.
     touched: Instant,
     /// For how long clouds have drifted and waves have run.
@@ -83,6 +84,9 @@ impl Pace {
             now,
             moving: false,
             moved: now,
+            drawn: now,
+            ended: now,
+            shared: false,
             touched: now,
             drifted: Duration::ZERO,
             drifting: false,
@@ -120,6 +124,21 @@ impl Pace {
         self.now
     }
 
+    /// Whether the processor draws and has other work besides: pictures rest then unless the camera moves.
+    pub fn share(&mut self, shared: bool) {
+        self.shared = shared;
+    }
+
+    /// Whether it is so.
+    pub fn is_shared(&self) -> bool {
+        self.shared
+    }
+
+    /// When a frame may come that shows nothing urgent.
+    pub fn soon(&self) -> Instant {
+        self.ended + if self.shared { BESIDE_WORK } else { Duration::ZERO }
+    }
+
     /// Whether the camera moves in this frame.
     pub fn camera(&mut self, moving: bool, options: &Options) {
         self.moving = moving;
@@ -138,32 +157,45 @@ impl Pace {
 
     /// How this frame's pictures are drawn.
     pub fn sharpness(&self, options: &Options) -> Sharpness {
-        if self.rests_long_enough() {
-            return Sharpness::Sharpen;
+        let part = options.moving_resolution.unwrap_or(PARTS[self.part]).clamp(0.1, 1.0);
+        match (self.until_sharp(self.now), self.shared && !self.moving) {
+            (Duration::ZERO, _) => Sharpness::Sharpen(part),
+            (_, true) => Sharpness::New(part),
+            (_, false) => Sharpness::Part(part),
         }
-        Sharpness::Part(options.moving_resolution.unwrap_or(PARTS[self.part]).clamp(0.1, 1.0))
     }
 
-    /// Ends a frame: when the next is due. `shared`: the processor draws and has other work besides, for which half of the
-    /// time is left.
-    pub fn end(&mut self, now: Instant, shown: Shown, shared: bool) -> Next {
-        let wait_for_sharpness = match (shown.blurred, self.rests_long_enough()) {
-            (false, _) => None,
-            (true, true) => Some(Duration::ZERO),
-            (true, false) => Some(SHARP_AFTER.saturating_sub(now.saturating_duration_since(self.moved))),
-        };
+    /// Ends a frame: when the next is due.
+    pub fn end(&mut self, now: Instant, shown: Shown) -> Next {
+        if shown.drawn {
+            self.drawn = now;
+        }
+        self.ended = now;
+        let wait_for_sharpness = shown.blurred.then(|| self.until_sharp(now));
         self.running = self.moving || self.drifting;
         let at_once = self.running.then_some(Duration::ZERO);
         let took = now.saturating_duration_since(self.now);
-        let rest = if shared && shown.drawn { took.min(Duration::from_secs(1)) } else { Duration::ZERO };
+        let rest = match (self.shared, self.moving) {
+            (false, _) => Duration::ZERO,
+            // Half of the time is left for the rest.
+            (true, true) => took.min(Duration::from_secs(1)),
+            (true, false) => BESIDE_WORK,
+        };
         let wait = [at_once, wait_for_sharpness, shown.again].into_iter().flatten().min();
         let pause = wait.map(|wait| wait.max(rest).max(MIN_FRAME.saturating_sub(took)));
         // "Never" is a duration to egui.
         pause.and_then(|pause| now.checked_add(pause)).map_or(Next::OnEvent, Next::At)
     }
 
-    fn rests_long_enough(&self) -> bool {
-        !self.moving && self.now.saturating_duration_since(self.moved) >= SHARP_AFTER
+    /// How long pictures that are not sharp stay so, as seen at `now`.
+    fn until_sharp(&self, now: Instant) -> Duration {
+        let after =
+            |rest: Duration, since: Instant| rest.saturating_sub(now.saturating_duration_since(since));
+        match (self.moving, self.shared) {
+            (true, _) => SHARP_AFTER,
+            (false, false) => after(SHARP_AFTER, self.moved),
+            (false, true) => after(SHARP_BESIDE_WORK_AFTER, self.moved.max(self.drawn)),
+        }
     }
 
     /// Takes a moving frame's duration into account and chooses among [`PARTS`].
@@ -216,10 +248,13 @@ mod tests {
             self.pace.begin(self.now);
             self.pace.camera(moving, &self.options);
             let sharpness = self.pace.sharpness(&self.options);
-            let part = if let Sharpness::Part(part) = sharpness { part } else { 1.0 };
+            let part = match sharpness {
+                Sharpness::Part(part) | Sharpness::New(part) => part,
+                Sharpness::Sharpen(_) | Sharpness::Full => 1.0,
+            };
             self.now += MS.mul_f32(self.base_ms + self.pixels_ms * part * part);
             let shown = Shown { drawn: true, blurred: part < 1.0, again: None };
-            (sharpness, self.pace.end(self.now, shown, false))
+            (sharpness, self.pace.end(self.now, shown))
         }
 
         /// Frames for as long as they follow upon each other; how many.
@@ -264,7 +299,7 @@ mod tests {
         assert!(matches!(device.frame(true).0, Sharpness::Part(part) if part < 1.0));
         let frames = device.run(0, 1000);
         assert!(frames <= 4, "{frames} frames after a walk");
-        assert_eq!(device.frame(false), (Sharpness::Sharpen, Next::OnEvent));
+        assert!(matches!(device.frame(false), (Sharpness::Sharpen(_), Next::OnEvent)));
     }
 
     #[test]
@@ -293,9 +328,31 @@ mod tests {
     fn where_the_processor_also_bakes_half_of_the_time_is_left() {
         let mut device = Device::new(0.0, 0.0);
         device.pace.begin(device.now);
+        device.pace.share(true);
         device.pace.camera(true, &device.options);
         let end = device.now + 80 * MS;
         let shown = Shown { drawn: true, blurred: true, again: Some(Duration::ZERO) };
-        assert_eq!(device.pace.end(end, shown, true), Next::At(end + 80 * MS));
+        assert_eq!(device.pace.end(end, shown), Next::At(end + 80 * MS));
+    }
+
+    #[test]
+    fn where_the_processor_also_bakes_pictures_become_sharp_when_none_has_come_for_a_while() {
+        let mut device = Device::new(20.0, 400.0);
+        device.pace.expect_software();
+        device.options.drift_clouds = false;
+        device.pace.share(true);
+        let part = PARTS[FIRST_PART_IN_SOFTWARE];
+        for _ in 0..5 {
+            // One landscape after the other arrives.
+            let (sharpness, next) = device.frame(false);
+            assert_eq!(sharpness, Sharpness::New(part));
+            assert_eq!(next, Next::At(device.now + SHARP_BESIDE_WORK_AFTER));
+            assert_eq!(device.pace.soon(), device.now + BESIDE_WORK);
+            device.now += SHARP_BESIDE_WORK_AFTER / 2;
+        }
+        device.now += SHARP_BESIDE_WORK_AFTER;
+        assert_eq!(device.frame(false).0, Sharpness::Sharpen(part));
+        device.pace.share(false);
+        assert_eq!(device.frame(false).0, Sharpness::Sharpen(part), "with the work done at once");
     }
 }

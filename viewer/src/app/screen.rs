@@ -5,8 +5,9 @@ use std::sync::Arc;
 use anyhow::{Result, anyhow};
 use winit::window::Window;
 
+use super::picture_painter::PicturePainter;
 use crate::gpu::{Gpu, GpuError, cleared};
-use crate::settings;
+use crate::{settings, ui};
 
 /// A window with its surface and what paints the user interface.
 pub struct Screen {
@@ -15,8 +16,9 @@ pub struct Screen {
     pub ctx: egui::Context,
     /// Translates the window's events.
     pub input: egui_winit::State,
-    /// Paints; knows textures by [`egui::TextureId`].
-    pub painter: egui_wgpu::Renderer,
+    painter: egui_wgpu::Renderer,
+    /// What the landscapes look like, for the painter.
+    pub pictures: PicturePainter,
     /// What is for the next frame.
     later: Vec<egui::Event>,
     surface: wgpu::Surface<'static>,
@@ -49,7 +51,9 @@ impl Screen {
         let input = egui_winit::State::new(ctx.clone(), id, &window, Some(scale), window.theme(), Some(8192));
         let painter =
             egui_wgpu::Renderer::new(&gpu.device, config.format, egui_wgpu::RendererOptions::default());
-        Ok((Self { window, ctx, input, painter, later: Vec::new(), surface, config, gpu: gpu.clone() }, gpu))
+        let pictures = PicturePainter::new(&gpu, config.format);
+        let later = Vec::new();
+        Ok((Self { window, ctx, input, painter, pictures, later, surface, config, gpu: gpu.clone() }, gpu))
     }
 
     /// What has happened since the last frame, up to a press.
@@ -85,7 +89,8 @@ impl Screen {
     pub fn present(&mut self, mut output: egui::FullOutput, mut encoder: wgpu::CommandEncoder) -> bool {
         self.input.handle_platform_output(&self.window, output.platform_output);
         let pixels_per_point = output.pixels_per_point;
-        let shapes = self.ctx.tessellate(output.shapes, pixels_per_point);
+        let mut shapes = self.ctx.tessellate(output.shapes, pixels_per_point);
+        self.pictures.take_over(&mut shapes, self.ctx.viewport_rect());
         for (id, deltas) in &output.textures_delta.set {
             for delta in deltas {
                 self.painter.update_texture(&self.gpu.device, &self.gpu.queue, *id, delta);
@@ -103,7 +108,7 @@ impl Screen {
             let mut pass = encoder
                 .begin_render_pass(&wgpu::RenderPassDescriptor {
                     label: Some("user interface"),
-                    color_attachments: &[cleared(&view, None)],
+                    color_attachments: &[cleared(&view, None, color(ui::theme::ground(&self.ctx)))],
                     ..Default::default()
                 })
                 .forget_lifetime();
@@ -132,6 +137,12 @@ impl Screen {
         }
         None
     }
+}
+
+/// An opaque colour, for a surface of encoded values.
+fn color(color: egui::Color32) -> wgpu::Color {
+    let [r, g, b, a] = color.to_normalized_gamma_f32().map(f64::from);
+    wgpu::Color { r, g, b, a }
 }
 
 /// How many events one frame takes: egui gives a press to whatever is under the pointer at the frame's end. Where frames

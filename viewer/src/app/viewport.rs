@@ -3,14 +3,15 @@
 use std::sync::Arc;
 
 use egui::TextureId;
-use egui_wgpu::Renderer;
 
 use super::camera_control::CameraControl;
+use super::picture_painter::PicturePainter;
 use crate::camera::Camera;
 use crate::gpu::Gpu;
 use crate::options::FrameInput;
 use crate::passes::Passes;
 use crate::scene_loader::Loaded;
+use crate::upload::SceneBuffers;
 use crate::view::{Drawn, View};
 use crate::walk::Land;
 
@@ -18,11 +19,14 @@ use crate::walk::Land;
 const FIRST_SIZE_PX: [u32; 2] = [16, 16];
 
 pub struct Viewport {
+    /// Which of the four it is.
+    number: u64,
     pub view: View,
     pub land: Option<Arc<Land>>,
     picture: Option<TextureId>,
     /// Of full resolution, sideways and upwards.
     pub part: f32,
+    shadows: Shadows,
     /// What the picture shows.
     seen: Option<Seen>,
     /// What it took.
@@ -31,21 +35,33 @@ pub struct Viewport {
     pub fresh: bool,
 }
 
+/// Which trees throw shadows on others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Shadows {
+    /// Those around the place from where the landscape was to be seen.
+    Near,
+    /// The same, and the rest was asked for.
+    Asked,
+    All,
+}
+
 /// What a picture was drawn from, besides its landscape and passes.
 #[derive(Clone, Debug, PartialEq)]
-struct Seen {
+pub struct Seen {
     frame: FrameInput,
     camera: Camera,
     lod_camera: Camera,
 }
 
 impl Viewport {
-    pub fn new(gpu: &Gpu, passes: &Passes, label: &str) -> Self {
+    pub fn new(gpu: &Gpu, passes: &Passes, number: usize, label: &str) -> Self {
         Self {
+            number: number as u64,
             view: View::new(gpu, passes, label, FIRST_SIZE_PX),
             land: None,
             picture: None,
             part: 1.0,
+            shadows: Shadows::All,
             seen: None,
             drawn: Drawn::default(),
             fresh: false,
@@ -59,12 +75,32 @@ impl Viewport {
 
     pub fn show(&mut self, passes: &Passes, loaded: Loaded) {
         self.view.show(passes, loaded.buffers);
+        self.shadows = if loaded.lacks_shadows { Shadows::Near } else { Shadows::All };
         (self.land, self.seen) = (Some(loaded.land), None);
     }
 
     pub fn clear(&mut self) {
         self.view.clear();
+        self.shadows = Shadows::All;
         (self.land, self.seen, self.drawn) = (None, None, Drawn::default());
+    }
+
+    /// The landscape, if its shadows are to be asked for, which they are then.
+    pub fn ask_for_shadows(&mut self) -> Option<Arc<SceneBuffers>> {
+        let lacks = self.shadows == Shadows::Near;
+        lacks.then(|| self.shadows = Shadows::Asked)?;
+        self.view.scene().cloned()
+    }
+
+    pub fn lacks_shadows(&self) -> bool {
+        self.shadows != Shadows::All
+    }
+
+    /// A landscape, which may be this one, has got all of its shadows.
+    pub fn shadowed(&mut self, buffers: &Arc<SceneBuffers>) {
+        if self.view.scene().is_some_and(|scene| Arc::ptr_eq(scene, buffers)) {
+            (self.shadows, self.seen) = (Shadows::All, None);
+        }
     }
 
     pub fn adopt(&mut self, passes: &Passes) {
@@ -73,7 +109,7 @@ impl Viewport {
     }
 
     /// Gives the picture its size in the window and tells the user interface where to find it.
-    pub fn fit(&mut self, gpu: &Gpu, passes: &Passes, painter: &mut Renderer, size_px: [u32; 2], part: f32) {
+    pub fn fit(&mut self, passes: &Passes, pictures: &mut PicturePainter, size_px: [u32; 2], part: f32) {
         self.part = part;
         let size_px = size_px.map(|side| (side as f32 * part).round() as u32);
         if !self.view.resize(passes, size_px) && self.picture.is_some() {
@@ -81,33 +117,39 @@ impl Viewport {
         }
         self.seen = None;
         let texture = self.view.targets().display.create_view(&Default::default());
-        // Linear: a picture of less than full resolution is stretched.
-        let filter = wgpu::FilterMode::Linear;
-        match self.picture {
-            Some(id) => {
-                painter.update_egui_texture_from_wgpu_texture(&gpu.device, &texture, filter, id);
-            }
-            None => self.picture = Some(painter.register_native_texture(&gpu.device, &texture, filter)),
-        }
+        self.picture = Some(pictures.set(self.number, &texture));
     }
 
-    /// Records the picture, unless it would be the one that is there.
+    /// What the picture ought to show at its size; nothing without a landscape.
+    pub fn wanted(&self, frame: &FrameInput, control: &CameraControl) -> Option<Seen> {
+        let land = self.land.as_ref()?;
+        let fov_y_rad = frame.options.fov_y_deg.to_radians();
+        let lod_camera = control.rig.camera(land, fov_y_rad);
+        let camera = if frame.options.overhead { land.overhead(fov_y_rad) } else { lod_camera };
+        Some(Seen { frame: FrameInput { part: self.part, ..*frame }, camera, lod_camera })
+    }
+
+    /// Whether the picture shows just this.
+    pub fn shows(&self, wanted: &Seen) -> bool {
+        self.seen.as_ref() == Some(wanted)
+    }
+
+    /// Whether the picture shows the landscape, from wherever.
+    pub fn shows_anything(&self) -> bool {
+        self.seen.is_some()
+    }
+
+    /// Records the picture.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         passes: &Passes,
-        frame: &FrameInput,
-        control: &CameraControl,
+        wanted: Seen,
         profiler: &wgpu_profiler::GpuProfiler,
     ) {
-        let Some(land) = &self.land else { return };
-        let fov_y_rad = frame.options.fov_y_deg.to_radians();
-        let lod_camera = control.rig.camera(land, fov_y_rad);
-        let camera = if frame.options.overhead { land.overhead(fov_y_rad) } else { lod_camera };
-        let wanted = Seen { frame: *frame, camera, lod_camera };
-        if self.seen.as_ref() != Some(&wanted) {
-            self.drawn = self.view.record(encoder, passes, frame, &camera, &lod_camera, profiler);
-            (self.seen, self.fresh) = (Some(wanted), true);
-        }
+        let seen = Seen { frame: FrameInput { part: self.part, ..wanted.frame }, ..wanted };
+        let Seen { frame, camera, lod_camera } = &seen;
+        self.drawn = self.view.record(encoder, passes, frame, camera, lod_camera, profiler);
+        (self.seen, self.fresh) = (Some(seen), true);
     }
 }

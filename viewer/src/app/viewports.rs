@@ -5,14 +5,14 @@ use std::time::Instant;
 
 use anyhow::Result;
 use egui::TextureId;
-use egui_wgpu::Renderer;
 use genescape_schema::INDIVIDUALS;
 use image::RgbaImage;
 use wgpu_profiler::{GpuProfiler, GpuProfilerSettings, GpuTimerQueryResult};
 
 use super::camera_control::CameraControl;
 use super::lod_readback::LodReadback;
-use super::pace::Sharpness;
+use super::picture_painter::PicturePainter;
+use super::sharpness::{Before, Sharpness};
 use super::viewport::Viewport;
 use crate::gpu::Gpu;
 use crate::image_file;
@@ -37,6 +37,8 @@ pub struct Viewports {
     profiler: GpuProfiler,
     lod_readback: LodReadback,
     last_frame: Option<Instant>,
+    /// Whether trees were counted in the last frame.
+    counts_trees: bool,
     stats: Stats,
 }
 
@@ -44,7 +46,7 @@ impl Viewports {
     /// Compiles the passes; nothing is shown yet.
     pub fn new(gpu: &Gpu, shaders: Shaders, samples: u32) -> Result<Self> {
         let passes = Arc::new(Passes::new(gpu, &shaders, samples)?);
-        let each = LABELS.map(|label| Viewport::new(gpu, &passes, label));
+        let each = std::array::from_fn(|view| Viewport::new(gpu, &passes, view, LABELS[view]));
         Ok(Self {
             profiler: GpuProfiler::new(&gpu.device, GpuProfilerSettings::default())?,
             lod_readback: LodReadback::new(),
@@ -54,6 +56,7 @@ impl Viewports {
             shaders,
             each,
             last_frame: None,
+            counts_trees: false,
         })
     }
 
@@ -91,6 +94,21 @@ impl Viewports {
         self.each[view].show(&self.passes, loaded);
     }
 
+    /// Landscapes whose shadows are to be asked for, each once.
+    pub fn ask_for_shadows(&mut self) -> Vec<Arc<SceneBuffers>> {
+        self.each.iter_mut().filter_map(Viewport::ask_for_shadows).collect()
+    }
+
+    /// A landscape has got all of its shadows.
+    pub fn shadowed(&mut self, buffers: &Arc<SceneBuffers>) {
+        self.each.iter_mut().for_each(|one| one.shadowed(buffers));
+    }
+
+    /// Some landscape will look different when it has got all of its shadows.
+    pub fn awaits_shadows(&self) -> bool {
+        self.each.iter().any(Viewport::lacks_shadows)
+    }
+
     /// Shows nothing any more.
     pub fn clear(&mut self) {
         self.each.iter_mut().for_each(Viewport::clear);
@@ -120,38 +138,38 @@ impl Viewports {
         if samples == self.passes.samples { Ok(()) } else { self.reload_shaders(samples) }
     }
 
-    /// Records the pictures that are on the screen and not yet as they should be. Whether any was recorded, and whether any
-    /// is not at full resolution.
+    /// Records the pictures that are on the screen and not yet as they should be; of those that are `outdated`, because
+    /// another landscape is about to replace theirs, only what the camera's motion demands. Whether any was recorded, and
+    /// whether any is not at full resolution.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        painter: &mut Renderer,
+        pictures: &mut PicturePainter,
         slots: &[Slot],
         frame: &FrameInput,
         sharpness: Sharpness,
+        outdated: [bool; INDIVIDUALS],
         control: &CameraControl,
     ) -> (bool, bool) {
         let start = Instant::now();
         let (mut drawn, mut blurred) = (false, false);
         (self.stats.triangles, self.stats.draws) = Default::default();
         self.each.iter_mut().for_each(|one| one.fresh = false);
-        // One after the other becomes sharp.
-        let mut sharpen = true;
+        let mut sharpened = false;
         for slot in slots {
             let one = &mut self.each[slot.view];
-            if one.land.is_none() {
-                continue;
+            let Some(wanted) = one.wanted(frame, control) else { continue };
+            let is_outdated = outdated[slot.view] && one.shows_anything();
+            let before = Before { part: one.part, is_right: one.shows(&wanted), is_outdated };
+            let part = sharpness.of(before, &mut sharpened);
+            one.fit(&self.passes, pictures, slot.size_px, part.unwrap_or(one.part));
+            // Unless the window has got another size, which leaves nothing of what was there.
+            let stays = part.is_none() && one.shows_anything();
+            if !stays && !one.shows(&wanted) {
+                one.record(encoder, &self.passes, wanted, &self.profiler);
             }
-            let part = match sharpness {
-                Sharpness::Part(part) => part,
-                Sharpness::Full => 1.0,
-                Sharpness::Sharpen if one.part < 1.0 && std::mem::take(&mut sharpen) => 1.0,
-                Sharpness::Sharpen => one.part,
-            };
-            one.fit(&self.gpu, &self.passes, painter, slot.size_px, part);
-            one.record(encoder, &self.passes, frame, control, &self.profiler);
+            blurred |= part.is_some_and(|part| part < 1.0);
             drawn |= one.fresh;
-            blurred |= part < 1.0;
             self.stats.draws[slot.view] = one.drawn.draws;
             self.stats.triangles[slot.view] = u64::from(one.drawn.land_triangles);
         }
@@ -160,13 +178,16 @@ impl Viewports {
         (drawn, blurred)
     }
 
-    /// After the frame was submitted: gathers what the device has measured of this and earlier ones.
-    pub fn end_frame(&mut self) {
+    /// After the frame was submitted: gathers what the device has measured of this and earlier ones. Trees are counted only
+    /// where somebody looks, for each count is copied and waited for.
+    pub fn end_frame(&mut self, counts_trees: bool) {
         let now = Instant::now();
         let frames_ms = &mut self.stats.frames_ms;
         frames_ms.extend(self.last_frame.replace(now).map(|last| (now - last).as_secs_f32() * 1e3));
         frames_ms.drain(..frames_ms.len().saturating_sub(FRAMES));
-        for (index, one) in self.each.iter().enumerate().filter(|(_, one)| one.fresh) {
+        let begins = counts_trees && !std::mem::replace(&mut self.counts_trees, counts_trees);
+        let counted = |one: &Viewport| counts_trees && (begins || one.fresh);
+        for (index, one) in self.each.iter().enumerate().filter(|(_, one)| counted(one)) {
             if let Some((set, counts)) = one.view.tree_counts() {
                 self.lod_readback.request(&self.gpu, index, set, counts);
             }

@@ -45,8 +45,14 @@ impl ApplicationHandler<Wake> for App {
         }
     }
 
-    fn user_event(&mut self, _: &ActiveEventLoop, _: Wake) {
-        self.redraw();
+    fn user_event(&mut self, events: &ActiveEventLoop, wake: Wake) {
+        let soon = self.pace.soon();
+        if wake == Wake::Now || soon <= Instant::now() {
+            self.redraw();
+        } else {
+            let due = if let ControlFlow::WaitUntil(due) = events.control_flow() { due } else { soon };
+            events.set_control_flow(ControlFlow::WaitUntil(due.min(soon)));
+        }
     }
 
     fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
@@ -139,7 +145,7 @@ impl App {
         }
         let shaders = Shaders::from(self.cli.shaders.clone());
         let viewports = Viewports::new(&gpu, shaders, self.file.settings.options.samples)?;
-        let loader = Loader::start(&gpu, self.wake())?;
+        let loader = Loader::start(&gpu, self.wake(Wake::Now))?;
         screen.window.request_redraw();
         Ok(Live { screen, gpu, viewports, loader })
     }

@@ -3,19 +3,21 @@
 //!
 //! What is measured: the processor's work to record a picture with few and with many trees ([`record`]); pictures with
 //! levels of detail against pictures without, and how far apart they are ([`detail`]; thesis section 7); four views
-//! against four single ones ([`views`]); the frames around the swap of a landscape ([`swap`]); and, where there is a
-//! graphics card, the slowest frames of four large forests ([`card`]). [`serve`] lets another program measure
-//! beside its own pictures.
+//! against four single ones ([`views`]); a walk's frames and what they are made of ([`walk`]); those around the
+//! swap of a landscape ([`swap`]); memory after many frames ([`memory`]); and, where there is a graphics card, the slowest
+//! frames of four large forests ([`card`]). [`serve`] lets another program measure beside its own pictures.
 
 mod card;
 mod cost;
 mod detail;
 mod forest;
+mod memory;
 mod record;
 mod report;
 mod serve;
 mod swap;
 mod views;
+mod walk;
 
 use std::path::PathBuf;
 
@@ -79,8 +81,12 @@ pub enum Measure {
     Detail,
     /// Four views against four single ones
     Views,
+    /// Frames of a walk, and what each thing in the picture takes of them
+    Walk,
     /// Frames around the swap of a landscape
     Swap,
+    /// Memory after 100 and after 2,000 frames
+    Memory,
     /// Four views of 10,000 trees each at 1920 × 1080, on a graphics card
     Card,
 }
@@ -108,7 +114,9 @@ pub fn run(args: &BenchArgs) -> Result<()> {
             Measure::Record => record::measure(&mut bench)?,
             Measure::Detail => detail::measure(&mut bench)?,
             Measure::Views => views::measure(&mut bench)?,
+            Measure::Walk => walk::measure(&mut bench)?,
             Measure::Swap => swap::measure(&mut bench)?,
+            Measure::Memory => memory::measure(&mut bench)?,
             Measure::Card => card::measure(&mut bench)?,
         }
     }
@@ -151,5 +159,5 @@ impl Bench {
 
 /// What a frame is drawn from with these LOD modes.
 fn frame_with(tree_lod: TreeLodMode, terrain_lod: TerrainLodMode) -> FrameInput {
-    FrameInput { options: Options { tree_lod, terrain_lod, ..Options::default() }, time_s: 0.0 }
+    FrameInput { options: Options { tree_lod, terrain_lod, ..Options::default() }, ..FrameInput::default() }
 }

@@ -63,7 +63,7 @@ fn swaps(bench: &Bench) -> Result<Vec<(Beside, f64)>> {
         }
         // Each view gets the landscape of the next, by a loader that knows nothing of it yet.
         let path = bench.paths[(swap + 1) % bench.paths.len()].clone();
-        loader.ask(Request { view: swap, generation: 0, path, passes: Arc::clone(passes) });
+        loader.ask(Request { view: swap, generation: 0, path, eye_m: None, passes: Arc::clone(passes) });
         let mut beside = Beside::Loading;
         while beside == Beside::Loading {
             let reply = loader.replies().next();
@@ -100,12 +100,16 @@ fn parts(bench: &mut Bench) -> Result<()> {
     });
     let buffers = buffers.map_err(|text| anyhow!(text))?;
     let (shading, ()) = Cost::of(|| {
-        passes.shadow.bake(gpu, &passes.layouts, &passes.cull, &buffers);
-        gpu.wait();
+        passes.shadow.begin(gpu, passes, &buffers).all();
     });
-    bench.report.figure("alone: reading a landscape", reading.wall_ms, "ms");
-    bench.report.figure("alone: bringing it to the device", uploading.wall_ms, "ms");
-    bench.report.figure("alone: drawing its shadows", shading.wall_ms, "ms");
+    for (what, cost) in [
+        ("alone: reading a landscape", reading),
+        ("alone: bringing it to the device", uploading),
+        ("alone: drawing its shadows", shading),
+    ] {
+        bench.report.figure(what, cost.wall_ms, "ms");
+        bench.report.figure(format!("{what}, processors"), cost.cpu_ms, "ms");
+    }
     Ok(())
 }
 

@@ -1,5 +1,6 @@
 //! A landscape as bound for one view: bind groups, and the buffers that are written for each frame.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::{Binding, CullUniform, Layouts, bind};
@@ -17,6 +18,8 @@ pub struct BoundScene {
     pub terrain: Elements,
     /// Clumps of grass.
     pub clumps: Elements,
+    /// What is drawn of the ring's indices.
+    pub ring: Vec<Range<u32>>,
 }
 
 /// A buffer of vertices, instances or indices that is written anew for each frame and grows as needed.
@@ -71,6 +74,7 @@ impl BoundScene {
             trees: scene.trees.as_ref().map(|set| BoundTrees::new(gpu, layouts, set)),
             terrain: Elements::new(gpu, "terrain"),
             clumps: Elements::new(gpu, "clumps of grass"),
+            ring: Vec::new(),
             scene,
         }
     }

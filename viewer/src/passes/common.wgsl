@@ -38,7 +38,8 @@ struct View {
     // The terrain's greatest level, and how far the eye is above the highest land.
     lod_top: f32,
     lod_above: f32,
-    unused: f32,
+    // Sides of the picture as a part of full resolution.
+    part: f32,
 }
 
 @group(0) @binding(0) var<uniform> view: View;

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::shaders::ShaderError;
 use super::{BoundTrees, Compiler, Shader, ViewUniform};
@@ -72,6 +72,20 @@ impl CullUniform {
         let (first, instances) = (trees.start, trees.end.min(set.count));
         let lod_mode = TreeLodMode::Discrete as u32;
         Self { lod_mode, fixed_error_m: texel_m, first, instances, ..Self::sizes(set) }
+    }
+
+    /// The same, but only trees that reach into the square of that many metres to all four sides of a place.
+    pub fn around(self, place_m: Vec2, reach_m: f32) -> Self {
+        let (low_m, high_m) = (place_m - reach_m, place_m + reach_m);
+        let planes = [
+            [1.0, 0.0, 0.0, -low_m.x],
+            [-1.0, 0.0, 0.0, high_m.x],
+            [0.0, 0.0, 1.0, -low_m.y],
+            [0.0, 0.0, -1.0, high_m.y],
+            // Everything is inside.
+            [0.0, 0.0, 0.0, 1.0],
+        ];
+        Self { planes, planes_used: 1, ..self }
     }
 
     fn sizes(set: &TreeSet) -> Self {

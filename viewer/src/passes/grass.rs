@@ -90,32 +90,35 @@ impl DrawPass for Grass {
     }
 }
 
-/// Share of a cell's blades that stand at a distance, as `density` of `grass.wgsl`.
-fn density(away_m: f32) -> f32 {
+/// Share of a cell's blades that stand at a distance, as `density` of `grass.wgsl`. In a picture that is drawn at a part of
+/// full resolution what is near looks as small as what is far in a sharp one.
+fn density(away_m: f32, part: f32) -> f32 {
+    let away_m = away_m / part;
     let far = ((away_m / REACH_M - 0.6) / 0.4).clamp(0.0, 1.0);
     (DENSE_M / away_m.max(0.01)).min(1.0) * (1.0 - far * far * (3.0 - 2.0 * far))
 }
 
-/// The clumps that an eye may see, into `out`, which is emptied first.
-pub fn clumps(ground: &Ground, eye_m: Vec3, frustum: &Frustum, out: &mut Vec<Clump>) {
+/// The clumps that an eye may see in a picture drawn at `part` of full resolution, into `out`, which is emptied first.
+pub fn clumps(ground: &Ground, eye_m: Vec3, frustum: &Frustum, part: f32, out: &mut Vec<Clump>) {
     out.clear();
     let field = &ground.field;
     let half_m = 0.5 * field.extent_m();
     let water_m = ground.water_level_m.unwrap_or(f32::MIN);
+    let reach_m = REACH_M * part;
     let lines = |middle_m: f32| {
         let line = |m: f32| (m.clamp(-half_m, half_m) / CELL_M).floor() as i32;
-        line(middle_m - REACH_M)..=line(middle_m + REACH_M)
+        line(middle_m - reach_m)..=line(middle_m + reach_m)
     };
     for z in lines(eye_m.z) {
         for x in lines(eye_m.x) {
             let middle = (Vec2::new(x as f32, z as f32) + 0.5) * CELL_M;
-            if (middle - Vec2::new(eye_m.x, eye_m.z)).length() > REACH_M + CELL_M {
+            if (middle - Vec2::new(eye_m.x, eye_m.z)).length() > reach_m + CELL_M {
                 continue;
             }
             let height_m = field.height_m(middle.x, middle.y);
             let place = Vec3::new(middle.x, height_m, middle.y);
             // Of the nearest blade.
-            let share = density((place.distance(eye_m) - AROUND_M).max(0.0));
+            let share = density((place.distance(eye_m) - AROUND_M).max(0.0), part);
             if share == 0.0 {
                 continue;
             }
@@ -179,7 +182,7 @@ mod tests {
         #[test]
         fn every_blade_that_stands_has_its_clump(
             x in -15f32..31., z in 1f32..31., to_x in -20f32..20., to_z in -20f32..20., above in 0.5f32..12.,
-            turn in -0.3f32..0.3, nod in -0.3f32..0.3, share in 0f32..0.99,
+            turn in -0.3f32..0.3, nod in -0.3f32..0.3, share in 0f32..0.99, part in 0.3f32..1.0,
         ) {
             let ground = slope();
             let on = |x: f32, z: f32| Vec3::new(x, ground.field.height_m(x, z), z);
@@ -192,10 +195,10 @@ mod tests {
                 fov_y_rad: 1.0,
             };
             let frustum = camera.frustum(1.5);
-            prop_assume!(frustum.sees_sphere(root, 0.0) && density(look.length()) > 0.0);
+            prop_assume!(frustum.sees_sphere(root, 0.0) && density(look.length(), part) > 0.0);
             let mut drawn = Vec::new();
-            clumps(&ground, eye, &frustum, &mut drawn);
-            let rank = share * density(look.length());
+            clumps(&ground, eye, &frustum, part, &mut drawn);
+            let rank = share * density(look.length(), part);
             let cell = [root.x, root.z].map(|m| (m / CELL_M).floor() as i32);
             let number = (rank * CLUMPS as f32) as u32;
             let wanted = Clump { cell, number };

@@ -110,9 +110,11 @@ fn vertex(clump: Clump, @builtin(vertex_index) index: u32) -> Out {
 
     let ground_m = drawn_height_m(root);
     let away = distance(vec3f(root.x, ground_m, root.y), view.eye);
+    // What has as few pixels at full resolution is so far away.
+    let seeming = away / view.part;
     // Fewer with distance, by rank: each shrinks into the ground as its turn comes.
     let rank = (f32(blade) + 1.0) / f32(CLUMPS * BLADES);
-    let present = clamp((density(away) - rank) / (0.25 * rank + 0.004), 0.0, 1.0);
+    let present = clamp((density(seeming) - rank) / (0.25 * rank + 0.004), 0.0, 1.0);
     let inside = all(abs(root) < vec2f(view.field.z));
     if (present <= 0.0 || !inside) {
         return NOWHERE;
@@ -136,7 +138,7 @@ fn vertex(clump: Clump, @builtin(vertex_index) index: u32) -> Out {
     let facing = normalize(vec2f(to_eye.z, -to_eye.x) + 1.3 * (dice.z - 0.5) * to_eye.xz + vec2f(1e-4));
     let pixel_m = away / view.focal_px;
     // Never much thinner than a pixel, and wider where there are fewer.
-    let half_m = max((0.0028 + 0.0026 * more.y) * (1.0 + 0.09 * away), 0.42 * pixel_m) * min(present * 3.0, 1.0);
+    let half_m = max((0.0028 + 0.0026 * more.y) * (1.0 + 0.09 * seeming), 0.42 * pixel_m) * min(present * 3.0, 1.0);
     let bend = outward * (0.2 + 0.65 * more.z) + wind(root, dice.y);
     let lean = bend * (height * up * up);
     let width = half_m * (1.0 - 0.28 * up * 2.0 * (1.0 - step(0.9, up)));
@@ -152,7 +154,7 @@ fn vertex(clump: Clump, @builtin(vertex_index) index: u32) -> Out {
     // Some blades are straw, some tufts are fresher.
     albedo *= select(vec3f(1.0, 1.0 + 0.12 * lush, 1.0 - 0.2 * lush), vec3f(1.8, 1.42, 1.15), more.z > 0.88);
     albedo *= 0.8 + 0.5 * dice.z;
-    let far = smoothstep(4.0, REACH_M * 0.7, away);
+    let far = smoothstep(4.0, REACH_M * 0.7, seeming);
     // Roots stand in each other's shade, tips in the open.
     let open = mix(mix(0.5, 1.5, up), 1.05, far);
     let side_lit = abs(dot(normalize(vec2f(-facing.y, facing.x)), view.sun_direction.xz));

@@ -23,7 +23,7 @@ pub use cull::{Cull, CullUniform};
 pub use layouts::{Binding, Layouts, bind};
 pub use pipeline::Shader;
 pub use shaders::{ShaderError, Shaders};
-pub use shadow::Shadow;
+pub use shadow::{Shadow, ShadowBake};
 pub use tone::Tone;
 pub use view_uniform::ViewUniform;
 

@@ -5,10 +5,10 @@ use super::layouts::SUN_VIEW;
 use super::shaders::ShaderError;
 use super::trees::{TreePipelines, buffers};
 use super::view_uniform::shadow_from_world;
-use super::{Binding, BoundTrees, Compiler, Cull, CullUniform, Layouts};
-use super::{PipelineDesc, Shader, Target, ViewUniform};
+use super::{Binding, BoundTrees, Compiler, CullUniform, Passes, PipelineDesc, Shader, Target, ViewUniform};
 use crate::gpu::Gpu;
-use crate::upload::SceneBuffers;
+use crate::upload::{SceneBuffers, TreeSet};
+use glam::Vec2;
 use wgpu::{CommandEncoder, LoadOp, RenderPass, TextureView};
 
 pub const SHADER: Shader = Shader {
@@ -47,43 +47,88 @@ impl Shadow {
         })
     }
 
-    /// Draws a landscape's shadow map; may run on any thread. `cull` chooses trees: of each the level whose error is
-    /// below half a texel. Waits until it is done, and works in pieces (the land, then some trees after others): a device
-    /// does one thing after the other, and drawn in one go a forest keeps pictures waiting, in software for a quarter of a
-    /// second.
-    pub fn bake(&self, gpu: &Gpu, layouts: &Layouts, cull: &Cull, scene: &SceneBuffers) {
-        let usage = wgpu::BufferUsages::UNIFORM;
-        let uniform = gpu.buffer("sun", &[ViewUniform::for_sun(scene)], usage);
+    /// Begins a landscape's shadow map; may run on any thread.
+    pub fn begin<'a>(&'a self, gpu: &'a Gpu, passes: &'a Passes, scene: &'a SceneBuffers) -> ShadowBake<'a> {
+        let uniform = gpu.buffer("sun", &[ViewUniform::for_sun(scene)], wgpu::BufferUsages::UNIFORM);
         let bound = [
             Binding::Buffer(&uniform),
-            Binding::Sampler(&layouts.clamped),
+            Binding::Sampler(&passes.layouts.clamped),
             Binding::texture(&scene.land.heights),
         ];
-        let view = bind(gpu, "view of the sun", &layouts.sun_view, SUN_VIEW.into_iter().zip(bound));
-        let map = scene.shadow_map.create_view(&Default::default());
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let bound = SUN_VIEW.into_iter().zip(bound);
+        ShadowBake {
+            view: bind(gpu, "view of the sun", &passes.layouts.sun_view, bound),
+            map: scene.shadow_map.create_view(&Default::default()),
+            trees: scene.trees.as_ref().map(|set| (set, BoundTrees::new(gpu, &passes.layouts, set))),
+            half_texel_m: 0.5 * texel_m(scene),
+            gpu,
+            passes,
+            scene,
+        }
+    }
+}
+
+/// A shadow map that is being drawn, piece by piece (the land, then some trees after others), each waited for: a device does
+/// one thing after the other, and drawn in one go a forest keeps pictures waiting, in software for a quarter of a second.
+pub struct ShadowBake<'a> {
+    gpu: &'a Gpu,
+    passes: &'a Passes,
+    scene: &'a SceneBuffers,
+    view: wgpu::BindGroup,
+    map: TextureView,
+    trees: Option<(&'a TreeSet, BoundTrees)>,
+    /// Of a tree the level is drawn whose error is below this.
+    half_texel_m: f32,
+}
+
+impl ShadowBake<'_> {
+    /// What the land hides from the sun; to be drawn before the trees.
+    pub fn land(&self) {
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         {
-            let mut pass = begin(&mut encoder, &map, LoadOp::Clear(1.0));
-            pass.set_bind_group(0, &view, &[]);
-            pass.set_pipeline(&self.land);
-            let cells = (scene.ground.field.side - 1) / LAND_STEP;
+            let mut pass = begin(&mut encoder, &self.map, LoadOp::Clear(1.0));
+            pass.set_bind_group(0, &self.view, &[]);
+            pass.set_pipeline(&self.passes.shadow.land);
+            let cells = (self.scene.ground.field.side - 1) / LAND_STEP;
             pass.draw(0..cells * cells * 6, 0..1);
         }
-        finish(gpu, encoder);
-        let Some(set) = &scene.trees else { return };
-        let trees = BoundTrees::new(gpu, layouts, set);
-        for first in (0..set.count).step_by(TREES_A_PIECE as usize) {
-            let piece = first..first.saturating_add(TREES_A_PIECE);
-            trees.set(&gpu.queue, &CullUniform::for_shadow(set, 0.5 * texel_m(scene), piece));
-            let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            cull.dispatch(&mut encoder.begin_compute_pass(&Default::default()), &trees);
-            {
-                let mut pass = begin(&mut encoder, &map, LoadOp::Load);
-                pass.set_bind_group(0, &view, &[]);
-                self.trees.draw(&mut pass, set, &trees);
-            }
-            finish(gpu, encoder);
+        finish(self.gpu, encoder);
+    }
+
+    /// The trees within `reach_m` east, west, north and south of a place.
+    pub fn trees_around(&self, place_m: Vec2, reach_m: f32) {
+        let Some((set, _)) = &self.trees else { return };
+        self.draw(&CullUniform::for_shadow(set, self.half_texel_m, 0..set.count).around(place_m, reach_m));
+    }
+
+    /// Some trees from this number on; where to go on, if there are more.
+    pub fn trees_from(&self, first: u32) -> Option<u32> {
+        let (set, _) = self.trees.as_ref()?;
+        let next = first.saturating_add(TREES_A_PIECE);
+        self.draw(&CullUniform::for_shadow(set, self.half_texel_m, first..next));
+        Some(next).filter(|next| *next < set.count)
+    }
+
+    /// All of it.
+    pub fn all(&self) {
+        self.land();
+        let mut next = Some(0);
+        while let Some(first) = next {
+            next = self.trees_from(first);
         }
+    }
+
+    fn draw(&self, chosen: &CullUniform) {
+        let Some((set, trees)) = &self.trees else { return };
+        trees.set(&self.gpu.queue, chosen);
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        self.passes.cull.dispatch(&mut encoder.begin_compute_pass(&Default::default()), trees);
+        {
+            let mut pass = begin(&mut encoder, &self.map, LoadOp::Load);
+            pass.set_bind_group(0, &self.view, &[]);
+            self.passes.shadow.trees.draw(&mut pass, set, trees);
+        }
+        finish(self.gpu, encoder);
     }
 }
 

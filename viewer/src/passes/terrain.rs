@@ -83,13 +83,11 @@ impl DrawPass for Terrain {
             pass.set_index_buffer(self.block_indices.slice(..), wgpu::IndexFormat::Uint16);
             pass.draw_indexed(0..self.block_index_count, 0, 0..terrain.count);
         }
-        let ground = &bound.scene.land;
-        if ground.ring_index_count > 0 {
-            pass.set_pipeline(&pipelines.ring);
-            pass.set_vertex_buffer(0, ground.ring_vertices.slice(..));
-            pass.set_index_buffer(ground.ring_indices.slice(..), wgpu::IndexFormat::Uint32);
-            pass.draw_indexed(0..ground.ring_index_count, 0, 0..1);
-        }
-        2
+        let ring = &bound.scene.land.ring;
+        pass.set_pipeline(&pipelines.ring);
+        pass.set_vertex_buffer(0, ring.vertices.slice(..));
+        pass.set_index_buffer(ring.indices.slice(..), wgpu::IndexFormat::Uint32);
+        bound.ring.iter().for_each(|seen| pass.draw_indexed(seen.clone(), 0, 0..1));
+        1 + bound.ring.len() as u32
     }
 }

@@ -37,7 +37,7 @@ pub struct ViewUniform {
     pub last_tile: f32,
     pub lod_top: f32,
     pub lod_above: f32,
-    pub unused: f32,
+    pub part: f32,
 }
 
 /// What stands for "no lake".
@@ -84,6 +84,7 @@ impl ViewUniform {
             last_tile,
             lod_top: detail.top,
             lod_above: detail.above_m,
+            part: frame.part,
             ..Self::for_sun(scene)
         }
     }

@@ -17,7 +17,6 @@ pub fn show(ui: &mut Ui, model: &Model) -> bool {
     }
     let area = ui.available_rect_before_wrap();
     ui.allocate_rect(area, Sense::hover());
-    ui.painter().rect_filled(area, 0, Palette::of(ui.visuals()).ground);
     let width = (area.width() - 48.0).clamp(120.0, 460.0);
     let height = if model.situation == Situation::Growing { 210.0 } else { 290.0 };
     let card = Rect::from_center_size(area.center(), vec2(width, height)).intersect(area);

@@ -121,6 +121,13 @@ pub enum ViewState {
     Failed { what: String, remedy: String },
 }
 
+impl ViewState {
+    /// Another landscape is on its way.
+    pub fn is_to_come(&self) -> bool {
+        matches!(self, Self::Waiting | Self::Baking { .. } | Self::Loading)
+    }
+}
+
 /// Progress of the bake of a whole generation.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Baking {

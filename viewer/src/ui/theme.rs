@@ -127,6 +127,12 @@ impl Palette {
     }
 }
 
+/// What the window has to be filled with before anything is painted. Not painted itself: most of it is hidden by pictures,
+/// and where the processor draws it would take as long as they do.
+pub fn ground(ctx: &Context) -> Color32 {
+    Palette::of(&ctx.global_style().visuals).ground
+}
+
 /// Gives both styles to a context; once, before the first frame.
 pub fn install(ctx: &Context) {
     ctx.set_style_of(egui::Theme::Dark, style(&DARK, Visuals::dark()));

@@ -32,7 +32,6 @@ pub struct Views {
 pub fn show(ui: &mut Ui, model: &Model, split: &mut f32) -> Views {
     let area = ui.available_rect_before_wrap();
     ui.allocate_rect(area, Sense::hover());
-    ui.painter().rect_filled(area, 0, Palette::of(ui.visuals()).ground);
     let slots = slots(area.shrink(4.0), model.arrangement, ui.pixels_per_point());
     let mut views = Views::default();
     match (model.arrangement, &slots[..]) {

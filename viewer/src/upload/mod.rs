@@ -2,6 +2,7 @@
 //! it. What two landscapes have in common (a tree that was inherited, a texture) is uploaded once.
 
 mod ground;
+mod ring;
 mod sky;
 mod texture;
 mod trees;
@@ -11,7 +12,8 @@ use std::sync::{Arc, Mutex, Weak};
 
 use genescape_schema::scene::SkyLight;
 
-pub use ground::{GroundBuffers, RingVertex};
+pub use ground::GroundBuffers;
+pub use ring::{Ring, RingVertex};
 pub use sky::SkyTextures;
 pub use texture::ImageUse;
 pub use trees::{

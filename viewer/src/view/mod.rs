@@ -132,9 +132,10 @@ impl View {
         self.clumps.clear();
         // In pictures that explain levels of detail it would only hide them.
         if options.grass && !options.wireframe && !options.tint_levels && !options.overhead {
-            grass::clumps(&bound.scene.ground, lod_camera.position_m, &frustum, &mut self.clumps);
+            grass::clumps(&bound.scene.ground, lod_camera.position_m, &frustum, frame.part, &mut self.clumps);
         }
         bound.clumps.write(&self.gpu, &self.clumps);
+        bound.scene.land.ring.seen(&camera.frustum(size[0] / size[1]), &mut bound.ring);
 
         let draws = draw(&mut scope, passes, bound, &self.targets, options);
         Drawn { draws, land_triangles }

@@ -46,7 +46,7 @@ impl Targets {
     /// Where radiance is drawn to.
     pub(super) fn radiance(&self) -> [Option<wgpu::RenderPassColorAttachment<'_>>; 1] {
         let resolved = self.multisampled.as_ref().map(|_| &self.radiance);
-        [cleared(self.multisampled.as_ref().unwrap_or(&self.radiance), resolved)]
+        [cleared(self.multisampled.as_ref().unwrap_or(&self.radiance), resolved, wgpu::Color::BLACK)]
     }
 
     pub(super) fn depth(&self) -> wgpu::RenderPassDepthStencilAttachment<'_> {
@@ -61,6 +61,6 @@ impl Targets {
 
     /// Where the finished picture is drawn to.
     pub(super) fn display(&self) -> [Option<wgpu::RenderPassColorAttachment<'_>>; 1] {
-        [cleared(&self.display_view, None)]
+        [cleared(&self.display_view, None, wgpu::Color::BLACK)]
     }
 }

@@ -24,7 +24,7 @@ use crate::made_up;
 const THRESHOLD: f32 = 0.004;
 const SIZE_PX: [u32; 2] = [320, 200];
 
-fn landscape() -> Scene {
+pub fn landscape() -> Scene {
     let field = made_up::field(257, 0.5, 14.0, 0.25);
     let kinds = [[0.02, 0.07, 0.2, 0.7], [0.03, 0.1, 0.35, 0.9]];
     let templates =
@@ -118,7 +118,7 @@ fn shoot(
     let buffers = made_up::upload(studio, scene);
     let position_m = Vec3::new(x, scene.ground.field.height_m(x, z) + above, z);
     let camera = Camera { position_m, yaw_rad, pitch_rad, fov_y_rad: 1.0 };
-    let frame = FrameInput { options, time_s: 3.0 };
+    let frame = FrameInput { options, time_s: 3.0, ..FrameInput::default() };
     studio.shoot(&mut studio.view(buffers, SIZE_PX), &frame, &camera, &camera).expect("a picture")
 }
 

@@ -22,7 +22,7 @@ pub fn studio() -> Headless {
 /// Brings a landscape to the device, with shadows.
 pub fn upload(studio: &Headless, scene: &Scene) -> Arc<SceneBuffers> {
     let buffers = Uploader::new(&studio.gpu).upload(scene).expect("a landscape that can be drawn");
-    studio.passes.shadow.bake(&studio.gpu, &studio.passes.layouts, &studio.passes.cull, &buffers);
+    studio.passes.shadow.begin(&studio.gpu, &studio.passes, &buffers).all();
     Arc::new(buffers)
 }
 

@@ -12,4 +12,5 @@ mod manual;
 mod mistakes;
 mod program;
 mod shaders;
+mod shadows;
 mod window;

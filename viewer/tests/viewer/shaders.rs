@@ -99,7 +99,7 @@ fn uniforms_are_laid_out_alike() {
             last_tile,
             lod_top,
             lod_above,
-            unused,
+            part,
         }
     );
     same!(

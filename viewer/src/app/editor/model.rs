@@ -80,6 +80,11 @@ impl Editor {
         (0..self.count()).any(|view| !self.loaded[view] && !self.faults.contains_key(&Fault::Scene(view)))
     }
 
+    /// Whether a landscape is being baked or read.
+    pub fn is_busy(&self) -> bool {
+        self.bake.baking.is_some() || self.asked.contains(&true)
+    }
+
     /// Genes of the four landscapes; none before a population is read.
     pub fn genes(&self) -> Option<Genes> {
         let population = self.population.as_ref()?;
