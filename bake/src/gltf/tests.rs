@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::synthetic::*;
 use super::*;
-use crate::model::{Landform, LevelledMesh, Material, Mesh, Placement, TreeTextures};
+use crate::model::{AlphaMask, Landform, LevelledMesh, Material, Mesh, Placement, TreeTextures};
 use crate::stages::start::{start_spot, start_view};
 
 fn gltf_of(glb: &[u8]) -> (gltf::Document, Vec<u8>) {
@@ -34,6 +34,8 @@ fn images(pictures: &[Vec<u8>; 3]) -> TreeTextures<Picture<'_>> {
         bark_normal: embedded(&pictures[1]),
         leaf: vec![embedded(&pictures[2])],
         blossom: Vec::new(),
+        leaf_mask: AlphaMask::default(),
+        blossom_mask: AlphaMask::default(),
         alpha_cutoff: 0.5,
     }
 }
