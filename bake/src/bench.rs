@@ -9,7 +9,7 @@ use genescape_schema::{Category, Population, Space};
 
 use crate::events::{Event, Listener};
 use crate::gltf::{self, Picture};
-use crate::model::TreeTextures;
+use crate::model::{Image8, TreeTextures};
 use crate::plan::{Plan, Resolution, TEMPLATES};
 use crate::run::Runner;
 use crate::say;
@@ -102,8 +102,9 @@ fn tree_costs(space: &Space, starter: &Population, runs: u32) -> Result<()> {
     let (mut triangles, mut trees) = (0, 0);
     for individual in &starter.individuals {
         let params: tree::TreeParams = individual.genome.read(space)?;
+        let textures = tree::textures(&individual.genome.read(space)?);
         for index in (0..TEMPLATES).flat_map(|index| std::iter::repeat_n(index, runs.max(1) as usize)) {
-            triangles += one_core.install(|| tree_cost(&params, index, &mut samples))?;
+            triangles += one_core.install(|| tree_cost(&params, &textures, index, &mut samples))?;
             trees += 1;
         }
     }
@@ -113,26 +114,20 @@ fn tree_costs(space: &Space, starter: &Population, runs: u32) -> Result<()> {
 }
 
 /// Triangles of one template.
-fn tree_cost(params: &tree::TreeParams, index: u32, samples: &mut Samples) -> Result<usize> {
+fn tree_cost(
+    params: &tree::TreeParams,
+    textures: &TreeTextures<Image8>,
+    index: u32,
+    samples: &mut Samples,
+) -> Result<usize> {
     let template = samples.time("generating it", || tree::template(params, index));
-    let options = lod::LodOptions::default();
+    let options = tree::lod_options(&template.mesh, textures);
     let levels = samples.time("progressive mesh, levels, strips", || lod::levels(&template.mesh, &options));
-    samples.time("writing the file", || gltf::tree_glb("tree", &levels, &no_pictures()))?;
+    // The pictures are made once a scene, and timed there.
+    let pictures = textures.map(|_| Picture::Embedded { bytes: &[], mime_type: "image/png" });
+    samples.time("writing the file", || gltf::tree_glb("tree", &levels, &pictures))?;
     Ok(template.mesh.triangle_count())
 }
-
-/// The textures of a tree are made once a scene, and timed there.
-fn no_pictures() -> TreeTextures<Picture<'static>> {
-    TreeTextures {
-        bark_color: NO_PICTURE,
-        bark_normal: NO_PICTURE,
-        leaf: vec![NO_PICTURE],
-        blossom: vec![NO_PICTURE],
-        alpha_cutoff: 0.5,
-    }
-}
-
-const NO_PICTURE: Picture<'_> = Picture::Embedded { bytes: &[], mime_type: "image/png" };
 
 /// Durations by name, in the order of first appearance.
 #[derive(Default)]

@@ -9,8 +9,8 @@ use genescape_schema::scene::{GroundSurface, Resource, SkyImages, write_instance
 
 use super::*;
 use crate::model::{
-    CloudLayer, GroundDetail, Heightfield, Instance, Landform, Level, LevelledMesh, Material, Mesh, Morph,
-    Part, PartKind, Placement, SkyLight, TerrainMesh, TreeTextures,
+    AlphaMask, CloudLayer, GroundDetail, Heightfield, Instance, Landform, Level, LevelledMesh, Material,
+    Mesh, Morph, Part, PartKind, Placement, SkyLight, TerrainMesh, TreeTextures,
 };
 use crate::noise::{gradient2, hash01};
 use crate::stages::placement::TreeFootprint;
@@ -287,6 +287,8 @@ pub fn synthetic(count: u32) -> Synthetic {
         bark_normal: embedded(&normal),
         leaf: vec![embedded(&leaf)],
         blossom: Vec::new(),
+        leaf_mask: AlphaMask::default(),
+        blossom_mask: AlphaMask::default(),
         alpha_cutoff: 0.5,
     };
     let trees: Vec<_> = [false, true]
@@ -384,6 +386,8 @@ impl Synthetic {
                 bark_normal: file("bark-normal.png"),
                 leaf: vec![file("leaf.png"), file("leaf-1.png")],
                 blossom: Vec::new(),
+                leaf_mask: AlphaMask::default(),
+                blossom_mask: AlphaMask::default(),
                 alpha_cutoff: 0.5,
             },
             trees: &self.placement.instances,

@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::synthetic::*;
 use super::*;
-use crate::model::{LevelledMesh, Material, Mesh, TreeTextures};
+use crate::model::{AlphaMask, LevelledMesh, Material, Mesh, TreeTextures};
 
 fn gltf_of(glb: &[u8]) -> (gltf::Document, Vec<u8>) {
     let gltf = gltf::Gltf::from_slice(glb).expect("the gltf crate reads it");
@@ -33,6 +33,8 @@ fn images(pictures: &[Vec<u8>; 3]) -> TreeTextures<Picture<'_>> {
         bark_normal: embedded(&pictures[1]),
         leaf: vec![embedded(&pictures[2])],
         blossom: Vec::new(),
+        leaf_mask: AlphaMask::default(),
+        blossom_mask: AlphaMask::default(),
         alpha_cutoff: 0.5,
     }
 }

@@ -40,3 +40,41 @@ pub struct ImageF16 {
     /// Rows from the top, three half floats a pixel.
     pub data: Vec<u16>,
 }
+
+/// Texels a side of an [`AlphaMask`].
+const MASK_SIDE: usize = 32;
+
+/// Which part of a texture is opaque, in 32 × 32 texels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct AlphaMask {
+    /// A word a row from the top, a bit a texel from the left.
+    rows: [u32; MASK_SIDE],
+}
+
+impl Default for AlphaMask {
+    /// Opaque everywhere.
+    fn default() -> Self {
+        Self { rows: [u32::MAX; MASK_SIDE] }
+    }
+}
+
+impl AlphaMask {
+    /// The texels of a picture of 32 × 32 RGBA pixels whose alpha reaches `cutoff`; all of any other picture.
+    pub fn of(image: &Image8, cutoff: f32) -> Self {
+        if (image.width as usize, image.height as usize, image.channels) != (MASK_SIDE, MASK_SIDE, 4) {
+            return Self::default();
+        }
+        let opaque = |pixel: &[u8]| f32::from(pixel[3]) >= 255.0 * cutoff;
+        let mut mask = Self { rows: [0; MASK_SIDE] };
+        for (i, _) in image.data.chunks_exact(4).enumerate().filter(|(_, pixel)| opaque(pixel)) {
+            mask.rows[i / MASK_SIDE] |= 1 << (i % MASK_SIDE);
+        }
+        mask
+    }
+
+    /// Whether the texture is opaque at texture coordinates, which are clamped to [0, 1].
+    pub fn is_opaque(&self, uv: [f32; 2]) -> bool {
+        let [x, y] = uv.map(|t| ((t * MASK_SIDE as f32).max(0.0) as usize).min(MASK_SIDE - 1));
+        self.rows[y] >> x & 1 == 1
+    }
+}

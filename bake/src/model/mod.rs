@@ -16,7 +16,7 @@ pub use genescape_schema::scene::{
 
 pub use climate::{Climate, SnowMap};
 pub use ground::{Foreground, GroundMaps};
-pub use image::{Image8, ImageF16};
+pub use image::{AlphaMask, Image8, ImageF16};
 pub use light::LightMap;
 pub use mesh::{Bounds, Material, Mesh, Part, PartKind};
 pub use terrain::{Landform, TerrainMesh};

@@ -3,7 +3,7 @@
 use genescape_schema::scene::Instance;
 use serde::{Deserialize, Serialize};
 
-use super::{Bounds, Mesh};
+use super::{AlphaMask, Bounds, Mesh};
 
 /// One tree: its foot at the origin (roots reach a little below y = 0), growing along +y.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -30,6 +30,10 @@ pub struct TreeTextures<P> {
     pub leaf: Vec<P>,
     /// Blossom card, likewise.
     pub blossom: Vec<P>,
+    /// What the leaf card leaves opaque.
+    pub leaf_mask: AlphaMask,
+    /// What the blossom card leaves opaque.
+    pub blossom_mask: AlphaMask,
     /// Alpha below this is cut away.
     pub alpha_cutoff: f32,
 }
@@ -54,6 +58,8 @@ impl<P> TreeTextures<P> {
             bark_normal: f(&self.bark_normal)?,
             leaf: self.leaf.iter().map(&mut f).collect::<Result<_, _>>()?,
             blossom: self.blossom.iter().map(&mut f).collect::<Result<_, _>>()?,
+            leaf_mask: self.leaf_mask,
+            blossom_mask: self.blossom_mask,
             alpha_cutoff: self.alpha_cutoff,
         })
     }

@@ -1,14 +1,13 @@
-//! Leaf cards and other aggregates → the order in which elements are removed, its cost in metres, and how much the rest
-//! grow.
+//! Leaf cards and other aggregates → the order in which elements are flattened and removed, and its cost in metres.
 //!
 //! Cook, Halstead, Planck, Ryu, "Stochastic simplification of aggregate detail" (2007). The order is stratified:
 //! elements are paired with their neighbours in a k-d tree, one of each pair is removed, pairs taken in a sequence that
-//! is spread over the whole; then the survivors pair up again. So no hole opens. Of a pair the one nearer the middle of
-//! the crown is removed, for the outer one carries the silhouette.
+//! is spread over the whole; then the survivors pair up again. So no hole opens. Which of a pair is removed is left to
+//! chance, lest the crown become a shell; but where elements are few, the outer one stays, which carries the silhouette.
 
 use glam::Vec3;
 
-use super::coverage::Silhouettes;
+use super::flattening::{self, Step};
 use super::log::Vertex;
 use super::state::{PartSpan, State};
 
@@ -16,92 +15,118 @@ use super::state::{PartSpan, State};
 const MIN_ELEMENTS: usize = 6;
 /// An element may grow to this part of the extent of all.
 const MAX_GROWN: f32 = 0.3;
+/// Metres of error for each metre by which flattening moves a texel.
+const FLATTEN_WEIGHT: f64 = 0.2;
+/// Flattening that moves texels by at most this part of an element's radius comes before any element goes.
+const SLIGHT: f64 = 0.25;
+/// Aggregates of fewer elements keep the outer ones.
+const MIN_RANDOM: usize = 200;
 
 /// One aggregate part.
 pub struct Aggregate {
     /// Index of the part in the mesh.
     pub part: usize,
-    /// Elements in the order in which they are removed, without those that always stay.
+    /// How all elements are flattened, and how many of them have been by the current step.
+    steps: Vec<Step>,
+    flat: usize,
+    /// Elements in the order in which they are removed, then those that always stay.
     order: Vec<u32>,
+    removable: usize,
     removed: usize,
     /// Error in metres per unit of growth.
     weight_m: f64,
+    /// Mean radius of an element.
+    radius_m: f64,
     max_scale: f32,
-    silhouettes: Silhouettes,
-    lives: Vec<bool>,
-    /// Scale and number of elements when last calibrated.
-    last: (f32, usize),
+}
+
+/// What an aggregate loses next.
+pub enum Loss {
+    /// An inner vertex of an element.
+    Vertex { element: u32, step: Step },
+    /// An element.
+    Element(u32),
 }
 
 impl Aggregate {
-    /// Plans the removal of a part's elements; `None` for surfaces and for empty parts.
-    pub fn new(state: &State, part: usize, weight: f32, fill: f32) -> Option<Self> {
+    /// Plans how a part's elements lose vertices and go; `None` for surfaces and for empty parts.
+    pub fn new(state: &State, part: usize, weight: f32) -> Option<Self> {
         let span = &state.parts[part];
         let places = places(state, span)?;
         let count = places.len();
-        let radius = places.iter().map(|place| f64::from(place.radius)).sum::<f64>() / count as f64;
+        let radius_m = places.iter().map(|place| f64::from(place.radius)).sum::<f64>() / count as f64;
         let (low, high) = places.iter().fold((Vec3::MAX, Vec3::MIN), |(low, high), place| {
             (low.min(place.centre - place.radius), high.max(place.centre + place.radius))
         });
         let extent = (high - low).max_element();
-        let centres: Vec<Vec3> = places.iter().map(|place| place.centre).collect();
+        let (order, removable) = removal_order(&places, (low + high) * 0.5);
+        let mut steps = if state.attributes.uvs { flattening::plan(state, span) } else { Vec::new() };
+        steps.reverse();
         Some(Self {
             part,
-            order: removal_order(&places, (low + high) * 0.5),
+            steps,
+            flat: 0,
+            order,
+            removable,
             removed: 0,
-            weight_m: f64::from(weight) * radius,
-            max_scale: (MAX_GROWN * extent / radius as f32).max(1.0),
-            silhouettes: Silhouettes::new(state, span, &centres, [low, high], fill),
-            lives: vec![true; count],
-            last: (1.0, count),
+            weight_m: f64::from(weight) * radius_m,
+            radius_m,
+            max_scale: (MAX_GROWN * extent / radius_m as f32).max(1.0),
         })
     }
 
     pub fn living(&self) -> usize {
-        self.lives.len() - self.removed
+        self.order.len() - self.removed
     }
 
-    /// The error in metres once the next element is removed: by how much elements will have grown to keep the area.
+    /// The error in metres of the next loss.
     pub fn next_cost_m(&self) -> Option<f64> {
-        (self.removed < self.order.len()).then(|| {
-            let ratio = self.lives.len() as f64 / (self.living() - 1) as f64;
-            self.weight_m * (ratio.sqrt() - 1.0)
-        })
+        self.next().map(|(_, cost_m)| cost_m)
     }
 
-    /// Removes the next element.
-    pub fn take_next(&mut self) -> Option<u32> {
-        let element = *self.order.get(self.removed)?;
-        self.removed += 1;
-        self.lives[element as usize] = false;
-        Some(element)
+    /// Takes the next loss.
+    pub fn take_next(&mut self) -> Option<Loss> {
+        let (flattens, _) = self.next()?;
+        if !flattens {
+            let element = self.order[self.removed];
+            self.removed += 1;
+            // One that is gone need not be flattened.
+            self.flat = self.flat.max(self.removed);
+            return Some(Loss::Element(element));
+        }
+        let step = self.steps.last()?.clone();
+        let element = self.order[self.flat];
+        self.flat += 1;
+        if self.flat == self.order.len() {
+            self.steps.pop();
+            self.flat = self.removed;
+        }
+        Some(Loss::Vertex { element, step })
     }
 
-    /// How much larger the living elements must be so that they cover as much as all did, seen from the sides.
-    pub fn calibrated_scale(&mut self) -> f32 {
-        let (last, before) = self.last;
-        let now = self.living();
-        if now == before {
-            return last;
+    /// Whether the next loss flattens, and its cost in metres. Elements are flattened before any goes as long as their
+    /// picture hardly changes. Removal costs by how much elements will have grown to keep the area.
+    fn next(&self) -> Option<(bool, f64)> {
+        let flatten = self.steps.last().map(|step| (true, FLATTEN_WEIGHT * step.error_m));
+        let remove = (self.removed < self.removable).then(|| {
+            let ratio = self.order.len() as f64 / (self.living() - 1) as f64;
+            (false, self.weight_m * (ratio.sqrt() - 1.0))
+        });
+        let slight = |&(_, cost_m): &(bool, f64)| cost_m <= FLATTEN_WEIGHT * SLIGHT * self.radius_m;
+        match (flatten, remove) {
+            (Some(flatten), Some(remove)) if !slight(&flatten) && remove.1 < flatten.1 => Some(remove),
+            (flatten, remove) => flatten.or(remove),
         }
-        let target = self.silhouettes.full as f32;
-        let same_area = last * (before as f32 / now as f32).sqrt();
-        let max = (1.25 * same_area).min(self.max_scale).max(last);
-        let cover = |scale: f32| self.silhouettes.covered(&self.lives, scale) as f32;
-        let mut near = (same_area.min(max), 0.0);
-        near.1 = cover(near.0);
-        let mut best = near;
-        for step in 0..3 {
-            let slope = if step == 0 { 1.3 * near.1 / near.0 } else { (best.1 - near.1) / (best.0 - near.0) };
-            let slope = if slope.is_finite() && slope > 0.0 { slope } else { near.1 / near.0 };
-            let wanted = (best.0 + (target - best.1) / slope.max(1e-3)).clamp(last, max);
-            if (best.1 - target).abs() <= 0.004 * target || wanted == best.0 {
-                break;
-            }
-            (near, best) = (best, (wanted, cover(wanted)));
-        }
-        self.last = (best.0, now);
-        best.0
+    }
+
+    /// The scale at which the living elements have the area that all had.
+    pub fn same_area_scale(&self) -> f32 {
+        (self.order.len() as f32 / self.living() as f32).sqrt()
+    }
+
+    /// How large the living elements may become; at least `now`.
+    pub fn max_scale(&self, now: f32) -> f32 {
+        (1.6 * self.same_area_scale()).min(self.max_scale).max(now)
     }
 }
 
@@ -125,14 +150,15 @@ fn places(state: &State, span: &PartSpan) -> Option<Vec<Place>> {
     (sound && places.iter().any(|p| p.radius > 0.0)).then_some(places)
 }
 
-/// Elements in the order in which they are removed; the last few never are.
-fn removal_order(places: &[Place], middle: Vec3) -> Vec<u32> {
+/// Elements in the order in which they are removed, and how many are: the last few never.
+fn removal_order(places: &[Place], middle: Vec3) -> (Vec<u32>, usize) {
     let mut living: Vec<u32> = (0..places.len() as u32).collect();
     neighbours_together(&mut living, places);
     let mut order = Vec::with_capacity(places.len());
+    let random = places.len() >= MIN_RANDOM;
     let worth = |e: u32| {
         let place = &places[e as usize];
-        place.centre.distance(middle) + place.radius
+        if random { hash(e) as f32 } else { place.centre.distance(middle) + place.radius }
     };
     while living.len() >= 2 * MIN_ELEMENTS {
         let mut leaving: Vec<(u32, u32)> = Vec::with_capacity(living.len() / 2);
@@ -149,7 +175,16 @@ fn removal_order(places: &[Place], middle: Vec3) -> Vec<u32> {
         order.extend(leaving.into_iter().map(|(_, element)| element));
         living = staying;
     }
-    order
+    let removable = order.len();
+    order.extend(living);
+    (order, removable)
+}
+
+/// The finaliser of MurmurHash3.
+fn hash(mut x: u32) -> u32 {
+    x = (x ^ x >> 16).wrapping_mul(0x85EB_CA6B);
+    x = (x ^ x >> 13).wrapping_mul(0xC2B2_AE35);
+    x ^ x >> 16
 }
 
 /// Sorts so that consecutive pairs, fours, eights … lie close together: halves along the longest side, again and

@@ -1,87 +1,166 @@
-//! How many pixels elements cover when seen from the sides: rows of bits, filled triangle by triangle.
+//! How many pixels a mesh covers when seen from the sides: rows of bits, filled triangle by triangle; elements of
+//! aggregates are cut out by their texture's alpha.
 //!
-//! Orthographic views of 64 × 64 pixels; a pixel counts when its centre is inside a triangle.
+//! Orthographic views of square pixels; a pixel counts when its centre is inside a triangle and opaque there.
 
 use glam::{Vec2, Vec3};
 
 use super::state::{PartSpan, State};
+use crate::model::AlphaMask;
 
-const SIDE: usize = 64;
-/// Unit vectors to the right in each view; up is +y.
-const RIGHT: [Vec3; 3] =
-    [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.5, 0.0, 0.866_025_4), Vec3::new(-0.5, 0.0, 0.866_025_4)];
+/// Unit vectors to the right in each view, all round, and how far each looks from below or above: the tangent of its
+/// elevation.
+const VIEWS: [(Vec3, f32); 4] = [
+    (Vec3::new(1.0, 0.0, 0.0), 0.2),
+    (Vec3::new(0.707_106_8, 0.0, 0.707_106_8), 0.0),
+    (Vec3::new(0.0, 0.0, 1.0), -0.2),
+    (Vec3::new(-0.707_106_8, 0.0, 0.707_106_8), 0.0),
+];
 
-/// Elements as seen from the sides.
-pub struct Silhouettes {
-    /// Triangles by element, their vertices counted from the part's first.
-    triangles: Vec<[u32; 3]>,
-    /// Triangles of an element.
-    per_element: usize,
-    views: Vec<View>,
-    /// Pixels that all elements cover at their own size.
-    pub full: u32,
+/// Where a mesh lies in the views.
+#[derive(Clone, Copy, Debug)]
+pub struct Camera {
+    middle: Vec3,
+    pixels_per_m: f32,
+    /// Pixels a side, a multiple of 64.
+    side: usize,
 }
 
-/// Each element's centre, and the offset of each vertex from it, in pixels.
-struct View {
-    centres: Vec<Vec2>,
-    offsets: Vec<Vec2>,
-}
-
-impl Silhouettes {
-    /// Projects the elements of a part, whose centres and box are given, with their area reduced by the factor `fill`.
-    pub fn new(state: &State, span: &PartSpan, centres: &[Vec3], [low, high]: [Vec3; 2], fill: f32) -> Self {
-        let middle = (low + high) * 0.5;
-        // Room for elements to grow beyond the box.
-        let extent = (high - low).length().max(f32::MIN_POSITIVE) * 1.1;
-        let (pixels, shrink) = (SIDE as f32 / extent, fill.clamp(0.01, 1.0).sqrt());
-        let first = span.element(0);
-        let vertices = &state.vertices[first[0].start..][..centres.len() * first[0].len()];
-        let view = |right: &Vec3| {
-            let flat = |v: Vec3| Vec2::new(v.dot(*right), v.y) * pixels;
-            let elements = vertices.chunks_exact(first[0].len()).zip(centres);
-            let offsets = elements.flat_map(|(vertices, &centre)| {
-                vertices.iter().map(move |v| flat(Vec3::from_array(v.position) - centre) * shrink)
-            });
-            View {
-                centres: centres.iter().map(|&v| flat(v - middle) + 0.5 * SIDE as f32).collect(),
-                offsets: offsets.collect(),
-            }
-        };
-        let triangles = state.triangles[span.range()].iter().map(|t| t.map(|v| v - span.first_vertex));
-        let mut silhouettes = Self {
-            triangles: triangles.collect(),
-            per_element: first[1].len(),
-            views: RIGHT.iter().map(view).collect(),
-            full: 0,
-        };
-        silhouettes.full = silhouettes.covered(&vec![true; centres.len()], 1.0);
-        silhouettes
+impl Camera {
+    /// Shows the box from `low` to `high`, with room for elements to grow beyond it.
+    pub fn of([low, high]: [Vec3; 2], side: usize) -> Self {
+        let extent_m = (high - low).length().max(f32::MIN_POSITIVE) * 1.1;
+        Self { middle: (low + high) * 0.5, pixels_per_m: side as f32 / extent_m, side }
     }
 
-    /// Pixels that the living elements cover when each is scaled about its centre.
-    pub fn covered(&self, lives: &[bool], scale: f32) -> u32 {
-        let cover = |view: &View| {
-            let mut rows = [0_u64; SIDE];
-            let elements = self.triangles.chunks_exact(self.per_element).zip(&view.centres).zip(lives);
-            for ((triangles, &centre), _) in elements.filter(|(_, lives)| **lives) {
-                for triangle in triangles {
-                    fill(&mut rows, triangle.map(|v| centre + view.offsets[v as usize] * scale));
+    /// A distance in pixels from the left and from the bottom.
+    fn offset(&self, (right, tilt): (Vec3, f32), by: Vec3) -> Vec2 {
+        let forward = right.cross(Vec3::Y);
+        Vec2::new(by.dot(right), by.y + by.dot(forward) * tilt) * self.pixels_per_m
+    }
+
+    fn place(&self, view: (Vec3, f32), at: Vec3) -> Vec2 {
+        self.offset(view, at - self.middle) + 0.5 * self.side as f32
+    }
+}
+
+/// Which pixels are covered in each view.
+#[derive(Clone)]
+pub struct Canvas {
+    camera: Camera,
+    /// Rows of 64 pixels a word, from the bottom.
+    views: [Vec<u64>; VIEWS.len()],
+}
+
+impl Canvas {
+    pub fn empty(camera: &Camera) -> Self {
+        Self { camera: *camera, views: VIEWS.map(|_| vec![0; camera.side * camera.side / 64]) }
+    }
+
+    pub fn covered(&self) -> u32 {
+        self.views.iter().flatten().map(|word| word.count_ones()).sum()
+    }
+
+    /// Draws what lives of the surface parts, grown by `offset_m` along its normals.
+    pub fn draw_surfaces(&mut self, state: &State, offset_m: f32) {
+        let camera = self.camera;
+        let grown = |id: usize| Vec3::from_array(state.grown(id, offset_m));
+        let places: Vec<_> = (0..state.vertices.len()).map(grown).collect();
+        for (pixels, view) in self.views.iter_mut().zip(VIEWS) {
+            let flat = |v: u32| camera.place(view, places[v as usize]);
+            for span in state.parts.iter().filter(|span| span.elements().is_none()) {
+                for t in span.range().filter(|&t| state.triangle_lives[t]) {
+                    fill(pixels, camera.side, state.triangles[t].map(flat), |_, _| true);
                 }
             }
-            rows.iter().map(|row| row.count_ones()).sum::<u32>()
-        };
-        self.views.iter().map(cover).sum()
+        }
     }
 }
 
-/// Sets the bits of pixels whose centres lie in a triangle.
-fn fill(rows: &mut [u64; SIDE], [a, b, c]: [Vec2; 3]) {
+/// The living elements of an aggregate as seen from the sides.
+pub struct Elements {
+    mask: AlphaMask,
+    triangles: Vec<Triangle>,
+}
+
+/// A triangle of an element in each view, in pixels.
+struct Triangle {
+    uvs: [Vec2; 3],
+    /// Where the element's centre is.
+    centres: [Vec2; VIEWS.len()],
+    /// Where the corners are from there.
+    corners: [[Vec2; 3]; VIEWS.len()],
+}
+
+impl Elements {
+    /// Projects what lives of a part.
+    pub fn new(state: &State, span: &PartSpan, camera: &Camera, mask: AlphaMask) -> Self {
+        let mut triangles = Vec::new();
+        for element in state.living_elements(span) {
+            let [ids, range] = span.element(element);
+            let centre = state.centre(ids);
+            let centres = VIEWS.map(|view| camera.place(view, centre));
+            for t in range.filter(|&t| state.triangle_lives[t]) {
+                let vertices = state.triangles[t].map(|v| state.vertices[v as usize]);
+                let offsets = vertices.map(|v| Vec3::from_array(v.position) - centre);
+                let corners = VIEWS.map(|view| offsets.map(|by| camera.offset(view, by)));
+                triangles.push(Triangle { uvs: vertices.map(|v| Vec2::from_array(v.uv)), centres, corners });
+            }
+        }
+        Self { mask, triangles }
+    }
+
+    /// Draws the elements, each scaled about its centre.
+    pub fn draw(&self, scale: f32, canvas: &mut Canvas) {
+        for (view, pixels) in canvas.views.iter_mut().enumerate() {
+            for triangle in &self.triangles {
+                let corners = triangle.corners[view].map(|by| triangle.centres[view] + by * scale);
+                let Some(texture) = Affine::through(corners, triangle.uvs) else { continue };
+                fill(pixels, canvas.camera.side, corners, |x, y| {
+                    self.mask.is_opaque(texture.at(x, y).into())
+                });
+            }
+        }
+    }
+
+    /// Pixels that the elements alone cover.
+    pub fn covered(&self, camera: &Camera, scale: f32) -> u32 {
+        let mut canvas = Canvas::empty(camera);
+        self.draw(scale, &mut canvas);
+        canvas.covered()
+    }
+}
+
+/// Texture coordinates as a function of the place in a picture.
+struct Affine {
+    origin: Vec2,
+    along_x: Vec2,
+    along_y: Vec2,
+}
+
+impl Affine {
+    fn through([a, b, c]: [Vec2; 3], [at_a, at_b, at_c]: [Vec2; 3]) -> Option<Self> {
+        let (p, q) = (b - a, c - a);
+        let area = p.perp_dot(q);
+        let (u, v) = (at_b - at_a, at_c - at_a);
+        let along_x = (u * q.y - v * p.y) / area;
+        let along_y = (v * p.x - u * q.x) / area;
+        let origin = at_a - along_x * a.x - along_y * a.y;
+        origin.is_finite().then_some(Self { origin, along_x, along_y })
+    }
+
+    fn at(&self, x: f32, y: f32) -> Vec2 {
+        self.origin + self.along_x * x + self.along_y * y
+    }
+}
+
+/// Sets the bits of pixels whose centres lie in a triangle and are opaque.
+fn fill(pixels: &mut [u64], side: usize, [a, b, c]: [Vec2; 3], opaque: impl Fn(f32, f32) -> bool) {
     let (low, high) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
     let first = (low - 0.5).max(-1.0).ceil() as i32;
-    let last = (high - 0.5).min(SIDE as f32).floor() as i32;
+    let last = (high - 0.5).min(side as f32).floor() as i32;
     let slopes = [(a, b), (b, c), (c, a)].map(|(p, q)| (q.x - p.x) / (q.y - p.y));
-    for row in first.max(0)..=last.min(SIDE as i32 - 1) {
+    for row in first.max(0)..=last.min(side as i32 - 1) {
         let y = row as f32 + 0.5;
         let (mut left, mut right) = (f32::MAX, f32::MIN);
         for ((p, q), slope) in [(a, b), (b, c), (c, a)].into_iter().zip(slopes) {
@@ -91,11 +170,13 @@ fn fill(rows: &mut [u64; SIDE], [a, b, c]: [Vec2; 3]) {
                 right = right.max(x);
             }
         }
-        let start = (left - 0.5).ceil().max(0.0) as u32;
-        let end = ((right - 0.5).ceil()).clamp(0.0, SIDE as f32) as u32;
-        if start < end {
-            let ones = if end - start >= 64 { u64::MAX } else { (1_u64 << (end - start)) - 1 };
-            rows[row as usize] |= ones << start;
+        let start = (left - 0.5).ceil().max(0.0) as usize;
+        let end = ((right - 0.5).ceil()).clamp(0.0, side as f32) as usize;
+        for x in start..end {
+            let (word, bit) = (&mut pixels[(row as usize * side + x) / 64], 1 << (x % 64));
+            if *word & bit == 0 && opaque(x as f32 + 0.5, y) {
+                *word |= bit;
+            }
         }
     }
 }

@@ -109,6 +109,9 @@ impl Edge {
     }
 
     /// Whether the two ends share no neighbours but those opposite the edge, and something is left of the surface.
+    ///
+    /// On a closed piece both opposite points may form a triangle with one end, which then has three triangles, but not
+    /// with both ends: that is the last tetrahedron, and its two other triangles would become one twice over.
     pub fn link_holds(&self, topology: &Topology, state: &State, neighbours: &mut PointSet) -> bool {
         neighbours.clear();
         for &corner in &self.stars[0] {
@@ -119,21 +122,23 @@ impl Edge {
         let opposite = &self.triangles.opposite[..self.triangles.count.min(2)];
         let is_opposite = |p: u32| opposite.iter().any(|&corner| topology.point_at(state, corner) == p);
         let mut remains = self.stars[0].len() > self.triangles.count;
+        let mut joins_both_at_end = false;
         for corner in self.surviving(topology, state) {
             remains = true;
             let [_, p, q] = topology.points_from(state, corner);
-            let shared = [p, q].map(|point| neighbours.contains(point));
-            if (shared[0] && !is_opposite(p)) || (shared[1] && !is_opposite(q)) || (shared[0] && shared[1]) {
+            if [p, q].into_iter().any(|point| neighbours.contains(point) && !is_opposite(point)) {
                 return false;
             }
+            joins_both_at_end |= is_opposite(p) && is_opposite(q);
         }
-        // On a closed piece no triangle may join the first point to both opposite ones: the last tetrahedron.
-        let b = self.points[1];
-        let joins_both = |&corner: &u32| {
-            let [_, p, q] = topology.points_from(state, corner);
-            p != b && q != b && is_opposite(p) && is_opposite(q)
+        let joins_both_at_start = || {
+            let b = self.points[1];
+            self.stars[0].iter().any(|&corner| {
+                let [_, p, q] = topology.points_from(state, corner);
+                p != b && q != b && is_opposite(p) && is_opposite(q)
+            })
         };
-        remains && !(self.triangles.count == 2 && self.stars[0].iter().any(joins_both))
+        remains && !(joins_both_at_end && joins_both_at_start())
     }
 
     /// A point moved along the mean normal of both stars until their volume is as before, but not far.

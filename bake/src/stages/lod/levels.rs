@@ -5,6 +5,8 @@
 //! which no collapse made, log q is continued in a straight line from the error at √½ of the vertices (λ = ½) and
 //! that of D_1: q₀ = q(½)² / q(1).
 
+use glam::Vec3;
+
 use crate::model::{Level, LevelledMesh, Mesh, Morph};
 
 use super::progressive::{self, Mark};
@@ -17,6 +19,9 @@ const TOLERANCE: usize = 50;
 /// An error may not be less than this part of the mesh's diagonal, and must grow by `MIN_GROWTH` a level.
 const MIN_ERROR: f32 = 1e-7;
 const MIN_GROWTH: f32 = 1.05;
+
+/// How far an element that goes grows in length as it loses its width: with that, a half-way crown covers as much.
+const STRETCH: f32 = 1.2;
 
 /// One level before it gets its morph.
 struct Snapshot {
@@ -49,7 +54,7 @@ pub fn build(mesh: Mesh, options: &LodOptions) -> LevelledMesh {
             break;
         }
         let mark = Mark::calibrated(&mut sequence);
-        let (mesh, now) = sequence.state.to_mesh(&mark.scales());
+        let (mesh, now) = sequence.state.to_mesh(&mark.sizes());
         snapshots.push(Snapshot { mesh, now, error_m: sequence.error_m as f32 });
         marks.push(mark);
     }
@@ -106,7 +111,31 @@ fn morph(level: &Snapshot, next: &Snapshot, state: &State) -> Morph {
             morph.uvs.push(there.map_or([0.0; 2], delta));
         }
     }
+    for span in &state.parts {
+        let elements =
+            (0..span.elements().map_or(0, |(elements, ..)| elements)).map(|e| span.element(e)[0].clone());
+        for ids in elements.filter(|ids| level.now[ids.start] != NONE && next.now[ids.start] == NONE) {
+            let here: Vec<_> =
+                ids.filter(|&id| level.now[id] != NONE).map(|id| level.now[id] as usize).collect();
+            shrink(&level.mesh, &here, &mut morph);
+        }
+    }
     morph
+}
+
+/// Moves the vertices of an element that goes onto the line from its root to its tip, and a little along it. So its
+/// area falls linearly as it shrinks, as fast as that of those grows that stay: a crown does not thin out in mid-morph.
+fn shrink(mesh: &Mesh, vertices: &[usize], morph: &mut Morph) {
+    let at = |v: &usize| Vec3::from_array(mesh.positions[*v]);
+    let centre = vertices.iter().map(at).sum::<Vec3>() / vertices.len().max(1) as f32;
+    // A row of a card has two or three vertices.
+    let row = (vertices.len() / 6).max(2).min(vertices.len());
+    let [root, tip] = [&vertices[..row], &vertices[vertices.len() - row..]];
+    let along = (tip.iter().map(at).sum::<Vec3>() - root.iter().map(at).sum::<Vec3>()).normalize_or(Vec3::Y);
+    for v in vertices {
+        let place = centre + along * ((at(v) - centre).dot(along) * STRETCH);
+        morph.positions[*v] = (place - at(v)).to_array();
+    }
 }
 
 fn difference<const N: usize>(to: [f32; N], from: [f32; N]) -> [f32; N] {

@@ -7,13 +7,15 @@
 //! metres orders both.
 //!
 //! Read `repair`, `state` and `log` (the mesh being simplified), `topology`, `quadric`, `edge`, `merge` and `collapse`
-//! (one edge), `coverage` and `aggregate` (leaf cards), `sequence` (the order of all steps), `levels`, `progressive`
+//! (one edge), `flattening` and `aggregate` (leaf cards), `coverage` and `calibration` (as many pixels at every level), `sequence` (the order of all steps), `levels`, `progressive`
 //! (the file format) and `strip`.
 
 mod aggregate;
+mod calibration;
 mod collapse;
 mod coverage;
 mod edge;
+mod flattening;
 mod levels;
 mod log;
 mod merge;
@@ -30,7 +32,7 @@ mod shapes;
 #[cfg(test)]
 mod tests;
 
-use crate::model::{LevelledMesh, Mesh};
+use crate::model::{AlphaMask, LevelledMesh, Mesh};
 
 /// Choices about levels of detail.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,8 +46,11 @@ pub struct LodOptions {
     /// Metres of error for each metre of thickness of a whole piece (a twig) that is removed: less removes twigs
     /// sooner.
     pub piece_weight: f32,
-    /// Part of an element's area that its texture leaves opaque, (0, 1]; coverage counts only this part.
-    pub element_fill: f32,
+    /// What the texture of each part's elements leaves opaque; all of it for parts beyond the list.
+    pub masks: Vec<AlphaMask>,
+    /// Whether surfaces grow along their normals so that the mesh covers as much as it did: right for branches, whose
+    /// twigs go one by one, not for solid bodies.
+    pub thickens: bool,
 }
 
 impl Default for LodOptions {
@@ -55,7 +60,8 @@ impl Default for LodOptions {
             min_vertices: 100,
             aggregate_weight: 0.25,
             piece_weight: 1.0,
-            element_fill: 0.7,
+            masks: Vec::new(),
+            thickens: false,
         }
     }
 }

@@ -8,7 +8,8 @@ use std::ops::Range;
 use glam::{DVec3, Vec3};
 
 use super::LodOptions;
-use super::aggregate::Aggregate;
+use super::aggregate::{Aggregate, Loss};
+use super::calibration::Calibration;
 use super::collapse::Surface;
 use super::state::{NONE, State};
 
@@ -25,7 +26,8 @@ const OVERSHOOT: usize = 4;
 /// A mesh on its way down.
 pub struct Sequence {
     pub state: State,
-    pub aggregates: Vec<Aggregate>,
+    aggregates: Vec<Aggregate>,
+    calibration: Calibration,
     /// Greatest error so far, in metres.
     pub error_m: f64,
     surface: Surface,
@@ -44,15 +46,18 @@ pub struct Sequence {
 enum Next {
     Edge,
     Piece,
-    Element(usize),
+    Loss(usize),
 }
 
 impl Sequence {
     /// The whole mesh.
     pub fn new(state: State, options: &LodOptions) -> Self {
         let surface = Surface::new(&state);
-        let aggregate = |p| Aggregate::new(&state, p, options.aggregate_weight, options.element_fill);
+        let bounds = bounds(&state);
+        let aggregate = |part: usize| Aggregate::new(&state, part, options.aggregate_weight);
         let aggregates: Vec<_> = (0..state.parts.len()).filter_map(aggregate).collect();
+        let diagonal_m = (bounds[1] - bounds[0]).max(Vec3::ZERO).length();
+        let calibration = Calibration::new(&state, &aggregates, bounds, &options.masks, options.thickens);
         let mut used = vec![false; state.vertices.len()];
         state.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
         for span in &state.parts {
@@ -67,14 +72,26 @@ impl Sequence {
             queue: BinaryHeap::new(),
             refused: Vec::new(),
             retry_above_m: 0.0,
-            max_cost_m: MAX_COST * diagonal_m(&state),
+            max_cost_m: MAX_COST * f64::from(diagonal_m),
             error_m: 0.0,
             aggregates,
+            calibration,
             surface,
             state,
         };
         sequence.queue_all();
         sequence
+    }
+
+    /// For each part of the mesh, the living elements and their scale or, for surfaces, 0 and how far they grow, in
+    /// metres, so that the mesh covers as much as it did.
+    pub fn sizes(&mut self) -> Vec<(u32, f32)> {
+        let sizes = self.calibration.sizes(&self.state, &self.aggregates);
+        let mut parts = vec![(0, sizes.offset_m); self.state.parts.len()];
+        for (aggregate, scale) in self.aggregates.iter().zip(sizes.scales) {
+            parts[aggregate.part] = (aggregate.living() as u32, scale);
+        }
+        parts
     }
 
     /// Simplifies until at most `target` vertices live or nothing more can be removed. `watch` sees the number of
@@ -96,7 +113,7 @@ impl Sequence {
             match next {
                 Next::Edge => self.collapse_next(),
                 Next::Piece => self.drop_piece(target),
-                Next::Element(index) => self.drop_element(index, cost_m),
+                Next::Loss(index) => self.lose(index, cost_m),
             }
             watch(self.state.vertex_count, self.error_m);
         }
@@ -116,7 +133,7 @@ impl Sequence {
             self.queue.peek().map(|&Reverse((bits, ..))| (Next::Edge, f64::from(f32::from_bits(bits))));
         let piece = self.pieces.last().map(|&(cost, _)| (Next::Piece, cost));
         let elements = self.aggregates.iter().enumerate();
-        let elements = elements.filter_map(|(index, part)| Some((Next::Element(index), part.next_cost_m()?)));
+        let elements = elements.filter_map(|(index, part)| Some((Next::Loss(index), part.next_cost_m()?)));
         edge.into_iter().chain(piece).chain(elements).min_by(|p, q| p.1.total_cmp(&q.1))
     }
 
@@ -207,15 +224,30 @@ impl Sequence {
         move |point| (middle + along * (point - middle).dot(along) + origin).as_vec3().to_array()
     }
 
-    fn drop_element(&mut self, index: usize, cost_m: f64) {
+    /// Takes a vertex of an element of an aggregate, or an element.
+    fn lose(&mut self, index: usize, cost_m: f64) {
         let aggregate = &mut self.aggregates[index];
-        let Some(element) = aggregate.take_next() else { return };
-        let [vertices, triangles] = self.state.parts[aggregate.part].element(element);
-        let centre = self.state.centre(vertices.clone());
-        triangles.for_each(|t| self.state.remove_triangle(t as u32));
-        for v in vertices {
-            self.state.remove_vertex(v as u32, NONE);
-            self.state.collapsed_to[v] = centre.to_array();
+        let Some(loss) = aggregate.take_next() else { return };
+        let span = &self.state.parts[aggregate.part];
+        match loss {
+            Loss::Vertex { element, step } => {
+                let [ids, triangles] = span.element(element);
+                let (vertex, triangle) = (ids.start as u32, triangles.start as u32);
+                step.removed.iter().for_each(|t| self.state.remove_triangle(triangle + t));
+                for corner in step.corners {
+                    self.state.change_corner(3 * triangle + corner, vertex + step.into);
+                }
+                self.state.remove_vertex(vertex + step.vertex, vertex + step.into);
+            }
+            Loss::Element(element) => {
+                let [vertices, triangles] = span.element(element);
+                for t in triangles.filter(|&t| self.state.triangle_lives[t]).collect::<Vec<_>>() {
+                    self.state.remove_triangle(t as u32);
+                }
+                for v in vertices.filter(|&v| self.state.vertex_lives[v]).collect::<Vec<_>>() {
+                    self.state.remove_vertex(v as u32, NONE);
+                }
+            }
         }
         self.state.log.finish_record();
         self.error_m = self.error_m.max(cost_m);
@@ -242,10 +274,9 @@ fn entry(versions: &[u32], cost: f64, a: u32, b: u32) -> Reverse<(u32, u32, u32,
     Reverse(((cost as f32).to_bits(), a, b, current_version(versions, a, b)))
 }
 
-fn diagonal_m(state: &State) -> f64 {
-    let points = state.vertices.iter().map(|vertex| Vec3::from_array(vertex.position).as_dvec3());
-    let (low, high) = points.fold((DVec3::MAX, DVec3::MIN), |(low, high), p| (low.min(p), high.max(p)));
-    (high - low).max(DVec3::ZERO).length()
+fn bounds(state: &State) -> [Vec3; 2] {
+    let points = state.vertices.iter().map(|vertex| Vec3::from_array(vertex.position));
+    points.fold([Vec3::MAX, Vec3::MIN], |[low, high], p| [low.min(p), high.max(p)])
 }
 
 /// Pieces and the error in metres of their removal, the cheapest last. The largest piece stays.

@@ -156,9 +156,20 @@ impl State {
         self.triangles[corner as usize / 3][corner as usize % 3] = vertex;
     }
 
-    /// What lives, in the original order, with aggregates' elements scaled about their centres by one factor a
-    /// part; and which vertex of the mesh each original vertex became (`NONE` if removed).
-    pub fn to_mesh(&self, scales: &[f32]) -> (Mesh, Vec<u32>) {
+    /// Where a vertex lies once its surface has grown along its normals, in metres.
+    pub fn grown(&self, id: usize, offset_m: f32) -> [f32; 3] {
+        let Vertex { position, normal, .. } = self.vertices[id];
+        if offset_m == 0.0 {
+            return position;
+        }
+        let out = Vec3::from_array(normal).normalize_or_zero();
+        (Vec3::from_array(position) + out * offset_m).to_array()
+    }
+
+    /// What lives, in the original order, with each part's size: aggregates' elements scaled about their centres,
+    /// surfaces grown along their normals in metres; and which vertex of the mesh each original vertex became (`NONE` if
+    /// removed).
+    pub fn to_mesh(&self, sizes: &[f32]) -> (Mesh, Vec<u32>) {
         let mut now = vec![NONE; self.vertices.len()];
         let mut mesh = Mesh::default();
         mesh.positions.reserve(self.vertex_count);
@@ -175,33 +186,68 @@ impl State {
                 mesh.colors.push(vertex.color);
             }
         }
-        for (span, &scale) in self.parts.iter().zip(scales) {
+        for (span, &size) in self.parts.iter().zip(sizes) {
             let living = span.range().filter(|&t| self.triangle_lives[t]);
-            let triangles = living.map(|t| self.triangles[t].map(|v| now[v as usize])).collect();
-            mesh.parts.push(Part { material: span.material, kind: span.kind, triangles });
-            self.scale_elements(span, scale, &now, &mut mesh);
+            let triangles: Vec<_> = living.map(|t| self.triangles[t].map(|v| now[v as usize])).collect();
+            mesh.parts.push(Part { material: span.material, kind: self.kind_now(span), triangles });
+            match span.kind {
+                PartKind::Surface => self.grow(span, size, &now, &mut mesh),
+                PartKind::Aggregate { .. } => self.scale_elements(span, size, &now, &mut mesh),
+            }
         }
         (mesh, now)
     }
 
-    fn scale_elements(&self, span: &PartSpan, scale: f32, now: &[u32], mesh: &mut Mesh) {
-        let Some((elements, ..)) = span.elements().filter(|_| scale != 1.0) else { return };
-        for element in 0..elements {
-            let [ids, _] = span.element(element);
-            if !self.vertex_lives[ids.start] {
-                continue;
+    /// Of what the living elements are made; where not all are alike, they are a surface like any other.
+    fn kind_now(&self, span: &PartSpan) -> PartKind {
+        let size = |element: u32| {
+            let [ids, triangles] = span.element(element);
+            let vertices = ids.filter(|&id| self.vertex_lives[id]).count() as u32;
+            PartKind::Aggregate {
+                vertices,
+                triangles: triangles.filter(|&t| self.triangle_lives[t]).count() as u32,
             }
+        };
+        let mut sizes = self.living_elements(span).map(size);
+        let Some(first) = sizes.next() else { return span.kind };
+        if sizes.all(|size| size == first) { first } else { PartKind::Surface }
+    }
+
+    fn grow(&self, span: &PartSpan, offset_m: f32, now: &[u32], mesh: &mut Mesh) {
+        for t in span.range().filter(|&t| offset_m != 0.0 && self.triangle_lives[t]) {
+            for v in self.triangles[t] {
+                mesh.positions[now[v as usize] as usize] = self.grown(v as usize, offset_m);
+            }
+        }
+    }
+
+    fn scale_elements(&self, span: &PartSpan, scale: f32, now: &[u32], mesh: &mut Mesh) {
+        if scale == 1.0 {
+            return;
+        }
+        for element in self.living_elements(span) {
+            let [ids, _] = span.element(element);
             let centre = self.centre(ids.clone());
-            for id in ids {
+            for id in ids.filter(|&id| self.vertex_lives[id]) {
                 let scaled = centre + (Vec3::from_array(self.vertices[id].position) - centre) * scale;
                 mesh.positions[now[id] as usize] = scaled.to_array();
             }
         }
     }
 
-    /// The mean of consecutive vertices' positions.
+    /// The elements of a part that live: an element's first vertex is the last to go.
+    pub fn living_elements(&self, span: &PartSpan) -> impl Iterator<Item = u32> {
+        let elements = span.elements().map_or(0, |(elements, ..)| elements);
+        (0..elements).filter(|&element| self.vertex_lives[span.element(element)[0].start])
+    }
+
+    /// The mean of the living ones of consecutive vertices' positions.
     pub fn centre(&self, ids: Range<usize>) -> Vec3 {
-        let positions = self.vertices[ids.clone()].iter().map(|vertex| Vec3::from_array(vertex.position));
-        positions.sum::<Vec3>() / ids.len().max(1) as f32
+        let living = ids.filter(|&id| self.vertex_lives[id]);
+        let add = |(sum, count): (Vec3, usize), id: usize| {
+            (sum + Vec3::from_array(self.vertices[id].position), count + 1)
+        };
+        let (sum, count) = living.fold((Vec3::ZERO, 0), add);
+        sum / count.max(1) as f32
     }
 }

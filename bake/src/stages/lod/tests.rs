@@ -7,7 +7,7 @@ use glam::Vec3;
 use super::progressive::reader;
 use super::shapes::{plane, sphere, torus, tree};
 use super::{LodOptions, levels, strip};
-use crate::model::{Level, LevelledMesh, Mesh, PartKind};
+use crate::model::{AlphaMask, Image8, Level, LevelledMesh, Material, Mesh, Morph, Part, PartKind};
 
 fn shapes() -> Vec<(&'static str, Mesh)> {
     vec![
@@ -168,38 +168,44 @@ fn a_plane_stays_flat_and_whole() {
     }
 }
 
-/// Pixels that a part covers from a direction, 128 px a side.
-fn covered(mesh: &Mesh, part: usize, azimuth: f32, fill: f32) -> usize {
+/// A texture that is opaque in its left half.
+fn half_opaque() -> AlphaMask {
+    let mut image = Image8::new(32, 32, 4);
+    for (i, pixel) in image.data.chunks_exact_mut(4).enumerate() {
+        pixel[3] = if i % 32 < 16 { 255 } else { 0 };
+    }
+    AlphaMask::of(&image, 0.5)
+}
+
+/// Pixels that some parts cover from a direction, 384 px a side, cut out by one texture.
+fn covered(mesh: &Mesh, parts: &[usize], azimuth: f32, mask: &AlphaMask, weight: Option<&Morph>) -> usize {
     let bounds = Vec3::new(4.5, 9.0, 4.5);
-    let (right, n) = (Vec3::new(libm::cosf(azimuth), 0.0, libm::sinf(azimuth)), 128_usize);
+    let (right, n) = (Vec3::new(libm::cosf(azimuth), 0.0, libm::sinf(azimuth)), 384_usize);
     let mut pixels = vec![false; n * n];
-    let PartKind::Aggregate { triangles, .. } = mesh.parts[part].kind else { return 0 };
-    for element in mesh.parts[part].triangles.chunks(triangles as usize) {
-        let at = |v: u32| Vec3::from_array(mesh.positions[v as usize]);
-        let all = element.iter().flatten().map(|&v| at(v));
-        let centre = all.sum::<Vec3>() / (3 * element.len()) as f32;
-        for t in element {
-            let flat = |v: u32| {
-                let p = centre + (at(v) - centre) * fill.sqrt();
-                ((p.dot(right) / bounds.x * 0.5 + 0.5) * n as f32, p.y / bounds.y * n as f32)
-            };
-            let [a, b, c] = t.map(flat);
-            let side = |p: (f32, f32), q: (f32, f32), x: f32, y: f32| {
-                (q.0 - p.0) * (y - p.1) - (q.1 - p.1) * (x - p.0)
-            };
-            let low = |k: fn(&(f32, f32)) -> f32| {
-                [a, b, c].iter().map(k).fold(f32::MAX, f32::min).max(0.0) as usize
-            };
-            let high = |k: fn(&(f32, f32)) -> f32| {
-                (([a, b, c].iter().map(k).fold(0.0, f32::max) + 1.0) as usize).min(n)
-            };
-            for y in low(|p| p.1)..high(|p| p.1) {
-                for x in low(|p| p.0)..high(|p| p.0) {
-                    let (u, v) = (x as f32 + 0.5, y as f32 + 0.5);
-                    let sides = [side(a, b, u, v), side(b, c, u, v), side(c, a, u, v)];
-                    if sides.iter().all(|&s| s >= 0.0) || sides.iter().all(|&s| s <= 0.0) {
-                        pixels[y * n + x] = true;
-                    }
+    let at = |v: u32| {
+        let half = weight.map_or(Vec3::ZERO, |morph| 0.5 * Vec3::from_array(morph.positions[v as usize]));
+        Vec3::from_array(mesh.positions[v as usize]) + half
+    };
+    for t in parts.iter().flat_map(|&part| &mesh.parts[part].triangles) {
+        let flat = |v: u32| {
+            let p = at(v);
+            ((p.dot(right) / bounds.x * 0.5 + 0.5) * n as f32, p.y / bounds.y * n as f32)
+        };
+        let [a, b, c] = t.map(flat);
+        let side =
+            |p: (f32, f32), q: (f32, f32), x: f32, y: f32| (q.0 - p.0) * (y - p.1) - (q.1 - p.1) * (x - p.0);
+        let whole = side(a, b, c.0, c.1);
+        let low =
+            |k: fn(&(f32, f32)) -> f32| [a, b, c].iter().map(k).fold(f32::MAX, f32::min).max(0.0) as usize;
+        let high =
+            |k: fn(&(f32, f32)) -> f32| (([a, b, c].iter().map(k).fold(0.0, f32::max) + 1.0) as usize).min(n);
+        for y in low(|p| p.1)..high(|p| p.1) {
+            for x in low(|p| p.0)..high(|p| p.0) {
+                let (px, py) = (x as f32 + 0.5, y as f32 + 0.5);
+                let weights = [side(b, c, px, py), side(c, a, px, py), side(a, b, px, py)].map(|s| s / whole);
+                let uv = [0, 1].map(|k| (0..3).map(|i| weights[i] * mesh.uvs[t[i] as usize][k]).sum());
+                if weights.iter().all(|&w| w >= 0.0) && mask.is_opaque(uv) {
+                    pixels[y * n + x] = true;
                 }
             }
         }
@@ -207,20 +213,107 @@ fn covered(mesh: &Mesh, part: usize, azimuth: f32, fill: f32) -> usize {
     pixels.iter().filter(|&&p| p).count()
 }
 
+const AZIMUTHS: [f32; 4] = [0.2, 1.1, 2.0, 2.9];
+
 #[test]
 fn leaves_keep_covering_the_sky() {
     let mesh = tree(30, 10, 3000);
-    for fill in [1.0, LodOptions::default().element_fill] {
-        let levels = levels(&mesh, &LodOptions { element_fill: fill, ..LodOptions::default() }).levels;
-        for azimuth in [0.2, 1.1, 2.0, 2.9] {
-            let full = covered(&mesh, 1, azimuth, fill) as f32;
-            for level in &levels[1..=4] {
-                let ratio = covered(&level.mesh, 1, azimuth, fill) as f32 / full;
-                let count = level.mesh.positions.len();
-                assert!((0.9..1.1).contains(&ratio), "{ratio} at {count} vertices, fill {fill}");
+    for mask in [AlphaMask::default(), half_opaque()] {
+        let options = LodOptions { masks: vec![AlphaMask::default(), mask], ..LodOptions::default() };
+        let levels = levels(&mesh, &options).levels;
+        let sum = |mesh: &Mesh, morph: Option<&Morph>| {
+            AZIMUTHS.iter().map(|&azimuth| covered(mesh, &[1], azimuth, &mask, morph)).sum::<usize>() as f32
+        };
+        let full = sum(&mesh, None);
+        for level in &levels[1..=4] {
+            let count = level.mesh.positions.len();
+            let ratio = sum(&level.mesh, None) / full;
+            assert!((0.97..1.03).contains(&ratio), "{ratio} at {count} vertices");
+            let half_way = sum(&level.mesh, level.morph.as_ref()) / full;
+            assert!((0.95..1.05).contains(&half_way), "{half_way} half-way from {count} vertices");
+        }
+    }
+}
+
+#[test]
+fn bare_branches_keep_covering_the_sky() {
+    let mut mesh = tree(30, 10, 0);
+    mesh.parts.truncate(1);
+    let made = levels(&mesh, &LodOptions { thickens: true, ..LodOptions::default() });
+    let opaque = AlphaMask::default();
+    let sum = |mesh: &Mesh| {
+        AZIMUTHS.iter().map(|&azimuth| covered(mesh, &[0], azimuth, &opaque, None)).sum::<usize>() as f32
+    };
+    for level in &made.levels[1..=4] {
+        let (ratio, count) = (sum(&level.mesh) / sum(&mesh), level.mesh.positions.len());
+        assert!((0.95..1.05).contains(&ratio), "{ratio} at {count} vertices");
+    }
+    let read = reader::decode(&made.progressive).unwrap();
+    assert!(read.marks().last().unwrap().sizes()[0] > 0.0);
+}
+
+/// Cards of three rows, bent in the middle.
+fn bent_cards(count: u32) -> Mesh {
+    let mut mesh = Mesh::default();
+    for k in 0..count {
+        let root = Vec3::new((k % 8) as f32, (k / 64) as f32, (k / 8 % 8) as f32);
+        for (row, bend) in [(0.0, 0.0), (1.0, 0.05), (2.0, 0.0)] {
+            for column in [0.0, 1.0] {
+                mesh.positions.push((root + Vec3::new(0.2 * column, 0.3 * row, bend)).to_array());
+                mesh.normals.push([0.0, 0.0, 1.0]);
+                mesh.uvs.push([column, 1.0 - 0.5 * row]);
             }
         }
     }
+    let card = |k: u32| {
+        let cells = [0, 2].map(|row| 6 * k + row);
+        cells.into_iter().flat_map(|a| [[a, a + 1, a + 3], [a, a + 3, a + 2]])
+    };
+    let kind = PartKind::Aggregate { vertices: 6, triangles: 4 };
+    mesh.parts.push(Part { material: Material::Leaf, kind, triangles: (0..count).flat_map(card).collect() });
+    mesh
+}
+
+#[test]
+fn bent_cards_are_flattened_before_any_goes() {
+    let mesh = bent_cards(300);
+    let made = made(&mesh);
+    let read = reader::decode(&made.progressive).unwrap();
+    // Two of each card's six vertices, and not yet a card.
+    let flat = read.rebuild(4 * 300);
+    assert_eq!(flat.parts[0].kind, PartKind::Aggregate { vertices: 4, triangles: 2 });
+    assert_eq!(flat.parts[0].triangles.len(), 2 * 300);
+    let corners = |mesh: &Mesh, per_card: usize| -> Vec<_> {
+        let ends = mesh.positions.chunks(per_card).flat_map(|card| [card[0], card[1], card[per_card - 1]]);
+        ends.map(|p| p.map(|x| (x * 1e3).round() as i32)).collect()
+    };
+    assert_eq!(corners(&flat, 4), corners(&mesh, 6), "cards moved");
+    // Their texture is where it was.
+    for (p, uv) in flat.positions.iter().zip(&flat.uvs) {
+        assert!((p[1] % 1.0 - 0.6 * (1.0 - uv[1])).abs() < 1e-3 || uv[1] == 0.0, "{p:?} {uv:?}");
+    }
+}
+
+/// A closed strip of valence 3 at every tip: a pyramid on each triangle of a sphere.
+#[test]
+fn tips_of_three_triangles_can_go() {
+    let mut mesh = sphere(24, 22);
+    let faces = std::mem::take(&mut mesh.parts[0].triangles);
+    for [a, b, c] in faces {
+        let corners = [a, b, c].map(|v| Vec3::from_array(mesh.positions[v as usize]));
+        let tip = corners.iter().sum::<Vec3>() / 3.0 * 1.001;
+        let at = mesh.positions.len() as u32;
+        mesh.positions.push(tip.to_array());
+        mesh.normals.push(tip.normalize().to_array());
+        mesh.uvs.push([0.5, 0.5]);
+        mesh.parts[0].triangles.extend([[a, b, at], [b, c, at], [c, a, at]]);
+    }
+    mesh.normals.clear();
+    mesh.uvs.clear();
+    let levels = made(&mesh).levels;
+    let last = levels.last().unwrap();
+    assert!(last.mesh.positions.len() <= 200, "{} vertices are left", last.mesh.positions.len());
+    assert!(levels.iter().all(|level| open_edges(&level.mesh, 0) == 0));
 }
 
 #[test]

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 use super::{TreeParams, TreeTextureParams, template, textures};
 use crate::gltf::{Picture, png, tree_glb};
 use crate::graph::{Context, File, Input, Stage, StageError, Stored};
-use crate::model::{Image8, Level, Mesh, TreeTextures};
-use crate::stages::lod;
+use crate::model::{AlphaMask, Image8, Level, Material, Mesh, Part, TreeTextures};
+use crate::stages::lod::{self, LodOptions};
 use crate::stages::placement::TreeFootprint;
 
 /// Mip levels of a card smaller than this are left to the viewer: at that distance a crown covers a few pixels.
@@ -21,7 +21,7 @@ pub struct TreeTexturesStage {
 
 impl Stage for TreeTexturesStage {
     const NAME: &'static str = "tree textures";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
     type Output = TreeTextures<File>;
 
     fn run(&self, context: &Context<'_>) -> Result<TreeTextures<File>, StageError> {
@@ -36,7 +36,15 @@ impl Stage for TreeTexturesStage {
             || rayon::join(color, normal),
             || rayon::join(|| card(&textures.leaf), || card(&textures.blossom)),
         );
-        Ok(TreeTextures { bark_color, bark_normal, leaf, blossom, alpha_cutoff: textures.alpha_cutoff })
+        Ok(TreeTextures {
+            bark_color,
+            bark_normal,
+            leaf,
+            blossom,
+            leaf_mask: textures.leaf_mask,
+            blossom_mask: textures.blossom_mask,
+            alpha_cutoff: textures.alpha_cutoff,
+        })
     }
 }
 
@@ -71,13 +79,13 @@ pub struct TreeFiles {
 
 impl Stage for TreeStage {
     const NAME: &'static str = "tree";
-    const VERSION: u32 = 2;
+    const VERSION: u32 = 3;
     type Output = TreeFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<TreeFiles, StageError> {
         let template = template(&self.params, self.index);
-        let levels = lod::levels(&template.mesh, &lod::LodOptions::default());
         let textures = context.get(&self.textures)?.try_map(|file| context.bytes(file))?;
+        let levels = lod::levels(&template.mesh, &lod_options(&template.mesh, &textures));
         let embedded = textures.map(|bytes| Picture::Embedded { bytes, mime_type: "image/png" });
         let glb = tree_glb(&format!("tree-{}", self.index), &levels, &embedded)?;
         let footprint = TreeFootprint {
@@ -96,6 +104,17 @@ impl Stage for TreeStage {
     fn label(&self) -> String {
         format!("tree {}", self.index)
     }
+}
+
+/// How a template with these textures is simplified.
+pub fn lod_options<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> LodOptions {
+    let mask = |part: &Part| match part.material {
+        Material::Leaf => textures.leaf_mask,
+        Material::Blossom => textures.blossom_mask,
+        _ => AlphaMask::default(),
+    };
+    let masks = mesh.parts.iter().map(mask).collect();
+    LodOptions { masks, thickens: true, ..LodOptions::default() }
 }
 
 /// Triangles that are enough to cast a shadow onto a texel of a metre.

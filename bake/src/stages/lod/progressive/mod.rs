@@ -13,7 +13,7 @@ use super::state::{Attributes, NONE, PartSpan, State};
 use crate::model::{Material, PartKind};
 
 const MAGIC: [u8; 8] = *b"GSCPMESH";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// A distinguished mesh's place in the sequence.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,7 +24,8 @@ pub struct Mark {
     pub records: u32,
     /// Its error in metres.
     pub error_m: f32,
-    /// For each part, the elements of it that live and their scale; (0, 1) for surfaces.
+    /// For each part, the elements of it that live and their scale; for surfaces 0 and how far they have grown along
+    /// their normals, in metres.
     pub parts: Vec<(u32, f32)>,
 }
 
@@ -32,7 +33,7 @@ impl Mark {
     /// The current state, with records counted from the original.
     pub fn of(sequence: &Sequence, error_m: f32) -> Self {
         let state = &sequence.state;
-        let part = |span: &PartSpan| (span.elements().map_or(0, |(elements, ..)| elements), 1.0);
+        let part = |span: &PartSpan| span.elements().map_or((0, 0.0), |(elements, ..)| (elements, 1.0));
         Self {
             vertices: state.vertex_count as u32,
             triangles: count(&state.triangle_lives),
@@ -42,17 +43,14 @@ impl Mark {
         }
     }
 
-    /// The current state with aggregates' elements scaled so that coverage is kept.
+    /// The current state with sizes at which coverage is kept.
     pub fn calibrated(sequence: &mut Sequence) -> Self {
-        let mut mark = Self::of(sequence, 0.0);
-        for aggregate in &mut sequence.aggregates {
-            mark.parts[aggregate.part] = (aggregate.living() as u32, aggregate.calibrated_scale());
-        }
-        mark
+        let parts = sequence.sizes();
+        Self { parts, ..Self::of(sequence, 0.0) }
     }
 
-    /// Scale of each part's elements.
-    pub fn scales(&self) -> Vec<f32> {
+    /// Size of each part: the scale of its elements, or the growth of its surface in metres.
+    pub fn sizes(&self) -> Vec<f32> {
         self.parts.iter().map(|part| part.1).collect()
     }
 }

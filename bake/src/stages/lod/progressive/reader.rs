@@ -60,17 +60,23 @@ impl Progressive {
             }
             apply(&mut state, &record);
         }
-        let scales: Vec<_> = (0..state.parts.len()).map(|part| self.scale(&state, part)).collect();
-        state.to_mesh(&scales).0
+        let sizes: Vec<_> = (0..state.parts.len()).map(|part| self.size(&state, part)).collect();
+        state.to_mesh(&sizes).0
     }
 
-    /// Between marks, the square of the scale is linear in the inverse of the number of elements.
-    fn scale(&self, state: &State, part: usize) -> f32 {
+    /// Between marks, the square of an element's scale is linear in the inverse of the number of elements, and the
+    /// growth of a surface in the number of vertices.
+    fn size(&self, state: &State, part: usize) -> f32 {
         let span = &state.parts[part];
-        let Some((elements, ..)) = span.elements() else { return 1.0 };
         let lives = |e: &u32| state.vertex_lives[span.element(*e)[0].start];
-        let now = (0..elements).filter(lives).count() as u32;
-        let at = |mark: &Mark| mark.parts[part];
+        let now = match span.elements() {
+            Some((elements, ..)) => (0..elements).filter(lives).count() as u32,
+            None => state.vertex_count as u32,
+        };
+        let at = |mark: &Mark| {
+            let (elements, size) = mark.parts[part];
+            (if span.elements().is_some() { elements } else { mark.vertices }, size)
+        };
         let Some(coarse) = self.marks.iter().position(|mark| at(mark).0 <= now) else {
             return self.marks.last().map_or(1.0, |mark| at(mark).1);
         };
@@ -79,6 +85,10 @@ impl Progressive {
             return large;
         }
         let (many, small) = at(&self.marks[coarse - 1]);
+        if span.elements().is_none() {
+            let t = f64::from(many - now) / f64::from(many - few);
+            return (f64::from(small) + t * (f64::from(large) - f64::from(small))) as f32;
+        }
         let inverse = |count: u32| 1.0 / f64::from(count.max(1));
         let t = (inverse(now) - inverse(many)) / (inverse(few) - inverse(many));
         let square = |scale: f32| f64::from(scale) * f64::from(scale);

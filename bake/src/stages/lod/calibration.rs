@@ -1,0 +1,150 @@
+//! What is left of a mesh → how much larger its elements and how much thicker its twigs must be to cover as many pixels
+//! as the whole mesh does (Cook et al. 2007, "contrast and area are preserved").
+
+use glam::Vec3;
+
+use super::aggregate::Aggregate;
+use super::coverage::{Camera, Canvas, Elements};
+use super::state::State;
+use crate::model::AlphaMask;
+
+/// A pixel count is close enough to its target when off by this part.
+const TOLERANCE: f32 = 0.003;
+/// Pixels a side of the views in which leaves are counted, and of those with twigs, which are thin.
+const LEAVES_PX: usize = 128;
+const TWIGS_PX: usize = 320;
+/// Twigs may grow by this part of the mesh's diagonal.
+const MAX_OFFSET: f32 = 0.01;
+/// Elements may shrink to this part of their scale: flat ones cover more than bent ones.
+const MIN_SHRUNK: f32 = 0.7;
+
+/// Sizes at which the mesh covers as much as it did.
+#[derive(Clone, Debug)]
+pub struct Sizes {
+    /// For each aggregate, the scale of its elements.
+    pub scales: Vec<f32>,
+    /// How far surfaces grow along their normals, in metres.
+    pub offset_m: f32,
+}
+
+/// Keeps coverage from level to level.
+pub struct Calibration {
+    leaves: Camera,
+    twigs: Camera,
+    masks: Vec<AlphaMask>,
+    /// Pixels that each aggregate covers when whole, and all parts together.
+    full_elements: Vec<u32>,
+    full: u32,
+    max_offset_m: f32,
+    last: Sizes,
+}
+
+impl Calibration {
+    /// Measures the whole mesh, which lies in a box. `masks` say what each part's texture leaves opaque: all of it for
+    /// parts beyond the list. Surfaces grow if `thickens`.
+    pub fn new(
+        state: &State,
+        aggregates: &[Aggregate],
+        [low, high]: [Vec3; 2],
+        masks: &[AlphaMask],
+        thickens: bool,
+    ) -> Self {
+        let diagonal_m = (high - low).max(Vec3::ZERO).length();
+        let mut calibration = Self {
+            leaves: Camera::of([low, high], LEAVES_PX),
+            twigs: Camera::of([low, high], TWIGS_PX),
+            masks: masks.to_vec(),
+            full_elements: Vec::new(),
+            full: 0,
+            max_offset_m: if thickens { MAX_OFFSET * diagonal_m } else { 0.0 },
+            last: Sizes { scales: vec![1.0; aggregates.len()], offset_m: 0.0 },
+        };
+        let elements = calibration.elements(state, aggregates, &calibration.leaves);
+        let covered = |elements: &Elements| elements.covered(&calibration.leaves, 1.0);
+        calibration.full_elements = elements.iter().map(covered).collect();
+        if thickens {
+            let canvas = calibration.draw_elements(state, aggregates, &calibration.last);
+            calibration.full = covered_with(state, &canvas, 0.0);
+        }
+        calibration
+    }
+
+    /// First each aggregate covers what it did, then the surfaces make up for the rest.
+    pub fn sizes(&mut self, state: &State, aggregates: &[Aggregate]) -> Sizes {
+        let mut sizes = self.last.clone();
+        let elements = self.elements(state, aggregates, &self.leaves);
+        for (index, (elements, aggregate)) in elements.iter().zip(aggregates).enumerate() {
+            let scale = sizes.scales[index];
+            let range = MIN_SHRUNK * scale..aggregate.max_scale(scale);
+            let guess = aggregate.same_area_scale();
+            sizes.scales[index] = matching(self.full_elements[index], range, guess, |scale| {
+                elements.covered(&self.leaves, scale)
+            });
+        }
+        if self.max_offset_m > 0.0 {
+            let canvas = self.draw_elements(state, aggregates, &sizes);
+            let range = 0.0..self.max_offset_m;
+            let guess = sizes.offset_m + 0.1 * self.max_offset_m;
+            sizes.offset_m =
+                matching(self.full, range, guess, |offset_m| covered_with(state, &canvas, offset_m));
+        }
+        self.last = sizes.clone();
+        sizes
+    }
+
+    fn elements(&self, state: &State, aggregates: &[Aggregate], camera: &Camera) -> Vec<Elements> {
+        let project = |aggregate: &Aggregate| {
+            let mask = self.masks.get(aggregate.part).copied().unwrap_or_default();
+            Elements::new(state, &state.parts[aggregate.part], camera, mask)
+        };
+        aggregates.iter().map(project).collect()
+    }
+
+    fn draw_elements(&self, state: &State, aggregates: &[Aggregate], sizes: &Sizes) -> Canvas {
+        let mut canvas = Canvas::empty(&self.twigs);
+        let elements = self.elements(state, aggregates, &self.twigs);
+        elements.iter().zip(&sizes.scales).for_each(|(part, &scale)| part.draw(scale, &mut canvas));
+        canvas
+    }
+}
+
+/// Pixels that surfaces grown by `offset_m` cover together with what is drawn.
+fn covered_with(state: &State, drawn: &Canvas, offset_m: f32) -> u32 {
+    let mut canvas = drawn.clone();
+    canvas.draw_surfaces(state, offset_m);
+    canvas.covered()
+}
+
+/// Where in a range a growing function comes closest to the target: by false position, from a guess.
+fn matching(target: u32, range: std::ops::Range<f32>, guess: f32, count: impl Fn(f32) -> u32) -> f32 {
+    let target = target as f32;
+    let off = |x: f32| count(x) as f32 - target;
+    let close = |off: f32| off.abs() <= TOLERANCE * target;
+    let (mut low, mut high) = ((range.start, off(range.start)), (range.end.max(range.start), f32::INFINITY));
+    if low.1 >= 0.0 || close(low.1) {
+        return low.0;
+    }
+    let mut at = guess.clamp(low.0, high.0);
+    for _ in 0..8 {
+        let here = (at, off(at));
+        if close(here.1) || high.0 - low.0 <= 1e-4 * high.0 {
+            return at;
+        }
+        if here.1 < 0.0 {
+            low = here
+        } else {
+            high = here
+        }
+        at = match high.1.is_finite() {
+            true => {
+                let part = (-low.1 / (high.1 - low.1)).clamp(0.1, 0.9);
+                low.0 + (high.0 - low.0) * part
+            }
+            false if low.0 >= range.end => return low.0,
+            false => {
+                (low.0 + 1.5 * (low.0 - range.start).max(0.05 * (range.end - range.start))).min(range.end)
+            }
+        };
+    }
+    at
+}
