@@ -14,7 +14,7 @@ const TOLERANCE: f32 = 0.003;
 const LEAVES_PX: usize = 128;
 const TWIGS_PX: usize = 320;
 /// Twigs may grow by this part of the mesh's diagonal.
-const MAX_OFFSET: f32 = 0.01;
+const MAX_OFFSET: f32 = 0.0015;
 /// Elements may shrink to this part of their scale: flat ones cover more than bent ones.
 const MIN_SHRUNK: f32 = 0.7;
 
