@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::plants::PlantDraw;
 use super::{Binding, CullUniform, Layouts, bind};
 use crate::gpu::Gpu;
 use crate::upload::{SceneBuffers, TreeSet};
@@ -17,6 +18,9 @@ pub struct BoundScene {
     pub terrain: Elements,
     /// Clumps of grass.
     pub clumps: Elements,
+    /// Small plants and stones, and which of them are drawn together.
+    pub plants: Elements,
+    pub plant_draws: Vec<PlantDraw>,
 }
 
 /// A buffer of vertices, instances or indices that is written anew for each frame and grows as needed.
@@ -71,6 +75,8 @@ impl BoundScene {
             trees: scene.trees.as_ref().map(|set| BoundTrees::new(gpu, layouts, set)),
             terrain: Elements::new(gpu, "terrain"),
             clumps: Elements::new(gpu, "clumps of grass"),
+            plants: Elements::new(gpu, "small plants"),
+            plant_draws: Vec::new(),
             scene,
         }
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::{ImageUse, Uploader};
+use super::{ImageUse, PlantBuffers, Uploader};
 use crate::lod::quadtree;
 use crate::scene::{Apron, Ground, GroundDetail, Image};
 
@@ -35,6 +35,8 @@ pub struct GroundBuffers {
     pub ring_indices: wgpu::Buffer,
     /// How many.
     pub ring_index_count: u32,
+    /// What stands and lies on it.
+    pub plants: PlantBuffers,
 }
 
 /// A vertex of the ring.
@@ -76,6 +78,7 @@ impl Uploader {
             ring_vertices: self.gpu.buffer("ring", &vertices, wgpu::BufferUsages::VERTEX),
             ring_indices: self.gpu.buffer("ring triangles", &indices, wgpu::BufferUsages::INDEX),
             ring_index_count: indices.len() as u32,
+            plants: self.plants(ground),
         })
     }
 }
