@@ -2,10 +2,11 @@
 //!
 //! ```text
 //!  terrain genes ─► landform ─┬─► terrain (mesh, levels of detail, 16-bit heights)
-//!                             ├─► ground maps          ground textures (shared by every scene)
+//!                             │                        ground textures (shared by scenes)
 //!  tree genes ─┬─► tree textures ─► tree 0…4 (template, levels, progressive mesh, file)
 //!              └──────────────┬─► placement ◄── landform, trees
-//!  landform, trees, placement, sky light ─► start ─► foreground ◄── terrain
+//!  landform, placement, trees ─► ground maps (with what grows and lies on the ground)
+//!  landform, trees, placement, sky light ─► start ─► foreground ◄── terrain, ground maps
 //!  sky genes ─► sky light ─┬─► sky pictures
 //!                          └─► light map ◄── landform, placement, trees
 //!                                                           all of them ─► scene
@@ -17,7 +18,9 @@
 use genescape_schema::{Genome, GenomeError, Population, Space};
 
 use crate::graph::{Graph, Node, NodeId};
-use crate::stages::ground::{ForegroundStage, GroundMapsStage, GroundParams, GroundTexturesStage};
+use crate::stages::ground::{
+    ForegroundStage, GroundMapsFiles, GroundMapsStage, GroundParams, GroundTextureStage, Loose, WoodsInput,
+};
 use crate::stages::land::LandStage;
 use crate::stages::light::LightMapStage;
 use crate::stages::placement::{PlacementFiles, PlacementStage};
@@ -111,18 +114,26 @@ fn add_scene(
     let light = graph.add(scene, SkyLightStage { params: sky.clone() });
     let sky = graph.add(scene, SkyImagesStage { params: sky, face_px, equirect_px, light });
     let terrain = graph.add(scene, TerrainStage { params: ground.clone(), landform });
-    let ground_maps = graph.add(scene, GroundMapsStage { params: ground.clone(), side_px: map_px, landform });
-    let ground_textures = graph.add(scene, GroundTexturesStage);
+    let loose = Loose::of(&ground);
+    let ground_textures =
+        [0, 1, 2, 3, 4].map(|kind| graph.add(scene, GroundTextureStage::new(kind, loose))).to_vec();
 
     let footprints = trees.map(|tree| graph.part(tree, |tree: &TreeFiles| tree.footprint)).to_vec();
     let placed = graph
         .add(scene, PlacementStage { params: genome.read(space)?, landform, footprints: footprints.clone() });
     let standing = graph.part(placed, |placed: &PlacementFiles| placed.placement.instances.clone());
-    let start = graph.add(scene, StartStage { landform, footprints, trees: standing, light });
+    let start =
+        graph.add(scene, StartStage { landform, footprints: footprints.clone(), trees: standing, light });
     let view = graph.part(start, |start: &StartFiles| start.view);
     let near = graph.part(terrain, |terrain: &TerrainFiles| terrain.near.clone());
-    let foreground =
-        graph.add(scene, ForegroundStage { params: ground, map_px, landform, near, start: view });
+
+    let woods = WoodsInput { params: genome.read(space)?, trees: standing, footprints };
+    let painted = GroundMapsStage { params: ground.clone(), side_px: map_px, landform, woods: woods.clone() };
+    let painted = graph.add(scene, painted);
+    let ground_maps = graph.part(painted, |made: &GroundMapsFiles| made.maps.clone());
+    let plants = graph.part(painted, |made: &GroundMapsFiles| made.plants.clone());
+    let foreground = ForegroundStage { params: ground, landform, woods, plants, near, start: view };
+    let foreground = graph.add(scene, foreground);
 
     let casters = trees.map(|tree| graph.part(tree, |tree: &TreeFiles| tree.caster.clone())).to_vec();
     let light_map =

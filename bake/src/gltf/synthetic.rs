@@ -378,6 +378,7 @@ impl Synthetic {
                     normal: png("grass-normal.png"),
                     tile_m: 4.0,
                 }],
+                plants: Default::default(),
             },
             tiles: vec![png("grass.png")],
             templates: (0..self.trees.len()).map(glb).collect(),

@@ -30,13 +30,18 @@ impl Climate {
         self.temperature_c - LAPSE_C_PER_M * (height_m - self.lowest_m)
     }
 
-    /// How often De Martonne's index of aridity, rain over temperature (1926), must be doubled to be that of 9 °C and
-    /// 800 mm: -1.5 in a rainforest, 0 where meadows grow, 1.2 in a steppe, 2.6 in a desert. Within ±4.
+    /// See [`dryness`].
     pub fn dryness(&self) -> f32 {
-        let index = |temperature_c: f32, rain_mm: f32| rain_mm.max(1.0) / (temperature_c + 10.0).max(1.0);
-        let here = index(self.temperature_c, self.rain_mm);
-        libm::log2f(index(TEMPERATE_C, TEMPERATE_MM) / here).clamp(-4.0, 4.0)
+        dryness(self.temperature_c, self.rain_mm)
     }
+}
+
+/// How often De Martonne's index of aridity, rain over temperature (1926), must be doubled to be that of 9 °C and 800 mm:
+/// -1.5 in a rainforest, 0 where meadows grow, 1.2 in a steppe, 2.6 in a desert. Within ±4.
+pub fn dryness(temperature_c: f32, rain_mm: f32) -> f32 {
+    let index = |temperature_c: f32, rain_mm: f32| rain_mm.max(1.0) / (temperature_c + 10.0).max(1.0);
+    let here = index(temperature_c, rain_mm);
+    libm::log2f(index(TEMPERATE_C, TEMPERATE_MM) / here).clamp(-4.0, 4.0)
 }
 
 /// Where snow may lie: a square grid over the field.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Mesh;
+use super::{GroundPlants, Mesh};
 
 /// Images that cover the field once, as those of `GroundSurface`, which says what they hold.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -11,6 +11,7 @@ pub struct GroundMaps<P> {
     pub color: P,
     /// RGBA.
     pub weights: P,
+    pub plants: GroundPlants<P>,
 }
 
 /// The ground around the start, finely meshed for tiling textures: core glTF cannot blend these by a map, so each
@@ -23,6 +24,7 @@ pub struct Foreground {
     pub map_uvs: Vec<[f32; 2]>,
     /// The triangles of `TerrainMesh::near` that it does not replace.
     pub rest: Vec<[u32; 3]>,
-    /// Blades of grass that stand on it: no uvs, colours that are to be multiplied by `ground::BLADE_WHITE`.
+    /// Blades of grass, small plants and stones that stand on it: no uvs, colours that are to be multiplied by
+    /// `ground::BLADE_WHITE`.
     pub grass: Mesh,
 }

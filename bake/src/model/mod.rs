@@ -11,10 +11,11 @@ mod terrain;
 mod tree;
 
 pub use genescape_schema::scene::{
-    CloudLayer, GroundDetail, Heightfield, Instance, SkyLight, StartView, TerrainLod, rotation_from_z,
+    CloudLayer, DensityMap, GroundDetail, GroundPlants, Heightfield, Instance, Plant, PlantKind, PlantShape,
+    SkyLight, StartView, TerrainLod, ground_m, rotation_from_z,
 };
 
-pub use climate::{Climate, SnowMap};
+pub use climate::{Climate, SnowMap, dryness};
 pub use ground::{Foreground, GroundMaps};
 pub use image::{AlphaMask, Image8, ImageF16};
 pub use light::LightMap;

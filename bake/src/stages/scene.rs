@@ -27,7 +27,7 @@ pub struct SceneStage {
     pub foreground: Input<File>,
     pub start: Input<StartFiles>,
     pub ground_maps: Input<GroundMaps<File>>,
-    pub ground_textures: Input<Vec<GroundTextureFiles>>,
+    pub ground_textures: Vec<Input<GroundTextureFiles>>,
     pub light_map: Input<File>,
     /// The templates' files.
     pub trees: Vec<Input<File>>,
@@ -39,17 +39,20 @@ pub struct SceneStage {
 
 impl Stage for SceneStage {
     const NAME: &'static str = "scene";
-    const VERSION: u32 = 4;
+    const VERSION: u32 = 5;
     type Output = File;
 
     fn run(&self, context: &Context<'_>) -> Result<File, StageError> {
         let terrain = context.get(&self.terrain)?;
-        let (maps, textures) = (context.get(&self.ground_maps)?, context.get(&self.ground_textures)?);
+        let maps = context.get(&self.ground_maps)?;
+        let textures =
+            self.ground_textures.iter().map(|one| context.get(one)).collect::<Result<Vec<_>, _>>()?;
         let surface = GroundSurface {
             color: maps.color.clone(),
             weights: maps.weights.clone(),
             light: (*context.get(&self.light_map)?).clone(),
             details: textures.iter().map(|files| files.detail.clone()).collect(),
+            plants: maps.plants.clone(),
         };
         let trees = self.trees.iter().map(|tree| context.get(tree)).collect::<Result<Vec<_>, _>>()?;
         let tree_bytes = trees.iter().map(|tree| context.bytes(tree)).collect::<Result<Vec<_>, _>>()?;

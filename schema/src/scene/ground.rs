@@ -2,27 +2,32 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::GroundPlants;
+
 /// Images over the whole field: row 0 is its north edge (−z), column 0 its west edge (−x).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct GroundSurface<P> {
     /// Albedo, sRGB.
     pub color: P,
-    /// How much of `details` 1 to 4 (rock, scree, snow, mud) there is, in RGBA; the rest up to 255 is `details` 0, grass.
+    /// How much of `details` 1 to 4 (rock, scree, snow, earth) there is, in RGBA; the rest up to 255 is `details` 0, grass.
     pub weights: P,
     /// R: part of the sky's irradiance that arrives, relative to open level ground (glTF reads occlusion from R);
     /// G: the sun's irradiance relative to a surface that faces it, max(0, n·l) × visibility;
     /// B: visibility of the sun's disc alone, trees and land included. Linear.
     pub light: P,
-    /// Grass, rock, scree, snow and mud.
+    /// Grass, rock, scree, snow and earth.
     pub details: Vec<GroundDetail<P>>,
+    /// What stands and lies on it; nothing in scenes of Genescape 0.1.
+    #[serde(default = "GroundPlants::default")]
+    pub plants: GroundPlants<P>,
 }
 
 /// A tiling texture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct GroundDetail<P> {
-    /// "grass", "rock", "scree", "snow" or "mud".
+    /// "grass", "rock", "scree", "snow", "earth" or "sand".
     pub name: String,
     /// sRGB RGB with mean (128, 128, 128), which leaves the ground's colour as it is: it is multiplied by twice this.
     pub detail: P,
@@ -43,6 +48,7 @@ impl<P> GroundSurface<P> {
             weights: f(&self.weights)?,
             light: f(&self.light)?,
             details: self.details.iter().map(|detail| detail.try_map(&mut f)).collect::<Result<_, _>>()?,
+            plants: self.plants.try_map(&mut f)?,
         })
     }
 }

@@ -18,6 +18,7 @@ mod heightfield;
 mod heightfield_bytes;
 mod instances;
 mod lookouts;
+mod plants;
 mod progressive_mesh;
 mod resource;
 mod sky;
@@ -32,6 +33,7 @@ pub use instances::{
     write_instances,
 };
 pub use lookouts::{GSC_LOOKOUTS, Lookout, Lookouts, LookoutsError, LookoutsExtension, Prospect, SharedView};
+pub use plants::{DensityMap, GroundPlants, Plant, PlantKind, PlantShape, ground_m};
 pub use progressive_mesh::{GSC_PROGRESSIVE_MESH, ProgressiveLevel, ProgressiveMeshExtension};
 pub use resource::Resource;
 pub use sky::{CloudLayer, GSC_SKY, SkyExtension, SkyImages, SkyLight};

@@ -1,7 +1,7 @@
 //! How large things in a landscape may be. What is larger, or no number, is damage or malice: a single triangle across
 //! everything can take a processor seconds to draw, and thousands of them hours.
 
-use genescape_schema::scene::Instance;
+use genescape_schema::scene::{Instance, PlantKind};
 
 /// From the middle of the land to anything, in metres; its edge is 10 km away.
 pub(super) const MAX_LAND_M: f32 = 1e6;
@@ -13,6 +13,11 @@ const MAX_SCALE: f32 = 1000.0;
 pub(super) const MAX_PICTURE_PX: u32 = 8192;
 /// The same of the sky's, which have 8 bytes a pixel and of which there are thirteen.
 pub(super) const MAX_SKY_PX: usize = 4096;
+
+/// How far away small plants may be drawn, how many of a kind within reach, and triangles of one.
+const MAX_PLANT_REACH_M: f32 = 400.0;
+const MAX_PLANTS: f32 = 100_000.0;
+const MAX_PLANT_TRIANGLES: usize = 1000;
 
 /// Whether all are numbers, none of them beyond ±`max`.
 pub(super) fn within<'a>(values: impl IntoIterator<Item = &'a f32>, max: f32) -> bool {
@@ -30,9 +35,56 @@ pub(super) fn is_placed(tree: &Instance) -> bool {
         && within(&tree.trunk_cylinder_m, MAX_LAND_M)
 }
 
+/// Whether a kind of small plants is one: few and small enough to be drawn, of corners that are there.
+pub(super) fn is_plant(kind: &PlantKind, maps: usize) -> bool {
+    let PlantKind { channel, per_m2, scale, reach_m, sway, colors, shape, .. } = kind;
+    let count = shape.positions_m.len();
+    let corners = shape.triangles.as_flattened().iter().all(|&v| (v as usize) < count);
+    let numbers = [reach_m, sway].into_iter().chain(scale).chain(colors.as_flattened().as_flattened());
+    (*channel as usize) < 4 * maps
+        && *per_m2 > 0.0
+        && *reach_m > 0.0
+        && per_m2 * (reach_m + 12.0) * (reach_m + 12.0) < MAX_PLANTS
+        && within(numbers, MAX_PLANT_REACH_M)
+        && corners
+        && shape.triangles.len() <= MAX_PLANT_TRIANGLES
+        && (shape.normals.len(), shape.tints.len()) == (count, count)
+        && is_tree_sized(&shape.positions_m)
+        && is_tree_sized(&shape.normals)
+        && within(&shape.tints, 1.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use genescape_schema::scene::PlantShape;
+
+    #[test]
+    fn kinds_of_plants_that_would_take_for_ever_are_found() {
+        let shape = PlantShape {
+            positions_m: vec![[0.0; 3]; 3],
+            normals: vec![[0.0, 1.0, 0.0]; 3],
+            tints: vec![0.0; 3],
+            triangles: vec![[0, 1, 2]],
+            coarse: 1,
+        };
+        let kind = PlantKind { per_m2: 3.0, reach_m: 20.0, channel: 3, shape, ..PlantKind::default() };
+        assert!(is_plant(&kind, 1) && !is_plant(&kind, 0));
+        let wrong: [fn(&mut PlantKind); 7] = [
+            |kind| kind.channel = 4,
+            |kind| kind.per_m2 = f32::NAN,
+            |kind| kind.per_m2 = 1e9,
+            |kind| kind.reach_m = f32::INFINITY,
+            |kind| kind.shape.triangles[0][1] = 3,
+            |kind| kind.shape.positions_m[1][1] = f32::NAN,
+            |kind| kind.shape.tints.truncate(2),
+        ];
+        for change in wrong {
+            let mut kind = kind.clone();
+            change(&mut kind);
+            assert!(!is_plant(&kind, 1), "{kind:?}");
+        }
+    }
 
     #[test]
     fn numbers_that_are_none_or_too_large_are_found() {

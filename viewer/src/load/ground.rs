@@ -4,10 +4,13 @@ use std::sync::Arc;
 
 use genescape_schema::scene::{GSC_HEIGHTFIELD, HeightfieldExtension, TerrainLod};
 
-use super::bounds::{MAX_LAND_M, within};
+use super::bounds::{MAX_LAND_M, is_plant, within};
 use super::document::Document;
 use super::{Result, images};
 use crate::scene::{Apron, Ground};
+
+/// Kinds of small plants in a scene.
+const MAX_KINDS: usize = 64;
 
 pub(super) fn read(document: &Document) -> Result<Ground> {
     let object = document.gltf.nodes().find_map(|node| node.extension_value(GSC_HEIGHTFIELD).cloned());
@@ -21,6 +24,10 @@ pub(super) fn read(document: &Document) -> Result<Ground> {
     let numbers = [&lod.field.heights_m[..], &lod.wedgies_m, lod.block_ranges_m.as_flattened()];
     if !numbers.into_iter().all(|numbers| within(numbers, MAX_LAND_M)) || lod.field.spacing_m > MAX_LAND_M {
         return Err(document.wrong(format!("its heightfield {name} holds numbers beyond {MAX_LAND_M:e} m")));
+    }
+    let plants = &extension.surface.plants;
+    if plants.kinds.len() > MAX_KINDS || !plants.kinds.iter().all(|kind| is_plant(kind, plants.maps.len())) {
+        return Err(document.wrong("its small plants are too many, too large, or no plants"));
     }
     Ok(Ground {
         name,

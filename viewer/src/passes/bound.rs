@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::plants::PlantDraw;
 use super::{Binding, CullUniform, Layouts, bind};
 use crate::gpu::Gpu;
 use crate::upload::{SceneBuffers, TreeSet};
@@ -20,6 +21,9 @@ pub struct BoundScene {
     pub clumps: Elements,
     /// What is drawn of the ring's indices.
     pub ring: Vec<Range<u32>>,
+    /// Small plants and stones, and which of them are drawn together.
+    pub plants: Elements,
+    pub plant_draws: Vec<PlantDraw>,
 }
 
 /// A buffer of vertices, instances or indices that is written anew for each frame and grows as needed.
@@ -75,6 +79,8 @@ impl BoundScene {
             terrain: Elements::new(gpu, "terrain"),
             clumps: Elements::new(gpu, "clumps of grass"),
             ring: Vec::new(),
+            plants: Elements::new(gpu, "small plants"),
+            plant_draws: Vec::new(),
             scene,
         }
     }

@@ -121,6 +121,37 @@ fn height_m(world: vec2f) -> f32 {
     return mix(mix(a, b, part.x), mix(d, e, part.x), part.y);
 }
 
+// Height of the land as its triangles have it at full resolution: the diagonals of cells take turns.
+fn drawn_height_m(world: vec2f) -> f32 {
+    let last = view.field.x - 1.0;
+    let at = clamp(world / view.field.y + 0.5 * last, vec2f(0.0), vec2f(last));
+    let cell = min(floor(at), vec2f(last - 1.0));
+    let p = at - cell;
+    let c = vec2i(cell);
+    let nw = textureLoad(heights, c, 0).r;
+    let ne = textureLoad(heights, c + vec2i(1, 0), 0).r;
+    let sw = textureLoad(heights, c + vec2i(0, 1), 0).r;
+    let se = textureLoad(heights, c + vec2i(1, 1), 0).r;
+    if (((c.x + c.y) & 1) == 0) {
+        // North-west to south-east.
+        let corner = select(nw + p.x * (ne - nw) + p.y * (se - ne), nw + p.y * (sw - nw) + p.x * (se - sw), p.y > p.x);
+        return corner;
+    }
+    if (p.x + p.y < 1.0) {
+        return nw + p.x * (ne - nw) + p.y * (sw - nw);
+    }
+    return se + (1.0 - p.x) * (sw - se) + (1.0 - p.y) * (ne - se);
+}
+
+// Wind that comes in gusts and bends the top of a plant by so many times its height.
+fn wind(place: vec2f, own: f32) -> vec2f {
+    let along = dot(place, vec2f(0.91, 0.41));
+    let across = dot(place, vec2f(-0.41, 0.91));
+    let gust = 0.5 + 0.5 * sin(0.23 * along + 0.9 * sin(0.11 * across) - 1.1 * view.time_s);
+    let flutter = sin(3.1 * view.time_s + 6.283 * own + 1.7 * along);
+    return vec2f(0.91, 0.41) * (0.30 * gust + 0.07 * flutter * (0.4 + gust));
+}
+
 // A direction from two signed numbers (Meyer et al. 2010).
 fn octahedral(packed: vec2f) -> vec3f {
     var n = vec3f(packed, 1.0 - abs(packed.x) - abs(packed.y));

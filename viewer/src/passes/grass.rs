@@ -38,7 +38,7 @@ const DENSE_M: f32 = 3.0;
 const REACH_M: f32 = 30.0;
 /// Metres from a cell's middle to the farthest of its blades: half a diagonal on steep land, and a blade.
 const AROUND_M: f32 = 1.2 * CELL_M;
-/// Bytes of rock, scree, snow and mud together beyond which no grass grows.
+/// Bytes of rock, scree, snow and earth together beyond which no grass grows.
 const BARE: u32 = 190;
 
 /// [`BLADES`] blades of a cell, as the shader reads them.
@@ -173,7 +173,13 @@ mod tests {
             field: Arc::new(field),
             lod: Arc::default(),
             water_level_m: Some(8.0),
-            surface: GroundSurface { color, weights: pixels(255), light, details: Vec::new() },
+            surface: GroundSurface {
+                color,
+                weights: pixels(255),
+                light,
+                details: Vec::new(),
+                plants: Default::default(),
+            },
             apron: Arc::new(Apron::default()),
         }
     }

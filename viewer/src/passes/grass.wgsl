@@ -58,40 +58,9 @@ fn noise(place: vec2f) -> f32 {
     return mix(mix(a, b, t.x), mix(d, e, t.x), t.y) / 8388608.0 - 1.0;
 }
 
-// Height of the land as its triangles have it at full resolution: the diagonals of cells take turns.
-fn drawn_height_m(world: vec2f) -> f32 {
-    let last = view.field.x - 1.0;
-    let at = clamp(world / view.field.y + 0.5 * last, vec2f(0.0), vec2f(last));
-    let cell = min(floor(at), vec2f(last - 1.0));
-    let p = at - cell;
-    let c = vec2i(cell);
-    let nw = textureLoad(heights, c, 0).r;
-    let ne = textureLoad(heights, c + vec2i(1, 0), 0).r;
-    let sw = textureLoad(heights, c + vec2i(0, 1), 0).r;
-    let se = textureLoad(heights, c + vec2i(1, 1), 0).r;
-    if (((c.x + c.y) & 1) == 0) {
-        // North-west to south-east.
-        let corner = select(nw + p.x * (ne - nw) + p.y * (se - ne), nw + p.y * (sw - nw) + p.x * (se - sw), p.y > p.x);
-        return corner;
-    }
-    if (p.x + p.y < 1.0) {
-        return nw + p.x * (ne - nw) + p.y * (sw - nw);
-    }
-    return se + (1.0 - p.x) * (sw - se) + (1.0 - p.y) * (ne - se);
-}
-
 // Share of the blades that stand at a distance from the eye; they get wider as they get fewer.
 fn density(away: f32) -> f32 {
     return min(DENSE_M / max(away, 0.01), 1.0) * (1.0 - smoothstep(0.6 * REACH_M, REACH_M, away));
-}
-
-// Wind that comes in gusts and bends a tip by so many times the blade's height.
-fn wind(place: vec2f, own: f32) -> vec2f {
-    let along = dot(place, vec2f(0.91, 0.41));
-    let across = dot(place, vec2f(-0.41, 0.91));
-    let gust = 0.5 + 0.5 * sin(0.23 * along + 0.9 * sin(0.11 * across) - 1.1 * view.time_s);
-    let flutter = sin(3.1 * view.time_s + 6.283 * own + 1.7 * along);
-    return vec2f(0.91, 0.41) * (0.30 * gust + 0.07 * flutter * (0.4 + gust));
 }
 
 const NOWHERE = Out(vec4f(0.0, 0.0, -1.0, 1.0), vec3f(0.0));
@@ -121,7 +90,8 @@ fn vertex(clump: Clump, @builtin(vertex_index) index: u32) -> Out {
     }
     let uv = field_uv(root);
     let weights = textureSampleLevel(ground_weights, clamped, uv, 0.0);
-    let grass = 1.0 - weights.r - weights.g - weights.b - weights.a;
+    // Where there is as much snow as grass, it is under the snow.
+    let grass = 1.0 - weights.r - weights.g - 2.0 * weights.b - weights.a;
     let lush = noise(root / 1.3);
     let growth = min((grass - 0.3) * 1.7 + 0.45 * lush + 0.4 * (tuft_dice.z - 0.5), 1.0);
     if (growth < 0.03 || grass < 0.3 || ground_m < view.water_level + 0.12) {

@@ -9,6 +9,7 @@ mod cull;
 pub mod grass;
 mod layouts;
 mod pipeline;
+pub mod plants;
 mod shaders;
 mod shadow;
 mod sky;
@@ -42,10 +43,11 @@ pub const DISPLAY: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 pub const SHADOW: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
 
 /// The shaders of all passes.
-pub static SHADERS: [&Shader; 8] = [
+pub static SHADERS: [&Shader; 9] = [
     &cull::SHADER,
     &trees::SHADER,
     &grass::SHADER,
+    &plants::SHADER,
     &terrain::SHADER,
     &sky::SHADER,
     &water::SHADER,
@@ -71,7 +73,7 @@ pub struct Passes {
     pub shadow: Shadow,
     pub cull: Cull,
     /// By name, in the order in which they draw.
-    pub picture: [(&'static str, Box<dyn DrawPass>); 5],
+    pub picture: [(&'static str, Box<dyn DrawPass>); 6],
     pub tone: Tone,
     /// Samples a pixel that they draw.
     pub samples: u32,
@@ -89,6 +91,7 @@ impl Passes {
                 (trees::SHADER.name, Box::new(trees::Trees::new(&compiler)?)),
                 // Before the terrain: what it hides needs no light.
                 (grass::SHADER.name, Box::new(grass::Grass::new(&compiler)?)),
+                (plants::SHADER.name, Box::new(plants::Plants::new(&compiler)?)),
                 (terrain::SHADER.name, Box::new(terrain::Terrain::new(&compiler)?)),
                 (sky::SHADER.name, Box::new(sky::Sky::new(&compiler)?)),
                 (water::SHADER.name, Box::new(water::Water::new(&compiler)?)),

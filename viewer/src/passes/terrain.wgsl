@@ -160,8 +160,9 @@ fn look(k: u32, at: Surface, parts: array<f32, 5>, far: f32) -> Tiles {
     if (wide) {
         // v runs against the bitangent: normals turn back the other way.
         // And fainter: from afar it stands for patches, not for giant blades and pebbles.
-        bump = vec3f(turn * bump.xy * 0.4, bump.z);
-        factor = mix(vec3f(1.0), factor, 0.45);
+        let rough = select(0.4, 0.85, layer == 1u);
+        bump = vec3f(turn * bump.xy * rough, bump.z);
+        factor = mix(vec3f(1.0), factor, rough);
     }
     let seen = select(select(at.sides.z, at.sides.x, axis == 1u), at.sides.y, axis == 0u);
     let share = entry(parts, layer) * seen * select(1.0 - far, far, wide);
@@ -191,6 +192,33 @@ fn looks(at: Surface, parts: array<f32, 5>, far: f32) -> Tiles {
     return sum;
 }
 
+// Where the eye is so near that a texel of the usual scale covers several pixels: the strongest texture once more, five
+// times as fine. A factor on the looks; a loop, for the reason given there.
+fn close_up(at: Surface, parts: array<f32, 5>, near: f32) -> Tiles {
+    var best = 0u;
+    for (var layer = 1u; layer < 5u; layer++) {
+        best = select(best, layer, entry(parts, layer) > entry(parts, best));
+    }
+    let side = select(2u, 1u, at.sides.x > at.sides.z);
+    let axis = select(side, 0u, at.sides.y > 0.5);
+    let tiles_m = array<f32, 5>(view.tiles.x, view.tiles.y, view.tiles.z, view.tiles.w, view.last_tile);
+    let turn = mat2x2f(0.29, 0.957, -0.957, 0.29) * (FINER / entry(tiles_m, best));
+    var result = Tiles(vec3f(1.0), vec3f(0.0));
+    for (var once = select(1u, 0u, near > 0.0); once < 1u; once++) {
+        let p = turn * along(axis, at.world);
+        let dx = turn * along(axis, at.dx);
+        let dy = turn * along(axis, at.dy);
+        let shorter = less_stretched(dx, dy);
+        let factor = textureSampleGrad(details, repeating, p, best, dx * shorter.x, dy * shorter.y).rgb * (255.0 / 128.0);
+        let bump = textureSampleGrad(detail_normals, repeating, p, best, dx * shorter.x, dy * shorter.y).xyz * 2.0 - 1.0;
+        result.factor = mix(vec3f(1.0), factor, 0.6 * near);
+        result.bump = vec3f(vec2f(0.29, 0.957) * bump.x + vec2f(-0.957, 0.29) * bump.y, 0.0) * (0.5 * near);
+    }
+    return result;
+}
+
+const FINER: f32 = 5.3;
+
 // A place on the ground, its change from pixel to pixel, and how much of it each axis sees.
 struct Surface {
     world: vec3f,
@@ -219,12 +247,14 @@ fn ground(in: Out) -> @location(0) vec4f {
     let dy = dpdy(in.world);
     var normal = normalize(in.normal);
     var relief = 1.0;
-    if (away < 160.0) {
+    if (away < 240.0) {
         let at = Surface(in.world, dx, dy, sides_of(normal));
         let rest = max(1.0 - weights.r - weights.g - weights.b - weights.a, 0.0);
         let parts = array<f32, 5>(rest, weights.r, weights.g, weights.b, weights.a);
-        let tiles = looks(at, parts, smoothstep(7.0, 22.0, away));
-        let fade = 1.0 - smoothstep(80.0, 160.0, away);
+        var tiles = looks(at, parts, smoothstep(7.0, 22.0, away));
+        let close = close_up(at, parts, smoothstep(5.0, 1.5, away));
+        tiles = Tiles(tiles.factor * close.factor, tiles.bump + close.bump);
+        let fade = 1.0 - smoothstep(110.0, 240.0, away);
         albedo *= mix(vec3f(1.0), tiles.factor, fade);
         let bump = mix(vec3f(0.0, 0.0, 1.0), tiles.bump, fade);
         // Tangent along x, bitangent along −z: as texture coordinates run, v down being south.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use genescape_schema::scene::{GroundSurface, Heightfield, TerrainLod};
+use genescape_schema::scene::{DensityMap, GroundSurface, Heightfield, PlantKind, TerrainLod};
 
 use super::Image;
 
@@ -20,6 +20,15 @@ pub struct Ground {
     pub surface: GroundSurface<Image>,
     /// The coarse land around the field, to the horizon.
     pub apron: Arc<Apron>,
+}
+
+impl Ground {
+    /// The map that says how densely a kind of plant stands.
+    pub fn plant_map(&self, kind: &PlantKind) -> Option<DensityMap<'_>> {
+        let image = self.surface.plants.maps.get(kind.channel as usize / 4)?;
+        let rgba = image.levels.first()?;
+        Some(DensityMap { width_px: image.width_px, height_px: image.height_px, rgba })
+    }
 }
 
 /// The ring of coarse land around the field as triangles; its inner edge joins the field's border as the near mesh

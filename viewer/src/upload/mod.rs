@@ -2,6 +2,7 @@
 //! it. What two landscapes have in common (a tree that was inherited, a texture) is uploaded once.
 
 mod ground;
+mod plants;
 mod ring;
 mod sky;
 mod texture;
@@ -13,6 +14,7 @@ use std::sync::{Arc, Mutex, Weak};
 use genescape_schema::scene::SkyLight;
 
 pub use ground::GroundBuffers;
+pub use plants::{PLANT_BLOCK_M, PlantBuffers, PlantVertex};
 pub use ring::{Ring, RingVertex};
 pub use sky::SkyTextures;
 pub use texture::ImageUse;

@@ -12,6 +12,7 @@ use crate::camera::Camera;
 use crate::gpu::Gpu;
 use crate::options::{FrameInput, Options};
 use crate::passes::grass::{self, Clump};
+use crate::passes::plants::PlantChoice;
 use crate::passes::{BoundScene, Cull, CullUniform, Passes, Tone, ViewUniform};
 use crate::upload::{SceneBuffers, TreeSet};
 
@@ -27,6 +28,8 @@ pub struct View {
     terrain: TerrainChoice,
     /// Clumps of grass, kept from frame to frame.
     clumps: Vec<Clump>,
+    /// Small plants, likewise.
+    plants: PlantChoice,
 }
 
 /// What a picture took.
@@ -51,6 +54,7 @@ impl View {
             bound: None,
             terrain: TerrainChoice::default(),
             clumps: Vec::new(),
+            plants: PlantChoice::default(),
         }
     }
 
@@ -130,11 +134,16 @@ impl View {
             passes.cull.dispatch(&mut scope.scoped_compute_pass(Cull::NAME), trees);
         }
         self.clumps.clear();
+        self.plants.clear();
         // In pictures that explain levels of detail it would only hide them.
         if options.grass && !options.wireframe && !options.tint_levels && !options.overhead {
-            grass::clumps(&bound.scene.ground, lod_camera.position_m, &frustum, frame.part, &mut self.clumps);
+            let (ground, eye_m) = (&bound.scene.ground, lod_camera.position_m);
+            grass::clumps(ground, eye_m, &frustum, frame.part, &mut self.clumps);
+            self.plants.choose(ground, &bound.scene.land.plants, eye_m, &frustum);
         }
         bound.clumps.write(&self.gpu, &self.clumps);
+        bound.plants.write(&self.gpu, &self.plants.instances);
+        bound.plant_draws.clone_from(&self.plants.draws);
         bound.scene.land.ring.seen(&camera.frustum(size[0] / size[1]), &mut bound.ring);
 
         let draws = draw(&mut scope, passes, bound, &self.targets, options);

@@ -87,6 +87,7 @@ pub fn scene(lod: TerrainLod, color: [u8; 4], sky: [f32; 3], trees: Trees) -> Sc
                 weights: plain("weights", [0; 4]),
                 light: plain("light", [255; 4]),
                 details: (0..5).map(detail).collect(),
+                plants: Default::default(),
             },
             apron: Arc::new(Apron::default()),
         },

@@ -5,9 +5,11 @@ use std::mem::{offset_of, size_of};
 
 use genescape_viewer::lod::quadtree::Block;
 use genescape_viewer::passes::Shaders;
-use genescape_viewer::passes::{CullUniform, SHADERS, ViewUniform, grass, terrain, trees};
+use genescape_viewer::passes::{CullUniform, SHADERS, ViewUniform, grass, plants, terrain, trees};
 use genescape_viewer::scene::TreeVertex;
-use genescape_viewer::upload::{DrawCommand, MaterialUniform, RingVertex, TemplateData, TreeData};
+use genescape_viewer::upload::{
+    DrawCommand, MaterialUniform, PlantVertex, RingVertex, TemplateData, TreeData,
+};
 use naga::{ScalarKind, TypeInner};
 
 fn module(name: &str) -> naga::Module {
@@ -146,6 +148,9 @@ fn attributes_start_where_fields_do() {
         ($rust:ty { $($field:ident),* }) => { (vec![$(offset_of!($rust, $field)),*], size_of::<$rust>()) };
     }
     assert_eq!(offsets(&grass::CLUMP), fields!(grass::Clump { cell, number }));
+    let instance = fields!(plants::PlantInstance { place, turn, root, tip });
+    assert_eq!(offsets(&plants::INSTANCE), instance);
+    assert_eq!(offsets(&plants::VERTEX), fields!(PlantVertex { position, normal, tint }));
     let (block, size) = fields!(Block { i, level });
     assert_eq!((offsets(&terrain::BLOCK), offset_of!(Block, j)), ((block, size), 4));
     assert_eq!(offsets(&terrain::RING), fields!(RingVertex { position_m, normal, color }));
@@ -196,7 +201,7 @@ fn shaders_read_the_attributes_as_they_are_written() {
                 F::Float32 => (ScalarKind::Float, 1),
                 F::Float32x2 | F::Snorm16x2 => (ScalarKind::Float, 2),
                 F::Float32x3 => (ScalarKind::Float, 3),
-                F::Unorm8x4 => (ScalarKind::Float, 4),
+                F::Unorm8x4 | F::Float16x4 => (ScalarKind::Float, 4),
                 F::Uint32 => (ScalarKind::Uint, 1),
                 F::Uint32x2 => (ScalarKind::Uint, 2),
                 F::Sint32x2 => (ScalarKind::Sint, 2),
@@ -213,6 +218,7 @@ fn shaders_read_the_attributes_as_they_are_written() {
     assert_eq!(inputs("terrain", "block_vertex"), written(&[&terrain::BLOCK]));
     assert_eq!(inputs("terrain", "ring_vertex"), written(&[&terrain::RING]));
     assert_eq!(inputs("grass", "vertex"), written(&[&grass::CLUMP]));
+    assert_eq!(inputs("plants", "vertex"), written(&[&plants::INSTANCE, &plants::VERTEX]));
 }
 
 #[test]

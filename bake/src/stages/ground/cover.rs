@@ -1,10 +1,11 @@
-//! Traits of a place and noise → how much grass, rock, scree, snow and mud cover it, and its colour as linear
+//! Traits of a place and noise → how much grass, rock, scree, snow and earth cover it, and its colour as linear
 //! reflectance.
 
 use super::GroundParams;
 use super::palette::Palette;
 use super::snow::Snow;
 use super::traits::Traits;
+use super::woods::{Litter, Woods};
 use crate::math::{hermite, lerp_array as lerp};
 use crate::model::{Climate, Landform};
 use crate::noise::hash01;
@@ -28,30 +29,40 @@ impl Noise {
     }
 }
 
-/// Grass, rock, scree, snow and mud.
+/// Grass, rock, scree, snow and earth.
 pub(super) const KINDS: usize = 5;
 
 /// Parts of the ground.
+#[derive(Default)]
 pub(super) struct Cover {
-    /// Rock, scree, snow and mud, which sum to 1 with grass.
+    /// Rock, scree, snow and earth, which sum to 1 with grass.
     parts: [f32; KINDS - 1],
-    /// How much of the mud is dry soil or sand.
+    /// How much of the earth is dry soil or sand, and how much is what trees shed; the rest is the mud of shores and beds.
     soil: f32,
+    litter: f32,
 }
 
 impl Cover {
     /// The part of each kind, grass first.
     #[inline]
     pub fn parts(&self) -> [f32; KINDS] {
-        let [rock, scree, snow, mud] = self.parts;
-        [1.0 - rock - scree - snow - mud, rock, scree, snow, mud]
+        let [rock, scree, snow, earth] = self.parts;
+        [1.0 - rock - scree - snow - earth, rock, scree, snow, earth]
     }
 
-    /// Blend weights as bytes: rock, scree, snow, mud; their sum is at most 255.
+    /// Blend weights as bytes: rock, scree, snow, earth; their sum is at most 255.
     #[inline]
     pub fn bytes(&self) -> [u8; 4] {
         // Rounded down, so that four of them cannot pass 255.
         self.parts.map(|w| (w * 255.0) as u8)
+    }
+
+    pub fn soil(&self) -> f32 {
+        self.soil
+    }
+
+    pub fn litter(&self) -> f32 {
+        self.litter
     }
 
     /// Lays `part` of a kind over the others.
@@ -60,13 +71,14 @@ impl Cover {
         self.parts = self.parts.map(|other| other * (1.0 - part));
         self.parts[kind] += part;
         self.soil *= 1.0 - part;
+        self.litter *= 1.0 - part;
     }
 }
 
 const ROCK: usize = 0;
 const SCREE: usize = 1;
 const SNOW: usize = 2;
-const MUD: usize = 3;
+const EARTH: usize = 3;
 
 pub(super) type Rgb = [f32; 3];
 
@@ -76,6 +88,7 @@ const SAND: Rgb = [0.37, 0.30, 0.20];
 const GRAVEL: Rgb = [0.185, 0.176, 0.150];
 /// Heath and moss, which grow in patches of their own.
 const HEATH: Rgb = [0.082, 0.060, 0.034];
+const MOSS: Rgb = [0.040, 0.060, 0.014];
 /// Kinds of rock: granite, limestone, basalt, sandstone, slate.
 const ROCKS: [Rgb; 5] = [
     [0.205, 0.195, 0.185],
@@ -87,11 +100,14 @@ const ROCKS: [Rgb; 5] = [
 
 /// What all places of a land share.
 pub(super) struct Painter {
+    pub palette: Palette,
+    pub litter: Litter,
+    pub water_m: f32,
+    pub rock: Rgb,
+    pub rock_band: Rgb,
     climate: Climate,
     dryness: f32,
-    palette: Palette,
     snow: Snow,
-    water_m: f32,
     relief_m: f32,
     lowest_m: f32,
     talus: f32,
@@ -99,15 +115,13 @@ pub(super) struct Painter {
     bare_slope: f32,
     /// How dry it is beside other lands of its climate: 0 lush, 1 arid.
     thirst: f32,
-    rock: Rgb,
-    rock_band: Rgb,
     shore: Rgb,
     /// Shores of low lands are lower: 1 or more.
     shore_scale: f32,
 }
 
 impl Painter {
-    pub fn new(params: &GroundParams, land: &Landform) -> Self {
+    pub fn new(params: &GroundParams, land: &Landform, woods: &Woods) -> Self {
         let seed = noise_seed(params.terrain_seed.into(), "ground climate", 0);
         let [lo, hi] = land.field.range_m();
         let chance = |salt| hash01(seed, salt, 0, 0);
@@ -121,6 +135,7 @@ impl Painter {
         let talus = libm::tanf(params.talus_angle_deg.to_radians());
         let shore = lerp(lerp(WET_MUD, GRAVEL, 0.5), SAND, step(0.25, 0.6, thirst));
         Self {
+            litter: woods.litter,
             dryness: climate.dryness(),
             snow: Snow::new(land),
             water_m: land.water_level_m.unwrap_or(lo - 1e4),
@@ -159,7 +174,10 @@ impl Painter {
         let mud = shore.max(bed);
         // Each lies over the ones before it.
         let mut cover = self.bare(t, broken);
-        cover.over(MUD, mud);
+        let litter = self.shed(t, n);
+        cover.over(EARTH, litter);
+        cover.litter += litter;
+        cover.over(EARTH, mud);
         cover.over(SCREE, scree);
         cover.over(ROCK, rock);
         cover.over(SNOW, self.snow.part(t, broken));
@@ -171,7 +189,7 @@ impl Painter {
     fn bare(&self, t: &Traits, broken: f32) -> Cover {
         let Palette { thirst, frost, heat, .. } = self.palette;
         if thirst + frost == 0.0 {
-            return Cover { parts: [0.0; 4], soil: 0.0 };
+            return Cover::default();
         }
         let patchy = 0.35 * t.patch + 0.45 * t.tuft + 0.5 * broken;
         let parched = step(1.1, 2.4, self.dryness + 0.4 * t.sunny + patchy - 1.8 * self.damp(t)) * thirst;
@@ -183,12 +201,28 @@ impl Painter {
         let stones =
             step(0.0, 0.8, t.outcrop + 0.4 * t.patch + 0.6 * broken + 0.5 * frost - 0.5 * heat + 0.2);
         let (scree, soil) = (bare * stones, bare * (1.0 - stones));
-        Cover { parts: [0.0, scree, 0.0, soil], soil }
+        Cover { parts: [0.0, scree, 0.0, soil], soil, litter: 0.0 }
+    }
+
+    /// What lies under crowns and a little beyond them.
+    #[inline]
+    fn shed(&self, t: &Traits, n: &Noise) -> f32 {
+        if t.shade == 0.0 {
+            return 0.0;
+        }
+        self.litter.amount * step(0.1, 1.2, t.shade + 0.45 * n.fine + 0.35 * n.broad + 0.2 * t.tuft)
+    }
+
+    /// Where heath grows, 0 to 1.
+    #[inline]
+    pub fn heath(&self, t: &Traits, n: &Noise) -> f32 {
+        let Palette { thirst, heat, .. } = self.palette;
+        step(0.45, 0.85, t.outcrop - 0.5 * t.patch + 0.3 * n.broad) * (1.0 - thirst.max(heat))
     }
 
     /// How much more water a place has than the land around: above 0 in hollows, by streams and shores.
     #[inline]
-    fn damp(&self, t: &Traits) -> f32 {
+    pub fn damp(&self, t: &Traits) -> f32 {
         let by_water = 1.0 - step(0.4, 5.0, t.height_m - self.water_m);
         0.75 * t.flow + 0.35 * t.hollow + 0.12 * t.deposit - 0.25 + 0.5 * by_water
     }
@@ -196,7 +230,7 @@ impl Painter {
     /// Its colour.
     #[inline]
     pub fn color(&self, t: &Traits, cover: &Cover, n: &Noise) -> Rgb {
-        let [grass, rock, scree, snow, mud] = cover.parts();
+        let [grass, rock, scree, snow, earth] = cover.parts();
         let mut color = [0.0; 3];
         if grass > 0.0 {
             add(&mut color, self.grass(t, n), grass);
@@ -207,11 +241,20 @@ impl Painter {
             let bed = (bed - bed.floor() - 0.5).abs() * 2.0;
             let stone = lerp(self.rock, self.rock_band, step(0.3, 0.7, bed));
             let stone = scale(stone, 1.0 + 0.22 * n.broad + 0.20 * n.fine + 0.25 * n.grain);
+            let stone = lerp(stone, MOSS, 0.75 * self.moss(t, n));
             add(&mut color, stone, rock);
             add(&mut color, scale(lerp(stone, GRAVEL, 0.35), 1.12 + 0.35 * n.grain), scree);
         }
-        if mud > cover.soil {
-            add(&mut color, self.mud(t, n), mud - cover.soil);
+        let wet = earth - cover.soil - cover.litter;
+        if wet > 0.0 {
+            add(&mut color, self.mud(t, n), wet);
+        }
+        if cover.litter > 0.0 {
+            // Fresh leaves over older ones, in drifts.
+            let fresh = step(-0.5, 0.7, 0.6 * n.fine + 0.5 * n.broad + 0.5 * n.grain);
+            let leaves = lerp(scale(self.litter.colors[0], 0.62), self.litter.colors[0], fresh);
+            let leaves = lerp(leaves, MOSS, 0.5 * self.moss(t, n));
+            add(&mut color, scale(leaves, 1.0 + 0.3 * n.grain), cover.litter);
         }
         if cover.soil > 0.0 {
             add(&mut color, self.soil(t, n), cover.soil);
@@ -220,6 +263,14 @@ impl Painter {
             add(&mut color, scale(SNOW_WHITE, 1.0 + 0.03 * n.broad + 0.05 * n.grain), snow);
         }
         color.map(|c| if c > 0.0 { c } else { 0.0 })
+    }
+
+    /// Where moss grows on stone and under trees, 0 to 1: in lands with rain, where it stays wet and the sun is weak.
+    #[inline]
+    fn moss(&self, t: &Traits, n: &Noise) -> f32 {
+        let Palette { thirst, rain, .. } = self.palette;
+        let wet = 0.7 * rain + 0.8 * self.damp(t) + 0.5 * t.shade - 0.5 * t.sunny - 2.0 * thirst;
+        step(0.15, 0.75, wet + 0.45 * n.broad + 0.25 * n.fine)
     }
 
     /// Grass: lusher where water gathers, drier on crests and high up, in large patches of its own.
@@ -234,12 +285,11 @@ impl Painter {
             + 0.34 * n.fine
             + 0.25 * n.grain;
         // The sun dries what lacks water, and warms what lacks warmth.
-        let Palette { growth, thirst, frost, heat, .. } = &self.palette;
+        let Palette { growth, thirst, frost, .. } = &self.palette;
         let dry = (dry + t.sunny * (0.9 * thirst - 0.5 * frost)).clamp(0.0, 4.999);
         let k = dry as usize;
         let grass = lerp(growth[k], growth[k + 1], dry - k as f32);
-        let heath = step(0.45, 0.85, t.outcrop - 0.5 * t.patch + 0.3 * n.broad) * 0.6;
-        let heath = heath * (1.0 - thirst.max(*heat));
+        let heath = self.heath(t, n) * 0.6;
         scale(lerp(grass, HEATH, heath), 1.0 + 0.16 * n.fine + 0.10 * n.broad + 0.18 * n.grain)
     }
 

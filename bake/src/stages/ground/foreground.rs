@@ -12,10 +12,12 @@ use super::GroundParams;
 use super::cover::KINDS;
 use super::grass::grass;
 use super::patch::{Patch, SIDE_M, corner, plan};
+use super::standing::stand;
 use super::textures::{TILE_M, TILE_MEAN};
 use super::window::MapWindow;
+use super::woods::Woods;
 use crate::math::triangles_between;
-use crate::model::{Foreground, Landform, Material, Mesh, Part, PartKind, StartView};
+use crate::model::{Foreground, GroundPlants, Image8, Landform, Material, Mesh, Part, PartKind, StartView};
 use crate::noise::{fbm2, gradient2};
 use crate::raster::square;
 use crate::seed::noise_seed;
@@ -24,30 +26,41 @@ use crate::seed::noise_seed;
 const CELLS: usize = 128;
 const CELL_M: f32 = SIDE_M / CELLS as f32;
 
+/// What the ground around the start is made from: the genes, and what [`super::maps`] made of them.
+#[derive(Clone, Copy)]
+pub struct Ground<'a> {
+    pub params: &'a GroundParams,
+    pub woods: &'a Woods,
+    pub land: &'a Landform,
+    pub plants: &'a GroundPlants<Image8>,
+}
+
 /// Cuts the foreground out of a near mesh given as positions and triangles, made with blocks of `BLOCK_M`. Colours
-/// come from the painter of [`super::maps`] with `map_px` texels a side. Nothing is cut where the land is smaller.
+/// come from the painter of [`super::maps`]. Nothing is cut where the land is smaller.
 pub fn foreground(
-    params: &GroundParams,
-    land: &Landform,
-    map_px: u32,
+    ground: &Ground<'_>,
     view: &StartView,
     positions: &[[f32; 3]],
     triangles: &[[u32; 3]],
 ) -> Foreground {
+    let Ground { params, woods, land, plants } = *ground;
     let field = &land.field;
     let Some(corner) = corner(field, view) else {
         return Foreground { rest: triangles.to_vec(), ..Foreground::default() };
     };
+    let map_px = 2 * plants.maps.first().map_or(1, |map| map.width);
     let middle = |t: &[u32; 3]| t.iter().map(|&v| plan(positions[v as usize])).sum::<Vec2>() / 3.0 - corner;
     let inside = |t: &[u32; 3]| middle(t).min_element() > 0.0 && middle(t).max_element() < SIDE_M;
     let (cut, rest): (Vec<_>, Vec<_>) = triangles.iter().copied().partition(inside);
     let patch = Patch { land, corner, seed: noise_seed(params.terrain_seed.into(), "foreground", 0) };
-    let window = MapWindow::new(params, land, map_px, corner);
+    let window = MapWindow::new(params, woods, land, map_px, corner);
     let mut points = patch.points(&window);
     let border = patch.border(positions, &cut, &mut points);
     let shape = patch.triangles(&points, &border);
     let (mesh, map_uvs) = by_kind(&points, &shape, field.extent_m());
-    Foreground { mesh, map_uvs, rest, grass: grass(&patch, &window, view) }
+    let mut grass = grass(&patch, &window, view);
+    stand(plants, &patch, view, &mut grass);
+    Foreground { mesh, map_uvs, rest, grass }
 }
 
 /// A vertex before it has a texture.

@@ -21,8 +21,8 @@ const DENSE_M: f32 = 5.0;
 const REACH_M: f32 = 42.0;
 /// Metres around the eye that stay free.
 const FREE_M: f32 = 0.9;
-/// Albedo of a vertex colour of 1: grass is dark, and bytes are few.
-pub const BLADE_WHITE: f32 = 0.5;
+/// Albedo of a vertex colour of 1, as the palest petals have: grass is dark, and bytes are few.
+pub const BLADE_WHITE: f32 = 0.75;
 
 /// Blades on the piece of ground around the eye; one part, `Material::Foreign(5)`, empty where no grass grows.
 pub(super) fn grass(patch: &Patch<'_>, window: &MapWindow, view: &StartView) -> Mesh {
@@ -81,7 +81,8 @@ impl Meadow<'_> {
         let here = self.window.at(place);
         let clump = gradient2(seed, place.x / 1.4, place.y / 1.4, 0)
             + 0.6 * gradient2(seed, place.x / 0.5, place.y / 0.5, 0);
-        let grassy = here.parts[0];
+        // Where there is as much snow as grass, it is under the snow.
+        let grassy = here.parts[0] - here.parts[3];
         let growth = (grassy - 0.35) * 1.8 + 0.8 * clump + 0.3 * (dice(3) - 0.5);
         if growth < 0.05 || grassy < 0.3 {
             return Vec::new();

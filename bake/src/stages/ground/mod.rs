@@ -1,6 +1,6 @@
 //! Landform → the look of the ground: an albedo map and blend weights over the field (one texel a
 //! metre at 1024²), colours for the apron, and five tiling detail textures. Albedo holds no light: linear
-//! reflectances of grass, rock, scree, snow, mud and sand as measured outdoors, written as sRGB where 8-bit.
+//! reflectances of grass, rock, scree, snow, earth and sand as measured outdoors, written as sRGB where 8-bit.
 //!
 //! Cover follows slope, drained area, deposits, altitude and distance to water, as in
 //! Hammes, "Modeling of ecosystems as a data source for real-time terrain rendering" (2001), with borders broken
@@ -13,13 +13,17 @@ mod grass;
 mod palette;
 mod patch;
 mod patterns;
+mod plants;
+mod shapes;
 mod snow;
 mod stage;
+mod standing;
 #[cfg(test)]
 mod tests;
 mod textures;
 mod traits;
 mod window;
+mod woods;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -28,15 +32,18 @@ use crate::math::lerp_array;
 use crate::model::{GroundMaps, Image8, Landform};
 use crate::raster::square;
 use cover::{Noise, Painter};
-pub use foreground::foreground;
+pub use foreground::{Ground, foreground};
 use grain::Grain;
 pub use grass::BLADE_WHITE;
 pub use patch::BLOCK_M;
 pub use snow::snow_map;
-pub use stage::{ForegroundStage, GroundMapsStage, GroundTextureFiles, GroundTexturesStage};
+pub use stage::{
+    ForegroundStage, GroundMapsFiles, GroundMapsStage, GroundTextureFiles, GroundTextureStage, WoodsInput,
+};
 use textures::SrgbTable;
-pub use textures::{TEXTURES, textures, tile_srgb};
+pub use textures::{Loose, TEXTURES, texture, tile_srgb};
 use traits::{Patches, Traits, TraitsMap};
+pub use woods::{LitterParams, Woods};
 
 /// The genes that colour the ground; names, ranges and meanings as in the parameter space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -53,12 +60,12 @@ pub struct GroundParams {
     pub rain_mm: f32,
 }
 
-/// Paints the field on `side_px`² texels: albedo and blend weights.
-pub fn maps(params: &GroundParams, land: &Landform, side_px: u32) -> GroundMaps<Image8> {
+/// Paints the field on `side_px`² texels: albedo and blend weights; and says what grows on it.
+pub fn maps(params: &GroundParams, woods: &Woods, land: &Landform, side_px: u32) -> GroundMaps<Image8> {
     let side_px = side_px.max(1);
-    let painter = Painter::new(params, land);
-    let traits =
-        TraitsMap::new(&Patches::new(params.terrain_seed, land.field.extent_m(), 0.0..=1.0), land, 0.0..=1.0);
+    let painter = Painter::new(params, land, woods);
+    let patches = Patches::new(params.terrain_seed, land.field.extent_m(), 0.0..=1.0);
+    let traits = TraitsMap::new(&patches, land, woods, 0.0..=1.0);
     let grain = Grain::new(params.terrain_seed, side_px);
     let encode = SrgbTable::new();
     let mut color_srgb = Image8::new(side_px, side_px, 3);
@@ -76,13 +83,14 @@ pub fn maps(params: &GroundParams, land: &Landform, side_px: u32) -> GroundMaps<
             weights[4 * i..][..4].copy_from_slice(&cover.bytes());
         }
     });
-    GroundMaps { color: color_srgb, weights }
+    let plants = plants::plants(params, &painter, &traits, &grain, land, &weights);
+    GroundMaps { color: color_srgb, weights, plants }
 }
 
 /// Colours the apron: linear red, green, blue and 255 for each of its samples, row by row, 0 to 255 for 0 to 1. On
 /// the field's border they are the mean of the map around.
 pub fn apron_colors(params: &GroundParams, land: &Landform) -> Vec<[u8; 4]> {
-    let painter = Painter::new(params, land);
+    let painter = Painter::new(params, land, &Woods::none());
     let patches = Patches::new(params.terrain_seed, land.field.extent_m(), 0.0..=1.0);
     let apron = &land.apron;
     let half_m = 0.5 * land.field.extent_m();

@@ -1,11 +1,12 @@
-//! Nothing → the five tiling patterns of ground: a height of about 0 to 1 and a tone for each texel.
+//! Nothing → the tiling patterns of ground: a height of about 0 to 1 and a tone for each texel.
 //!
-//! Grass and scree are laid blade by blade and stone by stone, the higher over the lower; rock and mud are cracked
-//! along the borders of cellular noise (Worley 1996); snow is drifts and grain.
+//! Grass, scree and earth are laid blade by blade and stone by stone, the higher over the lower; rock is cracked along the
+//! creases of noise; snow is drifts and grain, sand is ripples.
 
 use bytemuck::Zeroable;
 
-use crate::noise::{cellular2, fbm2_row, gradient2, hash01};
+use crate::math::hermite;
+use crate::noise::{fbm2_row, gradient2, hash01};
 use crate::raster::raster;
 
 /// Texels a side.
@@ -210,38 +211,59 @@ pub(super) fn snow() -> Pattern {
     })
 }
 
-/// A cell as a plate of dried mud.
-struct Plate {
-    /// 0 in the crack around it, 1 inside.
-    crack: f32,
-    /// Its own shade, 0 to 1.
-    shade: f32,
-}
-
-/// The plate at (u, v) of `cells` cells a side.
-fn plate(seed: u32, u: f32, v: f32, cells: i32) -> Plate {
-    let scale = cells as f32;
-    let (first, second, id) = cellular2(seed, u * scale, v * scale, cells);
-    let crack = ((second - first) * 9.0).min(1.0);
-    Plate { crack: crack * (2.0 - crack), shade: (id >> 13 & 0xFF) as f32 / 255.0 }
-}
-
-/// Mud that dried and cracked, with finer cracks inside its plates.
-pub(super) fn mud() -> Pattern {
-    let noise = [Waves(51, 9, 2, 0.55), Waves(52, 9, 2, 0.55), Waves(55, 70, 2, 0.65)];
-    paint(noise, |u, v, [a, b, silt]| {
-        let plate_here = plate(53, u + 0.03 * a, v + 0.03 * b, 13);
-        // Only some plates split again, and cracks close here and there.
-        let splits = plate_here.shade > 0.45;
-        let fine = || 0.45 + 0.55 * plate(54, u - 0.016 * b, v + 0.016 * a, 31).crack;
-        let split = if splits { fine() } else { 1.0 };
-        let open = 0.55 + 0.45 * (2.5 * a).clamp(-1.0, 1.0);
-        let crack = (1.0 - (1.0 - plate_here.crack) * open).min(split);
-        let height = crack * (0.62 + 0.16 * plate_here.shade + 0.10 * silt + 0.12 * a);
-        let tone = (112.0 + 26.0 * plate_here.shade + 24.0 * a + 30.0 * silt) * (0.32 + 0.68 * crack);
-        let warm = 0.03 * b;
-        Texel { height, tone: [tone * (1.0 + warm), tone, tone * (1.0 - warm)] }
+/// Sand in ripples across the wind, which fork and end, and grains.
+pub(super) fn sand() -> Pattern {
+    let noise = [Waves(61, 4, 2, 0.5), Waves(62, 7, 3, 0.55), Waves(63, 170, 1, 0.5), Waves(64, 5, 2, 0.5)];
+    paint(noise, |_, v, [bend, fork, grain, still]| {
+        let phase = v * 27.0 + 1.7 * bend + 0.55 * fork;
+        let along = phase - phase.floor();
+        // Steep to the lee, gentle to the wind.
+        let ripple = if along < 0.68 { hermite(along / 0.68) } else { hermite((1.0 - along) / 0.32) };
+        let strong = (0.75 + 0.9 * still).clamp(0.15, 1.0);
+        let height = 0.3 + 0.5 * ripple * strong + 0.05 * grain + 0.12 * fork;
+        let tone = 118.0 * (1.0 + 0.10 * strong * (ripple - 0.5) + 0.11 * grain + 0.03 * fork);
+        Texel { height, tone: [tone * (1.0 + 0.015 * grain), tone, tone * (1.0 - 0.025 * grain)] }
     })
+}
+
+/// Crumbly soil with pebbles, twigs and bits of leaves in it.
+pub(super) fn earth() -> Pattern {
+    let noise = [Waves(71, 19, 3, 0.62), Waves(72, 110, 2, 0.75), Waves(73, 7, 2, 0.5)];
+    let mut pattern = paint(noise, |_, _, [lumps, crumbs, damp]| {
+        let height = 0.22 + 0.16 * lumps + 0.10 * crumbs;
+        let tone = 104.0 * (1.0 + 0.24 * lumps + 0.22 * crumbs + 0.12 * damp);
+        let warm = 0.05 * damp;
+        Texel { height, tone: [tone * (1.0 + warm), tone, tone * (1.0 - warm)] }
+    });
+    for k in 0..170 {
+        let dice = |salt: i32| hash01(74, k, salt, 0);
+        // Many small ones, few large.
+        let radius = 1.6 + 2.0 * dice(2) + 5.0 * dice(3) * dice(3) * dice(3) * dice(3);
+        let base = 0.26 + 0.12 * dice(4);
+        Stone::new(dice(0) * SIDE as f32, dice(1) * SIDE as f32, radius, base, k + 5000).lay(&mut pattern);
+    }
+    for k in 0..1900 {
+        let dice = |salt: i32| hash01(75, k, salt, 0);
+        let shade = 58.0 + 105.0 * dice(5);
+        // Twigs are long and dark, bits of leaves short and wide.
+        let is_twig = dice(6) < 0.2;
+        Blade {
+            x: dice(0) * SIDE as f32,
+            y: dice(1) * SIDE as f32,
+            angle: dice(2) * std::f32::consts::TAU,
+            bend: (dice(3) - 0.5) * 0.9,
+            length: if is_twig { 9.0 + 17.0 * dice(4) } else { 4.5 + 6.0 * dice(4) },
+            width: if is_twig { 0.7 + 0.5 * dice(7) } else { 2.0 + 2.2 * dice(7) },
+            rise: 0.4 + 0.3 * dice(8),
+            tone: if is_twig {
+                [0.8 * shade, 0.72 * shade, 0.64 * shade]
+            } else {
+                [1.2 * shade, shade, 0.72 * shade]
+            },
+        }
+        .lay(&mut pattern);
+    }
+    pattern
 }
 
 /// Fractal noise that tiles the pattern: seed, cells a side, octaves and gain.

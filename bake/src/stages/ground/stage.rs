@@ -1,40 +1,83 @@
 //! The ground as stages: results of earlier stages → maps, textures and the foreground, as files.
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{BLADE_WHITE, GroundParams, TEXTURES, foreground, maps, textures, tile_srgb};
+use super::{
+    BLADE_WHITE, Ground, GroundParams, LitterParams, Loose, TEXTURES, Woods, foreground, maps, texture,
+    tile_srgb,
+};
 use crate::gltf::{foreground_glb, png};
 use crate::graph::{Context, File, Input, Stage, StageError, Stored};
-use crate::model::{GroundDetail, GroundMaps, Landform, Mesh, StartView};
+use crate::model::{GroundDetail, GroundMaps, GroundPlants, Image8, Instance, Landform, Mesh, StartView};
+use crate::stages::placement::TreeFootprint;
 
-/// Landform → albedo and blend weights.
+/// Landform and trees → what the stages of the ground know of the trees on it.
+#[derive(Clone, Serialize)]
+pub struct WoodsInput {
+    pub params: LitterParams,
+    pub trees: Input<Vec<Instance>>,
+    pub footprints: Vec<Input<TreeFootprint>>,
+}
+
+impl WoodsInput {
+    fn get(&self, context: &Context<'_>, land: &Landform) -> Result<Woods, StageError> {
+        let crown_m = |footprint: &Input<TreeFootprint>| Ok(context.get(footprint)?.crown_radius_m);
+        let crowns_m = self.footprints.iter().map(crown_m).collect::<Result<Vec<_>, StageError>>()?;
+        Ok(Woods::new(&self.params, land, &context.get(&self.trees)?, &crowns_m))
+    }
+}
+
+/// Landform and trees → albedo, blend weights, and what grows and lies on the ground.
 #[derive(Serialize)]
 pub struct GroundMapsStage {
     pub params: GroundParams,
     /// Pixels a side.
     pub side_px: u32,
     pub landform: Input<Landform>,
+    pub woods: WoodsInput,
+}
+
+#[derive(Serialize, Deserialize)]
+pub struct GroundMapsFiles {
+    pub maps: GroundMaps<File>,
+    /// Those of `maps` as pixels.
+    pub plants: Stored<GroundPlants<Image8>>,
 }
 
 impl Stage for GroundMapsStage {
     const NAME: &'static str = "ground maps";
-    const VERSION: u32 = 1;
-    type Output = GroundMaps<File>;
+    const VERSION: u32 = 2;
+    type Output = GroundMapsFiles;
 
-    fn run(&self, context: &Context<'_>) -> Result<GroundMaps<File>, StageError> {
-        let maps = maps(&self.params, &*context.get(&self.landform)?, self.side_px);
+    fn run(&self, context: &Context<'_>) -> Result<GroundMapsFiles, StageError> {
+        let landform = context.get(&self.landform)?;
+        let maps = maps(&self.params, &self.woods.get(context, &landform)?, &landform, self.side_px);
         let (color, weights) = rayon::join(
             || context.file("png", png::encode(&maps.color)),
             || context.file("png", png::encode_linear(&maps.weights)),
         );
-        Ok(GroundMaps { color, weights })
+        let file = |map: &Image8| Ok(context.file("png", png::encode_linear(map)));
+        let plants = maps.plants.try_map::<_, StageError>(file)?;
+        let maps = (GroundMaps { color, weights, plants }, context.store(maps.plants));
+        Ok(GroundMapsFiles { maps: maps.0, plants: maps.1 })
     }
 }
 
-/// Nothing → the tiling textures that every scene shares.
+/// Nothing → a tiling texture, which scenes share.
 #[derive(Serialize)]
-pub struct GroundTexturesStage;
+pub struct GroundTextureStage {
+    /// Number of the kind of ground.
+    pub kind: usize,
+    /// What the last kind is.
+    pub loose: Loose,
+}
+
+impl GroundTextureStage {
+    /// Lands whose loose ground differs share all other textures.
+    pub fn new(kind: usize, loose: Loose) -> Self {
+        Self { kind, loose: if kind + 1 == TEXTURES.len() { loose } else { Loose::Earth } }
+    }
+}
 
 /// A tiling texture as files.
 #[derive(Serialize, Deserialize)]
@@ -44,22 +87,26 @@ pub struct GroundTextureFiles {
     pub tile: File,
 }
 
-impl Stage for GroundTexturesStage {
-    const NAME: &'static str = "ground textures";
-    const VERSION: u32 = 2;
-    type Output = Vec<GroundTextureFiles>;
+impl Stage for GroundTextureStage {
+    const NAME: &'static str = "ground texture";
+    const VERSION: u32 = 1;
+    type Output = GroundTextureFiles;
 
-    fn run(&self, context: &Context<'_>) -> Result<Vec<GroundTextureFiles>, StageError> {
-        let files = |(index, texture): (usize, GroundDetail<_>)| GroundTextureFiles {
-            tile: context.file("png", png::encode(&tile_srgb(index, &texture.detail))),
+    fn run(&self, context: &Context<'_>) -> Result<GroundTextureFiles, StageError> {
+        let made = texture(self.kind, self.loose);
+        Ok(GroundTextureFiles {
+            tile: context.file("png", png::encode(&tile_srgb(self.kind, &made.detail))),
             detail: GroundDetail {
-                detail: context.file("png", png::encode(&texture.detail)),
-                normal: context.file("png", png::encode_linear(&texture.normal)),
-                name: texture.name,
-                tile_m: texture.tile_m,
+                detail: context.file("png", png::encode(&made.detail)),
+                normal: context.file("png", png::encode_linear(&made.normal)),
+                name: made.name,
+                tile_m: made.tile_m,
             },
-        };
-        Ok(textures().into_par_iter().enumerate().map(files).collect())
+        })
+    }
+
+    fn label(&self) -> String {
+        format!("{} {}", Self::NAME, self.kind)
     }
 }
 
@@ -67,23 +114,26 @@ impl Stage for GroundTexturesStage {
 #[derive(Serialize)]
 pub struct ForegroundStage {
     pub params: GroundParams,
-    /// Pixels a side of the ground map, whose look it continues.
-    pub map_px: u32,
     pub landform: Input<Landform>,
+    pub woods: WoodsInput,
+    pub plants: Input<Stored<GroundPlants<Image8>>>,
     pub near: Input<Stored<Mesh>>,
     pub start: Input<StartView>,
 }
 
 impl Stage for ForegroundStage {
     const NAME: &'static str = "foreground";
-    const VERSION: u32 = 2;
+    const VERSION: u32 = 3;
     type Output = File;
 
     fn run(&self, context: &Context<'_>) -> Result<File, StageError> {
         let (landform, start) = (context.get(&self.landform)?, context.get(&self.start)?);
         let near = context.load(&*context.get(&self.near)?)?;
         let triangles = &near.parts[0].triangles;
-        let made = foreground(&self.params, &landform, self.map_px, &start, &near.positions, triangles);
+        let (woods, plants) =
+            (self.woods.get(context, &landform)?, context.load(&*context.get(&self.plants)?)?);
+        let ground = Ground { params: &self.params, woods: &woods, land: &landform, plants: &plants };
+        let made = foreground(&ground, &start, &near.positions, triangles);
         Ok(context.file("glb", foreground_glb(&made, &TEXTURES, BLADE_WHITE)?))
     }
 }

@@ -1,25 +1,27 @@
-//! Nothing → five tiling detail textures of 512² with tangent-space normals: grass, rock, scree, snow and mud.
+//! Nothing → five tiling detail textures of 512² with tangent-space normals: grass, rock, scree, snow and earth, which in
+//! dry lands is sand.
 //!
 //! Detail multiplies the ground's colour: its bytes have the mean 128 in every channel, so that bytes / 128 is the
 //! factor. Normals are those of OpenGL and glTF: red to the right, green to the top of the image, blue outwards.
 
-use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
+use super::GroundParams;
 use super::cover::KINDS;
 use super::patterns::{self, Pattern, SIDE, Texel};
 use crate::math::srgb_from_linear;
-use crate::model::{GroundDetail, Image8};
+use crate::model::{GroundDetail, Image8, dryness};
 use crate::raster::square_image;
 
 /// Names of the textures, in order.
-pub const TEXTURES: [&str; KINDS] = ["grass", "rock", "scree", "snow", "mud"];
+pub const TEXTURES: [&str; KINDS] = ["grass", "rock", "scree", "snow", "earth"];
 
 /// Metres that a tile of each covers.
 pub(super) const TILE_M: [f32; KINDS] = [3.0, 6.0, 4.0, 5.0, 4.0];
 
 /// Mean linear value of each kind's [`tile_srgb`]: as bright as possible without clipping its highlights, and bright
 /// enough that the kind's brightest ground is a factor of at most 1.
-pub(super) const TILE_MEAN: [f32; KINDS] = [0.45, 0.45, 0.45, 0.86, 0.45];
+pub(super) const TILE_MEAN: [f32; KINDS] = [0.45, 0.45, 0.45, 0.86, 0.56];
 
 /// The detail of the kth texture as a base colour for core glTF, whose factors cannot exceed 1: its linear mean is
 /// `TILE_MEAN[k]`.
@@ -31,25 +33,34 @@ pub fn tile_srgb(kind: usize, detail: &Image8) -> Image8 {
     Image8 { data, ..*detail }
 }
 
-/// Makes the five textures; they are the same for every scene.
-pub fn textures() -> Vec<GroundDetail<Image8>> {
+/// What the ground is tiled with where it is bare and loose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Loose {
+    Earth,
+    Sand,
+}
+
+impl Loose {
+    /// Sand from a steppe's dryness on.
+    pub fn of(params: &GroundParams) -> Self {
+        if dryness(params.temperature_c, params.rain_mm) > 1.0 { Self::Sand } else { Self::Earth }
+    }
+}
+
+/// The textures of the kind `k`: those of loose ground differ from land to land.
+pub fn texture(k: usize, loose: Loose) -> GroundDetail<Image8> {
     type Make = fn() -> Pattern;
-    let kinds: [(f32, Make); KINDS] = [
-        (2.2, patterns::grass),
-        (4.5, patterns::rock),
-        (3.0, patterns::scree),
-        (3.2, patterns::snow),
-        (2.4, patterns::mud),
-    ];
-    kinds
-        .into_par_iter()
-        .zip(TEXTURES.into_par_iter().zip(TILE_M))
-        .map(|((depth_px, make), (name, tile_m))| {
-            let pattern = make();
-            let (detail, normal) = (detail(&pattern), normals(&pattern, depth_px));
-            GroundDetail { name: name.into(), detail, normal, tile_m }
-        })
-        .collect()
+    let (name, depth_px, make): (_, f32, Make) = match (k, loose) {
+        (0, _) => (TEXTURES[0], 2.2, patterns::grass),
+        (1, _) => (TEXTURES[1], 4.5, patterns::rock),
+        (2, _) => (TEXTURES[2], 3.0, patterns::scree),
+        (3, _) => (TEXTURES[3], 3.2, patterns::snow),
+        (_, Loose::Earth) => (TEXTURES[4], 2.6, patterns::earth),
+        (_, Loose::Sand) => ("sand", 2.4, patterns::sand),
+    };
+    let pattern = make();
+    let (detail, normal) = (detail(&pattern), normals(&pattern, depth_px));
+    GroundDetail { name: name.into(), detail, normal, tile_m: TILE_M[k.min(KINDS - 1)] }
 }
 
 /// Tones as bytes of mean 128.

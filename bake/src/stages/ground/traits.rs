@@ -6,6 +6,7 @@ use std::ops::RangeInclusive;
 use bytemuck::{Pod, Zeroable};
 use rayon::prelude::*;
 
+use super::woods::Woods;
 use crate::math::{self, lerp_array};
 use crate::model::{Heightfield, Landform};
 use crate::noise::{fbm2, fbm2_row};
@@ -35,12 +36,14 @@ pub(super) struct Traits {
     pub outcrop: f32,
     /// How far the slope faces the noon sun in the south: 1 is a cliff in the sun, -1 one in the shade.
     pub sunny: f32,
+    /// How much lies under crowns of trees, [0, 1].
+    pub shade: f32,
 }
 
 impl Traits {
     /// [`lerp_array`] of each.
     fn lerp(self, other: Self, t: f32) -> Self {
-        bytemuck::cast(lerp_array::<9>(bytemuck::cast(self), bytemuck::cast(other), t))
+        bytemuck::cast(lerp_array::<10>(bytemuck::cast(self), bytemuck::cast(other), t))
     }
 }
 
@@ -51,18 +54,19 @@ pub(super) struct TraitsMap {
 }
 
 /// Steps of the field's samples between those for which traits are kept.
-fn stride(land: &Landform) -> u32 {
+pub(super) fn stride(land: &Landform) -> u32 {
     ((land.field.side - 1) / (MAX_SIDE - 1)).max(1)
 }
 
 impl TraitsMap {
     /// Traits of the whole field, or only as far as rows between two v need them.
-    pub fn new(patches: &Patches, land: &Landform, v: RangeInclusive<f32>) -> Self {
+    pub fn new(patches: &Patches, land: &Landform, woods: &Woods, v: RangeInclusive<f32>) -> Self {
         let step = stride(land);
         let side = ((land.field.side - 1) / step + 1) as usize;
         let values = rows(side, v, |j, row| {
             for (i, out) in row.iter_mut().enumerate() {
-                *out = sample(patches, land, i as u32 * step, j as u32 * step, step);
+                let traits = sample(patches, land, i as u32 * step, j as u32 * step, step);
+                *out = Traits { shade: woods.shade(i, j), ..traits };
             }
         });
         Self { side, values }
@@ -115,7 +119,7 @@ fn sample(patches: &Patches, land: &Landform, i: u32, j: u32, step: u32) -> Trai
     let Form { slope, hollow, sunny } = form_at(&land.field, i, j, step);
     let last = (land.field.side - 1) as f32;
     let [patch, tuft, outcrop] = patches.at(i as f32 / last, j as f32 / last);
-    Traits { height_m, slope, flow, deposit, hollow, patch, tuft, outcrop, sunny }
+    Traits { height_m, slope, flow, deposit, hollow, patch, tuft, outcrop, sunny, shade: 0.0 }
 }
 
 /// Traits of a sample of the apron, whose spacing hides much of the slope.
@@ -133,6 +137,7 @@ pub(super) fn far(patches: &Patches, land: &Landform, i: u32, j: u32) -> Traits 
         tuft: fbm2(seed(1), x / 150.0, z / 150.0, 2, 0.5, 0),
         outcrop: fbm2(seed(2), x / 300.0, z / 300.0, 2, 0.5, 0),
         sunny,
+        shade: 0.0,
     }
 }
 

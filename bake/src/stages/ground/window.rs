@@ -9,6 +9,7 @@ use super::cover::{KINDS, Painter};
 use super::grain::Grain;
 use super::patch::SIDE_M;
 use super::traits::{Patches, TraitsMap};
+use super::woods::Woods;
 use crate::math;
 use crate::model::Landform;
 use crate::raster::raster;
@@ -34,18 +35,18 @@ pub(super) struct MapWindow {
 }
 
 impl MapWindow {
-    pub fn new(params: &GroundParams, land: &Landform, map_px: u32, corner: Vec2) -> Self {
+    pub fn new(params: &GroundParams, woods: &Woods, land: &Landform, map_px: u32, corner: Vec2) -> Self {
         let extent_m = land.field.extent_m();
         let texel_m = extent_m / map_px as f32;
         let across = (SIDE_M / texel_m) as usize + 3;
         let first = [corner.x, corner.y].map(|m| ((m + 0.5 * extent_m) / texel_m) as i32 - 1);
-        let painter = Painter::new(params, land);
+        let painter = Painter::new(params, land, woods);
         let place = |k: i32| (k.clamp(0, map_px as i32 - 1) as f32 + 0.5) / map_px as f32;
         let rows = place(first[1])..=place(first[1] + across as i32);
         // Traits are kept on a grid, so patches are needed as far as the samples around.
         let apart = 2.0 / (land.field.side - 1).min(512) as f32;
         let wider = (rows.start() - apart).max(0.0)..=(rows.end() + apart).min(1.0);
-        let traits = TraitsMap::new(&Patches::new(params.terrain_seed, extent_m, wider), land, rows);
+        let traits = TraitsMap::new(&Patches::new(params.terrain_seed, extent_m, wider), land, woods, rows);
         let grain = Grain::new(params.terrain_seed, map_px);
         let values = raster(across, across, |j| {
             let j = (first[1] + j as i32).clamp(0, map_px as i32 - 1);

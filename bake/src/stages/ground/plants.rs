@@ -1,0 +1,260 @@
+//! Traits of places and what covers them → how densely small plants and stones stand, and the kinds that grow in a land.
+
+use super::GroundParams;
+use super::cover::{Cover, Noise, Painter, Rgb, step};
+use super::grain::Grain;
+use super::palette::Palette;
+use super::shapes;
+use super::traits::{Traits, TraitsMap};
+use crate::math::lerp_array as lerp;
+use crate::model::{GroundPlants, Image8, Landform, PlantKind, PlantShape};
+use crate::noise::hash01;
+use crate::raster::square_image;
+use crate::seed::noise_seed;
+
+/// Channels of the two maps.
+const FLOWER: usize = 0;
+const FERN: usize = 1;
+const SHRUB: usize = 2;
+const REED: usize = 3;
+const STONE: usize = 4;
+const BOULDER: usize = 5;
+const LITTER: usize = 6;
+const TUSSOCK: usize = 7;
+const CHANNELS: usize = 8;
+
+/// Those that stand in no water.
+const ON_LAND: [usize; 5] = [FLOWER, FERN, SHRUB, TUSSOCK, LITTER];
+
+/// How a kind stands, see [`PlantKind`].
+struct Habit {
+    name: &'static str,
+    per_m2: f32,
+    scale: [f32; 2],
+    reach_m: f32,
+    sway: f32,
+}
+
+const HABITS: [Habit; CHANNELS] = [
+    Habit { name: "flower", per_m2: 3.0, scale: [0.7, 1.4], reach_m: 24.0, sway: 0.25 },
+    Habit { name: "fern", per_m2: 0.9, scale: [0.6, 1.5], reach_m: 36.0, sway: 0.06 },
+    Habit { name: "shrub", per_m2: 0.6, scale: [0.5, 1.6], reach_m: 55.0, sway: 0.03 },
+    Habit { name: "reed", per_m2: 2.2, scale: [0.6, 1.2], reach_m: 50.0, sway: 0.12 },
+    Habit { name: "stone", per_m2: 1.6, scale: [0.05, 0.30], reach_m: 22.0, sway: 0.0 },
+    Habit { name: "boulder", per_m2: 0.03, scale: [0.5, 2.6], reach_m: 160.0, sway: 0.0 },
+    Habit { name: "litter", per_m2: 3.0, scale: [0.8, 1.2], reach_m: 11.0, sway: 0.0 },
+    Habit { name: "tussock", per_m2: 0.8, scale: [0.5, 1.3], reach_m: 40.0, sway: 0.2 },
+];
+
+/// Metres uphill of a place where a cliff may stand from which stones fell.
+const FALL_M: [f32; 2] = [8.0, 26.0];
+
+/// The maps, of half as many pixels a side as the painter's, and the kinds that they have anywhere.
+pub(super) fn plants(
+    params: &GroundParams,
+    painter: &Painter,
+    traits: &TraitsMap,
+    grain: &Grain,
+    land: &Landform,
+    weights: &Image8,
+) -> GroundPlants<Image8> {
+    let side = (weights.width / 2).max(1) as usize;
+    let place = |k: usize| (k as f32 + 0.5) / side as f32;
+    let both = square_image::<CHANNELS, _>(side, |j| {
+        let (row, place) = (traits.row(place(j)), &place);
+        move |i| {
+            let (here, noise) = (row.at(place(i)), grain.at(2 * i, 2 * j));
+            let at = [place(i), place(j)].map(|part| (part - 0.5) * land.field.extent_m());
+            let cover = painter.cover(&here, &noise);
+            let grass = cover.parts()[0].min(grass_around(weights, [2 * i as u32, 2 * j as u32]));
+            let mut growth = painter.growth(&here, &cover, grass, &noise, &|| below_a_cliff(land, at));
+            if reaches_water(land, at, land.field.extent_m() / side as f32) {
+                ON_LAND.into_iter().for_each(|kind| growth[kind] = 0.0);
+            }
+            growth.map(byte)
+        }
+    });
+    let half = |first: usize| {
+        let data =
+            both.data.chunks_exact(CHANNELS).flat_map(|pixel| &pixel[first..first + 4]).copied().collect();
+        Image8 { channels: 4, data, ..both }
+    };
+    let grows =
+        |kind: &PlantKind| both.data.iter().skip(kind.channel as usize).step_by(CHANNELS).any(|&d| d > 0);
+    let kinds = kinds(params, painter).into_iter().filter(grows).collect();
+    GroundPlants { maps: vec![half(0), half(4)], kinds }
+}
+
+/// All kinds, whether they grow in a land or not.
+#[cfg(test)]
+pub(super) fn all_kinds(params: &GroundParams, land: &Landform) -> Vec<PlantKind> {
+    kinds(params, &Painter::new(params, land, &super::Woods::none()))
+}
+
+fn byte(density: f32) -> u8 {
+    (255.0 * density.clamp(0.0, 1.0) + 0.5) as u8
+}
+
+/// How much of four texels is grass: between two grassy places may lie a crag.
+fn grass_around(weights: &Image8, [i, j]: [u32; 2]) -> f32 {
+    let last = weights.width - 1;
+    let other = |[x, y]: [u32; 2]| {
+        let pixel = weights.pixel((i + x).min(last), (j + y).min(last));
+        pixel.iter().map(|&part| u32::from(part)).sum::<u32>()
+    };
+    1.0 - [[0, 0], [1, 0], [0, 1], [1, 1]].map(other).iter().sum::<u32>() as f32 / (4.0 * 255.0)
+}
+
+/// Whether there is water within so many metres of a place: density is read between pixels.
+fn reaches_water(land: &Landform, [x, z]: [f32; 2], around_m: f32) -> bool {
+    let Some(water_m) = land.water_level_m else { return false };
+    let ways = [-1.0, 0.0, 1.0].map(|way| way * around_m);
+    land.field.height_m(x, z) < water_m + 4.0 * around_m
+        && ways.iter().any(|dx| ways.iter().any(|dz| land.field.height_m(x + dx, z + dz) < water_m))
+}
+
+/// 1 where the land rises to a cliff close uphill, 0 where it doesn't.
+fn below_a_cliff(land: &Landform, [x, z]: [f32; 2]) -> f32 {
+    let height = |x: f32, z: f32| land.field.height_m(x, z);
+    let (dx, dz) = (height(x + 3.0, z) - height(x - 3.0, z), height(x, z + 3.0) - height(x, z - 3.0));
+    let rise = (dx * dx + dz * dz).sqrt();
+    if rise < 0.3 {
+        return 0.0;
+    }
+    let uphill = |m: f32| height(x + dx / rise * m, z + dz / rise * m);
+    let [near, far] = FALL_M;
+    step(0.7, 1.05, (uphill(far) - uphill(near)) / (far - near))
+}
+
+impl Painter {
+    /// How densely each channel's kind stands at a place, in [0, 1].
+    fn growth(
+        &self,
+        t: &Traits,
+        cover: &Cover,
+        grass: f32,
+        n: &Noise,
+        cliff: &dyn Fn() -> f32,
+    ) -> [f32; CHANNELS] {
+        let [_, rock, scree, snow, _] = cover.parts();
+        let above_m = t.height_m - self.water_m;
+        let mut growth = [0.0; CHANNELS];
+        if above_m < -0.5 {
+            return growth;
+        }
+        let palette = &self.palette;
+        let (damp, green) = (self.damp(t), step(0.3, 0.8, grass) * step(0.25, 0.6, above_m));
+        let patch = 0.6 * t.tuft + 0.4 * t.patch + 0.4 * n.broad;
+        let (cold, dry) = (palette.frost, palette.thirst);
+        growth[FLOWER] = green
+            * step(-0.3, 0.6, patch)
+            * (1.0 - dry)
+            * (1.0 - 0.6 * cold)
+            * (1.0 - step(0.1, 0.6, t.shade));
+        let moist = (damp + 0.25 + 0.5 * palette.rain) * (1.0 - 2.0 * dry).max(0.0) * (1.0 - cold);
+        // In the open they stand in rainforests alone.
+        let shady = step(0.05, 0.45, t.shade).max(palette.rain * step(0.5, 1.0, palette.rain + damp - 0.3));
+        growth[FERN] = (green + 0.6 * cover.litter()).min(1.0)
+            * shady
+            * step(0.2, 0.6, moist + 0.4 * n.broad - 0.3 * t.patch);
+        let heath = self.heath(t, n) * (1.0 - t.shade);
+        let bushes = step(0.0, 0.8, 0.5 * t.patch - 0.4 * t.tuft + 0.5 * n.broad + 0.5 * damp);
+        // Scrub belongs to where it is too dry or too cold for trees to close.
+        let scrub = (dry * (1.0 - 0.7 * dry) * 2.4 + 0.7 * cold * (1.0 - 0.5 * cold)).min(1.0) * bushes;
+        growth[SHRUB] = (green * heath.max(scrub)).max(0.25 * scrub * cover.soil());
+        growth[TUSSOCK] = green
+            * (0.12 + 1.6 * dry * (1.0 - 0.6 * dry) + 0.5 * cold + 0.25 * heath)
+            * step(-0.6, 0.5, n.broad - 0.5 * patch);
+        let shore = step(-0.45, -0.15, above_m) * (1.0 - step(0.15, 0.45, above_m));
+        growth[REED] = shore
+            * step(0.0, 0.5, patch + 0.15)
+            * (1.0 - step(0.15, 0.4, t.slope))
+            * (1.0 - step(0.5, 1.0, cold));
+        let bare_stones = 0.9 * scree + 0.25 * rock + 0.12 * cover.soil() + 0.06 * t.deposit * green;
+        let gravel = shore * step(-0.2, 0.4, -patch) * 0.7;
+        let fallen = if t.slope > 0.08 && above_m > 0.2 { cliff() } else { 0.0 };
+        // Snow covers what is low.
+        let free = 1.0 - step(0.1, 0.4, snow);
+        growth[STONE] = free * (bare_stones + gravel + 0.6 * fallen * (1.0 - rock)).min(1.0);
+        // What is large rolls down what is steep.
+        growth[BOULDER] = (1.0 - 0.85 * snow)
+            * (1.0 - step(0.6, 0.95, t.slope))
+            * (fallen * (1.0 - rock)
+                + 0.35 * scree * step(0.2, 0.8, n.fine)
+                + 0.03 * green * step(0.5, 0.9, t.outcrop))
+            .min(1.0);
+        growth[LITTER] = cover.litter() * (0.35 + 0.65 * t.shade);
+        let dry_land = step(0.15, 0.4, above_m) * free;
+        ON_LAND.into_iter().for_each(|kind| growth[kind] *= dry_land);
+        growth
+    }
+}
+
+/// The kinds that may grow in a land, in the order of their channels.
+fn kinds(params: &GroundParams, painter: &Painter) -> Vec<PlantKind> {
+    let palette = &painter.palette;
+    let seed = noise_seed(params.terrain_seed.into(), "ground plants", 0);
+    let growth = palette.growth;
+    let stone = |tone: f32| [0.75, 1.15].map(|shade| painter.rock.map(|c| c * tone * shade));
+    let stones = vec![stone(1.0), stone(0.85), [painter.rock_band.map(|c| 0.8 * c), painter.rock_band]];
+    let litter = painter.litter;
+    // In the order of the channels.
+    let looks: [(PlantShape, Vec<[Rgb; 2]>); CHANNELS] = [
+        (shapes::flower(), flowers(seed, growth[1])),
+        (shapes::fern(), ferns(growth[1])),
+        (shapes::shrub(), shrubs(palette)),
+        (shapes::reed(), reeds()),
+        (shapes::stone(3), stones.clone()),
+        (shapes::stone(6), stones),
+        (
+            shapes::litter(litter.leaf_m, litter.is_needles),
+            vec![litter.colors, litter.colors.map(|c| c.map(|c| 0.7 * c))],
+        ),
+        (shapes::tussock(), vec![[growth[1], growth[3]], [growth[2], growth[4]]]),
+    ];
+    let kind = |(channel, (habit, (shape, colors))): (u32, (Habit, _))| {
+        let Habit { name, per_m2, scale, reach_m, sway } = habit;
+        PlantKind { name: name.into(), channel, per_m2, scale, reach_m, sway, colors, shape }
+    };
+    (0..).zip(HABITS.into_iter().zip(looks)).map(kind).collect()
+}
+
+/// Three kinds of flowers of the colours that there are, most of them of one, and the green of their stalks.
+fn flowers(seed: u32, stalk: Rgb) -> Vec<[Rgb; 2]> {
+    const PETALS: [Rgb; 7] = [
+        [0.72, 0.72, 0.66],
+        [0.75, 0.52, 0.03],
+        [0.34, 0.16, 0.52],
+        [0.60, 0.06, 0.02],
+        [0.66, 0.28, 0.40],
+        [0.13, 0.20, 0.62],
+        [0.74, 0.66, 0.20],
+    ];
+    let first = (hash01(seed, 1, 0, 0) * 7.0) as usize;
+    [0, 0, 0, 1, 3].map(|step| [stalk, PETALS[(first + step) % 7]]).into()
+}
+
+fn ferns(lush: Rgb) -> Vec<[Rgb; 2]> {
+    let tip = |other: Rgb| lerp(lush, other, 0.6);
+    vec![
+        [lush.map(|c| 0.7 * c), tip([0.055, 0.095, 0.020])],
+        [lush.map(|c| 0.9 * c), tip([0.085, 0.105, 0.030])],
+    ]
+}
+
+/// Heather; crimson and gold of the tundra; grey scrub of dry lands; evergreens of hot ones.
+fn shrubs(palette: &Palette) -> Vec<[Rgb; 2]> {
+    let tips = |heather: Rgb, cold: Rgb, dry: Rgb, hot: Rgb| {
+        let tip = lerp(lerp(heather, cold, palette.frost), hot, palette.heat);
+        lerp(tip, dry, (1.6 * palette.thirst).min(1.0))
+    };
+    let leaves = lerp([0.050, 0.050, 0.024], [0.110, 0.110, 0.070], palette.thirst);
+    vec![
+        [leaves, tips([0.165, 0.080, 0.115], [0.26, 0.07, 0.03], [0.20, 0.21, 0.14], [0.06, 0.14, 0.02])],
+        [leaves, tips([0.120, 0.085, 0.065], [0.27, 0.16, 0.03], [0.24, 0.20, 0.11], [0.10, 0.16, 0.03])],
+    ]
+}
+
+fn reeds() -> Vec<[Rgb; 2]> {
+    vec![[[0.06, 0.085, 0.025], [0.065, 0.040, 0.024]], [[0.10, 0.10, 0.04], [0.090, 0.058, 0.034]]]
+}

@@ -1,0 +1,268 @@
+//! Nothing → the shapes of ground plants and stones: a few triangles each, coarse ones first. Metres.
+
+use glam::Vec3;
+
+use crate::math::lerp;
+use crate::model::PlantShape;
+use crate::noise::hash01;
+
+use std::f32::consts::TAU;
+
+/// A shape in the making.
+#[derive(Default)]
+struct Drawing {
+    shape: PlantShape,
+    seed: u32,
+    dice: i32,
+}
+
+impl Drawing {
+    fn new(seed: u32) -> Self {
+        Self { seed, ..Self::default() }
+    }
+
+    /// In [0, 1).
+    fn unit(&mut self) -> f32 {
+        self.dice += 1;
+        hash01(self.seed, self.dice, 7, 1)
+    }
+
+    fn vertex(&mut self, position: Vec3, normal: Vec3, tint: f32) -> u32 {
+        // Scenes hold these numbers as text: millimetres will do.
+        let round = |x: f32| (1000.0 * x).round() / 1000.0;
+        self.shape.positions_m.push(position.to_array().map(round));
+        self.shape.normals.push(normal.normalize_or(Vec3::Y).to_array().map(round));
+        self.shape.tints.push(round(tint));
+        self.shape.positions_m.len() as u32 - 1
+    }
+
+    /// A triangle that is lit as if it faced half upwards, as leaves among others are.
+    fn leaf(&mut self, corners: [Vec3; 3], tints: [f32; 3]) {
+        let [a, b, c] = corners;
+        let across = (b - a).cross(c - a).normalize_or(Vec3::Y);
+        let normal = Vec3::Y + 0.6 * if across.y < 0.0 { -across } else { across };
+        let triangle = [0, 1, 2].map(|k| self.vertex(corners[k], normal, tints[k]));
+        self.shape.triangles.push(triangle);
+    }
+
+    /// A blade that bends from `root` outwards in the direction of a turn and ends in a point.
+    fn blade(&mut self, root: Vec3, turn: f32, [height, lean, width]: [f32; 3], tints: [f32; 2]) {
+        let out = heading(turn);
+        let side = Vec3::new(-out.z, 0.0, out.x) * (0.5 * width);
+        let middle = root + out * (0.3 * lean) + Vec3::Y * (0.62 * height);
+        let tip = root + out * lean + Vec3::Y * height;
+        let half = lerp(tints[0], tints[1], 0.6);
+        self.leaf([root - side, root + side, middle + 0.8 * side], [tints[0], tints[0], half]);
+        self.leaf([root - side, middle + 0.8 * side, middle - 0.8 * side], [tints[0], half, half]);
+        self.leaf([middle - 0.8 * side, middle + 0.8 * side, tip], [half, half, tints[1]]);
+    }
+
+    /// The triangles until here are enough from afar.
+    fn coarse(&mut self) {
+        self.shape.coarse = self.shape.triangles.len() as u32;
+    }
+
+    fn done(mut self) -> PlantShape {
+        if self.shape.coarse == 0 {
+            self.coarse();
+        }
+        self.shape
+    }
+}
+
+/// Level, from +x towards +z.
+fn heading(turn: f32) -> Vec3 {
+    Vec3::new(libm::cosf(turn), 0.0, libm::sinf(turn))
+}
+
+/// Three stalks with a head of six petals each, and leaves; tint 1 is the petals'.
+pub(super) fn flower() -> PlantShape {
+    let mut d = Drawing::new(61);
+    let heads = [[0.0, 0.27, 0.02], [0.07, 0.21, -0.03], [-0.05, 0.17, -0.05]].map(Vec3::from_array);
+    let petal = |d: &mut Drawing, head: Vec3, k: u32| {
+        let turn = k as f32 / 6.0 * TAU + head.x * 9.0;
+        let out =
+            |turn: f32, reach: f32| head + reach * heading(turn) + Vec3::Y * (0.3 * reach * libm::cosf(turn));
+        d.leaf([head, out(turn - 0.36, 0.022), out(turn + 0.36, 0.022)], [0.75, 1.0, 1.0]);
+    };
+    for head in heads {
+        (0..6).step_by(2).for_each(|k| petal(&mut d, head, k));
+        let root = head.with_y(0.0) * 0.2;
+        d.leaf([root - Vec3::X * 0.003, root + Vec3::X * 0.003, head], [0.0; 3]);
+    }
+    d.coarse();
+    for head in heads {
+        (1..6).step_by(2).for_each(|k| petal(&mut d, head, k));
+    }
+    for k in 0..4 {
+        d.blade(Vec3::ZERO, 1.6 * k as f32 + 0.4, [0.11, 0.07, 0.018], [0.0, 0.06]);
+    }
+    d.done()
+}
+
+/// A rosette of fronds that arch outwards, with leaflets on both sides.
+pub(super) fn fern() -> PlantShape {
+    let mut d = Drawing::new(62);
+    let fronds: Vec<(f32, f32)> =
+        (0..7).map(|k| (k as f32 / 7.0 * TAU + 0.5 * d.unit(), 0.8 + 0.4 * d.unit())).collect();
+    // Along a frond, 0 to 1.
+    let spine = |turn: f32, long: f32, t: f32| {
+        heading(turn) * (0.52 * long * t) + Vec3::Y * (0.42 * long * libm::sinf(2.3 * t) + 0.02)
+    };
+    for &(turn, long) in &fronds {
+        let side = Vec3::new(-libm::sinf(turn), 0.0, libm::cosf(turn));
+        let [a, b, c] = [0.0, 0.45, 1.0].map(|t| spine(turn, long, t));
+        d.leaf([a, b + 0.02 * side, b - 0.02 * side], [0.0, 0.5, 0.5]);
+        d.leaf([b - 0.02 * side, b + 0.02 * side, c], [0.5, 0.5, 1.0]);
+    }
+    d.coarse();
+    for &(turn, long) in &fronds {
+        let side = Vec3::new(-libm::sinf(turn), -0.12, libm::cosf(turn));
+        for k in 0..9 {
+            let t = 0.12 + 0.095 * k as f32;
+            let reach = 0.15 * long * (1.0 - t) + 0.025;
+            let (near, far) = (spine(turn, long, t - 0.028), spine(turn, long, t + 0.034));
+            for way in [-1.0, 1.0] {
+                let side = Vec3::new(way * side.x, side.y, way * side.z);
+                d.leaf([near, far, spine(turn, long, t + 0.06) + reach * side], [t, t, (t + 0.5).min(1.0)]);
+            }
+        }
+    }
+    d.done()
+}
+
+/// A low dome of sprigs from one root; tint 1 is that of their outermost leaves, or of their bloom.
+pub(super) fn shrub() -> PlantShape {
+    let mut d = Drawing::new(63);
+    let sprigs: Vec<(Vec3, Vec3)> = (0..34)
+        .map(|k| {
+            // Evenly over the dome, by the golden angle.
+            let (turn, up) = (2.4 * k as f32 + 0.6 * d.unit(), 1.0 - (k as f32 + 0.5) / 34.0);
+            let out = heading(turn) * (1.0 - 0.8 * up * up).sqrt();
+            let tip = (out * 0.40 + Vec3::Y * (0.16 + 0.26 * up)) * (0.75 + 0.4 * d.unit());
+            (out * 0.05, tip)
+        })
+        .collect();
+    let side = |root: Vec3, tip: Vec3| (tip - root).cross(Vec3::Y).normalize_or(Vec3::X);
+    for &(root, tip) in &sprigs {
+        let (across, thick) = (side(root, tip) * 0.016, root.lerp(tip, 0.7));
+        d.leaf([root, thick + across, thick - across], [0.0, 0.5, 0.5]);
+        d.leaf([thick + across, tip, thick - across], [0.5, 1.0, 0.5]);
+    }
+    d.coarse();
+    for &(root, tip) in &sprigs {
+        for k in 0..5 {
+            let from = root.lerp(tip, 0.35 + 0.15 * k as f32);
+            let way = if k % 2 == 0 { 1.0 } else { -1.0 };
+            let aim = (tip - root).normalize_or(Vec3::Y)
+                + 1.3 * way * side(root, tip)
+                + 0.9 * heading(d.unit() * TAU);
+            let leaf = aim.normalize_or(Vec3::Y) * (0.065 + 0.04 * d.unit());
+            let wide = leaf.cross(Vec3::Y).normalize_or(Vec3::X) * 0.019;
+            let tint = 0.12 * (k * k) as f32 * 0.5;
+            d.leaf([from, from + 0.5 * leaf + wide, from + leaf], [tint, tint, (tint + 0.15).min(1.0)]);
+        }
+    }
+    d.done()
+}
+
+/// Tall blades and brown ears from one root.
+pub(super) fn reed() -> PlantShape {
+    let mut d = Drawing::new(64);
+    for k in 0..9 {
+        let (turn, high) = (d.unit() * TAU, 0.9 + 0.7 * d.unit());
+        let root = heading(turn) * (0.12 * d.unit());
+        let lean = 0.1 + 0.22 * d.unit();
+        d.blade(root, turn, [high, lean, 0.026], [0.0, 0.3]);
+        if k == 4 {
+            d.coarse();
+        }
+    }
+    for _ in 0..2 {
+        let root = heading(d.unit() * TAU) * 0.08;
+        let top = root + Vec3::new(0.04, 1.45 + 0.3 * d.unit(), 0.02);
+        d.leaf([root - Vec3::X * 0.005, root + Vec3::X * 0.005, top], [0.0, 0.0, 0.6]);
+        let [low, high] = [top - 0.1 * Vec3::Y, top + 0.1 * Vec3::Y];
+        for side in [Vec3::X, Vec3::Z] {
+            d.leaf([low, top + 0.018 * side, high], [1.0; 3]);
+            d.leaf([low, high, top - 0.018 * side], [1.0; 3]);
+        }
+    }
+    d.done()
+}
+
+/// A tuft of long arching grass.
+pub(super) fn tussock() -> PlantShape {
+    let mut d = Drawing::new(65);
+    for k in 0..13 {
+        let (turn, long) = (d.unit() * TAU, 0.7 + 0.6 * d.unit());
+        let width = if k < 5 { 0.02 } else { 0.012 };
+        let root = heading(turn) * (0.05 * d.unit());
+        let lean = 0.08 + 0.3 * d.unit();
+        d.blade(root, turn, [0.46 * long, lean * long, width], [0.0, 1.0]);
+        if k == 4 {
+            d.coarse();
+        }
+    }
+    d.done()
+}
+
+/// Six fallen leaves, or a scatter of needles, flat on the ground.
+pub(super) fn litter(leaf_m: f32, is_needles: bool) -> PlantShape {
+    let mut d = Drawing::new(66);
+    let (count, long, wide) = if is_needles { (12, 0.07, 0.006) } else { (6, leaf_m, 0.62 * leaf_m) };
+    for _ in 0..count {
+        let turn = d.unit() * TAU;
+        let middle =
+            heading(d.unit() * TAU) * (0.34 * d.unit().sqrt()) + Vec3::Y * (0.008 + 0.016 * d.unit());
+        let (along, across) = (heading(turn) * (0.5 * long), heading(turn + 0.25 * TAU) * (0.5 * wide));
+        let curl = Vec3::Y * (0.16 * long * d.unit());
+        let tint = d.unit();
+        let [root, tip, left, right] =
+            [middle - along, middle + along + curl, middle - across + curl, middle + across];
+        d.leaf([root, right, tip], [tint; 3]);
+        d.leaf([root, tip, left], [tint * 0.8; 3]);
+    }
+    d.done()
+}
+
+/// A stone of about a metre, a fifth of it in the ground: a sphere of `rings` rings that was knocked about.
+pub(super) fn stone(rings: u32) -> PlantShape {
+    let mut d = Drawing::new(67 + rings);
+    let around = rings + 3;
+    let point = |d: &mut Drawing, ring: u32, k: u32| {
+        let polar = ring as f32 / rings as f32 * 0.5 * TAU;
+        let turn = (k as f32 + 0.5 * ring as f32) / around as f32 * TAU;
+        let bulge = 0.9 + 0.2 * d.unit();
+        let round = heading(turn) * libm::sinf(polar) + Vec3::Y * libm::cosf(polar);
+        // Squared off a little: stones break along planes.
+        let corner = round.abs().max_element().max(0.62);
+        round * (0.5 * bulge / corner) * Vec3::new(1.0, 0.62, 0.84) + Vec3::Y * 0.16
+    };
+    let top = point(&mut d, 0, 0);
+    let bottom = point(&mut d, rings, 0);
+    let grid: Vec<Vec<Vec3>> =
+        (1..rings).map(|ring| (0..around).map(|k| point(&mut d, ring, k)).collect()).collect();
+    let mut facet = |corners: [Vec3; 3]| {
+        let [a, b, c] = corners;
+        let normal = (b - a).cross(c - a).normalize_or(Vec3::Y);
+        let outward = if normal.dot(a + b + c - Vec3::Y * 0.48) < 0.0 { -normal } else { normal };
+        let tint = d.unit();
+        // Smoothed a little towards a sphere's.
+        let triangle = corners.map(|p| {
+            let round = (p - Vec3::Y * 0.16).normalize_or(Vec3::Y);
+            d.vertex(p, outward + 1.1 * round, tint)
+        });
+        d.shape.triangles.push(triangle);
+    };
+    let n = around as usize;
+    for k in 0..n {
+        facet([top, grid[0][(k + 1) % n], grid[0][k]]);
+        facet([bottom, grid[grid.len() - 1][k], grid[grid.len() - 1][(k + 1) % n]]);
+        for pair in grid.windows(2) {
+            facet([pair[0][k], pair[0][(k + 1) % n], pair[1][k]]);
+            facet([pair[0][(k + 1) % n], pair[1][(k + 1) % n], pair[1][k]]);
+        }
+    }
+    d.done()
+}

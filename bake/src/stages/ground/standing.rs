@@ -1,0 +1,99 @@
+//! Maps of small plants and the foreground → those around the eye as plain triangles among the blades of grass, where a
+//! viewer of `GSC_heightfield` has them, too. Metres.
+
+use glam::{Vec2, Vec3};
+
+use super::cover::KINDS;
+use super::grass::BLADE_WHITE;
+use super::patch::{Patch, SIDE_M, plan};
+use crate::math::lerp_array;
+use crate::model::{
+    DensityMap, GroundPlants, Image8, Material, Mesh, Part, PartKind, Plant, PlantKind, StartView, ground_m,
+};
+
+/// Metres from the eye to the last of them: files are to stay small.
+const REACH_M: f32 = 40.0;
+/// Metres around the eye that stay free.
+const FREE_M: f32 = 0.8;
+/// Part of its reach up to which a kind shows all its triangles.
+const FINE: f32 = 0.35;
+/// Triangles of all of them, for the same reason.
+pub(super) const MAX_TRIANGLES: usize = 36_000;
+
+/// A plant near the eye.
+struct Standing<'a> {
+    kind: &'a PlantKind,
+    plant: Plant,
+    triangles: &'a [[u32; 3]],
+}
+
+/// Adds the plants on the piece of ground to the mesh of its grass, as a part of their own: `Material::Foreign(6)`.
+pub(super) fn stand(plants: &GroundPlants<Image8>, patch: &Patch<'_>, view: &StartView, mesh: &mut Mesh) {
+    let mut near: Vec<Standing<'_>> =
+        plants.kinds.iter().flat_map(|kind| around(plants, kind, patch, view)).collect();
+    // Where there are too many, those of the lowest ranks stand for all.
+    near.sort_by(|a, b| a.plant.rank.total_cmp(&b.plant.rank));
+    let material = Material::Foreign(KINDS as u32 + 1);
+    mesh.parts.push(Part { material, kind: PartKind::Surface, triangles: Vec::new() });
+    let mut left = MAX_TRIANGLES;
+    for standing in near {
+        let Some(rest) = left.checked_sub(standing.triangles.len()) else { return };
+        left = rest;
+        add(mesh, &standing, patch);
+    }
+}
+
+/// Those of one kind.
+fn around<'a>(
+    plants: &GroundPlants<Image8>,
+    kind: &'a PlantKind,
+    patch: &Patch<'_>,
+    view: &StartView,
+) -> Vec<Standing<'a>> {
+    let Some(map) = plants.maps.get(kind.channel as usize / 4) else { return Vec::new() };
+    let map = DensityMap { width_px: map.width, height_px: map.height, rgba: &map.data };
+    let extent_m = patch.land.field.extent_m();
+    let density = |x: f32, z: f32| map.at(kind.channel, x / extent_m + 0.5, z / extent_m + 0.5);
+    let eye = plan(view.position_m.to_array());
+    let reach_m = kind.reach_m.min(REACH_M);
+    let lines = |from: f32| (from / kind.cell_m()) as i32 - 1..=((from + SIDE_M) / kind.cell_m()) as i32 + 1;
+    let cells = lines(patch.corner.y).flat_map(|j| lines(patch.corner.x).map(move |i| [i, j]));
+    let standing = |plant: Plant| {
+        let place = Vec2::new(plant.x_m, plant.z_m);
+        let away_m = place.distance(eye);
+        let is_here = (FREE_M..reach_m).contains(&away_m)
+            && patch.inward(place) > 0.0
+            // Fewer the farther away.
+            && plant.rank < 1.5 - away_m / reach_m;
+        let count = if away_m < FINE * kind.reach_m {
+            kind.shape.triangles.len()
+        } else {
+            kind.shape.coarse as usize
+        };
+        is_here.then(|| Standing { kind, plant, triangles: &kind.shape.triangles[..count] })
+    };
+    cells.filter_map(|cell| kind.in_cell(cell, density)).filter_map(standing).collect()
+}
+
+fn add(mesh: &mut Mesh, Standing { kind, plant, triangles }: &Standing<'_>, patch: &Patch<'_>) {
+    let shape = &kind.shape;
+    let (sin, cos) = libm::sincosf(plant.turn_rad);
+    let turn = |v: [f32; 3]| Vec3::new(cos * v[0] - sin * v[2], v[1], sin * v[0] + cos * v[2]);
+    let middle = Vec2::new(plant.x_m, plant.z_m);
+    let middle_m = patch.height_m(middle);
+    let [root, tip] = kind.colors[plant.color as usize];
+    let base = mesh.positions.len() as u32;
+    let corners = shape.positions_m.iter().zip(&shape.normals).zip(&shape.tints);
+    let used = triangles.as_flattened().iter().max().map_or(0, |&last| last as usize + 1);
+    for ((&position, &normal), &tint) in corners.take(used) {
+        let offset = plant.scale * turn(position);
+        let place = middle + Vec2::new(offset.x, offset.z);
+        let height_m = ground_m(patch.height_m(place), middle_m, place.distance(middle));
+        mesh.positions.push([place.x, height_m + offset.y, place.y]);
+        mesh.normals.push(turn(normal).to_array());
+        let [r, g, b] =
+            lerp_array(root, tip, tint).map(|c| (c / BLADE_WHITE * 255.0 + 0.5).clamp(0.0, 255.0) as u8);
+        mesh.colors.push([r, g, b, 255]);
+    }
+    mesh.parts[1].triangles.extend(triangles.iter().map(|corners| corners.map(|v| v + base)));
+}

@@ -1,0 +1,129 @@
+//! Trees and their genes → what they do to the ground under them: shade, and what they shed.
+
+use serde::{Deserialize, Serialize};
+
+use super::cover::Rgb;
+use crate::math::lerp_array;
+use crate::model::{Instance, Landform};
+
+/// The genes of trees that the ground shows; names, ranges and meanings as in the parameter space.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LitterParams {
+    /// Bare trees stand on last autumn's leaves.
+    pub leaves_per_stem: u32,
+    pub leaf_shape: u32,
+    pub leaf_size_m: f32,
+    pub leaf_hue_deg: f32,
+    pub blossom: f32,
+}
+
+const NEEDLES: u32 = 6;
+const FRONDS: u32 = 7;
+
+const BROWN: Rgb = [0.085, 0.062, 0.038];
+const RUSSET: Rgb = [0.084, 0.058, 0.036];
+const STRAW: Rgb = [0.190, 0.145, 0.085];
+const PETAL: Rgb = [0.640, 0.480, 0.500];
+/// Fallen leaves by the hue in degrees that they had on their tree; on the ground they soon dry.
+const AUTUMN: [(f32, Rgb); 3] =
+    [(20.0, [0.200, 0.062, 0.030]), (35.0, [0.245, 0.112, 0.038]), (55.0, [0.280, 0.200, 0.062])];
+
+/// What a kind of tree sheds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Litter {
+    /// Part of the ground under a crown that it covers.
+    pub amount: f32,
+    /// Of the carpet, and of leaves that lie on it.
+    pub colors: [Rgb; 2],
+    pub leaf_m: f32,
+    pub is_needles: bool,
+}
+
+impl Litter {
+    fn new(params: &LitterParams) -> Self {
+        let hue = params.leaf_hue_deg;
+        // 1 up to 55°, where leaves are yellow, 0 where they are green.
+        let autumn = ((75.0 - hue) / 20.0).clamp(0.0, 1.0);
+        let above = AUTUMN.iter().position(|stop| stop.0 >= hue).unwrap_or(2).max(1);
+        let ((low, a), (high, b)) = (AUTUMN[above - 1], AUTUMN[above]);
+        let bright = lerp_array(a, b, ((hue - low) / (high - low)).clamp(0.0, 1.0));
+        let broad = |amount: f32, colors: [Rgb; 2]| Self {
+            amount,
+            colors,
+            leaf_m: params.leaf_size_m.clamp(0.04, 0.16),
+            is_needles: false,
+        };
+        match params.leaf_shape {
+            _ if params.leaves_per_stem == 0 => broad(0.8, [BROWN, STRAW]),
+            NEEDLES => Self { is_needles: true, ..broad(0.85, [RUSSET, BROWN]) },
+            FRONDS => broad(0.25, [STRAW, BROWN]),
+            _ => {
+                let amount = 0.4 + 0.5 * autumn;
+                let carpet = lerp_array(BROWN, bright, 0.45 * autumn);
+                let leaves = lerp_array(STRAW, bright, autumn);
+                broad(amount, [carpet, lerp_array(leaves, PETAL, (4.0 * params.blossom).min(1.0))])
+            }
+        }
+    }
+}
+
+/// What trees do to the ground.
+pub struct Woods {
+    pub(super) litter: Litter,
+    /// Samples a side; 0 if there are no trees.
+    side: usize,
+    /// How much lies under crowns, 0 to 1, row by row.
+    shade: Vec<f32>,
+}
+
+impl Woods {
+    /// Land without trees.
+    pub fn none() -> Self {
+        Self { litter: Litter::default(), side: 0, shade: Vec::new() }
+    }
+
+    /// The woods of a land; `crowns_m` gives the radius of each template's crown at scale 1.
+    pub fn new(params: &LitterParams, land: &Landform, trees: &[Instance], crowns_m: &[f32]) -> Self {
+        let step = super::traits::stride(land);
+        let side = ((land.field.side - 1) / step + 1) as usize;
+        let spacing_m = land.field.spacing_m * step as f32;
+        let mut shade = vec![0.0f32; side * side];
+        for tree in trees {
+            let column = tree.world_from_tree.map(|row| row[0]);
+            let scale = column.iter().map(|c| c * c).sum::<f32>().sqrt();
+            let crown_m = crowns_m.get(tree.template as usize).copied().unwrap_or(0.0) * scale;
+            let [x, z, _] = tree.trunk_cylinder_m;
+            lay(
+                &mut shade,
+                side,
+                [x, z].map(|m| m / spacing_m + 0.5 * (side - 1) as f32),
+                crown_m / spacing_m,
+            );
+        }
+        Self { litter: Litter::new(params), side, shade }
+    }
+
+    /// Shade at a sample of the traits' grid.
+    #[inline]
+    pub(super) fn shade(&self, i: usize, j: usize) -> f32 {
+        if self.side == 0 { 0.0 } else { self.shade[j * self.side + i] }
+    }
+}
+
+/// Lays the shade of one crown, in samples: full over its inner half, none where its outermost leaves hang.
+fn lay(shade: &mut [f32], side: usize, middle: [f32; 2], radius: f32) {
+    let reach = 1.15 * radius + 0.5;
+    let span = |m: f32| {
+        let last = side as i32 - 1;
+        (((m - reach) as i32).clamp(0, last) as usize)..=(((m + reach) as i32).clamp(0, last) as usize)
+    };
+    for j in span(middle[1]) {
+        for i in span(middle[0]) {
+            let (x, z) = (i as f32 - middle[0], j as f32 - middle[1]);
+            let away = (x * x + z * z).sqrt() / reach;
+            let here = (2.0 - 2.0 * away).clamp(0.0, 1.0);
+            let sample = &mut shade[j * side + i];
+            *sample = sample.max(here);
+        }
+    }
+}
