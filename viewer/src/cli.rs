@@ -10,11 +10,11 @@ use crate::image_file::parse_size;
 use crate::options::{Options, number};
 
 /// Shows four landscapes at once: walk through all of them, say which has the best trees, terrain and sky, and breed
-/// four new ones
+/// four new ones. Shows any glTF file, too, alone
 #[derive(Clone, Debug, Parser)]
 #[command(name = "viewer", version, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
 pub struct Cli {
-    /// A world, a baked folder or a scene.gltf [default: the world in ./world, made if absent]
+    /// A world, a baked folder, or any .glb or .gltf file [default: the world in ./world, made if absent]
     pub path: Option<PathBuf>,
 
     /// The world folder: populations and everything baked
@@ -60,8 +60,9 @@ pub struct Cli {
     #[arg(long)]
     pub all: bool,
 
-    /// With --screenshot: where the eye is. X and Z in metres east and south of the middle, HEIGHT above the ground
-    /// and never under water, YAW to the left of north and PITCH upwards in degrees [default: where walks start]
+    /// With --screenshot: where the eye is. X and Z in metres east and south of the middle (of a file's bounds, if it is
+    /// no landscape), HEIGHT above the ground and never under water, YAW to the left of north and PITCH upwards in
+    /// degrees [default: where walks start]
     #[arg(long, value_name = "X,Z,HEIGHT,YAW,PITCH", value_parser = place, allow_hyphen_values = true)]
     pub camera: Option<Place>,
 
@@ -97,6 +98,7 @@ const EXAMPLES: &str = "Examples:
   viewer                             the landscapes of ./world
   viewer --world alps                those of another world
   viewer world/baked/g0003           an older generation as it was baked
+  viewer tree.glb                    any glTF file, alone
   viewer --screenshot all.png --all  all four to a file, without a window
   viewer --screenshot a.png --landscape 2 --camera 0,20,1.6,45,-5";
 

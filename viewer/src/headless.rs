@@ -14,7 +14,7 @@ use crate::options::FrameInput;
 use crate::passes::{Passes, Shaders};
 use crate::scene::Scene;
 use crate::scene_loader::{Loaded, SceneLoader};
-use crate::upload::SceneBuffers;
+use crate::upload::{Exhibit, SceneBuffers};
 use crate::view::{Drawn, View};
 
 /// A device with everything that draws.
@@ -46,15 +46,15 @@ impl Headless {
         self.loader.upload(scene, &self.passes).with_context(|| format!("cannot show {}", scene.name))
     }
 
-    /// Both.
+    /// Reads a landscape or anyone's file and brings it to the device.
     pub fn load(&self, path: &Path) -> Result<Loaded> {
         self.loader.load(path, &self.passes)
     }
 
-    /// A view of a landscape.
-    pub fn view(&self, scene: Arc<SceneBuffers>, size_px: [u32; 2]) -> View {
+    /// A view of a landscape or of anyone's file.
+    pub fn view(&self, exhibit: impl Into<Exhibit>, size_px: [u32; 2]) -> View {
         let mut view = View::new(&self.gpu, &self.passes, "headless", size_px);
-        view.show(&self.passes, scene);
+        view.show(&self.passes, exhibit);
         view
     }
 

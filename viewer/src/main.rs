@@ -6,6 +6,7 @@ use anyhow::Result;
 use clap::Parser;
 use genescape_schema::printable;
 use genescape_viewer::cli::{Cli, Command};
+use genescape_viewer::load::LoadError;
 use genescape_viewer::{app, bench, manual, screenshot};
 use genescape_world::output::BadOutput;
 use genescape_world::{Source, WorldError};
@@ -23,8 +24,9 @@ fn main() -> ExitCode {
     match run(cli) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            let is_bad_input =
-                error.is::<BadOutput>() || error.downcast_ref().is_some_and(WorldError::is_bad_input);
+            let is_bad_input = error.is::<BadOutput>()
+                || error.downcast_ref().is_some_and(WorldError::is_bad_input)
+                || error.downcast_ref().is_some_and(LoadError::is_bad_input);
             eprintln!("error: {}", printable(&format!("{error:#}")));
             ExitCode::from(if is_bad_input { BAD_INPUT } else { FAILED })
         }

@@ -7,6 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::lod_mode::{TerrainLodMode, TreeLodMode};
 
+/// The usual error of [`Options::mesh_error_px`].
+pub const MESH_ERROR_PX: f32 = 0.5;
+
 /// What is drawn, and how: chosen in the settings panel, or on the command line, whose help these comments are.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, clap::Args)]
 #[serde(default)]
@@ -16,6 +19,10 @@ pub struct Options {
     #[serde(rename = "tree_scheme")]
     #[arg(long, value_enum, default_value_t)]
     pub tree_lod: TreeLodMode,
+    /// Levels of detail of a file that is no landscape
+    // By error: what stands alone is looked at from near, and no forest has tuned its numbers.
+    #[arg(long, value_enum, default_value_t = Self::default().mesh_lod)]
+    pub mesh_lod: TreeLodMode,
     /// Levels of detail of the terrain
     #[serde(rename = "terrain_scheme")]
     #[arg(long, value_enum, default_value_t)]
@@ -23,6 +30,9 @@ pub struct Options {
     /// Error that trees may have on the screen, in pixels
     #[arg(long = "tree-error", value_name = "PIXELS", default_value_t = Self::default().tree_error_px, value_parser = pixels)]
     pub tree_error_px: f32,
+    /// Error that a file that is no landscape may have on the screen, in pixels
+    #[arg(long = "mesh-error", value_name = "PIXELS", default_value_t = Self::default().mesh_error_px, value_parser = pixels)]
+    pub mesh_error_px: f32,
     /// Error that the terrain may have on the screen, in pixels
     #[arg(long = "terrain-error", value_name = "PIXELS", default_value_t = Self::default().terrain_error_px, value_parser = pixels)]
     pub terrain_error_px: f32,
@@ -47,7 +57,8 @@ pub struct Options {
     /// No blades of grass around the eye
     #[arg(long = "no-grass", action = ArgAction::SetFalse)]
     pub grass: bool,
-    #[arg(skip = true)]
+    /// No land; under a file that is no landscape, no grid
+    #[arg(long = "no-ground", action = ArgAction::SetFalse)]
     pub draw_terrain: bool,
     /// Factor on the landscape's own exposure
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = factor)]
@@ -82,6 +93,10 @@ pub const PICTURE_SWITCHES: [Switch; 4] = [
     ("Clouds drift", "", |options| &mut options.drift_clouds),
 ];
 
+/// The same of a file that is no landscape.
+pub const FILE_SWITCHES: [Switch; 1] =
+    [("Grid on the ground", "Its squares say how large things are", |options| &mut options.draw_terrain)];
+
 fn pixels(text: &str) -> Result<f32, String> {
     number(text, 0.0..=1e4, "pixels")
 }
@@ -109,8 +124,10 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             tree_lod: TreeLodMode::default(),
+            mesh_lod: TreeLodMode::Quality,
             terrain_lod: TerrainLodMode::default(),
             tree_error_px: 1.5,
+            mesh_error_px: MESH_ERROR_PX,
             terrain_error_px: 2.0,
             wireframe: false,
             tint_levels: false,

@@ -1,26 +1,28 @@
-//! `scene.gltf` → a landscape on the device, with its shadows drawn, and the land to walk on. What two landscapes have in
-//! common is read and uploaded once.
+//! A glTF file → a landscape on the device, with its shadows drawn, and the land to walk on; or anyone's file and the ground
+//! under it. What two landscapes have in common is read and uploaded once.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::{Error, Result};
 use glam::{Vec2, Vec3Swizzles};
 
 use crate::gpu::Gpu;
-use crate::load::{self, Store};
+use crate::load::{self, Content, Store};
 use crate::passes::Passes;
 use crate::scene::Scene;
-use crate::upload::{SceneBuffers, Uploader};
+use crate::upload::{Exhibit, SceneBuffers, Uploader};
 use crate::walk::Land;
 
-/// A landscape that can be drawn and walked in.
+/// A landscape, or anyone's file, that can be drawn and walked in.
 #[derive(Clone, Debug)]
 pub struct Loaded {
-    pub buffers: Arc<SceneBuffers>,
+    pub exhibit: Exhibit,
     pub land: Arc<Land>,
     /// Only trees near by throw shadows on others yet.
     pub lacks_shadows: bool,
+    /// What it is made of besides its own file; only of anyone's files, for blobs never change.
+    pub files: Vec<PathBuf>,
 }
 
 /// How far around the eye shadows are drawn before a landscape is shown: what is farther is a few pixels high.
@@ -40,7 +42,7 @@ impl SceneLoader {
 
     /// Reads the landscape of a `scene.gltf`.
     pub fn read(&self, path: &Path) -> Result<Scene> {
-        Ok(load::load(path, &self.store)?)
+        Ok(load::scene(path, &self.store)?)
     }
 
     /// Brings a landscape to the device. Its shadows are done when this returns: no picture has to wait for them.
@@ -50,27 +52,42 @@ impl SceneLoader {
         Ok(Arc::new(buffers))
     }
 
-    /// Both.
+    /// Reads whatever there is and brings it to the device.
     pub fn load(&self, path: &Path, passes: &Passes) -> Result<Loaded> {
-        let scene = self.read(path)?;
-        let buffers = self.upload(&scene, passes)?;
-        Ok(Loaded { buffers, land: Arc::new(Land::of(&scene)), lacks_shadows: false })
+        self.load_by(path, |scene| {
+            let exhibit = self.upload(scene, passes)?.into();
+            Ok(Loaded { exhibit, land: Arc::new(Land::of(scene)), lacks_shadows: false, files: Vec::new() })
+        })
     }
 
-    /// Both, with those shadows only that are seen from `eye_m` (x and z), or from where walks start.
+    /// The same, of a landscape with those shadows only that are seen from `eye_m` (x and z), or from where walks start.
     pub fn load_with_near_shadows(
         &self,
         path: &Path,
         passes: &Passes,
         eye_m: Option<Vec2>,
     ) -> Result<Loaded> {
-        let scene = self.read(path)?;
-        let buffers = self.uploader.upload(&scene).map_err(Error::msg)?;
-        let bake = passes.shadow.begin(&self.gpu, passes, &buffers);
-        bake.land();
-        bake.trees_around(eye_m.unwrap_or(scene.start.position_m.xz()), NEAR_M);
-        drop(bake);
-        let land = Arc::new(Land::of(&scene));
-        Ok(Loaded { buffers: Arc::new(buffers), land, lacks_shadows: true })
+        self.load_by(path, |scene| {
+            let buffers = self.uploader.upload(scene).map_err(Error::msg)?;
+            let bake = passes.shadow.begin(&self.gpu, passes, &buffers);
+            bake.land();
+            bake.trees_around(eye_m.unwrap_or(scene.start.position_m.xz()), NEAR_M);
+            drop(bake);
+            let (exhibit, land) = (Arc::new(buffers).into(), Arc::new(Land::of(scene)));
+            Ok(Loaded { exhibit, land, lacks_shadows: true, files: Vec::new() })
+        })
+    }
+
+    /// Brings a landscape to the device by `landscape`, and any other file as it is.
+    fn load_by(&self, path: &Path, landscape: impl FnOnce(&Scene) -> Result<Loaded>) -> Result<Loaded> {
+        match load::load(path, &self.store)? {
+            Content::Landscape(scene) => landscape(&scene),
+            Content::Asset(asset, files) => {
+                let buffers = self.uploader.asset(&asset).map_err(Error::msg)?;
+                self.gpu.wait();
+                let (exhibit, land) = (Arc::new(buffers).into(), Arc::new(Land::under(&asset)));
+                Ok(Loaded { exhibit, land, lacks_shadows: false, files })
+            }
+        }
     }
 }

@@ -27,6 +27,9 @@ pub fn take(cli: &Cli, source: &Source, out: &Path) -> Result<()> {
     let [width, height] = cli.size.unwrap_or(DEFAULT_SIZE_PX);
     image_file::check_size(&headless.gpu, [width, height])?;
     let loaded = paths.iter().map(|path| headless.load(path)).collect::<Result<Vec<_>>>()?;
+    for asset in loaded.iter().filter_map(|loaded| loaded.exhibit.asset()) {
+        asset.facts.notes.iter().for_each(|note| say!("{}: {note}", asset.name));
+    }
     let lands: Vec<&Land> = loaded.iter().map(|loaded| &*loaded.land).collect();
     let rig = Rig::new(start_pose(&lands), &lands);
 
@@ -36,7 +39,7 @@ pub fn take(cli: &Cli, source: &Source, out: &Path) -> Result<()> {
     let frame = FrameInput { options, time_s: cli.time, ..FrameInput::default() };
     let mut pictures = Vec::new();
     for one in &loaded {
-        let mut view = headless.view(one.buffers.clone(), size);
+        let mut view = headless.view(one.exhibit.clone(), size);
         let walker = camera(cli, &rig, &one.land, options.fov_y_deg.to_radians());
         let camera = if options.overhead { one.land.overhead(walker.fov_y_rad) } else { walker };
         pictures.push(headless.shoot(&mut view, &frame, &camera, &walker)?);
@@ -66,10 +69,12 @@ fn chosen(cli: &Cli, mut paths: Vec<PathBuf>) -> Result<Vec<PathBuf>> {
 
 fn camera(cli: &Cli, rig: &Rig, land: &Land, fov_y_rad: f32) -> Camera {
     let Some(place) = cli.camera else { return rig.camera(land, fov_y_rad) };
-    let place_m = Vec2::new(place.x_m, place.z_m);
-    let height_m = (land.ground_m(place_m) + place.height_m).max(land.floor_m(place_m));
+    // Of anyone's file, in the file's metres.
+    let scale = land.subject.map_or(1.0, |subject| subject.scale);
+    let place_m = Vec2::new(place.x_m, place.z_m) * scale;
+    let height_m = (land.ground_m(place_m) + place.height_m * scale).max(land.floor_m(place_m));
     Camera {
-        position_m: Vec3::new(place.x_m, height_m, place.z_m),
+        position_m: Vec3::new(place_m.x, height_m, place_m.y),
         yaw_rad: place.yaw_deg.to_radians(),
         pitch_rad: place.pitch_deg.to_radians(),
         fov_y_rad,

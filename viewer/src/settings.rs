@@ -105,6 +105,7 @@ impl Settings {
 fn key(source: &Source) -> String {
     match source {
         Source::World(root) => fs::canonicalize(root).unwrap_or_else(|_| root.clone()).display().to_string(),
+        Source::Scenes(paths) if paths.len() == 1 => key(&Source::World(paths[0].clone())),
         Source::Scenes(_) => "scenes".to_owned(),
     }
 }

@@ -42,7 +42,7 @@ pub enum WorldError {
     LastGeneration(u32),
     #[error("there is no file {}", .0.display())]
     NoFile(PathBuf),
-    #[error("{} is no scene.gltf", .0.display())]
+    #[error("{} is neither a folder nor a .glb or .gltf file", .0.display())]
     NoScene(PathBuf),
     #[error("{} is neither a world nor a baked folder: it has no {POPULATIONS}/ and no scene.gltf", .0.display())]
     NoSource(PathBuf),

@@ -25,18 +25,23 @@ pub enum Change {
     Current,
     /// A `.wgsl` file of the folder of shaders came, went or was saved.
     Shaders,
+    /// The file of that number in [`Scope::files`] came, went or was saved.
+    File(usize),
 }
 
-/// What to look at, besides `space.ron`.
+/// What to look at.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Scope {
-    pub world: World,
+    /// Its `space.ron`, and what else is asked for.
+    pub world: Option<World>,
     /// This population file alone, wherever it lies, instead of all of the world's.
     pub population: Option<PathBuf>,
     /// What was baked: scenes and `current.ron`.
     pub scenes: bool,
     /// A folder with WGSL files, for those who write shaders.
     pub shaders: Option<PathBuf>,
+    /// Any other files.
+    pub files: Vec<PathBuf>,
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -46,6 +51,7 @@ pub struct Snapshot {
     current: Option<Stamp>,
     scenes: BTreeMap<(u32, usize), Stamp>,
     shaders: BTreeMap<PathBuf, Stamp>,
+    files: BTreeMap<usize, Stamp>,
     /// Folders that files of interest may come into.
     pub(crate) folders: BTreeSet<PathBuf>,
 }
@@ -65,34 +71,26 @@ struct Stamp {
 impl Scope {
     /// The space and all populations of a world.
     pub fn of(world: World) -> Self {
-        Self { world, population: None, scenes: false, shaders: None }
+        Self { world: Some(world), population: None, scenes: false, shaders: None, files: Vec::new() }
+    }
+
+    /// Files of no world.
+    pub fn of_files(files: Vec<PathBuf>) -> Self {
+        Self { world: None, population: None, scenes: false, shaders: None, files }
     }
 }
 
 impl Snapshot {
     /// What is there now. What cannot be read is not there; what `before` knows already is not parsed again.
     pub fn take(scope: &Scope, before: &Self) -> Self {
-        let Scope { world, population, scenes, shaders } = scope;
-        let root = world.root();
-        let mut now =
-            Self { space: read(&root.join(names::SPACE)).map(|(stamp, _)| stamp), ..Self::default() };
-        now.add_folder(root.to_owned());
-        let populations = now.add_folder(root.join(names::POPULATIONS));
-        match population {
-            Some(path) => {
-                let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-                now.add_folder(folder.unwrap_or(Path::new(".")).to_owned());
-                now.add_population(path.clone(), before);
-            }
-            None => {
-                for generation in list(&populations, names::generation).unwrap_or_default() {
-                    now.add_population(world.population_path(generation), before);
-                }
-            }
+        let Scope { world, population, scenes, shaders, files } = scope;
+        let mut now = Self::default();
+        if let Some(world) = world {
+            now.add_world(world, population.as_deref(), *scenes, before);
         }
-        if *scenes {
-            now.current = stamp(&root.join(names::CURRENT));
-            now.add_scenes(world);
+        for (number, path) in files.iter().enumerate() {
+            now.add_folder_of(path);
+            now.files.extend(stamp(path).map(|stamp| (number, stamp)));
         }
         if let Some(folder) = shaders {
             let is_shader = |name: &str| name.ends_with(".wgsl").then(|| folder.join(name));
@@ -102,6 +100,33 @@ impl Snapshot {
             now.add_folder(folder.clone());
         }
         now
+    }
+
+    fn add_world(&mut self, world: &World, population: Option<&Path>, scenes: bool, before: &Self) {
+        let root = world.root();
+        self.space = read(&root.join(names::SPACE)).map(|(stamp, _)| stamp);
+        self.add_folder(root.to_owned());
+        let populations = self.add_folder(root.join(names::POPULATIONS));
+        match population {
+            Some(path) => {
+                self.add_folder_of(path);
+                self.add_population(path.to_owned(), before);
+            }
+            None => {
+                for generation in list(&populations, names::generation).unwrap_or_default() {
+                    self.add_population(world.population_path(generation), before);
+                }
+            }
+        }
+        if scenes {
+            self.current = stamp(&root.join(names::CURRENT));
+            self.add_scenes(world);
+        }
+    }
+
+    fn add_folder_of(&mut self, path: &Path) {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        self.add_folder(folder.unwrap_or(Path::new(".")).to_owned());
     }
 
     /// Notes a folder that files may come into, if it is there.
@@ -143,6 +168,7 @@ impl Snapshot {
         changes.extend((self.space != before.space).then_some(Change::Space));
         changes.extend((self.current != before.current).then_some(Change::Current));
         changes.extend((self.shaders != before.shaders).then_some(Change::Shaders));
+        changes.extend(differing(&self.files, &before.files).map(|&number| Change::File(number)));
         let saved = differing(&self.populations, &before.populations);
         changes.extend(saved.filter_map(|path| names::generation_of(path)).map(Change::Population));
         let replaced = differing(&self.scenes, &before.scenes);
@@ -233,7 +259,7 @@ mod tests {
     }
 
     fn path(scope: &Scope, generation: u32) -> PathBuf {
-        scope.world.population_path(generation)
+        scope.world.as_ref().expect("a world").population_path(generation)
     }
 
     fn look(scope: &Scope, before: &Snapshot) -> Snapshot {
@@ -298,6 +324,23 @@ mod tests {
         let gone = look(&scope, &now);
         assert!(gone.populations().next().is_none() && gone != now && gone.has_lost_since(&now));
         assert!(!now.has_lost_since(&gone));
+    }
+
+    #[test]
+    fn files_of_no_world_may_matter() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let [model, picture] = ["model.gltf", "sub/bark.png"].map(|name| folder.path().join(name));
+        fs::create_dir(folder.path().join("sub")).expect("made");
+        fs::write(&model, "one").expect("written");
+        let scope = Scope::of_files(vec![model.clone(), picture.clone()]);
+        let before = look(&scope, &Snapshot::default());
+        assert!(before.folders.contains(&folder.path().join("sub")));
+        fs::write(&picture, "came").expect("written");
+        fs::write(folder.path().join("other.gltf"), "none of ours").expect("written");
+        let now = look(&scope, &before);
+        assert_eq!(now.changes_since(&before), [Change::File(1)].into());
+        fs::write(&model, "saved").expect("written");
+        assert_eq!(look(&scope, &now).changes_since(&now), [Change::File(0)].into());
     }
 
     #[test]

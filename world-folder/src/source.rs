@@ -12,7 +12,7 @@ use crate::{WorldError, names};
 pub enum Source {
     /// A world folder, with populations and a bake.
     World(PathBuf),
-    /// Scene files only: what was baked elsewhere.
+    /// glTF files only: what was baked elsewhere, or one of anyone's.
     Scenes(Vec<PathBuf>),
 }
 
@@ -22,7 +22,9 @@ impl Source {
     /// # Errors
     /// A path to nothing of ours.
     pub fn of(path: &Path) -> Result<Self, WorldError> {
-        let is_gltf = path.extension().is_some_and(|ending| ending == "gltf" || ending == "glb");
+        let is_gltf = path
+            .extension()
+            .is_some_and(|ending| ["gltf", "glb"].iter().any(|known| ending.eq_ignore_ascii_case(known)));
         match (is_gltf, path.is_file()) {
             (true, true) => return Ok(Self::Scenes(vec![path.to_owned()])),
             (true, false) => return Err(WorldError::NoFile(path.to_owned())),

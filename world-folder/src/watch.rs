@@ -1,4 +1,4 @@
-//! Watches a world and reports what changed.
+//! Watches a world, or some files, and reports what changed.
 //!
 //! Folders are watched, never files: an atomic save replaces the file, and a watch on it would end there. Events may
 //! be lost, or come before their folder is watched; so an event is only the occasion to take another snapshot, and what
@@ -38,7 +38,7 @@ enum Hint {
 }
 
 impl Watch {
-    /// Watches a world, whose folder is made if it is not there. What is there already is not reported. `wake` is called
+    /// Watches a world, whose folder is made if it is not there, or files. What is there already is not reported. `wake` is called
     /// when there is something new in [`Watch::changes`]. With `poll`, or where the system has no watches left, folders
     /// are looked at several times a second.
     ///
@@ -54,7 +54,9 @@ impl Watch {
         doubt: Duration,
         wake: impl Fn() + Send + 'static,
     ) -> io::Result<Self> {
-        fs::create_dir_all(scope.world.root())?;
+        if let Some(world) = &scope.world {
+            fs::create_dir_all(world.root())?;
+        }
         let (sender, changes) = channel();
         let (hints, hinted) = channel();
         let events = if poll { None } else { events(hints.clone()) };

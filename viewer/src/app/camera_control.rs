@@ -26,6 +26,8 @@ pub struct CameraControl {
     /// The pointer steers the view.
     captured: bool,
     place: Place,
+    /// What is shown is anyone's file, which stands alone.
+    around_subject: bool,
     /// Nothing was held at the last step.
     resting: bool,
     #[cfg(feature = "gamepad")]
@@ -52,6 +54,7 @@ impl CameraControl {
             held: Held::default(),
             captured: false,
             place: Place::Awaited,
+            around_subject: false,
             resting: true,
             #[cfg(feature = "gamepad")]
             gamepads,
@@ -77,6 +80,7 @@ impl CameraControl {
     /// not be moved again and again. So that is asked once, when all are known, of someone who has not moved, and only
     /// if the place is bad for one of them.
     pub fn lands_changed(&mut self, all: &[&Land], own: &[&Land], complete: bool) {
+        self.around_subject = all.iter().any(|land| land.subject.is_some());
         let begins = self.place == Place::Awaited && !own.is_empty();
         let is_bad = || self.place == Place::Start && !suits_all(own, &self.rig.pose());
         if begins || complete && is_bad() {
@@ -158,7 +162,7 @@ impl CameraControl {
             position_m: [pose.x_m, pose.altitude_m, pose.z_m],
             yaw_rad: pose.yaw_rad,
             pitch_rad: pose.pitch_rad,
-            flying: pose.mode == Mode::Fly,
+            flying: pose.mode == Mode::Fly || self.around_subject && pose.mode == Mode::Orbit,
         }
     }
 

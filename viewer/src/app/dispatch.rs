@@ -55,8 +55,14 @@ impl App {
         }
     }
 
+    /// Whether what is shown is anyone's file.
+    fn shows_file(&self) -> bool {
+        lands(&self.live).iter().any(|land| land.subject.is_some())
+    }
+
     fn command(&mut self, command: Command, events: &ActiveEventLoop) {
         self.log.event(&command);
+        let of_file = self.shows_file();
         let options = &mut self.file.settings.options;
         match command {
             // Held: the camera asks for them at each frame.
@@ -86,12 +92,19 @@ impl App {
             Command::Settings => self.layout.toggle(Panel::Settings),
             Command::Fullscreen => self.toggle_fullscreen(),
             Command::Screenshot => self.screenshot = true,
+            Command::Export if of_file => {
+                self.tell(Tone::Info, "Only landscapes are exported: this is a file already");
+            }
             Command::Export => self.layout.toggle(Panel::Export),
             Command::Quit => events.exit(),
             Command::NextTreeLod => {
-                options.tree_lod = options.tree_lod.next();
-                let mode = options.tree_lod.label();
-                self.tell(Tone::Info, format!("Trees' levels of detail: {mode}"));
+                let (chosen, whose) = match of_file {
+                    true => (&mut options.mesh_lod, "Levels of detail"),
+                    false => (&mut options.tree_lod, "Trees' levels of detail"),
+                };
+                *chosen = chosen.next();
+                let mode = chosen.label();
+                self.tell(Tone::Info, format!("{whose}: {mode}"));
             }
             Command::NextTerrainLod => {
                 options.terrain_lod = options.terrain_lod.next();

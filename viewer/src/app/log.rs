@@ -9,7 +9,6 @@ use std::fmt::Debug;
 use std::fs::File;
 use std::io::Write;
 use std::path::Path;
-use std::sync::{Arc, Weak};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
@@ -18,7 +17,7 @@ use genescape_schema::{Category, INDIVIDUALS};
 use serde_json::{Value, json};
 
 use crate::ui::model::Model;
-use crate::upload::SceneBuffers;
+use crate::upload::{Exhibit, WeakExhibit};
 use crate::walk::Pose;
 
 /// Between two lines about what changes in every frame.
@@ -33,7 +32,7 @@ pub struct Log {
     frame: u64,
     /// What was written last of each state, and when.
     states: BTreeMap<&'static str, (Value, Instant)>,
-    landscapes: [Weak<SceneBuffers>; INDIVIDUALS],
+    landscapes: [Option<WeakExhibit>; INDIVIDUALS],
     frames: Frames,
     behind: bool,
 }
@@ -51,7 +50,7 @@ pub struct Moment<'a> {
     /// What the user interface showed.
     pub model: &'a Model,
     /// The landscapes that are drawn.
-    pub landscapes: [Option<&'a Arc<SceneBuffers>>; INDIVIDUALS],
+    pub landscapes: [Option<&'a Exhibit>; INDIVIDUALS],
     /// Where the cameras are.
     pub pose: Pose,
     /// Width and height of the window.
@@ -145,14 +144,18 @@ impl Log {
         self.state("rest", json!({ "resting": resting }));
     }
 
-    fn landscape(&mut self, view: usize, landscape: Option<&Arc<SceneBuffers>>, generation: u32) {
-        let now = landscape.map(Arc::downgrade).unwrap_or_default();
-        if now.ptr_eq(&self.landscapes[view]) {
+    fn landscape(&mut self, view: usize, exhibit: Option<&Exhibit>, generation: u32) {
+        let is_same = match (&self.landscapes[view], exhibit) {
+            (Some(known), Some(exhibit)) => known.is(exhibit),
+            (known, exhibit) => known.is_none() && exhibit.is_none(),
+        };
+        if is_same {
             return;
         }
-        let trees = landscape.and_then(|scene| scene.trees.as_ref()).map_or(0, |trees| trees.count);
-        let name = landscape.map(|scene| scene.name.clone());
-        self.landscapes[view] = now;
+        let trees = exhibit.and_then(Exhibit::landscape).and_then(|scene| scene.trees.as_ref());
+        let trees = trees.map_or(0, |trees| trees.count);
+        let name = exhibit.map(Exhibit::name);
+        self.landscapes[view] = exhibit.map(Exhibit::downgrade);
         self.note(
             "landscape",
             json!({ "view": view, "generation": generation, "name": name, "trees": trees }),

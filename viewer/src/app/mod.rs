@@ -1,7 +1,8 @@
 //! The application: a window, and a loop that hands each event to its owner. What each does is in its own file: [`editor`]
-//! (the person's work), [`viewports`] (the pictures), [`pace`] (when they are drawn), [`camera_control`], [`screen`] (the
-//! window), [`log`] (what happened).
+//! (the person's work), [`background`] (files that change and bakes), [`viewports`] (the pictures), [`pace`] (when they are
+//! drawn), [`camera_control`], [`screen`] (the window), [`log`] (what happened).
 
+mod background;
 mod camera_control;
 mod dispatch;
 mod drag_out;
@@ -23,8 +24,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
-use genescape_schema::INDIVIDUALS;
-use genescape_world::{Change, Scope, Source, Watch, World};
+use genescape_schema::{INDIVIDUALS, printable};
+use genescape_world::{Change, Source, Watch};
 use serde_json::json;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 
@@ -38,7 +39,9 @@ use crate::options::FrameInput;
 use crate::settings::{Bookmark, Comfort, SettingsFile, WorldSettings};
 use crate::ui::model::{Model, ViewState};
 use crate::ui::{self, Tone};
-use crate::walk::Land;
+use crate::upload::Exhibit;
+use crate::walk::{Land, Mode};
+use background::Background;
 use camera_control::CameraControl;
 use editor::{Editor, Task};
 use exports::Exports;
@@ -113,13 +116,6 @@ struct Live {
     loader: Loader,
 }
 
-/// What goes on beside the loop for the world on show; none for mere scenes.
-#[derive(Default)]
-struct Background {
-    baker: Option<Baker>,
-    watch: Option<Watch>,
-}
-
 /// Where keys and wheel go, as the user interface said in its last frame.
 #[derive(Clone, Copy, Default)]
 struct Focus {
@@ -190,25 +186,6 @@ impl App {
         }
     }
 
-    /// Watches the source's files and lets them be baked.
-    fn start_background(&mut self) {
-        self.background = Background::default();
-        let Source::World(root) = self.source.clone() else { return };
-        let shaders = self.cli.shaders.clone();
-        let scope = Scope { scenes: true, shaders, ..Scope::of(World::new(&root)) };
-        match Watch::start(scope, self.cli.bake.poll, self.wake(Wake::Now)) {
-            Ok(watch) => self.background.watch = Some(watch),
-            Err(error) => self.tell(Tone::Error, format!("{} cannot be watched: {error}", root.display())),
-        }
-        if self.cli.no_bake {
-            return;
-        }
-        match Baker::start(&root, self.cli.bake.clone(), self.wake(Wake::Soon)) {
-            Ok(baker) => self.background.baker = Some(baker),
-            Err(error) => self.tell(Tone::Error, format!("nothing can be baked: {error}")),
-        }
-    }
-
     /// Shows another world or other scenes.
     fn open(&mut self, source: Source) {
         self.save_settings();
@@ -220,6 +197,7 @@ impl App {
         self.camera.return_to(place_to_return_to(&self.editor, &kept, comfort));
         if let Some(live) = &mut self.live {
             live.viewports.clear();
+            live.screen.window.set_title(&title(&self.source));
         }
         self.start_background();
     }
@@ -277,12 +255,18 @@ impl App {
     /// Puts landscapes that were read meanwhile into the viewports.
     fn show_loaded(&mut self) {
         let Some(live) = &mut self.live else { return };
-        let mut changed = false;
+        let (mut changed, mut files, mut notes) = (false, None, Vec::new());
         for reply in live.loader.replies() {
             let told = reply.result.as_ref().map(|_| ()).map_err(String::as_str);
             if self.editor.loaded(reply.view, reply.generation, told)
                 && let Ok(loaded) = reply.result
             {
+                let notes_of = |exhibit: &Exhibit| exhibit.asset().map(|asset| asset.facts.notes.clone());
+                let known = live.viewports.exhibit(reply.view).and_then(notes_of).unwrap_or_default();
+                notes.extend(
+                    notes_of(&loaded.exhibit).into_iter().flatten().filter(|note| !known.contains(note)),
+                );
+                files = (!loaded.files.is_empty()).then(|| loaded.files.clone());
                 live.viewports.show(reply.view, loaded);
                 changed = true;
             }
@@ -292,6 +276,13 @@ impl App {
             let own = (0..INDIVIDUALS).filter(of_generation).filter_map(|view| live.viewports.land(view));
             let complete = !self.editor.awaits_scenes();
             self.camera.lands_changed(&live.viewports.lands(), &own.collect::<Vec<_>>(), complete);
+        }
+        if let Some(first) = notes.first() {
+            let more = if notes.len() > 1 { "; more in “About this file”" } else { "" };
+            self.tell(Tone::Info, format!("{first}{more}"));
+        }
+        if let Some(files) = files.filter(|files| *files != self.background.more_files) {
+            self.watch_files(files);
         }
     }
 
@@ -370,7 +361,7 @@ impl App {
         viewports.end_frame(self.layout.panels.stats);
         self.log.frame(Moment {
             model,
-            landscapes: std::array::from_fn(|view| viewports.scene(view)),
+            landscapes: std::array::from_fn(|view| viewports.exhibit(view)),
             pose: self.camera.rig.pose(),
             size_px: screen.window.inner_size().into(),
             widgets,
@@ -381,11 +372,13 @@ impl App {
         Some((output, Shown { drawn, blurred, again }))
     }
 
-    /// Dragging a picture looks around without locking the pointer.
+    /// Dragging a picture looks around without locking the pointer: what is grabbed follows it. Around what an orbit circles
+    /// the eye goes the other way for that.
     fn drag(&mut self, views: &ui::Views) {
         if views.dragged != egui::Vec2::ZERO && !self.camera.captured() {
             let scale = self.live.as_ref().map_or(1.0, |live| live.screen.ctx.pixels_per_point());
-            self.camera.held.mouse_moved(-views.dragged.x * scale, -views.dragged.y * scale);
+            let way = if self.camera.rig.pose().mode == Mode::Orbit { scale } else { -scale };
+            self.camera.held.mouse_moved(way * views.dragged.x, way * views.dragged.y);
             self.redraw();
         }
     }
@@ -435,6 +428,17 @@ impl App {
         if let Err(error) = self.file.save() {
             self.editor.settings_fault(error.to_string());
         }
+    }
+}
+
+/// What the window is called.
+fn title(source: &Source) -> String {
+    match source {
+        Source::Scenes(paths) if paths.len() == 1 => {
+            let name = paths[0].file_name().unwrap_or_default().to_string_lossy();
+            format!("{} – Genescape", printable(&name))
+        }
+        _ => "Genescape".to_owned(),
     }
 }
 

@@ -3,7 +3,8 @@
 use std::array;
 
 use super::App;
-use crate::ui::model::{Model, Situation, Stats, ViewModel, ViewState};
+use crate::ui::model::{FileShown, Model, Situation, Stats, ViewModel, ViewState};
+use crate::upload::AssetBuffers;
 
 impl App {
     /// Fills the model for one frame.
@@ -12,8 +13,11 @@ impl App {
         let viewports = self.live.as_ref().map(|live| &live.viewports);
         let (generation, generations) = editor.generations();
         let views = array::from_fn(|view| {
-            let own_name =
-                || viewports.and_then(|viewports| viewports.scene(view)).map(|scene| scene.name.clone());
+            let own_name = || {
+                viewports
+                    .and_then(|viewports| viewports.exhibit(view))
+                    .map(|exhibit| exhibit.name().to_owned())
+            };
             ViewModel {
                 descent: editor.descent(view).to_owned(),
                 name: editor.name(view).map(str::to_owned).or_else(own_name).unwrap_or_default(),
@@ -39,6 +43,9 @@ impl App {
             bindings: self.bindings.clone(),
             count: editor.count(),
             votable: editor.world().is_some(),
+            file: viewports
+                .and_then(|viewports| viewports.exhibit(0)?.asset())
+                .map(|asset| file_shown(asset)),
             parents: editor.parents().clone(),
             ancestors: editor.ancestors().cloned(),
             greets: !settings.greeted,
@@ -56,7 +63,7 @@ impl App {
         if self
             .live
             .as_ref()
-            .is_some_and(|live| (0..views.len()).any(|view| live.viewports.scene(view).is_some()))
+            .is_some_and(|live| (0..views.len()).any(|view| live.viewports.exhibit(view).is_some()))
         {
             return Situation::Ready;
         }
@@ -68,7 +75,7 @@ impl App {
                 what: error.report.clone(),
                 remedy: match editor.world() {
                     Some(_) => "Mend what the message names, or drop another world's folder here.",
-                    None => "Drop a world here, a baked folder, or a scene.gltf that bake has written.",
+                    None => "Drop another file here, a world or a baked folder.",
                 }
                 .to_owned(),
             };
@@ -82,5 +89,15 @@ impl App {
             };
         }
         Situation::Growing
+    }
+}
+
+fn file_shown(asset: &AssetBuffers) -> FileShown {
+    let [low, high] = asset.bounds_m;
+    FileShown {
+        name: asset.name.clone(),
+        facts: asset.facts.clone(),
+        size_m: (high - low).to_array(),
+        cell_m: asset.staging.cell_m / asset.staging.scale as f32,
     }
 }

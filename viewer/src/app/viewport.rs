@@ -11,7 +11,7 @@ use crate::gpu::Gpu;
 use crate::options::FrameInput;
 use crate::passes::Passes;
 use crate::scene_loader::Loaded;
-use crate::upload::SceneBuffers;
+use crate::upload::{Exhibit, SceneBuffers};
 use crate::view::{Drawn, View};
 use crate::walk::Land;
 
@@ -70,11 +70,11 @@ impl Viewport {
 
     /// What the user interface knows the picture by, if there is one.
     pub fn picture(&self) -> Option<TextureId> {
-        self.picture.filter(|_| self.view.scene().is_some())
+        self.picture.filter(|_| self.view.exhibit().is_some())
     }
 
     pub fn show(&mut self, passes: &Passes, loaded: Loaded) {
-        self.view.show(passes, loaded.buffers);
+        self.view.show(passes, loaded.exhibit);
         self.shadows = if loaded.lacks_shadows { Shadows::Near } else { Shadows::All };
         (self.land, self.seen) = (Some(loaded.land), None);
     }
@@ -89,7 +89,7 @@ impl Viewport {
     pub fn ask_for_shadows(&mut self) -> Option<Arc<SceneBuffers>> {
         let lacks = self.shadows == Shadows::Near;
         lacks.then(|| self.shadows = Shadows::Asked)?;
-        self.view.scene().cloned()
+        self.view.exhibit()?.landscape().cloned()
     }
 
     pub fn lacks_shadows(&self) -> bool {
@@ -98,7 +98,7 @@ impl Viewport {
 
     /// A landscape, which may be this one, has got all of its shadows.
     pub fn shadowed(&mut self, buffers: &Arc<SceneBuffers>) {
-        if self.view.scene().is_some_and(|scene| Arc::ptr_eq(scene, buffers)) {
+        if self.view.exhibit().and_then(Exhibit::landscape).is_some_and(|scene| Arc::ptr_eq(scene, buffers)) {
             (self.shadows, self.seen) = (Shadows::All, None);
         }
     }

@@ -21,7 +21,7 @@ use crate::passes::{Passes, ShaderError, Shaders};
 use crate::scene_loader::Loaded;
 use crate::ui::arrange::Slot;
 use crate::ui::model::{PassTime, Stats};
-use crate::upload::SceneBuffers;
+use crate::upload::{Exhibit, SceneBuffers};
 use crate::walk::Land;
 
 /// Frames that statistics look back on.
@@ -74,9 +74,9 @@ impl Viewports {
         self.each[view].picture()
     }
 
-    /// The landscape of a view.
-    pub fn scene(&self, view: usize) -> Option<&Arc<SceneBuffers>> {
-        self.each[view].view.scene()
+    /// What a view shows.
+    pub fn exhibit(&self, view: usize) -> Option<&Exhibit> {
+        self.each[view].view.exhibit()
     }
 
     /// The lands that a walker is in.
@@ -116,7 +116,7 @@ impl Viewports {
 
     /// The finished pictures of some views, copied from the device; views without a landscape are left out.
     pub fn pixels(&self, views: &[usize]) -> Result<Vec<RgbaImage>> {
-        let shown = views.iter().map(|view| &self.each[*view].view).filter(|view| view.scene().is_some());
+        let shown = views.iter().map(|view| &self.each[*view].view).filter(|view| view.exhibit().is_some());
         shown.map(|view| image_file::read(&self.gpu, &view.targets().display)).collect()
     }
 
@@ -171,7 +171,7 @@ impl Viewports {
             blurred |= part.is_some_and(|part| part < 1.0);
             drawn |= one.fresh;
             self.stats.draws[slot.view] = one.drawn.draws;
-            self.stats.triangles[slot.view] = u64::from(one.drawn.land_triangles);
+            self.stats.triangles[slot.view] = u64::from(one.drawn.triangles);
         }
         self.profiler.resolve_queries(encoder);
         self.stats.cpu_record_ms = start.elapsed().as_secs_f32() * 1e3;
@@ -195,6 +195,9 @@ impl Viewports {
         // An error here means a lost device, which the next call reports.
         let _ = self.gpu.device.poll(wgpu::PollType::Poll);
         self.lod_readback.read(&mut self.stats);
+        for one in self.each.iter().filter(|one| one.land.is_some()) {
+            self.stats.add_copies(&one.drawn.copies_by_level);
+        }
         // A frame without queries is no fault.
         let _ = self.profiler.end_frame();
         while let Some(times) = self.profiler.process_finished_frame(self.gpu.queue.get_timestamp_period()) {

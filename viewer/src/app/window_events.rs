@@ -127,7 +127,7 @@ impl App {
         let (asked, kept) = (self.cli.size, self.file.settings.window);
         let [width, height] = asked.map_or([kept.width, kept.height], |size| size.map(|side| side as f32));
         let attributes = WindowAttributes::default()
-            .with_title("Genescape")
+            .with_title(super::title(&self.source))
             .with_maximized(kept.maximized && asked.is_none())
             .with_inner_size(winit::dpi::LogicalSize::new(width.max(480.0), height.max(320.0)));
         let window = Arc::new(events.create_window(attributes).context("no window can be opened")?);

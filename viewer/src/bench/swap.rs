@@ -70,7 +70,7 @@ fn swaps(bench: &Bench) -> Result<Vec<(Beside, f64)>> {
             let (cost, shown) = Cost::of(|| -> Result<()> {
                 if let Some(reply) = reply {
                     let loaded = reply.result.map_err(|text| anyhow!(text))?;
-                    views[reply.view % 4].show(passes, loaded.buffers);
+                    views[reply.view % 4].show(passes, loaded.exhibit);
                     beside = Beside::Swap;
                 }
                 bench.frame(&mut views, &frame, &camera);
@@ -90,7 +90,7 @@ fn swaps(bench: &Bench) -> Result<Vec<(Beside, f64)>> {
 /// the other: a frame waits for what of this was submitted before it.
 fn parts(bench: &mut Bench) -> Result<()> {
     let (gpu, passes) = (&bench.headless.gpu, &bench.headless.passes);
-    let (reading, scene) = Cost::of(|| load::load(&bench.paths[0], &load::Store::default()));
+    let (reading, scene) = Cost::of(|| load::scene(&bench.paths[0], &load::Store::default()));
     let scene = scene?;
     let (uploading, buffers) = Cost::of(|| {
         let buffers = Uploader::new(gpu).upload(&scene);

@@ -4,9 +4,8 @@ use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use genescape_cache::verified;
 use genescape_schema::scene::Resource;
-use genescape_world::{MAX_MODEL_BYTES, NamedFiles, regular_file};
+use genescape_world::NamedFiles;
 use serde::de::DeserializeOwned;
 
 use super::{LoadError, Result, Store, accessor};
@@ -24,11 +23,9 @@ pub(super) struct Document<'a> {
 }
 
 impl<'a> Document<'a> {
-    pub fn open(path: &Path, store: &'a Store) -> Result<Self> {
-        let bytes = regular_file::read(path, MAX_MODEL_BYTES)
-            .map_err(|source| LoadError::Unreadable { path: path.to_owned(), source })?;
-        let bytes = verified(path, bytes).map_err(|_| LoadError::Damaged { path: path.to_owned() })?;
-        let parsed = gltf::Gltf::from_slice(&bytes)
+    /// Parses a file, whose bytes these are.
+    pub fn of(path: &Path, bytes: &[u8], store: &'a Store) -> Result<Self> {
+        let parsed = gltf::Gltf::from_slice(bytes)
             .map_err(|source| LoadError::NoGltf { path: path.to_owned(), source: Box::new(source) })?;
         let buffers = RefCell::new(vec![None; parsed.document.buffers().len()]);
         let embedded = parsed.blob.map(Arc::new);
@@ -204,8 +201,7 @@ mod tests {
         fs::write(folder.path().join("secret.bin"), [1; 36]).expect("written");
         fs::write(model.join("points.bin"), [0; 36]).expect("written");
         fs::write(model.join("huge.png"), huge_png()).expect("written");
-        fs::write(model.join("scene.gltf"), scene(accessor, image)).expect("written");
-        look(Document::open(&model.join("scene.gltf"), &Store::default()))
+        look(Document::of(&model.join("scene.gltf"), scene(accessor, image).as_bytes(), &Store::default()))
     }
 
     /// A PNG whose header says 100,000 x 65,535 pixels, and which holds next to nothing.

@@ -1,26 +1,30 @@
-//! `scene.gltf` and the blobs that it names → [`Scene`]. What was read for one landscape is kept while any landscape
-//! uses it, so that a reload reads only blobs with new names.
+//! `scene.gltf` and the blobs that it names → [`Scene`]; any other glTF file → [`Asset`]. What was read for one landscape is
+//! kept while any landscape uses it, so that a reload reads only blobs with new names.
 
 mod accessor;
+mod asset;
 mod bounds;
 mod document;
 mod ground;
 mod images;
+mod octahedral;
 mod store;
 mod trees;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use genescape_cache::verified;
 use genescape_schema::scene::{
     GSC_LOOKOUTS, GSC_SKY, Lookouts, LookoutsExtension, START_NODE, SkyExtension, StartView,
 };
+use genescape_world::{MAX_MODEL_BYTES, regular_file};
 use glam::Vec3;
 use thiserror::Error;
 
 pub use store::Store;
 
-use crate::scene::{Ground, HdrImage, Scene, Sky};
+use crate::scene::{Asset, Ground, HdrImage, Scene, Sky};
 use document::Document;
 
 /// Why a landscape cannot be shown.
@@ -38,19 +42,58 @@ pub enum LoadError {
     /// The scene is glTF, but none of ours.
     #[error("{path} is no landscape of Genescape: {what}")]
     Foreign { path: PathBuf, what: String },
+    /// A file of anyone's.
+    #[error("{path} cannot be shown: {what}")]
+    Asset { path: PathBuf, what: String },
+    #[error("cannot read {path}: {source}")]
+    FileUnreadable { path: PathBuf, source: std::io::Error },
 }
 
-type Result<T> = std::result::Result<T, LoadError>;
+type Result<T, E = LoadError> = std::result::Result<T, E>;
 
 impl LoadError {
+    /// Whether the file itself is not what it should be.
+    pub fn is_bad_input(&self) -> bool {
+        matches!(self, Self::NoGltf { .. } | Self::Foreign { .. } | Self::Asset { .. })
+    }
+
     fn foreign(path: &Path, what: impl Into<String>) -> Self {
         Self::Foreign { path: path.to_owned(), what: what.into() }
     }
 }
 
+/// What a file holds.
+#[derive(Clone, Debug)]
+pub enum Content {
+    Landscape(Box<Scene>),
+    /// Anyone's, and the other files that it is made of.
+    Asset(Box<Asset>, Vec<PathBuf>),
+}
+
+/// Reads a glTF file: a landscape if it says that it is one.
+pub fn load(path: &Path, store: &Store) -> Result<Content> {
+    let bytes = regular_file::read(path, MAX_MODEL_BYTES)
+        .map_err(|source| LoadError::FileUnreadable { path: path.to_owned(), source })?;
+    let bytes = verified(path, bytes).map_err(|_| LoadError::Damaged { path: path.to_owned() })?;
+    if asset::is_landscape(&bytes) {
+        return landscape(path, &bytes, store).map(|scene| Content::Landscape(Box::new(scene)));
+    }
+    asset::read(path, &bytes).map(|(asset, files)| Content::Asset(Box::new(asset), files))
+}
+
 /// Reads a landscape from its `scene.gltf`.
-pub fn load(path: &Path, store: &Store) -> Result<Scene> {
-    let document = Document::open(path, store)?;
+///
+/// # Errors
+/// Also if it is another glTF file.
+pub fn scene(path: &Path, store: &Store) -> Result<Scene> {
+    match load(path, store)? {
+        Content::Landscape(scene) => Ok(*scene),
+        Content::Asset(..) => Err(LoadError::foreign(path, "it has no land and no sky of ours")),
+    }
+}
+
+fn landscape(path: &Path, bytes: &[u8], store: &Store) -> Result<Scene> {
+    let document = Document::of(path, bytes, store)?;
     let scene = document.scene()?;
     let ground = ground::read(&document)?;
     let trees = trees::read(&document)?;

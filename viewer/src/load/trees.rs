@@ -8,6 +8,7 @@ use gltf::Semantic;
 
 use super::bounds::{is_placed, is_tree_sized};
 use super::document::Document;
+use super::octahedral::octahedral;
 use super::{Result, images};
 use crate::scene::{Image, Level, Material, Range, Template, TreeVertex, Trees};
 
@@ -191,15 +192,6 @@ fn shade_crown(leaves: &mut [TreeVertex]) {
     }
 }
 
-/// A direction in two signed 16-bit numbers (Meyer et al. 2010); straight up if it has no length.
-fn octahedral(direction: Vec3) -> [i16; 2] {
-    let sum = direction.abs().element_sum();
-    let n = if sum > 1e-12 { direction / sum } else { Vec3::Y };
-    let fold = |a: f32, b: f32| (1.0 - b.abs()) * if a >= 0.0 { 1.0 } else { -1.0 };
-    let (x, y) = if n.z >= 0.0 { (n.x, n.y) } else { (fold(n.x, n.y), fold(n.y, n.x)) };
-    [x, y].map(|value| (value.clamp(-1.0, 1.0) * 32767.0).round() as i16)
-}
-
 /// A sphere around all vertices, at the start and the end of their morphs.
 fn sphere(vertices: &[TreeVertex]) -> ([f32; 3], f32) {
     let ends = |v: &TreeVertex| {
@@ -247,28 +239,4 @@ fn image_files(document: &Document, image: &gltf::Image<'_>) -> Result<(Resource
     let extras = image.extras().as_ref().map(|raw| serde_json::from_str::<Extras>(raw.get()));
     let extras = extras.transpose().map_err(|error| document.wrong(format!("mipmaps are wrong: {error}")))?;
     Ok((resource, extras.unwrap_or_default().mipmaps))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    /// As the shaders decode it.
-    fn decode([x, y]: [i16; 2]) -> Vec3 {
-        let (x, y) = (f32::from(x) / 32767.0, f32::from(y) / 32767.0);
-        let z = 1.0 - x.abs() - y.abs();
-        let t = (-z).max(0.0);
-        Vec3::new(x - t.copysign(x), y - t.copysign(y), z).normalize()
-    }
-
-    proptest! {
-        #[test]
-        fn octahedral_directions_come_back(x in -1f32..1., y in -1f32..1., z in -1f32..1.) {
-            let direction = Vec3::new(x, y, z);
-            prop_assume!(direction.length() > 1e-2);
-            let back = decode(octahedral(direction));
-            prop_assert!(back.dot(direction.normalize()) > 0.999_999);
-        }
-    }
 }

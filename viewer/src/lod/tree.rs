@@ -1,9 +1,14 @@
-//! What the LOD number λ in [0, k] of a tree is chosen by (thesis 4.3.2 and 4.3.3). The culling shader chooses it; its
-//! reference in Rust stands in the test that compares them.
+//! What the LOD number λ in [0, k] of a tree, or of a shape of anyone's file, is chosen by (thesis 4.3.2 and 4.3.3). The
+//! culling shader chooses it for trees, and a test compares the two.
 //!
 //! The error allowed at distance d is αd, α = error_px / pixels a radian. An instance scaled by `scale` shows q·scale,
 //! so λ is where q(λ) = αd/scale. By quality: log q is linear between the levels' errors. Simple: q(λ) = q̂·2^(λ/2),
 //! hence λ = 2·log₂ d + β with β = 2·log₂(α/(scale·q̂)).
+
+use crate::lod_mode::TreeLodMode;
+
+/// Rows of the picture for which levels are chosen that change where they cover a part of it, whatever its size.
+pub const COVERED_PX: f32 = 1080.0;
 
 /// The most levels that a template may have.
 pub const MAX_LEVELS: usize = 12;
@@ -21,4 +26,64 @@ pub fn simple_error_m(errors_m: &[f32]) -> f32 {
     }
     let logs = errors_m.iter().enumerate().skip(first).map(|(i, &q)| libm::log2f(q) - 0.5 * i as f32);
     libm::exp2f(logs.sum::<f32>() / count as f32)
+}
+
+/// What one frame asks of all trees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Control {
+    /// How levels are chosen.
+    pub mode: TreeLodMode,
+    /// Pixels a radian in the middle of the picture, ½·height/tan(½·fov).
+    pub focal_px: f32,
+    /// Error allowed on the screen.
+    pub error_px: f32,
+}
+
+/// Distance in metres from the eye to the sphere around a tree; [`MIN_DISTANCE_M`] inside it. `center_distance_m`:
+/// to the sphere's centre.
+pub fn distance_m(center_distance_m: f32, radius_m: f32) -> f32 {
+    (center_distance_m - radius_m).max(MIN_DISTANCE_M)
+}
+
+/// λ of an instance at [`distance_m`]. `errors_m`: of D_0 … D_k, positive and increasing; `simple_error_m`: of
+/// [`simple_error_m`]; `scale`: the largest singular value of the instance's linear part. 0 for what makes no sense.
+pub fn lod_number(
+    control: &Control,
+    errors_m: &[f32],
+    simple_error_m: f32,
+    distance_m: f32,
+    scale: f32,
+) -> f32 {
+    let allowed_m = control.error_px / control.focal_px * distance_m / scale;
+    match control.mode {
+        TreeLodMode::Quality => by_quality(errors_m, allowed_m),
+        TreeLodMode::Simple => by_count(errors_m.len(), simple_error_m, allowed_m),
+        TreeLodMode::Discrete => by_quality(errors_m, allowed_m).floor(),
+        TreeLodMode::Off => 0.0,
+    }
+}
+
+/// r⁻¹(log `allowed_m`), r(λ) = log q(λ).
+fn by_quality(errors_m: &[f32], allowed_m: f32) -> f32 {
+    let mut lambda = 0.0;
+    for i in 1..errors_m.len() {
+        let (fine_m, coarse_m) = (errors_m[i - 1], errors_m[i]);
+        if allowed_m >= coarse_m {
+            lambda = i as f32;
+        } else {
+            if allowed_m > fine_m {
+                let part = libm::log2f(allowed_m / fine_m) / libm::log2f(coarse_m / fine_m);
+                lambda += part.clamp(0.0, 1.0);
+            }
+            break;
+        }
+    }
+    lambda
+}
+
+/// 2·log₂ d + β.
+fn by_count(levels: usize, simple_error_m: f32, allowed_m: f32) -> f32 {
+    let k = levels.max(1) as f32 - 1.0;
+    // Also false for what is not a number.
+    if allowed_m > simple_error_m { (2.0 * libm::log2f(allowed_m / simple_error_m)).min(k) } else { 0.0 }
 }

@@ -94,7 +94,7 @@ impl Elements {
     const USAGE: wgpu::BufferUsages =
         wgpu::BufferUsages::VERTEX.union(wgpu::BufferUsages::INDEX).union(wgpu::BufferUsages::COPY_DST);
 
-    fn new(gpu: &Gpu, label: &str) -> Self {
+    pub(super) fn new(gpu: &Gpu, label: &str) -> Self {
         Self { buffer: gpu.empty_buffer(label, 64 * 1024, Self::USAGE), count: 0 }
     }
 

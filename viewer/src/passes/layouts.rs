@@ -11,6 +11,12 @@ pub struct Layouts {
     pub view: BindGroupLayout,
     /// Group 0 of the shadow pass, which cannot read what it writes: a part of `view`.
     pub sun_view: BindGroupLayout,
+    /// Group 0 of what needs the camera alone: a file that is no landscape, tone mapping.
+    pub camera: BindGroupLayout,
+    /// Group 1 of a file that is no landscape: the room, and where copies stand.
+    pub studio: BindGroupLayout,
+    /// Group 2 of the same: a material.
+    pub surface: BindGroupLayout,
     /// Group 1 of the terrain and of grass: what covers the land.
     pub ground: BindGroupLayout,
     /// Group 1 of trees: where they stand.
@@ -67,6 +73,9 @@ impl Layouts {
         Self {
             view: all("view", both, &view),
             sun_view: layout(gpu, "view of the sun", both, sun_view),
+            camera: all("camera", both, &[UNIFORM]),
+            studio: all("studio", both, &[UNIFORM, READ]),
+            surface: all("surface", fragment, &[&[UNIFORM][..], &[IMAGE; 5], &[FILTERING; 5]].concat()),
             ground: all("ground", both, &[IMAGE, IMAGE, LAYERS, LAYERS]),
             trees: all("trees", ShaderStages::VERTEX, &[READ]),
             material: all("material", fragment, &[UNIFORM, IMAGE, IMAGE]),

@@ -1,10 +1,13 @@
 //! The passes: each an immutable set of pipelines that records its part of a picture, with its WGSL beside it.
 //!
 //! Order of a picture: culling, then in one render pass what [`Passes::picture`] lists, then tone mapping. Shadows are
-//! drawn once for each landscape, before its first picture. A new pass is a file here with its WGSL, a line in
+//! drawn once for each landscape, before its first picture. A file that is no landscape has two passes of its own. A new
+//! pass is a file here with its WGSL, a line in
 //! [`SHADERS`], and a line in [`Passes::picture`].
 
+pub mod asset;
 mod bound;
+mod bound_asset;
 mod cull;
 pub mod grass;
 mod layouts;
@@ -13,18 +16,22 @@ pub mod plants;
 mod shaders;
 mod shadow;
 mod sky;
+mod studio;
 pub mod terrain;
 mod tone;
 pub mod trees;
 mod view_uniform;
 mod water;
 
+pub use asset::AssetPass;
 pub use bound::{BoundScene, BoundTrees};
+pub use bound_asset::{AssetDraw, BoundAsset};
 pub use cull::{Cull, CullUniform};
 pub use layouts::{Binding, Layouts, bind};
 pub use pipeline::Shader;
 pub use shaders::{ShaderError, Shaders};
 pub use shadow::{Shadow, ShadowBake};
+pub use studio::Studio;
 pub use tone::Tone;
 pub use view_uniform::ViewUniform;
 
@@ -43,7 +50,7 @@ pub const DISPLAY: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 pub const SHADOW: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
 
 /// The shaders of all passes.
-pub static SHADERS: [&Shader; 9] = [
+pub static SHADERS: [&Shader; 11] = [
     &cull::SHADER,
     &trees::SHADER,
     &grass::SHADER,
@@ -53,6 +60,8 @@ pub static SHADERS: [&Shader; 9] = [
     &water::SHADER,
     &tone::SHADER,
     &shadow::SHADER,
+    &asset::SHADER,
+    &studio::SHADER,
 ];
 
 /// A pass that draws a part of the picture.
@@ -74,6 +83,9 @@ pub struct Passes {
     pub cull: Cull,
     /// By name, in the order in which they draw.
     pub picture: [(&'static str, Box<dyn DrawPass>); 6],
+    /// Of files that are no landscapes.
+    pub asset: AssetPass,
+    pub studio: Studio,
     pub tone: Tone,
     /// Samples a pixel that they draw.
     pub samples: u32,
@@ -96,6 +108,8 @@ impl Passes {
                 (sky::SHADER.name, Box::new(sky::Sky::new(&compiler)?)),
                 (water::SHADER.name, Box::new(water::Water::new(&compiler)?)),
             ],
+            asset: AssetPass::new(&compiler)?,
+            studio: Studio::new(&compiler)?,
             tone: Tone::new(&compiler)?,
             layouts,
             samples,

@@ -55,3 +55,26 @@ fn fragment(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
     let encoded = film(linear) + grain(pixel.xy) / 255.0;
     return vec4f(encoded, 1.0);
 }
+
+// Keeps the colours of materials under a neutral light (Khronos PBR Neutral, 2024).
+fn kept(linear: vec3f) -> vec3f {
+    let low = min(min(linear.r, linear.g), linear.b);
+    let color = linear - select(0.04, low - 6.25 * low * low, low < 0.08);
+    let peak = max(max(color.r, color.g), color.b);
+    let start = 0.76;
+    let room = 1.0 - start;
+    let lowered = 1.0 - room * room / max(peak + room - start, room);
+    let white = 1.0 - 1.0 / (0.15 * (peak - lowered) + 1.0);
+    return select(mix(color * lowered / peak, vec3f(lowered), white), color, peak < start);
+}
+
+fn srgb(linear: vec3f) -> vec3f {
+    let bright = 1.055 * pow(max(linear, vec3f(1e-6)), vec3f(1.0 / 2.4)) - 0.055;
+    return select(bright, 12.92 * linear, linear < vec3f(0.0031308));
+}
+
+@fragment
+fn neutral(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
+    let linear = max(textureLoad(radiance, vec2i(pixel.xy), 0).rgb * view.exposure, vec3f(0.0));
+    return vec4f(srgb(kept(linear)) + grain(pixel.xy) / 255.0, 1.0);
+}

@@ -44,7 +44,26 @@ pub struct ViewUniform {
 const NO_WATER_M: f32 = -1.0e6;
 
 impl ViewUniform {
-    /// The numbers of one view: `camera` draws, `lod_eye` is the camera for which levels of detail are chosen, and
+    /// What all views have: `camera` draws, `exposure` is the landscape's own.
+    pub fn of_camera(camera: &Camera, size_px: [u32; 2], frame: &FrameInput, exposure: f32) -> Self {
+        let [width, height] = size_px.map(|side| side.max(1) as f32);
+        // Directions don't depend on where the eye is.
+        let at_origin = Camera { position_m: Vec3::ZERO, ..*camera };
+        let options = &frame.options;
+        Self {
+            clip_from_world: camera.clip_from_world(width / height).to_cols_array_2d(),
+            ray_from_clip: at_origin.clip_from_world(width / height).inverse().to_cols_array_2d(),
+            eye: camera.position_m.into(),
+            time_s: frame.time_s,
+            exposure: exposure * options.exposure,
+            focal_px: camera.focal_px(height),
+            tint_levels: options.tint_levels.into(),
+            part: frame.part,
+            ..Default::default()
+        }
+    }
+
+    /// The numbers of one view of a landscape: `camera` draws, `lod_eye` is the camera for which levels of detail are chosen, and
     /// `detail` says how detailed the land is where.
     pub fn new(
         scene: &SceneBuffers,
@@ -54,27 +73,16 @@ impl ViewUniform {
         frame: &FrameInput,
         detail: &Detail,
     ) -> Self {
-        let [width, height] = size_px.map(|side| side.max(1) as f32);
-        let clip_from_world = camera.clip_from_world(width / height);
-        // Directions don't depend on where the eye is.
-        let at_origin = Camera { position_m: Vec3::ZERO, ..*camera };
         let (options, sky) = (&frame.options, &scene.sky);
         let [tiles @ .., last_tile] = scene.land.tiles_m;
         Self {
-            clip_from_world: clip_from_world.to_cols_array_2d(),
-            ray_from_clip: at_origin.clip_from_world(width / height).inverse().to_cols_array_2d(),
-            eye: camera.position_m.into(),
-            time_s: frame.time_s,
             sun_direction: sky.sun_direction.to_array(),
             sun_angular_radius: sky.sun_angular_radius_rad,
             sun_irradiance: sky.sun_irradiance_linear,
-            exposure: sky.exposure * options.exposure,
             sky_irradiance: sky.sky_irradiance_linear,
             haze_extinction: sky.haze_extinction_per_m,
             haze: sky.haze_linear,
             water_level: scene.ground.water_level_m.unwrap_or(NO_WATER_M),
-            focal_px: camera.focal_px(height),
-            tint_levels: options.tint_levels.into(),
             drift_clouds: options.drift_clouds.into(),
             morph_terrain: (options.terrain_lod == TerrainLodMode::Morph).into(),
             clouds: scene.sky_textures.sheets_m,
@@ -84,19 +92,21 @@ impl ViewUniform {
             last_tile,
             lod_top: detail.top,
             lod_above: detail.above_m,
-            part: frame.part,
-            ..Self::for_sun(scene)
+            shadow_from_world: shadow_from_world(scene).to_cols_array_2d(),
+            field: Self::field(scene),
+            ..Self::of_camera(camera, size_px, frame, sky.exposure)
         }
     }
 
     /// What the shadow pass reads of it.
     pub fn for_sun(scene: &SceneBuffers) -> Self {
+        let shadow_from_world = shadow_from_world(scene).to_cols_array_2d();
+        Self { shadow_from_world, field: Self::field(scene), ..Default::default() }
+    }
+
+    fn field(scene: &SceneBuffers) -> [f32; 4] {
         let (field, [_, top_m]) = (&scene.ground.field, scene.ground.lod.range_m());
-        Self {
-            shadow_from_world: shadow_from_world(scene).to_cols_array_2d(),
-            field: [field.side as f32, field.spacing_m, 0.5 * field.extent_m(), top_m],
-            ..Default::default()
-        }
+        [field.side as f32, field.spacing_m, 0.5 * field.extent_m(), top_m]
     }
 }
 

@@ -1,6 +1,7 @@
 //! A landscape as plain values, as read from its files and before any of it is on the GPU. Knows neither disk nor
 //! device. Coordinates as in glTF: right-handed, y up, metres.
 
+mod asset;
 mod ground;
 mod image;
 mod sky;
@@ -8,6 +9,10 @@ mod trees;
 
 use std::sync::Arc;
 
+pub use asset::{
+    Alpha, Asset, AssetVertex, DirectionalLight, Facts, Part, Sampling, Shape, ShapeLevel, Slot, Staging,
+    Surface, Texture, Wrap,
+};
 pub use genescape_schema::scene::{
     GroundDetail, GroundSurface, Heightfield, Instance, Lookout, Lookouts, StartView, TerrainLod,
 };

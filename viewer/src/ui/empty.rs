@@ -80,6 +80,6 @@ pub fn drop_target(ui: &Ui) {
     let line = egui::Stroke::new(3.0, theme::DARK.accent);
     painter.rect_stroke(window.shrink(14.0), 12, line, egui::StrokeKind::Inside);
     let font = FontId::proportional(22.0);
-    let text = "Drop a world or a baked folder to open it";
+    let text = "Drop a world, a baked folder or a glTF file to open it";
     painter.text(window.center(), Align2::CENTER_CENTER, text, font, theme::ON_SCRIM);
 }

@@ -1,6 +1,7 @@
 //! The user interface as one pure function: plain values in, events and the rectangles of the pictures out. Nothing in
 //! here touches disk, GPU, window or clock; what a panel remembers between frames is in [`State`].
 
+mod about;
 pub mod arrange;
 mod bake_log;
 mod empty;
@@ -73,22 +74,25 @@ pub fn show(ui: &mut Ui, model: &Model, state: &mut State) -> Output {
     keep_keyboard(ui.ctx());
     theme::keep_pace(ui.ctx());
     top_bar::show(ui, model);
-    if model.panels.genome {
-        genome::show(ui, model, &mut state.genome);
+    match &model.file {
+        _ if !model.panels.genome => {}
+        Some(file) => about::show(ui, model, file),
+        None => genome::show(ui, model, &mut state.genome),
     }
-    let docked = model.panels.stats && stats::show_docked(ui, &model.stats);
+    let counted = if model.file.is_some() { "copies" } else { "trees" };
+    let docked = model.panels.stats && stats::show_docked(ui, &model.stats, counted);
     let area = ui.available_rect_before_wrap();
     if !empty::show(ui, model) {
         output.views = views::show(ui, model, &mut state.split);
         banner(ui, model, area);
     }
     if model.panels.stats && !docked {
-        stats::show_card(ui, &model.stats, area);
+        stats::show_card(ui, &model.stats, counted, area);
     }
     if model.panels.settings {
         settings::show(ui, model, area);
     }
-    if model.panels.export {
+    if model.panels.export && model.file.is_none() {
         export::show(ui, model, area);
     }
     if model.panels.help {
@@ -130,7 +134,12 @@ fn banner(ui: &mut Ui, model: &Model, area: Rect) {
                 ui.set_max_width(area.width() - 60.0);
                 ui.horizontal(|ui| {
                     icon::Icon::Warning.show(ui, 16.0, 24.0, palette.danger);
-                    ui.label(format!("{} – the last good landscapes stay", error.title));
+                    let kept = if model.file.is_some() {
+                        "what was read before stays"
+                    } else {
+                        "the last good landscapes stay"
+                    };
+                    ui.label(format!("{} – {kept}", error.title));
                     ui.button("Show").asks(Event::Panel { panel: Panel::Genome, open: true });
                 });
             });

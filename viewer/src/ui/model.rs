@@ -12,6 +12,7 @@ use crate::event::{Arrangement, Panel};
 use crate::export_choice::ExportChoice;
 use crate::input::{Bindings, Command};
 use crate::options::Options;
+use crate::scene::Facts;
 use crate::settings::Comfort;
 
 /// Everything that is on the screen.
@@ -51,6 +52,8 @@ pub struct Model {
     pub count: usize,
     /// They belong to a world, where votes lead on.
     pub votable: bool,
+    /// What is shown is anyone's file, alone.
+    pub file: Option<FileShown>,
     /// What generations were bred from, if from any.
     pub parents: BTreeMap<u32, Parent>,
     /// Names of the landscapes that those on show were bred from.
@@ -77,6 +80,18 @@ impl Model {
             None => text.to_owned(),
         }
     }
+}
+
+/// A file that is no landscape of ours.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileShown {
+    /// Without its folder.
+    pub name: String,
+    pub facts: Facts,
+    /// Along x, y and z, in the file's metres.
+    pub size_m: [f32; 3],
+    /// Side of a square of the grid on the ground, in the file's metres.
+    pub cell_m: f32,
 }
 
 /// Whether there is anything to look at, and if not, why.
@@ -214,6 +229,15 @@ pub struct Stats {
     pub trees_per_level: Vec<u32>,
     /// Name of the adapter.
     pub adapter: String,
+}
+
+impl Stats {
+    /// Counts what another view draws at each level.
+    pub fn add_copies(&mut self, by_level: &[u32]) {
+        let levels = &mut self.trees_per_level;
+        levels.resize(levels.len().max(by_level.len()), 0);
+        levels.iter_mut().zip(by_level).for_each(|(all, more)| *all += more);
+    }
 }
 
 /// Time of one pass on the GPU.

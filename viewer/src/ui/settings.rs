@@ -11,7 +11,7 @@ use super::theme::{self, Palette};
 use super::widgets::{Asks, ask, close_button, icon_button, scrolled, section, segmented, switch};
 use crate::event::{Event, Panel};
 use crate::lod_mode::LodMode;
-use crate::options::{LOD_SWITCHES, Options, PICTURE_SWITCHES, Switch};
+use crate::options::{FILE_SWITCHES, LOD_SWITCHES, Options, PICTURE_SWITCHES, Switch};
 use crate::settings::{Comfort, Theme};
 
 /// Width of the card, in points.
@@ -33,7 +33,7 @@ pub fn show(ui: &mut Ui, model: &Model, area: Rect) {
                 scrolled(ui, area.height() - 80.0, |ui| {
                     ui.set_width(ui.available_width() - 10.0);
                     comfort(ui, &model.comfort);
-                    options(ui, &model.options);
+                    options(ui, &model.options, model.file.is_some());
                 });
             });
         });
@@ -58,10 +58,10 @@ fn switches(ui: &mut Ui, all: &[Switch], options: &mut Options) {
     }
 }
 
-fn options(ui: &mut Ui, current: &Options) {
+fn options(ui: &mut Ui, current: &Options, of_file: bool) {
     let mut options = *current;
     section(ui, "PICTURE");
-    switches(ui, &PICTURE_SWITCHES, &mut options);
+    switches(ui, if of_file { &FILE_SWITCHES } else { &PICTURE_SWITCHES[..] }, &mut options);
     number(ui, &mut options.exposure, 0.125..=8.0, "Exposure", " ×");
     number(ui, &mut options.fov_y_deg, 20.0..=110.0, "Field of view", "°");
     ui.label("Resolution while moving");
@@ -76,12 +76,20 @@ fn options(ui: &mut Ui, current: &Options) {
     let samples = [(1, "1", "Fastest"), (4, "4", "Smooth edges")];
     segmented(ui, "Samples a pixel", &samples, &mut options.samples);
     section(ui, "LEVELS OF DETAIL");
-    ui.label("Trees");
-    segmented(ui, "Tree detail", &modes(), &mut options.tree_lod);
-    number(ui, &mut options.tree_error_px, 0.1..=16.0, "Error allowed on trees", " px");
-    ui.label("Terrain");
-    segmented(ui, "Terrain detail", &modes(), &mut options.terrain_lod);
-    number(ui, &mut options.terrain_error_px, 0.1..=16.0, "Error allowed on terrain", " px");
+    let (what, error) =
+        if of_file { ("Meshes", "Error allowed") } else { ("Trees", "Error allowed on trees") };
+    ui.label(what);
+    let (name, mode, error_px) = match of_file {
+        true => ("Mesh detail", &mut options.mesh_lod, &mut options.mesh_error_px),
+        false => ("Tree detail", &mut options.tree_lod, &mut options.tree_error_px),
+    };
+    segmented(ui, name, &modes(), mode);
+    number(ui, error_px, 0.1..=16.0, error, " px");
+    if !of_file {
+        ui.label("Terrain");
+        segmented(ui, "Terrain detail", &modes(), &mut options.terrain_lod);
+        number(ui, &mut options.terrain_error_px, 0.1..=16.0, "Error allowed on terrain", " px");
+    }
     switches(ui, &LOD_SWITCHES, &mut options);
     if options != *current {
         ask(ui, Event::Options(options));

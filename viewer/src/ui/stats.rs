@@ -28,8 +28,9 @@ pub fn median_and_p99(frames_ms: &[f32]) -> (f32, f32) {
     (rank(0.5), rank(0.99))
 }
 
-/// Draws it as a panel at the left of `ui` if there is room; false if not, and nothing was drawn.
-pub fn show_docked(ui: &mut Ui, stats: &Stats) -> bool {
+/// Draws it as a panel at the left of `ui` if there is room; false if not, and nothing was drawn. `counted`: of what
+/// there are several at each level.
+pub fn show_docked(ui: &mut Ui, stats: &Stats, counted: &str) -> bool {
     if ui.available_width() < DOCKED_FROM {
         return false;
     }
@@ -39,12 +40,12 @@ pub fn show_docked(ui: &mut Ui, stats: &Stats) -> bool {
         .resizable(false)
         .frame(frame)
         .show_separator_line(false)
-        .show(ui, |ui| body(ui, stats, ui.available_height()));
+        .show(ui, |ui| body(ui, stats, counted, ui.available_height()));
     true
 }
 
 /// Draws the card over the lower left of `area`.
-pub fn show_card(ui: &mut Ui, stats: &Stats, area: Rect) {
+pub fn show_card(ui: &mut Ui, stats: &Stats, counted: &str, area: Rect) {
     let width = WIDTH.min(area.width() - 24.0);
     egui::Area::new(egui::Id::unique("stats"))
         .fixed_pos(area.left_bottom() + vec2(12.0, -12.0))
@@ -61,12 +62,12 @@ pub fn show_card(ui: &mut Ui, stats: &Stats, area: Rect) {
                 .inner_margin(Margin::same(12));
             frame.show(ui, |ui| {
                 ui.set_width(width - 24.0);
-                body(ui, stats, area.height() - 60.0);
+                body(ui, stats, counted, area.height() - 60.0);
             });
         });
 }
 
-fn body(ui: &mut Ui, stats: &Stats, room: f32) {
+fn body(ui: &mut Ui, stats: &Stats, counted: &str, room: f32) {
     let palette = Palette::of(ui.visuals());
     ui.spacing_mut().item_spacing.y = 2.0;
     ui.spacing_mut().interact_size.y = 18.0;
@@ -79,7 +80,7 @@ fn body(ui: &mut Ui, stats: &Stats, room: f32) {
         gpu(ui, stats);
     }
     if room > 420.0 {
-        levels(ui, &stats.trees_per_level);
+        levels(ui, &stats.trees_per_level, counted);
     }
     if !stats.adapter.is_empty() {
         let text = RichText::new(&stats.adapter).small().color(palette.weak);
@@ -161,16 +162,16 @@ fn gpu(ui: &mut Ui, stats: &Stats) {
     }
 }
 
-/// A bar for each level of detail, finest at the left, with the number of trees above.
-fn levels(ui: &mut Ui, trees_per_level: &[u32]) {
+/// A bar for each level of detail, finest at the left, with the number of trees or copies, as `counted` says, above.
+fn levels(ui: &mut Ui, trees_per_level: &[u32], counted: &str) {
     let palette = Palette::of(ui.visuals());
     let all: u32 = trees_per_level.iter().sum();
     if trees_per_level.is_empty() {
         return;
     }
-    section(ui, "TREES BY LEVEL, FINEST FIRST");
+    section(ui, &format!("{} BY LEVEL, FINEST FIRST", counted.to_uppercase()));
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 46.0), Sense::hover());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{all} trees")));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("{all} {counted}")));
     let max = trees_per_level.iter().max().copied().unwrap_or(1).max(1) as f32;
     let step = rect.width() / trees_per_level.len() as f32;
     for (level, &trees) in trees_per_level.iter().enumerate() {
@@ -185,7 +186,8 @@ fn levels(ui: &mut Ui, trees_per_level: &[u32]) {
             ui.painter().text(place, Align2::CENTER_BOTTOM, short(u64::from(trees)), font, palette.weak);
         }
     }
-    line(ui, "Trees drawn", &thousands(u64::from(all)));
+    let title = if counted == "trees" { "Trees drawn" } else { "Copies drawn" };
+    line(ui, title, &thousands(u64::from(all)));
 }
 
 /// Between groups of three digits: a space that does not break.

@@ -34,6 +34,10 @@ pub fn show(ui: &mut Ui, model: &Model) {
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 if model.votable {
                     generations(ui, model, words);
+                } else if model.count == 1 {
+                    let name = model.file.as_ref().map_or(&model.views[0].name, |file| &file.name);
+                    ui.add_space(6.0);
+                    ui.add(egui::Label::new(egui::RichText::new(name).strong()).truncate());
                 }
             });
         });
@@ -41,11 +45,12 @@ pub fn show(ui: &mut Ui, model: &Model) {
 }
 
 fn panels(ui: &mut Ui, model: &Model) {
+    let known = if model.file.is_some() { "About this file" } else { "Genes" };
     let all = [
         (Panel::Help, Icon::Help, "Help and keys", Command::Help),
         (Panel::Settings, Icon::Settings, "Settings", Command::Settings),
         (Panel::Stats, Icon::Stats, "Frame times", Command::Stats),
-        (Panel::Genome, Icon::Genome, "Genes", Command::Genome),
+        (Panel::Genome, Icon::Genome, known, Command::Genome),
     ];
     for (panel, icon, label, command) in all {
         let open = model.panels.is_open(panel);

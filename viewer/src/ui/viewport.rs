@@ -32,7 +32,7 @@ pub fn show(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool) -
         Arrangement::One(_) | Arrangement::Compare { .. } => &[],
     };
     // Where they would be, so that the name stays as it is when they come.
-    let exports = rect.width() >= NARROW;
+    let exports = rect.width() >= NARROW && model.file.is_none();
     let buttons = (tools.len() + usize::from(exports)) as f32 * (BUTTON + 4.0);
     let below = name_tag(ui, model, view, rect, rect.width() - 20.0 - buttons);
     match &model.views[view].state {
@@ -110,8 +110,10 @@ pub fn choose_side(ui: &mut Ui, model: &Model, side: usize, below: Pos2) {
 fn name_tag(ui: &mut Ui, model: &Model, view: usize, rect: Rect, room: f32) -> Pos2 {
     let name = &model.views[view].name;
     let mut job = LayoutJob::default();
-    job.append(&format!("{}", view + 1), 0.0, text(14.0, theme::DARK.accent));
-    job.append(name, 8.0, text(14.0, theme::ON_SCRIM));
+    // Where there are no others a number means nothing.
+    let number = if model.count > 1 { format!("{}", view + 1) } else { String::new() };
+    job.append(&number, 0.0, text(14.0, theme::DARK.accent));
+    job.append(name, if number.is_empty() { 0.0 } else { 8.0 }, text(14.0, theme::ON_SCRIM));
     job.wrap = TextWrapping { max_width: (room - 20.0).max(20.0), max_rows: 2, ..Default::default() };
     let galley = ui.painter().layout_job(job);
     let tag = Rect::from_min_size(rect.min + vec2(10.0, 10.0), galley.size() + vec2(20.0, 9.0));

@@ -127,7 +127,16 @@ fn greeting(ui: &Ui, model: &Model, area: Rect) {
     let key =
         |command| model.bindings.chords(command).next().map_or("–".to_owned(), |chord| chord.to_string());
     let walk = [Command::Forward, Command::Left, Command::Back, Command::Right].map(key).join(" ");
-    let text = format!("{walk} walk · drag to look around · {} help", key(Command::Help));
+    let text = match &model.file {
+        Some(_) => {
+            format!(
+                "drag to turn · wheel to come nearer · {} fly and walk · {} help",
+                key(Command::WalkFlyOrbit),
+                key(Command::Help)
+            )
+        }
+        None => format!("{walk} walk · drag to look around · {} help", key(Command::Help)),
+    };
     let galley = ui.painter().layout_no_wrap(text, FontId::proportional(14.0), theme::ON_SCRIM);
     // Below the names of the lower pictures.
     let tag = Rect::from_center_size(area.center() + vec2(0.0, 84.0), galley.size() + vec2(28.0, 14.0));

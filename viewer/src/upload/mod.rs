@@ -1,6 +1,8 @@
 //! A [`Scene`]'s plain values → buffers and textures on the device. Immutable once made; shared by all views that show
 //! it. What two landscapes have in common (a tree that was inherited, a texture) is uploaded once.
 
+mod asset;
+mod exhibit;
 mod ground;
 mod plants;
 mod ring;
@@ -13,6 +15,10 @@ use std::sync::{Arc, Mutex, Weak};
 
 use genescape_schema::scene::SkyLight;
 
+pub use asset::{
+    AssetBuffers, CopyData, MAX_LIGHTS, ShapeData, StudioUniform, SurfaceData, SurfaceUniform, UvMap,
+};
+pub use exhibit::{Exhibit, WeakExhibit};
 pub use ground::GroundBuffers;
 pub use plants::{PLANT_BLOCK_M, PlantBuffers, PlantVertex};
 pub use ring::{Ring, RingVertex};

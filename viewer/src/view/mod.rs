@@ -1,20 +1,20 @@
-//! One of the four pictures: a camera's targets, the landscape it shows, and the order in which passes draw it.
+//! One of the four pictures: a camera's targets, what it shows, and the order in which passes draw it.
 
+mod asset;
+mod landscape;
 mod targets;
 mod terrain;
 
-use std::sync::Arc;
-
 pub use targets::Targets;
-use terrain::TerrainChoice;
+
+use asset::AssetChoice;
+use landscape::LandscapeChoice;
 
 use crate::camera::Camera;
 use crate::gpu::Gpu;
-use crate::options::{FrameInput, Options};
-use crate::passes::grass::{self, Clump};
-use crate::passes::plants::PlantChoice;
-use crate::passes::{BoundScene, Cull, CullUniform, Passes, Tone, ViewUniform};
-use crate::upload::{SceneBuffers, TreeSet};
+use crate::options::FrameInput;
+use crate::passes::{Binding, BoundAsset, BoundScene, Passes, Tone, ViewUniform, bind};
+use crate::upload::{Exhibit, TreeSet};
 
 #[derive(Debug)]
 pub struct View {
@@ -24,12 +24,17 @@ pub struct View {
     targets: Targets,
     /// The targets were made anew, and no caller knows yet.
     fresh: bool,
-    bound: Option<BoundScene>,
-    terrain: TerrainChoice,
-    /// Clumps of grass, kept from frame to frame.
-    clumps: Vec<Clump>,
-    /// Small plants, likewise.
-    plants: PlantChoice,
+    /// The uniform alone.
+    camera_group: wgpu::BindGroup,
+    exhibit: Option<Exhibit>,
+    bound: Option<Bound>,
+}
+
+/// What is shown, as bound for this view, with what is kept from frame to frame.
+#[derive(Debug)]
+enum Bound {
+    Landscape(Box<BoundScene>, LandscapeChoice),
+    Asset(Box<BoundAsset>, AssetChoice),
 }
 
 /// What a picture took.
@@ -37,24 +42,26 @@ pub struct View {
 pub struct Drawn {
     /// Draw calls.
     pub draws: u32,
-    /// Triangles of the land.
-    pub land_triangles: u32,
+    /// Triangles of the land, or of anyone's file.
+    pub triangles: u32,
+    /// Copies of a file's shapes at each level, finest first. How many trees a landscape has where is known on the device.
+    pub copies_by_level: Vec<u32>,
 }
 
 impl View {
-    /// A view without landscape.
+    /// A view of nothing.
     pub fn new(gpu: &Gpu, passes: &Passes, label: &str, size_px: [u32; 2]) -> Self {
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        let uniform = gpu.empty_buffer(label, size_of::<ViewUniform>() as u64, usage);
         Self {
             gpu: gpu.clone(),
             label: label.to_owned(),
-            uniform: gpu.empty_buffer(label, size_of::<ViewUniform>() as u64, usage),
+            camera_group: camera_group(gpu, passes, &uniform),
+            uniform,
             targets: Targets::new(gpu, passes, label, size_px),
             fresh: false,
+            exhibit: None,
             bound: None,
-            terrain: TerrainChoice::default(),
-            clumps: Vec::new(),
-            plants: PlantChoice::default(),
         }
     }
 
@@ -63,9 +70,9 @@ impl View {
         &self.targets
     }
 
-    /// The landscape that is shown.
-    pub fn scene(&self) -> Option<&Arc<SceneBuffers>> {
-        self.bound.as_ref().map(|bound| &bound.scene)
+    /// What is shown.
+    pub fn exhibit(&self) -> Option<&Exhibit> {
+        self.exhibit.as_ref()
     }
 
     /// Gives the picture another size; `true` if there are new targets since the last call.
@@ -78,28 +85,40 @@ impl View {
         std::mem::take(&mut self.fresh)
     }
 
-    /// Shows a landscape from the next picture on.
-    pub fn show(&mut self, passes: &Passes, scene: Arc<SceneBuffers>) {
-        self.bound = Some(BoundScene::new(&self.gpu, &passes.layouts, scene, &self.uniform));
+    /// Shows a landscape or a file from the next picture on.
+    pub fn show(&mut self, passes: &Passes, exhibit: impl Into<Exhibit>) {
+        let (gpu, layouts, exhibit) = (&self.gpu, &passes.layouts, exhibit.into());
+        self.bound = Some(match exhibit.clone() {
+            Exhibit::Landscape(scene) => {
+                let bound = BoundScene::new(gpu, layouts, scene, &self.uniform);
+                Bound::Landscape(Box::new(bound), LandscapeChoice::default())
+            }
+            Exhibit::Asset(asset) => {
+                Bound::Asset(Box::new(BoundAsset::new(gpu, layouts, asset)), AssetChoice::default())
+            }
+        });
+        self.exhibit = Some(exhibit);
     }
 
     /// Goes on with other passes.
     pub fn adopt(&mut self, passes: &Passes) {
         self.targets = Targets::new(&self.gpu, passes, &self.label, self.targets.size_px);
+        self.camera_group = camera_group(&self.gpu, passes, &self.uniform);
         self.fresh = true;
-        if let Some(bound) = self.bound.take() {
-            self.show(passes, bound.scene);
+        if let Some(exhibit) = self.exhibit.take() {
+            self.show(passes, exhibit);
         }
     }
 
     /// Shows nothing.
     pub fn clear(&mut self) {
-        self.bound = None;
+        (self.exhibit, self.bound) = (None, None);
     }
 
     /// How many trees are drawn at each level of each template, where that is written on the device.
     pub fn tree_counts(&self) -> Option<(&TreeSet, &wgpu::Buffer)> {
-        let (set, trees) = self.bound.as_ref()?.trees()?;
+        let Bound::Landscape(bound, _) = self.bound.as_ref()? else { return None };
+        let (set, trees) = bound.trees()?;
         Some((set, &trees.counts))
     }
 
@@ -119,63 +138,30 @@ impl View {
             return Drawn::default();
         };
         let mut scope = profiler.scope(self.label.as_str(), encoder);
-        let (options, size_px) = (&frame.options, self.targets.size_px);
-        let size = size_px.map(|side| side as f32);
-        let frustum = lod_camera.frustum(size[0] / size[1]);
-
-        let (detail, land_triangles) = self.terrain.choose(bound, &self.gpu, lod_camera, size, options);
-        let uniform = ViewUniform::new(&bound.scene, camera, lod_camera, size_px, frame, &detail);
-        self.gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
-
-        if let Some((set, trees)) = bound.trees() {
-            let (eye_m, focal_px) = (lod_camera.position_m, lod_camera.focal_px(size[1]));
-            let culling = CullUniform::for_view(set, &frustum, eye_m, focal_px, options);
-            trees.set(&self.gpu.queue, &culling);
-            passes.cull.dispatch(&mut scope.scoped_compute_pass(Cull::NAME), trees);
-        }
-        self.clumps.clear();
-        self.plants.clear();
-        // In pictures that explain levels of detail it would only hide them.
-        if options.grass && !options.wireframe && !options.tint_levels && !options.overhead {
-            let (ground, eye_m) = (&bound.scene.ground, lod_camera.position_m);
-            grass::clumps(ground, eye_m, &frustum, frame.part, &mut self.clumps);
-            self.plants.choose(ground, &bound.scene.land.plants, eye_m, &frustum);
-        }
-        bound.clumps.write(&self.gpu, &self.clumps);
-        bound.plants.write(&self.gpu, &self.plants.instances);
-        bound.plant_draws.clone_from(&self.plants.draws);
-        bound.scene.land.ring.seen(&camera.frustum(size[0] / size[1]), &mut bound.ring);
-
-        let draws = draw(&mut scope, passes, bound, &self.targets, options);
-        Drawn { draws, land_triangles }
+        let (gpu, targets) = (&self.gpu, &self.targets);
+        let drawn = match bound {
+            Bound::Landscape(bound, choice) => {
+                let cameras = [camera, lod_camera];
+                choice.record(bound, gpu, &self.uniform, &mut scope, passes, targets, frame, cameras)
+            }
+            Bound::Asset(bound, choice) => {
+                let numbers = ViewUniform::of_camera(camera, targets.size_px, frame, 1.0);
+                gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&numbers));
+                let size = targets.size_px.map(|side| side as f32);
+                choice.choose(bound, gpu, lod_camera, size, &frame.options);
+                asset::draw(&mut scope, passes, bound, choice, &self.camera_group, targets, &frame.options)
+            }
+        };
+        let mut pass = scope.scoped_render_pass(Tone::NAME, display_pass(&self.targets.display()));
+        pass.set_bind_group(0, &self.camera_group, &[]);
+        let like_film = matches!(self.exhibit, Some(Exhibit::Landscape(_)));
+        passes.tone.draw(&mut pass, &self.targets.radiance_group, like_film);
+        drawn
     }
 }
 
-/// Records everything that draws, and tells how many draws that are.
-fn draw(
-    scope: &mut wgpu_profiler::Scope<'_, wgpu::CommandEncoder>,
-    passes: &Passes,
-    bound: &BoundScene,
-    targets: &Targets,
-    options: &Options,
-) -> u32 {
-    let mut draws = 1;
-    {
-        let descriptor = wgpu::RenderPassDescriptor {
-            color_attachments: &targets.radiance(),
-            depth_stencil_attachment: Some(targets.depth()),
-            ..Default::default()
-        };
-        let mut picture = scope.scoped_render_pass("picture", descriptor);
-        picture.set_bind_group(0, &bound.view_group, &[]);
-        for (name, pass) in passes.picture.iter().filter(|(_, pass)| pass.is_needed(bound, options)) {
-            draws += pass.draw(&mut picture.scope(*name), bound, options);
-        }
-    }
-    let mut pass = scope.scoped_render_pass(Tone::NAME, display_pass(&targets.display()));
-    pass.set_bind_group(0, &bound.view_group, &[]);
-    passes.tone.draw(&mut pass, &targets.radiance_group);
-    draws
+fn camera_group(gpu: &Gpu, passes: &Passes, uniform: &wgpu::Buffer) -> wgpu::BindGroup {
+    bind(gpu, "camera", &passes.layouts.camera, [(0, Binding::Buffer(uniform))])
 }
 
 fn display_pass<'a>(

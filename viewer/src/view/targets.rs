@@ -43,13 +43,26 @@ impl Targets {
         }
     }
 
+    /// The pass that draws radiance.
+    pub(super) fn picture<'a>(
+        &self,
+        scope: &'a mut wgpu_profiler::Scope<'_, wgpu::CommandEncoder>,
+    ) -> wgpu_profiler::OwningScope<'a, wgpu::RenderPass<'a>> {
+        let descriptor = wgpu::RenderPassDescriptor {
+            color_attachments: &self.radiance(),
+            depth_stencil_attachment: Some(self.depth()),
+            ..Default::default()
+        };
+        scope.scoped_render_pass("picture", descriptor)
+    }
+
     /// Where radiance is drawn to.
-    pub(super) fn radiance(&self) -> [Option<wgpu::RenderPassColorAttachment<'_>>; 1] {
+    fn radiance(&self) -> [Option<wgpu::RenderPassColorAttachment<'_>>; 1] {
         let resolved = self.multisampled.as_ref().map(|_| &self.radiance);
         [cleared(self.multisampled.as_ref().unwrap_or(&self.radiance), resolved, wgpu::Color::BLACK)]
     }
 
-    pub(super) fn depth(&self) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    fn depth(&self) -> wgpu::RenderPassDepthStencilAttachment<'_> {
         // Reversed depth: infinitely far is 0.
         let load = wgpu::LoadOp::Clear(0.0);
         wgpu::RenderPassDepthStencilAttachment {

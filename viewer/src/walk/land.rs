@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 
 use super::Trunks;
 use crate::camera::Camera;
-use crate::scene::{Heightfield, Lookouts, Scene, StartView};
+use crate::scene::{Asset, Heightfield, Lookouts, Scene, StartView};
 
 /// Height of a walker's eyes above what it stands on.
 pub const EYE_HEIGHT_M: f32 = StartView::EYE_HEIGHT_M;
@@ -34,6 +34,21 @@ pub struct Land {
     pub start: StartView,
     /// How good it looks from elsewhere, if its file says so.
     pub lookouts: Option<Arc<Lookouts>>,
+    /// What stands there, if it is anyone's file.
+    pub subject: Option<Subject>,
+}
+
+/// What stands alone on an even ground: an orbit goes around it, seen from below, too, for no ground hides it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Subject {
+    /// Height of its middle, which stands above the origin.
+    pub middle_m: f32,
+    /// Of a sphere around it.
+    pub radius_m: f32,
+    /// What a metre of its file is in the viewer's world.
+    pub scale: f32,
+    /// Whether [`Land::start`] is a camera of its file.
+    pub has_camera: bool,
 }
 
 impl Land {
@@ -46,13 +61,37 @@ impl Land {
             trunks: Trunks::of(&scene.trees.instances),
             start: scene.start,
             lookouts: scene.lookouts.clone(),
+            subject: None,
+        }
+    }
+
+    /// The ground under anyone's file, level and without an end that anyone reaches soon.
+    pub fn under(asset: &Asset) -> Self {
+        let staging = asset.staging();
+        let spacing_m = 2.0 * (10.0 * staging.radius_m + 100.0);
+        let to_world = &staging.world_from_file;
+        let seen = asset.camera.map(|camera| StartView {
+            position_m: to_world.transform_point3(camera.position_m.as_dvec3()).as_vec3(),
+            direction: camera.direction,
+        });
+        let (middle_m, radius_m, scale) = (staging.middle_m, staging.radius_m, staging.scale as f32);
+        let subject = Subject { middle_m, radius_m, scale, has_camera: seen.is_some() };
+        Self {
+            field: Arc::new(Heightfield { side: 2, spacing_m, heights_m: vec![0.0; 4] }),
+            top_m: 2.0 * middle_m,
+            water_level_m: None,
+            trunks: Trunks::default(),
+            start: seen.unwrap_or_else(|| subject.view()),
+            lookouts: None,
+            subject: Some(subject),
         }
     }
 
     /// The camera that looks on from above, as in the thesis's figures 12 and 13: over the middle, all of the land in
     /// a square picture.
     pub fn overhead(&self, fov_y_rad: f32) -> Camera {
-        let height_m = self.top_m + 0.5 * self.field.extent_m() / libm::tanf(0.5 * fov_y_rad);
+        let half_m = self.subject.map_or(0.5 * self.field.extent_m(), |subject| subject.radius_m);
+        let height_m = self.top_m + half_m / libm::tanf(0.5 * fov_y_rad);
         Camera {
             position_m: Vec3::new(0.0, height_m, 0.0),
             yaw_rad: 0.0,
@@ -77,10 +116,27 @@ impl Land {
 
     /// No eye may be lower, in metres: above the ground, and above the lake (from below, a lake is only a lid).
     pub fn floor_m(&self, place_m: Vec2) -> f32 {
+        if self.subject.is_some() {
+            return f32::NEG_INFINITY;
+        }
         let ground_m = self.ground_m(place_m);
         self.water_level_m.map_or(ground_m, |water_m| ground_m.max(water_m)) + MIN_HEIGHT_M
     }
 }
+
+impl Subject {
+    /// From the front, a little from the right and from above, so that all of it is in the picture.
+    fn view(&self) -> StartView {
+        let (aside, above) = (0.52, 0.26);
+        let ((sin_a, cos_a), (sin_e, cos_e)) = (libm::sincosf(aside), libm::sincosf(above));
+        let towards_eye = Vec3::new(sin_a * cos_e, sin_e, cos_a * cos_e);
+        let middle_m = Vec3::Y * self.middle_m;
+        StartView { position_m: middle_m + towards_eye * (FRAMED * self.radius_m), direction: -towards_eye }
+    }
+}
+
+/// Radii from its middle from which a subject fills a picture with the usual field of view.
+const FRAMED: f32 = 2.0;
 
 /// Half the side in metres of the square around the origin on which all landscapes have land, less [`EDGE_M`].
 /// Without a landscape there is no edge.

@@ -4,7 +4,7 @@
 //! What all views share, bit by bit: x, z, yaw and pitch. What each view has of its own: y, which follows its own
 //! ground. Walking keeps eyes 1.6 m above the bilinear ground and goes around trunks ([`steps`] says why around those of
 //! all four landscapes); flying keeps one altitude in all views ([`fly`]); orbiting circles a point on the ground
-//! ([`orbit`]).
+//! ([`orbit`]). Around anyone's file, which stands alone, an orbit circles its middle.
 
 mod fly;
 mod land;
@@ -22,7 +22,9 @@ use std::f32::consts::{PI, TAU};
 use glam::{Vec2, Vec3, Vec3Swizzles};
 use serde::Serialize;
 
-pub use land::{BODY_RADIUS_M, EDGE_M, EYE_HEIGHT_M, Land, MIN_HEIGHT_M, WADING_DEPTH_M, reach_m, within};
+pub use land::{
+    BODY_RADIUS_M, EDGE_M, EYE_HEIGHT_M, Land, MIN_HEIGHT_M, Subject, WADING_DEPTH_M, reach_m, within,
+};
 pub use start::{start_pose, suits_all};
 pub use steps::{advance, free, nearest_free};
 pub use trunks::{Trunk, Trunks};
@@ -150,8 +152,8 @@ pub struct Rig {
     velocity_mps: Vec3,
     /// Set by the wheel.
     fly_mps: f32,
-    /// What an orbit circles: (x, z).
-    target_m: Vec2,
+    /// What an orbit circles; its height counts only around a [`Subject`].
+    target_m: Vec3,
     /// Parts of walking, flying and orbiting in the eyes' height; their sum is 1, and soon the mode's own part is.
     parts: [f32; 3],
 }
@@ -163,7 +165,7 @@ impl Rig {
             pose: Pose::default(),
             velocity_mps: Vec3::ZERO,
             fly_mps: fly::SPEED_MPS,
-            target_m: Vec2::ZERO,
+            target_m: Vec3::ZERO,
             parts: Mode::Walk.alone(),
         };
         rig.go(pose, lands);
@@ -191,7 +193,7 @@ impl Rig {
             pitch_rad: finite(pose.pitch_rad, 0.0).clamp(-MAX_PITCH_RAD, MAX_PITCH_RAD),
             mode: pose.mode,
             altitude_m: finite(pose.altitude_m, 0.0),
-            distance_m: orbit::distance(finite(pose.distance_m, usual.distance_m)),
+            distance_m: orbit::distance(finite(pose.distance_m, usual.distance_m), lands),
         };
         (self.velocity_mps, self.parts) = (Vec3::ZERO, pose.mode.alone());
         match pose.mode {
@@ -241,12 +243,13 @@ impl Rig {
                 fly::advance(&mut self.pose, moved_m, lands);
             }
             Mode::Orbit => {
-                orbit::zoom(&mut self.pose, controls, dt_s);
-                let speed_mps = orbit::speed_mps(&self.pose, feel.walk_mps) * pace(controls);
+                orbit::zoom(&mut self.pose, controls, dt_s, lands);
+                let speed_mps = orbit::speed_mps(&self.pose, feel.walk_mps, lands) * pace(controls);
                 let wish_mps = level_wish(&self.pose, controls) * speed_mps;
                 let moved_m = glide(&mut self.velocity_mps, wish_mps, dt_s);
-                self.target_m = within(lands, self.target_m + moved_m.xz());
-                orbit::circle(&mut self.pose, self.target_m);
+                let place_m = within(lands, (self.target_m + moved_m).xz());
+                self.target_m = Vec3::new(place_m.x, self.target_m.y, place_m.y);
+                orbit::circle(&mut self.pose, self.target_m, lands);
             }
         }
     }

@@ -1,9 +1,10 @@
 //! Where a walk begins: at the view that suits the worst of the landscapes best, for one cannot vote on a landscape that
 //! is not to be seen. How good each looks from where the bake has found out, and `Lookouts::shared` chooses.
 
+use genescape_schema::scene::StartView;
 use glam::{Vec2, Vec3};
 
-use super::{EYE_HEIGHT_M, Land, Pose, nearest_free};
+use super::{EYE_HEIGHT_M, Land, Mode, Pose, Subject, nearest_free};
 use crate::scene::{Lookout, Lookouts};
 
 /// A view that is worth at least this part of the best one is good enough to stay at.
@@ -12,20 +13,37 @@ const GOOD_ENOUGH: f32 = 0.6;
 /// Where to begin: the view for all of these landscapes, moved no farther than trunks make necessary. Where no file says
 /// how good views are, it is the first landscape's start.
 pub fn start_pose(lands: &[&Land]) -> Pose {
+    let alone = lands.iter().find_map(|land| Some((land.subject.as_ref()?, &land.start)));
+    if let Some((subject, start)) = alone {
+        return before(subject, start);
+    }
     let Some((wanted_m, direction)) = start(lands) else {
         return Pose { altitude_m: EYE_HEIGHT_M, ..Pose::default() };
     };
     let place_m = nearest_free(lands, wanted_m).unwrap_or(wanted_m);
     let top_m = lands.iter().map(|land| land.footing_m(place_m)).fold(f32::NEG_INFINITY, f32::max);
-    let [x, y, z] = direction.to_array();
+    let altitude_m = top_m + EYE_HEIGHT_M;
+    Pose { x_m: place_m.x, z_m: place_m.y, altitude_m, ..looking(direction) }
+}
+
+/// Before anyone's file: it turns if it is what the start looks at from outside, and is flown through if not.
+fn before(subject: &Subject, start: &StartView) -> Pose {
+    let to_middle_m = Vec3::Y * subject.middle_m - start.position_m;
+    let distance_m = to_middle_m.length();
+    let turns = distance_m > subject.radius_m && to_middle_m.dot(start.direction) > 0.9 * distance_m;
     Pose {
-        x_m: place_m.x,
-        z_m: place_m.y,
-        yaw_rad: libm::atan2f(-x, -z),
-        pitch_rad: libm::asinf(y.clamp(-1.0, 1.0)),
-        altitude_m: top_m + EYE_HEIGHT_M,
-        ..Pose::default()
+        x_m: start.position_m.x,
+        z_m: start.position_m.z,
+        altitude_m: start.position_m.y,
+        distance_m,
+        mode: if turns { Mode::Orbit } else { Mode::Fly },
+        ..looking(start.direction)
     }
+}
+
+fn looking(direction: Vec3) -> Pose {
+    let [x, y, z] = direction.to_array();
+    Pose { yaw_rad: libm::atan2f(-x, -z), pitch_rad: libm::asinf(y.clamp(-1.0, 1.0)), ..Pose::default() }
 }
 
 /// Whether no start would show the worst of these landscapes much better.

@@ -49,12 +49,6 @@ fn land(height_m: impl Fn(f32, f32) -> f32, trunks: impl IntoIterator<Item = Tru
         .collect();
     let [_, top_m] = field.range_m();
     let start = StartView { position_m: Vec3::ZERO, direction: Vec3::NEG_Z };
-    Land {
-        field: Arc::new(field),
-        top_m,
-        water_level_m: None,
-        trunks: Trunks::new(trunks),
-        start,
-        lookouts: None,
-    }
+    let (field, trunks) = (Arc::new(field), Trunks::new(trunks));
+    Land { field, top_m, water_level_m: None, trunks, start, lookouts: None, subject: None }
 }

@@ -8,6 +8,7 @@ use proptest::prelude::*;
 use super::testing::{forest, hilly, land_with, trunk};
 use super::*;
 use crate::input::Controls;
+use crate::scene::Asset;
 
 /// Four dense forests on four different lands, many times over.
 static FORESTS: LazyLock<Vec<[Land; 4]>> = LazyLock::new(|| {
@@ -160,11 +161,43 @@ proptest! {
             rig.step(*dt_s, controls, &Feel::default(), &lands);
             let camera = rig.camera(&land, 1.0);
             let seen = camera.position_m + camera.forward() * rig.pose().distance_m;
+            let target_m = Vec2::new(rig.target_m.x, rig.target_m.z);
             // Low and near, the eye is lifted to keep off the ground.
             let lifted = (MIN_HEIGHT_M - rig.pose().distance_m * libm::sinf(-rig.pose().pitch_rad)).max(0.0);
-            prop_assert!((seen.y - lifted).abs() < 0.01 && within(&lands, rig.target_m) == rig.target_m);
-            prop_assert!(Vec2::new(seen.x, seen.z).distance(rig.target_m) < 0.01, "{seen} {}", rig.target_m);
+            prop_assert!((seen.y - lifted).abs() < 0.01 && within(&lands, target_m) == target_m);
+            prop_assert!(Vec2::new(seen.x, seen.z).distance(target_m) < 0.01, "{seen} {target_m}");
         }
+    }
+
+    #[test]
+    fn all_of_a_file_is_in_the_picture_at_first_and_an_orbit_stays_around_it(
+        frames in frames(), size in prop::array::uniform3(-3f32..4.5), x in -1e4f32..1e4, turn in -2000f32..2000.
+    ) {
+        let size_m = glam::Vec3::from(size.map(libm::exp10f));
+        let low_m = glam::Vec3::new(x, 3.0, -x);
+        let asset = Asset { bounds_m: [low_m, low_m + size_m], ..Asset::default() };
+        let land = Land::under(&asset);
+        let lands = [&land];
+        let mut rig = Rig::new(start_pose(&lands), &lands);
+        let camera = rig.camera(&land, 60f32.to_radians());
+        let (clip, staging) = (camera.clip_from_world(1.0), asset.staging());
+        let [low, high] = asset.bounds_m.map(|corner| staging.world_from_file.transform_point3(corner.as_dvec3()).as_vec3());
+        for corner in 0..8u32 {
+            let pick = |axis: usize| if corner >> axis & 1 == 0 { low[axis] } else { high[axis] };
+            let seen = clip * glam::Vec4::new(pick(0), pick(1), pick(2), 1.0);
+            prop_assert!(seen.x.abs() < 1.01 * seen.w && seen.y.abs() < 1.01 * seen.w, "{seen}");
+        }
+        let middle = glam::Vec3::Y * staging.middle_m;
+        for (dt_s, controls, _) in &frames {
+            // Not aside: that moves the point.
+            let turn_px = Vec2::new(turn, -turn);
+            let controls = Controls { wheel: controls.wheel, up: controls.up, turn_px, ..Controls::default() };
+            rig.step(*dt_s, &controls, &Feel::default(), &lands);
+            let camera = rig.camera(&land, 1.0);
+            let seen = camera.position_m + camera.forward() * rig.pose().distance_m;
+            prop_assert!(seen.distance(middle) < 1e-3 * (rig.pose().distance_m + 1.0), "{seen} {middle}");
+        }
+        prop_assert!(turn < 500.0 || frames.is_empty() || rig.pose().pitch_rad > 0.0, "also from below");
     }
 
     #[test]

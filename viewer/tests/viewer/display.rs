@@ -23,7 +23,7 @@ pub mod keys {
         };
     }
     keys! {
-        ESCAPE = 1, E = 18, U = 22, Y = 21, ENTER = 28, CTRL = 29, A = 30, G = 34, Z = 44, N = 49, DOT = 52, W = 17, S = 31, F5 = 63,
+        ESCAPE = 1, E = 18, U = 22, Y = 21, ENTER = 28, CTRL = 29, A = 30, F = 33, G = 34, Z = 44, N = 49, DOT = 52, W = 17, S = 31, F5 = 63,
         F12 = 88,
         TAB = 15, PAGE_UP = 104, PAGE_DOWN = 109,
     }
@@ -79,7 +79,9 @@ impl Display {
         let tree = self.connection.query_tree(self.root).ok()?.reply().ok()?;
         tree.children.into_iter().find(|window| {
             let name = self.connection.get_property(false, *window, AtomEnum::WM_NAME, AtomEnum::ANY, 0, 64);
-            name.ok().and_then(|name| name.reply().ok()).is_some_and(|name| name.value == b"Genescape")
+            name.ok()
+                .and_then(|name| name.reply().ok())
+                .is_some_and(|name| name.value.ends_with(b"Genescape"))
         })
     }
 

@@ -5,7 +5,7 @@ use genescape_viewer::camera::{Camera, Frustum};
 use genescape_viewer::gpu::Gpu;
 use genescape_viewer::headless::Headless;
 use genescape_viewer::image_file;
-use genescape_viewer::lod::tree::{MAX_LEVELS, MIN_DISTANCE_M, simple_error_m};
+use genescape_viewer::lod::tree::{Control, MAX_LEVELS, distance_m, lod_number, simple_error_m};
 use genescape_viewer::lod_mode::TreeLodMode;
 use genescape_viewer::options::Options;
 use genescape_viewer::passes::{BoundTrees, CullUniform};
@@ -181,60 +181,6 @@ fn the_device_chooses_as_the_reference_does() {
         seen = [seen[0] + more[0], seen[1] + more[1]];
     }
     assert!(seen.iter().all(|&count| count > 500), "some are seen and some are not: {seen:?}");
-}
-
-/// What one frame asks of all trees.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Control {
-    /// How levels are chosen.
-    mode: TreeLodMode,
-    /// Pixels a radian in the middle of the picture, ½·height/tan(½·fov).
-    focal_px: f32,
-    /// Error allowed on the screen.
-    error_px: f32,
-}
-
-/// Distance in metres from the eye to the sphere around a tree; [`MIN_DISTANCE_M`] inside it. `center_distance_m`:
-/// to the sphere's centre.
-fn distance_m(center_distance_m: f32, radius_m: f32) -> f32 {
-    (center_distance_m - radius_m).max(MIN_DISTANCE_M)
-}
-
-/// λ of an instance at [`distance_m`]. `errors_m`: of D_0 … D_k, positive and increasing; `simple_error_m`: of
-/// [`simple_error_m`]; `scale`: the largest singular value of the instance's linear part. 0 for what makes no sense.
-fn lod_number(control: &Control, errors_m: &[f32], simple_error_m: f32, distance_m: f32, scale: f32) -> f32 {
-    let allowed_m = control.error_px / control.focal_px * distance_m / scale;
-    match control.mode {
-        TreeLodMode::Quality => by_quality(errors_m, allowed_m),
-        TreeLodMode::Simple => by_count(errors_m.len(), simple_error_m, allowed_m),
-        TreeLodMode::Discrete => by_quality(errors_m, allowed_m).floor(),
-        TreeLodMode::Off => 0.0,
-    }
-}
-
-/// r⁻¹(log `allowed_m`), r(λ) = log q(λ).
-fn by_quality(errors_m: &[f32], allowed_m: f32) -> f32 {
-    let mut lambda = 0.0;
-    for i in 1..errors_m.len() {
-        let (fine_m, coarse_m) = (errors_m[i - 1], errors_m[i]);
-        if allowed_m >= coarse_m {
-            lambda = i as f32;
-        } else {
-            if allowed_m > fine_m {
-                let part = libm::log2f(allowed_m / fine_m) / libm::log2f(coarse_m / fine_m);
-                lambda += part.clamp(0.0, 1.0);
-            }
-            break;
-        }
-    }
-    lambda
-}
-
-/// 2·log₂ d + β.
-fn by_count(levels: usize, simple_error_m: f32, allowed_m: f32) -> f32 {
-    let k = levels.max(1) as f32 - 1.0;
-    // Also false for what is not a number.
-    if allowed_m > simple_error_m { (2.0 * libm::log2f(allowed_m / simple_error_m)).min(k) } else { 0.0 }
 }
 
 prop_compose! {

@@ -1,10 +1,15 @@
-//! What is drawn, on a device and in a window. All but the shaders' test need a Vulkan driver, and the window an X server
-//! without a screen: `cargo xtask test` installs both where it may, and runs them.
+//! What is drawn, on a device and in a window. All but the tests of shaders, files and mistakes need a Vulkan driver, and
+//! the windows an X server without a screen: `cargo xtask test` installs both where it may, and runs them.
 
+mod asset;
+mod asset_drawn;
+mod asset_hostile;
+mod asset_materials;
 mod cracks;
 mod desktop;
 mod display;
 mod exports;
+mod files;
 mod golden;
 mod lod_twin;
 mod made_up;
@@ -14,3 +19,4 @@ mod program;
 mod shaders;
 mod shadows;
 mod window;
+mod window_file;

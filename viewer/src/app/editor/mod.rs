@@ -111,11 +111,7 @@ impl Editor {
 
     fn begin(&mut self) {
         if let Source::Scenes(scenes) = &self.source {
-            for (view, path) in scenes.iter().take(INDIVIDUALS).enumerate() {
-                self.asked[view] = true;
-                self.tasks.push(Task::Load { view, generation: 0, path: path.clone() });
-            }
-            return;
+            return (0..scenes.len().min(INDIVIDUALS)).for_each(|view| self.load(view));
         }
         self.read_space();
         self.read_generations();
@@ -232,8 +228,11 @@ impl Editor {
     }
 
     fn load(&mut self, view: usize) {
-        let path = self.world.scene_path(self.generation, view);
-        if path.is_file() {
+        let path = match &self.source {
+            Source::World(_) => self.world.scene_path(self.generation, view),
+            Source::Scenes(paths) => paths[view].clone(),
+        };
+        if path.is_file() || self.world().is_none() {
             self.asked[view] = true;
             self.tasks.push(Task::Load { view, generation: self.generation, path });
         }
@@ -251,7 +250,11 @@ impl Editor {
                 self.faults.remove(&Fault::Scene(view));
             }
             Err(error) => {
-                self.fault(Fault::Scene(view), format!("landscape {} cannot be shown", view + 1), error);
+                let what = match self.world() {
+                    Some(_) => format!("landscape {} cannot be shown", view + 1),
+                    None => "the file cannot be shown".to_owned(),
+                };
+                self.fault(Fault::Scene(view), what, error);
             }
         }
         result.is_ok()
@@ -280,6 +283,8 @@ impl Editor {
                 }
             }
             Change::Scene { generation, index } if generation == self.generation => self.load(index),
+            // What is not one of the scenes' own files is what a single one is made of.
+            Change::File(number) => self.load(if number < self.count() { number } else { 0 }),
             Change::Scene { .. } | Change::Current | Change::Shaders => {}
         }
     }

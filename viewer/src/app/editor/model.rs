@@ -57,7 +57,11 @@ impl Editor {
             let what = self.faults.get(&fault)?.report.clone();
             Some(ViewState::Failed { what, remedy: remedy.to_owned() })
         };
-        if let Some(failed) = failed(Fault::Scene(view), "Bake it again, or mend what the message names") {
+        let remedy = match self.world() {
+            Some(_) => "Bake it again, or mend what the message names",
+            None => "It is read again as soon as it changes",
+        };
+        if let Some(failed) = failed(Fault::Scene(view), remedy) {
             return failed;
         }
         if self.loaded[view] {

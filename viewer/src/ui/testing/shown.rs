@@ -9,6 +9,8 @@ use genescape_schema::Category;
 use super::behaviour::{WINDOW, all_voted, press};
 use super::*;
 use crate::ballots::Ballot;
+use crate::scene::Facts;
+use crate::ui::model::FileShown;
 use crate::ui::theme::title;
 
 /// What is drawn of a text, if anything is.
@@ -196,4 +198,43 @@ fn tooltips_name_keys_and_settings_begin_with_what_people_look_for() {
     harness.get_by_label("Help and keys").hover();
     harness.run_steps(8);
     assert!(text_rect(&harness, "Help and keys (F1)").is_some());
+}
+
+#[test]
+fn a_file_has_facts_instead_of_genes_and_no_generations() {
+    let mut world = model();
+    (world.count, world.votable, world.arrangement) = (1, false, Arrangement::One(0));
+    world.panels.genome = true;
+    world.file = Some(FileShown {
+        name: "avocado.glb".to_owned(),
+        facts: Facts {
+            triangles: 12_345,
+            levels: 3,
+            level_source: Some("MSFT_lod"),
+            notes: vec!["Points and lines are not drawn".to_owned()],
+            ..Facts::default()
+        },
+        size_m: [0.04, 0.063, 0.03],
+        cell_m: 0.01,
+    });
+    for size in [[640.0, 400.0], WINDOW] {
+        let harness = bench(world.clone(), size, 1.0);
+        let all = ["avocado.glb", "6.3 cm", "12\u{a0}345", "MSFT_lod", "Points and lines are not drawn"];
+        // In a small window one scrolls to the others.
+        for text in &all[..if size == WINDOW { 5 } else { 2 }] {
+            assert!(text_rect(&harness, text).is_some(), "{text}");
+        }
+        assert!(harness.query_by_label("About this file").is_some());
+        for label in ["Genes", "Trees: best in 1", "Next generation", "Nothing to undo"] {
+            assert!(harness.query_by_label(label).is_none(), "{label}");
+        }
+    }
+    for file in [world.file.clone(), None] {
+        let exports = file.is_none();
+        let mut harness = bench(Model { file, ..world.clone() }, WINDOW, 1.0);
+        // Pictures have their buttons only under the pointer.
+        harness.hover_at(egui::pos2(300.0, 300.0));
+        harness.run();
+        assert_eq!(harness.query_by_label("Export: 1").is_some(), exports);
+    }
 }

@@ -1,0 +1,208 @@
+//! Anyone's .glb or .gltf → [`Asset`]: a file of which nothing is known, and nothing is believed.
+
+mod file;
+mod levels;
+mod materials;
+mod mesh;
+mod nodes;
+mod notes;
+mod numbers;
+mod pictures;
+mod places;
+mod required;
+mod vertices;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use genescape_schema::scene::{GSC_HEIGHTFIELD, GSC_SKY};
+use glam::{Affine3A, DVec3, Vec3};
+
+use super::Result;
+use crate::lod::tree::COVERED_PX;
+use crate::options::MESH_ERROR_PX;
+use crate::scene::{Asset, Facts, Shape, ShapeLevel};
+use file::AssetFile;
+use levels::{Change, LevelPlan};
+use mesh::{Known, Treatment};
+use nodes::ShapePlan;
+use notes::Notes;
+use numbers::MAX_ROWS;
+use pictures::Pictures;
+
+/// Of all copies together: to draw more takes any device seconds.
+const MAX_TRIANGLES: u64 = 1 << 29;
+/// What to do about a file that has too much of something.
+pub(super) const TOO_LARGE: &str = "; leave some out, or `gltf-transform simplify IN.glb OUT.glb`";
+
+/// Reads a file, whose bytes these are. Also which other files it is made of.
+pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<(Asset, Vec<PathBuf>)> {
+    let file = AssetFile::open(path, bytes)?;
+    let mut notes = Notes::default();
+    let mut pictures = Pictures::of(&file);
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let mut asset = Asset { name, ..Asset::default() };
+    asset.surfaces = materials::read(&file, &mut pictures, &mut notes);
+    let mut arrangement = nodes::arrange(&file, &mut notes)?;
+    (asset.lights, asset.camera) = (std::mem::take(&mut arrangement.lights), arrangement.camera);
+    let shapes = std::mem::take(&mut arrangement.shapes);
+    let source = shapes.iter().find_map(|shape| shape.source);
+    let (mut known, mut poses) = (Known::default(), BTreeMap::new());
+    for plan in shapes {
+        let pose = plan.skin.map(|skin| poses.entry(skin).or_insert_with(|| arrangement.pose(&file, skin)));
+        let shape = build(&file, plan, pose.map(|pose| &pose[..]), &mut asset, &mut known, &mut notes)?;
+        asset.shapes.extend(shape);
+    }
+    if file.rows_left.get() == 0 {
+        return Err(
+            file.wrong(format!("its meshes name more than {MAX_ROWS} vertices and indices{TOO_LARGE}"))
+        );
+    }
+    asset.bounds_m = bounds(&asset).ok_or_else(|| {
+        let left_out = std::mem::take(&mut notes).into_sentences();
+        file.wrong(match &left_out[..] {
+            [] => "nothing in it can be drawn: no node of its scene has a mesh that is there".to_owned(),
+            left_out => format!("nothing in it can be drawn. {}", left_out.join(". ")),
+        })
+    })?;
+    note_what_rests(&file, &mut notes);
+    asset.facts = facts(&file, &asset, source, notes);
+    if asset.facts.triangles > MAX_TRIANGLES {
+        let count = asset.facts.triangles;
+        return Err(
+            file.wrong(format!("{count} triangles stand in its scene, {MAX_TRIANGLES} may{TOO_LARGE}"))
+        );
+    }
+    Ok((asset, file.named_files()))
+}
+
+/// Whether a file says that it is a landscape of ours. Also false for what is no glTF.
+pub(super) fn is_landscape(bytes: &[u8]) -> bool {
+    file::used(bytes).is_some_and(|names| {
+        [GSC_HEIGHTFIELD, GSC_SKY].iter().all(|name| names.contains(&(*name).to_owned()))
+    })
+}
+
+/// Reads the meshes of a shape; none if nothing of it can be drawn.
+fn build(
+    file: &AssetFile,
+    plan: ShapePlan,
+    pose: Option<&[Affine3A]>,
+    asset: &mut Asset,
+    known: &mut Known,
+    notes: &mut Notes,
+) -> Result<Option<Shape>> {
+    let mut levels: Vec<(ShapeLevel, Change)> = Vec::new();
+    for LevelPlan { meshes, change, morph } in &plan.levels {
+        let mut level = ShapeLevel::default();
+        for (mesh, place) in meshes {
+            let treatment = Treatment {
+                shape_from_mesh: place.as_affine3a(),
+                mirrored: plan.mirrored != (place.matrix3.determinant() < 0.0),
+                morph: morph.as_deref(),
+                pose,
+            };
+            level.parts.extend(mesh::append(
+                file,
+                &file.root.meshes[*mesh],
+                &treatment,
+                asset,
+                known,
+                notes,
+            )?);
+        }
+        if !level.parts.is_empty() {
+            levels.push((level, *change));
+        }
+    }
+    if levels.is_empty() {
+        return Ok(None);
+    }
+    let corners = || levels.iter().flat_map(|(level, _)| corners(asset, level));
+    let (low, high) = (corners().fold(Vec3::MAX, Vec3::min), corners().fold(Vec3::MIN, Vec3::max));
+    let center_m = 0.5 * (low + high);
+    let radius_m = corners().map(|corner| corner.distance(center_m)).fold(0.0, f32::max);
+    Ok(Some(Shape {
+        name: plan.name,
+        levels: with_errors(levels, radius_m),
+        center_m,
+        radius_m,
+        morphs: plan.levels.iter().any(|level| level.morph.is_some()),
+        copies: plan.copies,
+    }))
+}
+
+/// Where the corners of a level's triangles are, in the shape's space.
+fn corners<'a>(asset: &'a Asset, level: &'a ShapeLevel) -> impl Iterator<Item = Vec3> + 'a {
+    let indices = level.parts.iter().flat_map(|part| {
+        let first = part.range.first as usize;
+        &asset.indices[first..first + part.range.count as usize]
+    });
+    indices.map(|index| asset.vertices[*index as usize].position_m.into())
+}
+
+/// Levels with their errors in metres, which rise.
+fn with_errors(levels: Vec<(ShapeLevel, Change)>, radius_m: f32) -> Vec<ShapeLevel> {
+    let mut min_m = f32::MIN_POSITIVE;
+    let rising = |(level, change): (ShapeLevel, Change)| {
+        let error_m = match change {
+            Change::Error(error_m) => error_m,
+            // That which the usual error allows where the shape covers that much of the picture: so all levels obey the
+            // same controls.
+            Change::Coverage(share) => MESH_ERROR_PX * 2.0 * radius_m / (share * COVERED_PX),
+        };
+        let error_m = error_m.max(min_m);
+        min_m = error_m * 1.001;
+        ShapeLevel { error_m, ..level }
+    };
+    levels.into_iter().map(rising).collect()
+}
+
+/// A box around the boxes of all copies.
+fn bounds(asset: &Asset) -> Option<[Vec3; 2]> {
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for shape in &asset.shapes {
+        let places = corners(asset, &shape.levels[0]);
+        let [min, max] = places.fold([Vec3::MAX, Vec3::MIN], |[min, max], p| [min.min(p), max.max(p)]);
+        let corner = |n: u8| {
+            let pick = |axis: usize| f64::from(if n >> axis & 1 == 0 { min[axis] } else { max[axis] });
+            DVec3::new(pick(0), pick(1), pick(2))
+        };
+        for place in &shape.copies {
+            for corner in (0..8).map(|n| place.transform_point3(corner(n))) {
+                (low, high) = (low.min(corner), high.max(corner));
+            }
+        }
+    }
+    let bounds = [low.as_vec3(), high.as_vec3()];
+    bounds.iter().all(|corner| corner.is_finite()).then_some(bounds)
+}
+
+fn note_what_rests(file: &AssetFile, notes: &mut Notes) {
+    match file.root.animations.len() {
+        0 => {}
+        1 => notes.add("Its animation is not played"),
+        count => notes.add(format!("Its {count} animations are not played")),
+    }
+    if file.root.nodes.iter().any(|node| node.skin.is_some() && node.mesh.is_some()) {
+        notes.add("Meshes with a skeleton keep the pose that the file gives them");
+    }
+}
+
+fn facts(file: &AssetFile, asset: &Asset, level_source: Option<&'static str>, notes: Notes) -> Facts {
+    let triangles = |shape: &Shape| {
+        let indices: u64 = shape.levels[0].parts.iter().map(|part| u64::from(part.range.count)).sum();
+        indices / 3 * shape.copies.len() as u64
+    };
+    Facts {
+        triangles: asset.shapes.iter().map(triangles).sum(),
+        vertices: asset.vertices.len(),
+        meshes: file.root.meshes.len(),
+        copies: asset.shapes.iter().map(|shape| shape.copies.len()).sum(),
+        materials: file.root.materials.len(),
+        pictures: file.root.images.len(),
+        levels: asset.shapes.iter().map(|shape| shape.levels.len()).max().unwrap_or(1),
+        level_source,
+        notes: notes.into_sentences(),
+    }
+}

@@ -1,0 +1,150 @@
+//! Camera and LOD mode → the copies of anyone's shapes that one picture draws, each at its level, and how they are drawn.
+
+use std::ops::Range;
+
+use super::Drawn;
+use super::targets::Targets;
+use crate::camera::{Camera, Frustum};
+use crate::gpu::Gpu;
+use crate::lod::tree::{COVERED_PX, Control, distance_m, lod_number};
+use crate::lod_mode::TreeLodMode;
+use crate::options::Options;
+use crate::passes::{AssetDraw, AssetPass, BoundAsset, Passes, Studio};
+use crate::scene::Alpha;
+use crate::upload::{AssetBuffers, ShapeData};
+
+/// Each takes a draw of its own; of more than these the farthest are left out.
+const MAX_BLENDED: usize = 1 << 14;
+
+/// Lists that are kept from frame to frame.
+#[derive(Debug, Default)]
+pub(super) struct AssetChoice {
+    /// Number and λ of copies, those that are drawn together one after the other.
+    visible: Vec<(u32, f32)>,
+    /// Copies of one shape, before they are put in order by level.
+    found: Vec<(u32, f32)>,
+    solid: Vec<AssetDraw>,
+    /// With the distance of each.
+    blended: Vec<(f32, AssetDraw)>,
+    /// Copies at each level.
+    levels: Vec<u32>,
+    triangles: u32,
+}
+
+impl AssetChoice {
+    /// Chooses for `camera` what to draw and writes it to the device.
+    pub fn choose(
+        &mut self,
+        bound: &mut BoundAsset,
+        gpu: &Gpu,
+        camera: &Camera,
+        [width, height]: [f32; 2],
+        options: &Options,
+    ) {
+        let frustum = camera.frustum(width / height);
+        let control = Control {
+            mode: options.mesh_lod,
+            focal_px: camera.focal_px(height),
+            error_px: options.mesh_error_px,
+        };
+        self.visible.clear();
+        self.solid.clear();
+        self.blended.clear();
+        self.levels.clear();
+        self.triangles = 0;
+        for shape in &bound.asset.shapes {
+            self.find(&bound.asset, shape, camera, &frustum, &control);
+            self.draw(&bound.asset, shape, camera);
+        }
+        // What hides most first; a change of material costs most.
+        self.solid.sort_by_key(|draw| draw.surface);
+        self.blended.sort_by(|(near, _), (far, _)| far.total_cmp(near));
+        self.blended.drain(..self.blended.len().saturating_sub(MAX_BLENDED));
+        let visible: Vec<[u32; 2]> =
+            self.visible.iter().map(|(copy, lambda)| [*copy, lambda.to_bits()]).collect();
+        bound.visible.write(gpu, &visible);
+    }
+
+    /// The copies of a shape that are seen, in the order of their levels.
+    fn find(
+        &mut self,
+        asset: &AssetBuffers,
+        shape: &ShapeData,
+        camera: &Camera,
+        frustum: &Frustum,
+        control: &Control,
+    ) {
+        self.found.clear();
+        let control = shape.control(control, camera);
+        for number in shape.first_copy..shape.first_copy + shape.copies {
+            let copy = &asset.copies[number as usize];
+            if frustum.sees_sphere(copy.center_m, copy.radius_m) {
+                let away_m = distance_m(copy.center_m.distance(camera.position_m), copy.radius_m);
+                let lambda = lod_number(&control, &shape.errors_m, shape.simple_error_m, away_m, copy.scale);
+                self.found.push((number, lambda));
+            }
+        }
+        self.found.sort_by_key(|(_, lambda)| *lambda as u32);
+    }
+
+    fn draw(&mut self, asset: &AssetBuffers, shape: &ShapeData, camera: &Camera) {
+        let found = std::mem::take(&mut self.found);
+        for same in found.chunk_by(|a, b| a.1 as u32 == b.1 as u32) {
+            let level = (same[0].1 as usize).min(shape.parts.len() - 1);
+            let first = self.visible.len() as u32;
+            self.visible.extend_from_slice(same);
+            self.levels.resize(self.levels.len().max(level + 1), 0);
+            self.levels[level] += same.len() as u32;
+            for part in &shape.parts[level] {
+                let indices = part.range.first..part.range.first + part.range.count;
+                let triangles = (part.range.count / 3).saturating_mul(same.len() as u32);
+                self.triangles = self.triangles.saturating_add(triangles);
+                let draw = |copies: Range<u32>| AssetDraw {
+                    surface: part.surface,
+                    indices: indices.clone(),
+                    copies,
+                };
+                if asset.surfaces[part.surface].alpha != Alpha::Blend {
+                    self.solid.push(draw(first..first + same.len() as u32));
+                    continue;
+                }
+                for (at, (copy, _)) in (first..).zip(same) {
+                    let away_m = asset.copies[*copy as usize].center_m.distance(camera.position_m);
+                    self.blended.push((away_m, draw(at..at + 1)));
+                }
+            }
+        }
+        self.found = found;
+    }
+}
+
+impl ShapeData {
+    /// Levels that do not morph change where their file says, whatever the mode (but for none) and the picture's size.
+    fn control(&self, control: &Control, camera: &Camera) -> Control {
+        match control.mode {
+            TreeLodMode::Off => *control,
+            _ if self.morphs => *control,
+            _ => Control { mode: TreeLodMode::Discrete, focal_px: camera.focal_px(COVERED_PX), ..*control },
+        }
+    }
+}
+
+/// Records everything that draws a file.
+pub(super) fn draw(
+    scope: &mut wgpu_profiler::Scope<'_, wgpu::CommandEncoder>,
+    passes: &Passes,
+    bound: &BoundAsset,
+    choice: &AssetChoice,
+    camera_group: &wgpu::BindGroup,
+    targets: &Targets,
+    options: &Options,
+) -> Drawn {
+    let mut picture = targets.picture(scope);
+    picture.set_bind_group(0, camera_group, &[]);
+    let mut draws = 1;
+    let blended: Vec<AssetDraw> = choice.blended.iter().map(|(_, draw)| draw.clone()).collect();
+    draws += passes.asset.draw(&mut picture.scope(AssetPass::NAME), bound, &choice.solid, options.wireframe);
+    draws += passes.studio.draw(&mut picture.scope(Studio::NAME), bound, options.draw_terrain);
+    draws += passes.asset.draw(&mut picture.scope("transparent"), bound, &blended, options.wireframe);
+    Drawn { draws, triangles: choice.triangles, copies_by_level: choice.levels.clone() }
+}

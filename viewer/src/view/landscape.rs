@@ -1,0 +1,82 @@
+//! The order in which passes draw a landscape.
+
+use super::Drawn;
+use super::targets::Targets;
+use super::terrain::TerrainChoice;
+use crate::camera::Camera;
+use crate::gpu::Gpu;
+use crate::options::{FrameInput, Options};
+use crate::passes::grass::{self, Clump};
+use crate::passes::plants::PlantChoice;
+use crate::passes::{BoundScene, Cull, CullUniform, Passes, ViewUniform};
+
+/// Lists that are kept from frame to frame.
+#[derive(Debug, Default)]
+pub(super) struct LandscapeChoice {
+    terrain: TerrainChoice,
+    /// Clumps of grass.
+    clumps: Vec<Clump>,
+    /// Small plants and stones.
+    plants: PlantChoice,
+}
+
+impl LandscapeChoice {
+    /// Records one picture of a landscape; the view's numbers are written to `uniform`.
+    #[expect(clippy::too_many_arguments, reason = "what a frame is drawn from")]
+    pub fn record(
+        &mut self,
+        bound: &mut BoundScene,
+        gpu: &Gpu,
+        uniform: &wgpu::Buffer,
+        scope: &mut wgpu_profiler::Scope<'_, wgpu::CommandEncoder>,
+        passes: &Passes,
+        targets: &Targets,
+        frame: &FrameInput,
+        [camera, lod_camera]: [&Camera; 2],
+    ) -> Drawn {
+        let (options, size_px) = (&frame.options, targets.size_px);
+        let size = size_px.map(|side| side as f32);
+        let frustum = lod_camera.frustum(size[0] / size[1]);
+
+        let (detail, triangles) = self.terrain.choose(bound, gpu, lod_camera, size, options);
+        let numbers = ViewUniform::new(&bound.scene, camera, lod_camera, size_px, frame, &detail);
+        gpu.queue.write_buffer(uniform, 0, bytemuck::bytes_of(&numbers));
+
+        if let Some((set, trees)) = bound.trees() {
+            let (eye_m, focal_px) = (lod_camera.position_m, lod_camera.focal_px(size[1]));
+            let culling = CullUniform::for_view(set, &frustum, eye_m, focal_px, options);
+            trees.set(&gpu.queue, &culling);
+            passes.cull.dispatch(&mut scope.scoped_compute_pass(Cull::NAME), trees);
+        }
+        self.clumps.clear();
+        self.plants.clear();
+        // In pictures that explain levels of detail it would only hide them.
+        if options.grass && !options.wireframe && !options.tint_levels && !options.overhead {
+            let (ground, eye_m) = (&bound.scene.ground, lod_camera.position_m);
+            grass::clumps(ground, eye_m, &frustum, frame.part, &mut self.clumps);
+            self.plants.choose(ground, &bound.scene.land.plants, eye_m, &frustum);
+        }
+        bound.clumps.write(gpu, &self.clumps);
+        bound.plants.write(gpu, &self.plants.instances);
+        bound.plant_draws.clone_from(&self.plants.draws);
+        bound.scene.land.ring.seen(&camera.frustum(size[0] / size[1]), &mut bound.ring);
+        Drawn { draws: draw(scope, passes, bound, targets, options), triangles, copies_by_level: Vec::new() }
+    }
+}
+
+/// Records what draws radiance, and tells how many draws there are with that of the tone.
+fn draw(
+    scope: &mut wgpu_profiler::Scope<'_, wgpu::CommandEncoder>,
+    passes: &Passes,
+    bound: &BoundScene,
+    targets: &Targets,
+    options: &Options,
+) -> u32 {
+    let mut draws = 1;
+    let mut picture = targets.picture(scope);
+    picture.set_bind_group(0, &bound.view_group, &[]);
+    for (name, pass) in passes.picture.iter().filter(|(_, pass)| pass.is_needed(bound, options)) {
+        draws += pass.draw(&mut picture.scope(*name), bound, options);
+    }
+    draws
+}
