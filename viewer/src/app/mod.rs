@@ -50,7 +50,7 @@ use log::{Log, Moment};
 use pace::{Next, Pace, Shown};
 use screen::Screen;
 use sharpness::Sharpness;
-use viewports::Viewports;
+use viewports::{Viewports, Wish};
 
 /// Between two looks at whether settings have to be saved.
 const SAVE_EVERY: Duration = Duration::from_secs(2);
@@ -347,9 +347,8 @@ impl App {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let (slots, pictures) = (&output.views.slots, &mut screen.pictures);
         let is_outdated = |view: usize| self.pace.is_shared() && model.views[view].state.is_to_come();
-        let outdated = std::array::from_fn(is_outdated);
-        let (drawn, blurred) =
-            viewports.record(&mut encoder, pictures, slots, &frame, sharpness, outdated, &self.camera);
+        let wish = Wish { frame, sharpness, outdated: std::array::from_fn(is_outdated) };
+        let (drawn, blurred) = viewports.record(&mut encoder, pictures, slots, &wish, &self.camera);
         let again = if (0..model.views.len()).any(|view| viewports.picture(view) != model.views[view].picture)
         {
             // A first picture, which the user interface did not know of yet.

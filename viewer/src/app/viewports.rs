@@ -29,6 +29,14 @@ const FRAMES: usize = 240;
 /// Names of the views for times on the device.
 const LABELS: [&str; INDIVIDUALS] = ["view 1", "view 2", "view 3", "view 4"];
 
+/// What is wanted of the pictures of one frame.
+pub struct Wish {
+    pub frame: FrameInput,
+    pub sharpness: Sharpness,
+    /// Those whose landscape another is about to replace: only what the camera's motion demands is drawn of them.
+    pub outdated: [bool; INDIVIDUALS],
+}
+
 pub struct Viewports {
     gpu: Gpu,
     passes: Arc<Passes>,
@@ -138,19 +146,17 @@ impl Viewports {
         if samples == self.passes.samples { Ok(()) } else { self.reload_shaders(samples) }
     }
 
-    /// Records the pictures that are on the screen and not yet as they should be; of those that are `outdated`, because
-    /// another landscape is about to replace theirs, only what the camera's motion demands. Whether any was recorded, and
-    /// whether any is not at full resolution.
+    /// Records the pictures that are on the screen and not yet as they should be. Whether any was recorded, and whether any
+    /// is not at full resolution.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         pictures: &mut PicturePainter,
         slots: &[Slot],
-        frame: &FrameInput,
-        sharpness: Sharpness,
-        outdated: [bool; INDIVIDUALS],
+        wish: &Wish,
         control: &CameraControl,
     ) -> (bool, bool) {
+        let Wish { frame, sharpness, outdated } = wish;
         let start = Instant::now();
         let (mut drawn, mut blurred) = (false, false);
         (self.stats.triangles, self.stats.draws) = Default::default();

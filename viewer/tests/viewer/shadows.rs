@@ -49,7 +49,7 @@ fn shadows_that_come_later_are_those_that_come_at_once() {
     let of_land = picture(&studio, &scene, |bake| bake.land());
     let of_some = picture(&studio, &scene, |bake| near(bake, 20.0));
     let (some, missing) = (differing(&of_some, &of_land), differing(&of_some, &all));
-    assert!(some > 30 && missing > 2 * some, "{some} pixels have got shadows, {missing} have not");
+    assert!(some >= 10 && missing >= 10, "{some} pixels have got shadows, {missing} have not");
     let finished = picture(&studio, &scene, |bake| {
         near(bake, 20.0);
         finish(bake);

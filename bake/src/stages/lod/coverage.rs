@@ -3,6 +3,8 @@
 //!
 //! Orthographic views of square pixels; a pixel counts when its centre is inside a triangle and opaque there.
 
+use std::f32::consts::FRAC_1_SQRT_2;
+
 use glam::{Vec2, Vec3};
 
 use super::state::{PartSpan, State};
@@ -12,9 +14,9 @@ use crate::model::AlphaMask;
 /// elevation.
 const VIEWS: [(Vec3, f32); 4] = [
     (Vec3::new(1.0, 0.0, 0.0), 0.2),
-    (Vec3::new(0.707_106_8, 0.0, 0.707_106_8), 0.0),
+    (Vec3::new(FRAC_1_SQRT_2, 0.0, FRAC_1_SQRT_2), 0.0),
     (Vec3::new(0.0, 0.0, 1.0), -0.2),
-    (Vec3::new(-0.707_106_8, 0.0, 0.707_106_8), 0.0),
+    (Vec3::new(-FRAC_1_SQRT_2, 0.0, FRAC_1_SQRT_2), 0.0),
 ];
 
 /// Where a mesh lies in the views.
