@@ -31,7 +31,7 @@ fn first_bake_makes_everything_and_the_second_nothing() {
     assert_eq!(first.built().len(), first.planned());
     let stages = |name: &str| first.built().iter().filter(|(stage, _)| stage == name).count();
     assert_eq!([stages("tree 4"), stages("tree 5"), stages("scene")], [4, 0, 4]);
-    assert_eq!(stages("ground textures"), 1, "all scenes share them");
+    assert_eq!(stages("ground texture 0"), 1, "all scenes share it");
     for scene in 0..4 {
         let path = world.scene(scene);
         let json: serde_json::Value =
@@ -62,11 +62,13 @@ fn the_four_landscapes_differ() {
 }
 
 /// Stages that read no genes but those of the land.
-const LAND: [&str; 3] = ["landform", "terrain", "ground maps"];
+const LAND: [&str; 2] = ["landform", "terrain"];
 /// Stages that read no genes but those of trees.
 const TREES: [&str; 6] = ["tree textures", "tree 0", "tree 1", "tree 2", "tree 3", "tree 4"];
 /// Stages that read no genes but those of the sky.
 const SKY: [&str; 2] = ["sky light", "sky pictures"];
+/// The stage that reads genes of the land and of trees: what lies on the ground lies under trees.
+const GROUND: &str = "ground maps";
 /// Stages to which every gene matters.
 const ALL: [&str; 3] = ["light map", "start", "scene"];
 
@@ -75,20 +77,20 @@ const ALL: [&str; 3] = ["light map", "start", "scene"];
 #[test]
 fn a_changed_gene_rebuilds_what_depends_on_it_and_nothing_else() {
     let world = World::starters();
-    let of_land = [&LAND[..], &ALL, &["placement", "foreground"]].concat();
-    let of_trees = [&TREES[..], &ALL, &["placement"]].concat();
+    let of_land = [&LAND[..], &ALL, &["placement", "foreground", GROUND]].concat();
+    let of_trees = [&TREES[..], &ALL, &["placement", GROUND]].concat();
     let of_sky = [&SKY[..], &ALL].concat();
     for (scene, gene, value, rebuilt, kept) in [
-        (1, "terrain_seed", "77", &of_land, [&TREES[..], &SKY, &["ground textures"]].concat()),
+        (1, "terrain_seed", "77", &of_land, [&TREES[..], &SKY, &["ground texture 0"]].concat()),
         (
             2,
             "sun_elevation_deg",
             "45",
             &of_sky,
-            [&LAND[..], &TREES, &["ground textures", "placement"]].concat(),
+            [&LAND[..], &TREES, &["ground texture 0", "placement", GROUND]].concat(),
         ),
-        (3, "height_m", "11", &of_trees, [&LAND[..], &SKY, &["ground textures"]].concat()),
-        (0, "tree_seed", "3", &of_trees, [&LAND[..], &SKY, &["ground textures"]].concat()),
+        (3, "height_m", "11", &of_trees, [&LAND[..], &SKY, &["ground texture 0"]].concat()),
+        (0, "tree_seed", "3", &of_trees, [&LAND[..], &SKY, &["ground texture 0"]].concat()),
     ] {
         world.edit(0, |text| set_gene(&text, scene, gene, value));
         let built = world.bake(&[]).ok().built();

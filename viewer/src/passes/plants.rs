@@ -153,11 +153,15 @@ fn instance(plant: &Plant, kind: &PlantKind, height_m: f32, size: f32) -> PlantI
     }
 }
 
+/// Part of all plants that are growing up at once as one comes nearer.
+const GROWS: f32 = 0.15;
+
 /// The part of its size that a plant has at a part of its kind's reach.
 fn presence(plant: &Plant, away: f32) -> f32 {
     let far = ((away - FULL) / (1.0 - FULL)).clamp(0.0, 1.0);
     let share = 1.0 - (1.0 - FEWEST) * far;
-    ((share - plant.rank) / 0.15).clamp(0.0, 1.0) * ((1.0 - away) / 0.2).clamp(0.0, 1.0)
+    // Where all stand, the last has its full size, too.
+    ((share * (1.0 + GROWS) - plant.rank) / GROWS).clamp(0.0, 1.0) * ((1.0 - away) / 0.2).clamp(0.0, 1.0)
 }
 
 /// The blocks within a kind's reach: numbers of their north-west corners in blocks.

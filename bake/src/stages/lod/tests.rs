@@ -246,7 +246,8 @@ fn bare_branches_keep_covering_the_sky() {
     };
     for level in &made.levels[1..=4] {
         let (ratio, count) = (sum(&level.mesh) / sum(&mesh), level.mesh.positions.len());
-        assert!((0.95..1.05).contains(&ratio), "{ratio} at {count} vertices");
+        // Twigs may not grow as much as this would take: a few fat arms look worse than a little more sky.
+        assert!((0.9..1.05).contains(&ratio), "{ratio} at {count} vertices");
     }
     let read = reader::decode(&made.progressive).unwrap();
     assert!(read.marks().last().unwrap().sizes()[0] > 0.0);
