@@ -1,5 +1,7 @@
 //! The device that draws, and what it can do.
 
+use std::sync::{Arc, PoisonError, RwLock};
+
 use bytemuck::NoUninit;
 use thiserror::Error;
 use wgpu::{Adapter, Buffer, BufferUsages, Instance, Surface, TextureView};
@@ -15,6 +17,8 @@ pub struct Gpu {
     pub software: bool,
     /// Optional features that this device has.
     pub features: wgpu::Features,
+    /// Held to read by threads in the background while the device works for them.
+    busy: Arc<RwLock<()>>,
 }
 
 /// What to do where no device is found.
@@ -75,7 +79,8 @@ impl Gpu {
         let (device, queue) =
             opened.map_err(|source| GpuError::NoDevice { name: info.name.clone(), source })?;
         let software = info.device_type == wgpu::DeviceType::Cpu;
-        Ok((Self { device, queue, name: info.name, software, features }, adapter))
+        let busy = Arc::default();
+        Ok((Self { device, queue, name: info.name, software, features, busy }, adapter))
     }
 
     /// Opens a device that draws to memory only.
@@ -121,6 +126,20 @@ impl Gpu {
         self.device.create_texture_with_data(&self.queue, descriptor, LayerMajor, texels)
     }
 
+    /// Hands over work of a thread in the background and waits until it is done.
+    pub fn work(&self, commands: wgpu::CommandBuffer) {
+        let _busy = self.busy.read().unwrap_or_else(PoisonError::into_inner);
+        let submitted = self.queue.submit([commands]);
+        // An error here means a lost device, which the next call reports.
+        let _ = self.device.poll(wgpu::PollType::Wait { submission_index: Some(submitted), timeout: None });
+    }
+
+    /// Gives a surface its size and format. No thread may hand over work meanwhile: wgpu would end the program.
+    pub fn configure(&self, surface: &Surface<'_>, config: &wgpu::SurfaceConfiguration) {
+        let _idle = self.busy.write().unwrap_or_else(PoisonError::into_inner);
+        surface.configure(&self.device, config);
+    }
+
     /// Waits until everything that was submitted is done.
     pub fn wait(&self) {
         // An error here means a lost device, which the next call reports.
@@ -164,4 +183,29 @@ pub fn instance() -> wgpu::Instance {
     // nested groups are kept. WGPU_DISCARD_HAL_LABELS=0 brings them back.
     descriptor.flags = (descriptor.flags | wgpu::InstanceFlags::DISCARD_HAL_LABELS).with_env();
     wgpu::Instance::new(descriptor)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::mpsc;
+    use std::time::Duration;
+
+    #[test]
+    #[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
+    fn nobody_hands_over_work_while_a_surface_is_configured() {
+        let Some(gpu) = Gpu::for_tests() else { return };
+        let (done, is_done) = mpsc::channel();
+        let configuring = gpu.busy.write().expect("no panic");
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                gpu.work(gpu.device.create_command_encoder(&Default::default()).finish());
+                done.send(()).expect("awaited");
+            });
+            let early = is_done.recv_timeout(Duration::from_millis(200));
+            drop(configuring);
+            assert_eq!(early, Err(mpsc::RecvTimeoutError::Timeout));
+            assert_eq!(is_done.recv_timeout(Duration::from_secs(60)), Ok(()));
+        });
+    }
 }

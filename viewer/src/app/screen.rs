@@ -43,7 +43,7 @@ impl Screen {
         }
         config.present_mode = wgpu::PresentMode::AutoVsync;
         config.desired_maximum_frame_latency = 2;
-        surface.configure(&gpu.device, &config);
+        gpu.configure(&surface, &config);
         let ctx = egui::Context::default();
         crate::ui::theme::install(&ctx);
         let scale = window.scale_factor() as f32;
@@ -81,7 +81,7 @@ impl Screen {
     pub fn resize(&mut self, width: u32, height: u32) {
         let max = self.gpu.device.limits().max_texture_dimension_2d;
         (self.config.width, self.config.height) = (width.clamp(1, max), height.clamp(1, max));
-        self.surface.configure(&self.gpu.device, &self.config);
+        self.gpu.configure(&self.surface, &self.config);
     }
 
     /// Paints the user interface and shows it; `encoder` has recorded what it shows. False if the window cannot be seen
@@ -131,7 +131,7 @@ impl Screen {
         for _ in 0..2 {
             match self.surface.get_current_texture() {
                 Current::Success(frame) | Current::Suboptimal(frame) => return Some(frame),
-                Current::Outdated | Current::Lost => self.surface.configure(&self.gpu.device, &self.config),
+                Current::Outdated | Current::Lost => self.gpu.configure(&self.surface, &self.config),
                 _ => return None,
             }
         }

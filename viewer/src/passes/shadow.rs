@@ -92,7 +92,7 @@ impl ShadowBake<'_> {
             let cells = (self.scene.ground.field.side - 1) / LAND_STEP;
             pass.draw(0..cells * cells * 6, 0..1);
         }
-        finish(self.gpu, encoder);
+        self.gpu.work(encoder.finish());
     }
 
     /// The trees within `reach_m` east, west, north and south of a place.
@@ -128,7 +128,7 @@ impl ShadowBake<'_> {
             pass.set_bind_group(0, &self.view, &[]);
             self.passes.shadow.trees.draw(&mut pass, set, trees);
         }
-        finish(self.gpu, encoder);
+        self.gpu.work(encoder.finish());
     }
 }
 
@@ -142,13 +142,6 @@ fn begin<'a>(encoder: &'a mut CommandEncoder, map: &TextureView, load: LoadOp<f3
         }),
         ..Default::default()
     })
-}
-
-/// Hands work over and waits for it, so that pictures that others draw come in between.
-fn finish(gpu: &Gpu, encoder: CommandEncoder) {
-    let submitted = gpu.queue.submit([encoder.finish()]);
-    // An error here means a lost device, which the next call reports.
-    let _ = gpu.device.poll(wgpu::PollType::Wait { submission_index: Some(submitted), timeout: None });
 }
 
 /// How wide a texel of a landscape's shadow map is: the map covers [−1, 1] along the first row of its matrix.
