@@ -12,10 +12,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::breed::{NoVotes, breed};
 use crate::events::{Event, Listener};
+use crate::model::TreeFootprint;
 use crate::random::{self, Drawn};
 use crate::stages::ground::snow_map;
-use crate::stages::placement::{PlacementParams, TreeFootprint, place};
-use crate::stages::start::{Appraisal, Want, any_good_look, clear_around};
+use crate::stages::placement::{PlacementParams, clear_around, place};
+use crate::stages::start::{Appraisal, Want, any_good_look};
 use crate::stages::{land, sky};
 
 /// How often a landscape is drawn again at most; then the best of those drawn is taken.

@@ -8,12 +8,12 @@ use serde_json::json;
 use genescape_schema::scene::{GroundSurface, Resource, SkyImages, write_instances};
 
 use super::*;
+use crate::model::TreeFootprint;
 use crate::model::{
     AlphaMask, CloudLayer, GroundDetail, Heightfield, Instance, Landform, Level, LevelledMesh, Material,
     Mesh, Morph, Part, PartKind, Placement, SkyLight, TerrainMesh, TreeTextures,
 };
 use crate::noise::{gradient2, hash01};
-use crate::stages::placement::TreeFootprint;
 use crate::stages::start::first_look;
 
 /// Of the two templates.

@@ -104,3 +104,16 @@ pub struct LevelledMesh {
 pub struct Placement {
     pub instances: Vec<Instance>,
 }
+
+/// The size of a template of trees, in metres at scale 1.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TreeFootprint {
+    /// From the foot to the top.
+    pub height_m: f32,
+    /// Of the trunk at breast height.
+    pub trunk_radius_m: f32,
+    /// Horizontal radius that holds nearly all of the crown.
+    pub crown_radius_m: f32,
+    /// How far the roots reach below the foot.
+    pub root_depth_m: f32,
+}

@@ -2,11 +2,11 @@
 //! reflectance.
 
 use super::GroundParams;
-use super::palette::Palette;
+use super::palette::{Palette, Rgb, step};
 use super::snow::Snow;
 use super::traits::Traits;
 use super::woods::{Litter, Woods};
-use crate::math::{hermite, lerp_array as lerp};
+use crate::math::lerp_array as lerp;
 use crate::model::{Climate, Landform};
 use crate::noise::hash01;
 use crate::seed::noise_seed;
@@ -79,8 +79,6 @@ const ROCK: usize = 0;
 const SCREE: usize = 1;
 const SNOW: usize = 2;
 const EARTH: usize = 3;
-
-pub(super) type Rgb = [f32; 3];
 
 const SNOW_WHITE: Rgb = [0.80, 0.83, 0.87];
 const WET_MUD: Rgb = [0.062, 0.054, 0.037];
@@ -323,12 +321,4 @@ fn add(sum: &mut Rgb, a: Rgb, weight: f32) {
     for k in 0..3 {
         sum[k] += a[k] * weight;
     }
-}
-
-/// [`crate::math::smoothstep`] by a multiplication, which is not the same to the last bit.
-#[inline]
-pub(super) fn step(lo: f32, hi: f32, x: f32) -> f32 {
-    let t = (x - lo) * (1.0 / (hi - lo));
-    let t = if t > 0.0 { t } else { 0.0 };
-    hermite(if t < 1.0 { t } else { 1.0 })
 }

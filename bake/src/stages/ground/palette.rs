@@ -4,9 +4,11 @@
 //! A table over temperature and dryness in the manner of Whittaker, "Communities and Ecosystems" (1975), read between its
 //! entries, so that no two neighbouring climates differ by a jump.
 
-use super::cover::{Rgb, step};
-use crate::math::{lerp, lerp_array};
+use crate::math::{hermite, lerp, lerp_array};
 use crate::model::Climate;
+
+/// Linear reflectance.
+pub(super) type Rgb = [f32; 3];
 
 /// Growth from lush to dry, and at last bare soil; the moisture of a place chooses between neighbours.
 pub(super) type Ramp = [Rgb; 6];
@@ -128,4 +130,12 @@ fn place<const N: usize>(ascending: &[f32; N], x: f32) -> (usize, f32) {
     let k = (1..N - 1).filter(|&k| ascending[k] <= x).count();
     let (low, high) = (ascending[k], ascending[k + 1]);
     (k, ((x - low) / (high - low)).clamp(0.0, 1.0))
+}
+
+/// [`crate::math::smoothstep`] by a multiplication, which is not the same to the last bit.
+#[inline]
+pub(super) fn step(lo: f32, hi: f32, x: f32) -> f32 {
+    let t = (x - lo) * (1.0 / (hi - lo));
+    let t = if t > 0.0 { t } else { 0.0 };
+    hermite(if t < 1.0 { t } else { 1.0 })
 }

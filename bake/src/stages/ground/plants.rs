@@ -1,9 +1,10 @@
 //! Traits of places and what covers them → how densely small plants and stones stand, and the kinds that grow in a land.
 
 use super::GroundParams;
-use super::cover::{Cover, Noise, Painter, Rgb, step};
+use super::cover::{Cover, Noise, Painter};
 use super::grain::Grain;
 use super::palette::Palette;
+use super::palette::{Rgb, step};
 use super::shapes;
 use super::traits::{Traits, TraitsMap};
 use crate::math::lerp_array as lerp;

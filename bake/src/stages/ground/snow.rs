@@ -1,6 +1,6 @@
 //! The snow line and the traits of a place → how much snow lies there.
 
-use super::cover::step;
+use super::palette::step;
 use super::traits::{Patches, Traits, TraitsMap};
 use super::woods::Woods;
 use crate::model::{Landform, SnowMap};

@@ -8,8 +8,8 @@ use super::{
 };
 use crate::gltf::{foreground_glb, png};
 use crate::graph::{Context, File, Input, Stage, StageError, Stored};
+use crate::model::TreeFootprint;
 use crate::model::{GroundDetail, GroundMaps, GroundPlants, Image8, Instance, Landform, Mesh, StartView};
-use crate::stages::placement::TreeFootprint;
 
 /// Landform and trees → what the stages of the ground know of the trees on it.
 #[derive(Clone, Serialize)]

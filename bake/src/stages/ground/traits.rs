@@ -6,14 +6,11 @@ use std::ops::RangeInclusive;
 use bytemuck::{Pod, Zeroable};
 use rayon::prelude::*;
 
-use super::woods::Woods;
+use super::woods::{Woods, stride};
 use crate::math::{self, lerp_array};
 use crate::model::{Heightfield, Landform};
 use crate::noise::{fbm2, fbm2_row};
 use crate::seed::noise_seed;
-
-/// The most samples a side for which traits are kept.
-const MAX_SIDE: u32 = 513;
 
 /// The traits of one place.
 #[derive(Clone, Copy, Pod, Zeroable)]
@@ -51,11 +48,6 @@ impl Traits {
 pub(super) struct TraitsMap {
     side: usize,
     values: Vec<Traits>,
-}
-
-/// Steps of the field's samples between those for which traits are kept.
-pub(super) fn stride(land: &Landform) -> u32 {
-    ((land.field.side - 1) / (MAX_SIDE - 1)).max(1)
 }
 
 impl TraitsMap {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::cover::Rgb;
+use super::palette::Rgb;
 use crate::math::lerp_array;
 use crate::model::{Instance, Landform};
 
@@ -67,6 +67,14 @@ impl Litter {
     }
 }
 
+/// The most samples a side for which traits are kept.
+const MAX_SIDE: u32 = 513;
+
+/// Steps of the field's samples between those for which traits are kept.
+pub(super) fn stride(land: &Landform) -> u32 {
+    ((land.field.side - 1) / (MAX_SIDE - 1)).max(1)
+}
+
 /// What trees do to the ground.
 pub struct Woods {
     pub(super) litter: Litter,
@@ -84,7 +92,7 @@ impl Woods {
 
     /// The woods of a land; `crowns_m` gives the radius of each template's crown at scale 1.
     pub fn new(params: &LitterParams, land: &Landform, trees: &[Instance], crowns_m: &[f32]) -> Self {
-        let step = super::traits::stride(land);
+        let step = stride(land);
         let side = ((land.field.side - 1) / step + 1) as usize;
         let spacing_m = land.field.spacing_m * step as f32;
         let mut shade = vec![0.0f32; side * side];

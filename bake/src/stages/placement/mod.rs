@@ -6,9 +6,12 @@
 //!    sampling by dart throwing (Cook, "Stochastic Sampling in Computer Graphics", 1986) with a radius a tree.
 //! 3. `stand` gives each its transform: size, stretch, turn, lean, and a foot that is in the ground all around.
 //!
+//! 4. `clearing` takes those away that stand where a person may first stand.
+//!
 //! A scene holds at most [`MAX_TREES`]. Where n trees would grow by density and area, n·M/(n+M) are planted: nearly
 //! all of a few, half of 4000, never more than M, and more of them for a higher density.
 
+mod clearing;
 mod scatter;
 mod site;
 mod stage;
@@ -18,8 +21,9 @@ mod tests;
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::{Instance, Landform, SnowMap};
+use crate::model::{Instance, Landform, SnowMap, TreeFootprint};
 
+pub use clearing::{CLEARING_M, clear_around};
 pub use stage::{PlacementFiles, PlacementStage};
 
 /// The number of trees that a scene approaches but never exceeds.
@@ -51,19 +55,6 @@ pub struct PlacementParams {
     pub temperature_c: f32,
     /// A year's rain.
     pub rain_mm: f32,
-}
-
-/// The size of a template of trees, in metres at scale 1.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct TreeFootprint {
-    /// From the foot to the top.
-    pub height_m: f32,
-    /// Of the trunk at breast height.
-    pub trunk_radius_m: f32,
-    /// Horizontal radius that holds nearly all of the crown.
-    pub crown_radius_m: f32,
-    /// How far the roots reach below the foot.
-    pub root_depth_m: f32,
 }
 
 /// Plants a scene: up to [`MAX_TREES`] instances of `trees`, in a fixed order. None if there are no templates or

@@ -3,11 +3,10 @@
 use genescape_schema::scene::write_instances;
 use serde::{Deserialize, Serialize};
 
-use super::{PlacementParams, TreeFootprint, place};
+use super::{PlacementParams, TreeFootprint, clear_around, place};
 use crate::graph::{Context, File, Input, Stage, StageError};
 use crate::model::{Landform, Placement};
 use crate::stages::ground::snow_map;
-use crate::stages::start::clear_around;
 
 /// Placement genes, landform, trees → where trees stand: none where a person may first stand.
 #[derive(Serialize)]

@@ -7,10 +7,9 @@ use proptest::prelude::*;
 use crate::model::{Heightfield, Instance, Landform, SnowMap};
 use crate::noise::fbm2;
 use crate::stages::ground::{self, GroundParams};
-use crate::stages::start::{CLEARING_M, clear_around};
 
 use super::site::{MAX_FLOW, Site, WATER_MARGIN_M};
-use super::{EDGE_MARGIN_M, MAX_TREES, PlacementParams, TreeFootprint, place};
+use super::{CLEARING_M, EDGE_MARGIN_M, MAX_TREES, PlacementParams, TreeFootprint, clear_around, place};
 
 /// Rolling land 1024 m wide with one river from north to south, and a lake if `water` is above 0.
 fn land(seed: u32, relief_m: f32, water: f32, side: u32) -> Landform {

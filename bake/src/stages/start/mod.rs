@@ -21,8 +21,7 @@ mod tests;
 use glam::Vec2;
 use rayon::prelude::*;
 
-use crate::model::{Instance, Landform, SkyLight, StartView};
-use crate::stages::placement::TreeFootprint;
+use crate::model::{Instance, Landform, SkyLight, StartView, TreeFootprint};
 pub use appraise::{Appraisal, Want};
 use appraise::{appraise, ramp};
 use genescape_schema::scene::{Lookout, Lookouts, Prospect};
@@ -31,8 +30,6 @@ use panorama::{Panorama, Surroundings};
 use picture::Picture;
 pub use stage::{StartFiles, StartStage};
 
-/// Metres around each lookout in which no trunk stands.
-pub const CLEARING_M: f32 = 6.0;
 /// Places that [`any_good_look`] tries at once.
 const FEW: usize = 8;
 /// A prime, so that places tried after each other lie far from each other.
@@ -49,15 +46,6 @@ pub struct FirstLook {
     pub exposure: f32,
     /// How good all others are.
     pub lookouts: Lookouts,
-}
-
-/// Removes the trees whose trunks reach into the clearing around a lookout.
-pub fn clear_around(land: &Landform, trees: &mut Vec<Instance>) {
-    let places: Vec<Vec2> = Lookout::places_m(land.field.extent_m()).collect();
-    trees.retain(|tree| {
-        let [x, z, radius] = tree.trunk_cylinder_m;
-        places.iter().all(|place| place.distance(Vec2::new(x, z)) - radius >= CLEARING_M)
-    });
 }
 
 /// Looks at a landscape from all lookouts; `footprints` are those of the trees' templates.

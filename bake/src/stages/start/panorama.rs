@@ -5,8 +5,8 @@ use core::f32::consts::TAU;
 
 use glam::Vec2;
 
+use crate::model::TreeFootprint;
 use crate::model::{Instance, Landform, StartView};
-use crate::stages::placement::TreeFootprint;
 
 /// Columns around, the first towards north (−z), clockwise.
 pub(super) const COLUMNS: usize = 96;

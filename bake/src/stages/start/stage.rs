@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{Appraisal, first_look};
 use crate::graph::{Context, File, Input, Stage, StageError};
+use crate::model::TreeFootprint;
 use crate::model::{Instance, Landform, SkyLight, StartView};
-use crate::stages::placement::TreeFootprint;
 
 /// Landform, trees, light → where the walk starts, and how good all lookouts are.
 #[derive(Serialize)]

@@ -5,13 +5,14 @@ use genescape_schema::scene::{Lookout, Lookouts, SharedView};
 use genescape_schema::{Genome, Kinds, Space};
 use glam::{Vec2, Vec3};
 
-use super::{CLEARING_M, FirstLook, Want, clear_around, first_look};
+use super::{FirstLook, Want, first_look};
 use crate::export::film;
+use crate::model::TreeFootprint;
 use crate::model::{Heightfield, Instance, Landform, SkyLight, StartView};
 use crate::random;
 use crate::stages::ground::snow_map;
 use crate::stages::land::landform;
-use crate::stages::placement::{PlacementParams, TreeFootprint, place};
+use crate::stages::placement::{CLEARING_M, PlacementParams, clear_around, place};
 use crate::stages::sky::{self, SkyParams};
 
 const TREE: TreeFootprint =

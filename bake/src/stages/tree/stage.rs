@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 use super::{TreeParams, TreeTextureParams, template, textures};
 use crate::gltf::{Picture, png, tree_glb};
 use crate::graph::{Context, File, Input, Stage, StageError, Stored};
+use crate::model::TreeFootprint;
 use crate::model::{AlphaMask, Image8, Level, Material, Mesh, Part, TreeTextures};
 use crate::stages::lod::{self, LodOptions};
-use crate::stages::placement::TreeFootprint;
 
 /// Mip levels of a card smaller than this are left to the viewer: at that distance a crown covers a few pixels.
 const MIN_MIP_PX: u32 = 16;

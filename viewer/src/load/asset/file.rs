@@ -10,9 +10,11 @@ use gltf::json::{Index, Root, buffer};
 use serde_json::{Map, Value};
 
 use super::notes::quoted;
-use super::numbers::MAX_ROWS;
 use super::required;
 use crate::load::{LoadError, Result};
+
+/// Rows that are read of all accessors together: any number of parts may name the same large one.
+pub(super) const MAX_ROWS: usize = 1 << 28;
 
 /// The JSON's objects of one kind.
 type Others = Map<String, Value>;

@@ -24,7 +24,7 @@ pub(super) const MAX_NODES: usize = 1 << 20;
 pub(super) struct LevelPlan {
     pub meshes: Vec<(usize, DAffine3)>,
     pub change: Change,
-    /// See [`super::mesh::Treatment::morph`].
+    /// See [`super::vertices::Treatment::morph`].
     pub morph: Option<Vec<usize>>,
 }
 

@@ -2,14 +2,14 @@
 
 use std::collections::HashMap;
 
-use glam::Affine3A;
 use gltf::json::Mesh;
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
 
 use super::file::AssetFile;
 use super::notes::Notes;
-use super::{TOO_LARGE, required, vertices};
+use super::vertices::{self, Treatment};
+use super::{TOO_LARGE, required};
 use crate::load::Result;
 use crate::scene::{Asset, AssetVertex, Part, Range};
 
@@ -20,19 +20,6 @@ const MAX_INDICES: usize = 1 << 27;
 const MAX_PARTS: usize = 1 << 18;
 /// What lies farther out is no place.
 const MAX_PLACE_M: f32 = 1e15;
-
-/// What is done to a mesh's vertices when it is read.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Treatment<'a> {
-    /// Into the space of the shape.
-    pub shape_from_mesh: Affine3A,
-    /// Triangles turn their other side out: the shape is mirrored where it stands.
-    pub mirrored: bool,
-    /// The first morph target leads to the next level; for each primitive an accessor says how texture coordinates move.
-    pub morph: Option<&'a [usize]>,
-    /// What each joint of its skeleton does to it.
-    pub pose: Option<&'a [Affine3A]>,
-}
 
 /// What was read so far, of all meshes of a file.
 #[derive(Default)]

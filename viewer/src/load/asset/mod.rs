@@ -22,13 +22,13 @@ use super::Result;
 use crate::lod::tree::COVERED_PX;
 use crate::options::MESH_ERROR_PX;
 use crate::scene::{Asset, Facts, Shape, ShapeLevel};
-use file::AssetFile;
+use file::{AssetFile, MAX_ROWS};
 use levels::{Change, LevelPlan};
-use mesh::{Known, Treatment};
+use mesh::Known;
 use nodes::ShapePlan;
 use notes::Notes;
-use numbers::MAX_ROWS;
 use pictures::Pictures;
+use vertices::Treatment;
 
 /// Of all copies together: to draw more takes any device seconds.
 const MAX_TRIANGLES: u64 = 1 << 29;

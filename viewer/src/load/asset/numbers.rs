@@ -9,8 +9,6 @@ use super::file::AssetFile;
 
 /// Rows that an accessor without a buffer may have: zeros, but for the few that a sparse one changes.
 const MAX_ZEROS: usize = 1 << 20;
-/// Rows that are read of all accessors together: any number of parts may name the same large one.
-pub(super) const MAX_ROWS: usize = 1 << 28;
 
 impl AssetFile {
     /// Rows of `N` numbers; integers that are `normalized` become fractions. `None` if the accessor has another shape, is

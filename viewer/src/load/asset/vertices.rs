@@ -10,10 +10,22 @@ use gltf::json::mesh::{MorphTarget, Primitive};
 use gltf::json::validation::Checked;
 
 use super::file::AssetFile;
-use super::mesh::Treatment;
 use super::notes::Notes;
 use crate::load::octahedral::{direction, octahedral};
 use crate::scene::AssetVertex;
+
+/// What is done to a mesh's vertices when it is read.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Treatment<'a> {
+    /// Into the space of the shape.
+    pub shape_from_mesh: Affine3A,
+    /// Triangles turn their other side out: the shape is mirrored where it stands.
+    pub mirrored: bool,
+    /// The first morph target leads to the next level; for each primitive an accessor says how texture coordinates move.
+    pub morph: Option<&'a [usize]>,
+    /// What each joint of its skeleton does to it.
+    pub pose: Option<&'a [Affine3A]>,
+}
 
 type Found<T> = Option<Vec<T>>;
 type Attributes<'a> = BTreeMap<&'a Semantic, Index<Accessor>>;
