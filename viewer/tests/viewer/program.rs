@@ -190,8 +190,19 @@ impl Viewer {
 
     /// Points at something and presses it.
     pub fn click(&mut self, display: &Display, label: &str) {
-        let place = self.place_of(label);
-        self.press(display, place, 1);
+        let mut place = self.place_of(label);
+        loop {
+            display.point(place);
+            self.frames(2);
+            // It moves where what stands before it has changed since the last frame.
+            let found = self.place_of(label);
+            let moved = std::mem::replace(&mut place, found) != found;
+            if !moved {
+                break;
+            }
+        }
+        display.button(1, true);
+        display.button(1, false);
     }
 
     /// Points at a place and presses a button of the mouse: at once, for what takes egui longer than 0.8 s is no click.
