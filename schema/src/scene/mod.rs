@@ -4,7 +4,7 @@
 //! a file of the cache once they are encoded, a [`Resource`] in the JSON of `scene.gltf`, a decoded image in the viewer.
 //! `try_map` leads from one to the next.
 //!
-//! The JSON forms are those of our glTF extensions; each has a page under `schema/docs/` for everyone else. All five
+//! The JSON forms are those of our glTF extensions; each has a page under `schema/docs/` for everyone else. All six
 //! are listed in `extensionsUsed` only, never in `extensionsRequired`: a program that does not know them shows the
 //! whole scene without them. Property names are those of the fields here in camelCase, so a unit suffix stays visible
 //! (`spacing_m` is `spacingM`). Every index refers to the arrays of the glTF file it stands in.
@@ -16,6 +16,7 @@ pub mod floats;
 mod ground;
 mod heightfield;
 mod heightfield_bytes;
+mod impostor;
 mod instances;
 mod lookouts;
 mod plants;
@@ -28,6 +29,7 @@ mod view;
 pub use ground::{GroundDetail, GroundSurface};
 pub use heightfield::{GSC_HEIGHTFIELD, Heightfield, HeightfieldExtension, TerrainLod};
 pub use heightfield_bytes::HeightfieldError;
+pub use impostor::{GSC_IMPOSTOR, IMPOSTOR_PICTURES, ImpostorExtension};
 pub use instances::{
     GSC_INSTANCES, Instance, InstancesError, InstancesExtension, InstancesTemplate, read_instances,
     write_instances,
@@ -40,5 +42,5 @@ pub use sky::{CloudLayer, GSC_SKY, SkyExtension, SkyImages, SkyLight};
 pub use view::{START_NODE, StartView, rotation_from_z};
 
 /// Names of all our extensions, in the order in which files list them.
-pub const EXTENSIONS: [&str; 5] =
-    [GSC_HEIGHTFIELD, GSC_INSTANCES, GSC_LOOKOUTS, GSC_PROGRESSIVE_MESH, GSC_SKY];
+pub const EXTENSIONS: [&str; 6] =
+    [GSC_HEIGHTFIELD, GSC_IMPOSTOR, GSC_INSTANCES, GSC_LOOKOUTS, GSC_PROGRESSIVE_MESH, GSC_SKY];
