@@ -83,7 +83,18 @@ impl<'a> Document<'a> {
     pub fn name_of(&self, resource: &Resource) -> String {
         match (&resource.uri, resource.buffer_view) {
             (Some(uri), _) => self.file(uri).file_name().unwrap_or_default().to_string_lossy().into_owned(),
-            (None, view) => format!("{}#{}", self.path.display(), view.unwrap_or(usize::MAX)),
+            (None, view) => self.name_of_view(view.unwrap_or(usize::MAX)),
+        }
+    }
+
+    /// Where a part of a blob lies in it; the blob's name vouches for what it holds, that of a scene does not.
+    fn name_of_view(&self, index: usize) -> String {
+        let view = self.gltf.views().nth(index);
+        match view.as_ref().map(|view| (view.buffer().source(), view.offset())) {
+            Some((gltf::buffer::Source::Uri(uri), offset)) => {
+                format!("{}#{offset}", self.name_of(&Resource::file(uri, "")))
+            }
+            _ => format!("{}#{index}", self.path.display()),
         }
     }
 

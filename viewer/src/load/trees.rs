@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use genescape_schema::scene::{InstancesExtension, ProgressiveMeshExtension, Resource, read_instances};
+use genescape_schema::scene::{
+    GSC_IMPOSTOR, IMPOSTOR_PICTURES, ImpostorExtension, InstancesExtension, ProgressiveMeshExtension, Resource,
+    read_instances,
+};
 use glam::Vec3;
 use gltf::Semantic;
 
@@ -10,7 +13,7 @@ use super::bounds::{is_placed, is_tree_sized};
 use super::document::Document;
 use super::octahedral::octahedral;
 use super::{Result, images};
-use crate::scene::{Image, Level, Material, Range, Template, TreeVertex, Trees};
+use crate::scene::{Crown, Image, Impostor, Level, Material, Range, Template, TreeVertex, Trees};
 
 /// The trees; none if the scene has none.
 pub(super) fn read(document: &Document) -> Result<Trees> {
@@ -40,7 +43,9 @@ fn template(document: &Document, name: &str, finest: usize) -> Result<Arc<Templa
     document.store.get(&format!("{blob} {finest}"), || {
         let value = mesh.extension_value("GSC_progressive_mesh");
         let extension: ProgressiveMeshExtension = document.extension(value, "GSC_progressive_mesh")?;
-        build(document, name, &blob, &extension)
+        let template = build(document, name, &blob, &extension)?;
+        let impostor = mesh.extension_value(GSC_IMPOSTOR).map(|value| impostor(document, value, &template));
+        Ok(Template { impostor: impostor.transpose()?, ..template })
     })
 }
 
@@ -104,6 +109,44 @@ fn build(
     check(document, &template)?;
     (template.center_m, template.radius_m) = sphere(&template.vertices);
     Ok(template)
+}
+
+/// The pictures of a tree whose meshes are read.
+fn impostor(document: &Document, value: &serde_json::Value, template: &Template) -> Result<Impostor> {
+    let ImpostorExtension { mesh: cards, relief, error_m, axis_m, low_m, size_m } =
+        document.extension(Some(value), GSC_IMPOSTOR)?;
+    let wrong = |what: &str| document.wrong(format!("{} has pictures {what}", template.name));
+    let primitive = mesh(document, cards)?.primitives().next();
+    let material = primitive.ok_or_else(|| wrong("without cards"))?.material();
+    let Material { color, alpha_cutoff, .. } = read_material(document, &material)?;
+    let color = color.ok_or_else(|| wrong("without colour"))?;
+    let relief = images::png(document, &relief)?;
+    let is_size = |m: f32| m.is_finite() && m > 0.0;
+    if !size_m.into_iter().chain([error_m]).all(is_size) {
+        return Err(wrong("of no size, or without error"));
+    }
+    let [x, z] = axis_m;
+    if !is_tree_sized(&[[x, low_m, z], [size_m[0], low_m + size_m[1], 0.0]]) {
+        return Err(wrong("larger than any tree"));
+    }
+    let is_strip = color.width_px == IMPOSTOR_PICTURES * color.height_px;
+    if !is_strip || (relief.width_px, relief.height_px) != (color.width_px, color.height_px) {
+        return Err(wrong("that are not four squares side by side, of one size with their relief"));
+    }
+    let alpha_cutoff = alpha_cutoff.unwrap_or(0.5);
+    let crown = Crown::around(leaves(template));
+    Ok(Impostor { color, relief, alpha_cutoff, axis_m, low_m, size_m, error_m, crown })
+}
+
+/// The places of all leaves of D_0.
+fn leaves(template: &Template) -> impl Iterator<Item = Vec3> + Clone {
+    let finest = template.levels.first();
+    let parts = finest.into_iter().flat_map(|level| level.ranges.iter().zip(&template.materials));
+    let masked = parts.filter(|(_, material)| material.alpha_cutoff.is_some());
+    let base = finest.map_or(0, |level| level.base_vertex as usize);
+    masked
+        .flat_map(|(range, _)| &template.indices[range.first as usize..][..range.count as usize])
+        .map(move |&vertex| Vec3::from(template.vertices[base + vertex as usize].position_m))
 }
 
 fn check(document: &Document, template: &Template) -> Result<()> {
@@ -181,9 +224,8 @@ fn values_or<T: gltf::accessor::Item + Copy>(
 /// and top. Light that crosses a crown falls off with the foliage on its way, of which the place within the ellipsoid
 /// around the crown is the measure here.
 fn shade_crown(leaves: &mut [TreeVertex]) {
-    let places = || leaves.iter().map(|leaf| Vec3::from(leaf.position_m));
-    let (low, high) = (places().fold(Vec3::MAX, Vec3::min), places().fold(Vec3::MIN, Vec3::max));
-    let (middle, half) = (0.5 * (low + high), (0.5 * (high - low)).max(Vec3::splat(1e-3)));
+    let crown = Crown::around(leaves.iter().map(|leaf| Vec3::from(leaf.position_m)));
+    let (middle, half) = (Vec3::from(crown.middle_m), Vec3::from(crown.half_m));
     for leaf in leaves {
         let place = (Vec3::from(leaf.position_m) - middle) / half;
         let outside = ((place.length() - 0.15) / 0.85).clamp(0.0, 1.0);

@@ -28,6 +28,22 @@ pub fn simple_error_m(errors_m: &[f32]) -> f32 {
     libm::exp2f(logs.sum::<f32>() / count as f32)
 }
 
+/// Sines of the angles above or below from which on pictures are too steep to be of use, and are not used.
+const STEEP: [f32; 2] = [0.6, 0.75];
+
+/// The share of a tree that its picture shows, the rest being its mesh: none up to `error_m` of the picture, all from twice
+/// that on; none from steeply above or below. `steepness`: sine of the angle between the way to the eye and the level.
+pub fn pictured(control: &Control, error_m: f32, distance_m: f32, scale: f32, steepness: f32) -> f32 {
+    let times = control.error_px / control.focal_px * distance_m / (scale * error_m);
+    let steep = ((steepness - STEEP[0]) / (STEEP[1] - STEEP[0])).clamp(0.0, 1.0);
+    let share = libm::log2f(times.max(1.0)).clamp(0.0, 1.0) * (1.0 - steep * steep * (3.0 - 2.0 * steep));
+    match control.mode {
+        TreeLodMode::Off => 0.0,
+        TreeLodMode::Discrete => f32::from(u8::from(share >= 0.5)),
+        _ => share,
+    }
+}
+
 /// What one frame asks of all trees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Control {

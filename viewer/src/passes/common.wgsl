@@ -85,6 +85,25 @@ fn aerial_perspective(radiance: vec3f, distance: f32) -> vec3f {
     return mix(view.haze, radiance, exp(-distance * view.haze_extinction));
 }
 
+// Irradiance from the sky above and the ground below on what faces upwards by that share of the way from straight down to
+// straight up: what a crown among other crowns gets on average.
+fn ambient_light(up: f32) -> vec3f {
+    let ground = 0.12 * (view.sky_irradiance + view.sun_irradiance * max(view.sun_direction.y, 0.0));
+    return mix(ground, view.sky_irradiance, up);
+}
+
+// Share of the open sky and ground that leaves see between their neighbours, by their place within the ellipsoid around the
+// crown, a sphere of radius 1: little in its middle, much at its surface and top.
+fn openness(place: vec3f) -> f32 {
+    let outside = clamp((length(place) - 0.15) / 0.85, 0.0, 1.0);
+    return 0.12 + 0.7 * outside + 0.18 * clamp(0.5 + 0.5 * place.y, 0.0, 1.0);
+}
+
+// A number in [0, 1) for each pixel, evenly spread among neighbours: interleaved gradient noise (Jimenez 2014).
+fn dither(pixel: vec2f) -> f32 {
+    return fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715))));
+}
+
 // 1 where the sun reaches a point, 0 in shadow; a soft edge a texel wide.
 fn sun_visibility(world: vec3f, bias_m: f32) -> f32 {
     let lifted = world + view.sun_direction * bias_m;

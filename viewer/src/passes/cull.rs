@@ -113,7 +113,7 @@ impl Cull {
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, trees: &BoundTrees) {
         pass.set_bind_group(1, &trees.cull_group, &[]);
         pass.set_pipeline(&self.clear);
-        pass.dispatch_workgroups(trees.buckets.div_ceil(GROUP), 1, 1);
+        pass.dispatch_workgroups((trees.buckets + trees.templates).div_ceil(GROUP), 1, 1);
         pass.set_pipeline(&self.choose);
         let groups = trees.instances.div_ceil(GROUP);
         pass.dispatch_workgroups(groups.min(MAX_GROUPS), groups.div_ceil(MAX_GROUPS), 1);

@@ -10,6 +10,8 @@ override MIN_DISTANCE_M: f32;
 override SIMPLE: u32;
 override DISCRETE: u32;
 override OFF: u32;
+// Sines of the angles from which on pictures are too steep to be of use, and are not used.
+const STEEP = vec2f(0.6, 0.75);
 
 struct Cull {
     // Unit normals and distances of the planes that bound the view; a point p is inside if n·p + d ≥ 0.
@@ -42,11 +44,16 @@ struct Template {
     capacity: u32,
     // Error that the simple mode gives its finest mesh.
     simple_error: f32,
+    // Of its pictures in metres; beyond all errors if it has none.
+    picture_error: f32,
+    pad: array<f32, 3>,
 }
 
 struct Visible {
     tree: u32,
     lambda: f32,
+    // Share of its pixels that are drawn: while a mesh dissolves into the picture, or the other way round.
+    shown: f32,
 }
 
 struct Command {
@@ -97,13 +104,29 @@ fn lod_number(template_index: u32, scale: f32, distance: f32) -> f32 {
     return lambda;
 }
 
+// The share of a tree that its picture shows, the rest being its mesh: none up to the error of the picture, all from twice
+// that on, and none from steeply above or below. Its twin is `lod::tree::pictured`.
+fn pictured(template_index: u32, scale: f32, distance: f32, steepness: f32) -> f32 {
+    let times = cull.error_per_m * distance / (scale * templates[template_index].picture_error);
+    let share = clamp(log2(max(times, 1.0)), 0.0, 1.0) * (1.0 - smoothstep(STEEP.x, STEEP.y, steepness));
+    if (cull.lod_mode == OFF) {
+        return 0.0;
+    }
+    return select(share, step(0.5, share), cull.lod_mode == DISCRETE);
+}
+
+fn list(template_index: u32, level: u32) -> u32 {
+    return templates[template_index].first + level * templates[template_index].capacity;
+}
+
 fn bucket(template_index: u32, level: u32) -> u32 {
     return level * cull.templates + template_index;
 }
 
 @compute @workgroup_size(GROUP)
 fn clear(@builtin(global_invocation_id) id: vec3u) {
-    if (id.x < cull.templates * cull.levels) {
+    // With those of the pictures.
+    if (id.x < cull.templates * (cull.levels + 1u)) {
         atomicStore(&counts[id.x], 0u);
     }
 }
@@ -127,10 +150,18 @@ fn choose(@builtin(global_invocation_id) id: vec3u) {
     }
     let distance = max(length(center - cull.eye) - radius, MIN_DISTANCE_M);
     let lambda = lod_number(template_index, scale, distance);
-    let level = u32(lambda);
-    let slot = atomicAdd(&counts[bucket(template_index, level)], 1u);
-    let list = templates[template_index].first + level * templates[template_index].capacity;
-    visible[list + slot] = Visible(index, lambda);
+    let to_eye = cull.eye - center;
+    let steepness = abs(to_eye.y) / max(length(to_eye), 1e-6);
+    let share = pictured(template_index, scale, distance, steepness);
+    if (share < 1.0) {
+        let level = u32(lambda);
+        let slot = atomicAdd(&counts[bucket(template_index, level)], 1u);
+        visible[list(template_index, level) + slot] = Visible(index, lambda, 1.0 - share);
+    }
+    if (share > 0.0) {
+        let slot = atomicAdd(&counts[bucket(template_index, cull.levels)], 1u);
+        visible[list(template_index, templates[template_index].levels) + slot] = Visible(index, lambda, share);
+    }
 }
 
 @compute @workgroup_size(GROUP)
@@ -138,5 +169,7 @@ fn write_commands(@builtin(global_invocation_id) id: vec3u) {
     let buckets = cull.templates * cull.levels;
     if (id.x < buckets * cull.materials) {
         commands[id.x].instances = atomicLoad(&counts[id.x % buckets]);
+    } else if (id.x < buckets * cull.materials + cull.templates) {
+        commands[id.x].instances = atomicLoad(&counts[buckets + id.x - buckets * cull.materials]);
     }
 }

@@ -21,6 +21,8 @@ pub struct Layouts {
     pub ground: BindGroupLayout,
     /// Group 1 of trees: where they stand.
     pub trees: BindGroupLayout,
+    /// Group 1 of pictures of trees.
+    pub impostors: BindGroupLayout,
     /// Group 2 of trees: a material.
     pub material: BindGroupLayout,
     /// Group 1 of culling.
@@ -78,6 +80,7 @@ impl Layouts {
             surface: all("surface", fragment, &[&[UNIFORM][..], &[IMAGE; 5], &[FILTERING; 5]].concat()),
             ground: all("ground", both, &[IMAGE, IMAGE, LAYERS, LAYERS]),
             trees: all("trees", ShaderStages::VERTEX, &[READ]),
+            impostors: all("pictures of trees", both, &[READ, READ, LAYERS, LAYERS]),
             material: all("material", fragment, &[UNIFORM, IMAGE, IMAGE]),
             cull: all("culling", ShaderStages::COMPUTE, &[READ, READ, READ, WRITE, WRITE, WRITE]),
             radiance: all("radiance", fragment, &[DATA]),
@@ -124,6 +127,12 @@ impl Binding<'_> {
     /// All of a texture: an image, or several layers.
     pub fn texture(texture: &wgpu::Texture) -> Self {
         Self::View(texture.create_view(&Default::default()))
+    }
+
+    /// Any number of layers.
+    pub fn layers(texture: &wgpu::Texture) -> Self {
+        let dimension = Some(TextureViewDimension::D2Array);
+        Self::View(texture.create_view(&wgpu::TextureViewDescriptor { dimension, ..Default::default() }))
     }
 
     /// Six layers as the faces of a cube.

@@ -10,6 +10,7 @@ mod bound;
 mod bound_asset;
 mod cull;
 pub mod grass;
+pub mod impostors;
 mod layouts;
 mod pipeline;
 pub mod plants;
@@ -50,9 +51,10 @@ pub const DISPLAY: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 pub const SHADOW: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
 
 /// The shaders of all passes.
-pub static SHADERS: [&Shader; 11] = [
+pub static SHADERS: [&Shader; 12] = [
     &cull::SHADER,
     &trees::SHADER,
+    &impostors::SHADER,
     &grass::SHADER,
     &plants::SHADER,
     &terrain::SHADER,
@@ -82,7 +84,7 @@ pub struct Passes {
     pub shadow: Shadow,
     pub cull: Cull,
     /// By name, in the order in which they draw.
-    pub picture: [(&'static str, Box<dyn DrawPass>); 6],
+    pub picture: [(&'static str, Box<dyn DrawPass>); 7],
     /// Of files that are no landscapes.
     pub asset: AssetPass,
     pub studio: Studio,
@@ -101,6 +103,7 @@ impl Passes {
             cull: Cull::new(&compiler)?,
             picture: [
                 (trees::SHADER.name, Box::new(trees::Trees::new(&compiler)?)),
+                (impostors::SHADER.name, Box::new(impostors::Impostors::new(&compiler)?)),
                 // Before the terrain: what it hides needs no light.
                 (grass::SHADER.name, Box::new(grass::Grass::new(&compiler)?)),
                 (plants::SHADER.name, Box::new(plants::Plants::new(&compiler)?)),

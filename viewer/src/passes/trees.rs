@@ -25,14 +25,15 @@ pub const VERTEX: [wgpu::VertexAttribute; 8] = wgpu::vertex_attr_array![
     0 => Float32x3, 1 => Unorm8x4, 2 => Float32x3, 3 => Snorm16x2,
     4 => Float32x2, 5 => Float32x2, 6 => Snorm16x2, 7 => Snorm16x2,
 ];
-/// Attributes of a visible tree: its number and λ.
-pub const VISIBLE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![8 => Uint32, 9 => Float32];
+/// Attributes of a visible tree: its number, λ, and the share of its pixels that are drawn.
+pub const VISIBLE: [wgpu::VertexAttribute; 3] =
+    wgpu::vertex_attr_array![8 => Uint32, 9 => Float32, 10 => Float32];
 
 /// The two vertex buffers of every draw of trees.
 pub(super) fn buffers() -> [Option<wgpu::VertexBufferLayout<'static>>; 2] {
     [
         buffer_layout::<TreeVertex>(wgpu::VertexStepMode::Vertex, &VERTEX),
-        buffer_layout::<[u32; 2]>(wgpu::VertexStepMode::Instance, &VISIBLE),
+        buffer_layout::<[u32; 3]>(wgpu::VertexStepMode::Instance, &VISIBLE),
     ]
 }
 

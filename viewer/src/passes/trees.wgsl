@@ -17,6 +17,8 @@ struct In {
     @location(8) tree: u32,
     // λ: level of detail and, after the point, how far it has morphed to the next.
     @location(9) lambda: f32,
+    // Share of its leaves' pixels that are drawn: the others show its picture.
+    @location(10) shown: f32,
 }
 
 struct Out {
@@ -28,6 +30,7 @@ struct Out {
     @location(4) color: vec3f,
     // Leaves: share of the open sky and ground that they see between their neighbours.
     @location(5) open: f32,
+    @location(6) @interpolate(flat) shown: f32,
 }
 
 @vertex
@@ -52,14 +55,12 @@ fn vertex(in: In) -> Out {
     out.uv = in.uv + alpha * in.uv_delta;
     out.color = select(in.color.rgb, level_tint(in.lambda) * 1.6, view.tint_levels != 0u);
     out.open = in.color.a;
+    out.shown = in.shown;
     return out;
 }
 
 fn ambient(normal: vec3f, albedo: vec3f) -> vec3f {
-    // Sky from above, ground from below: what a crown among other crowns gets on average.
-    let up = 0.5 + 0.5 * normal.y;
-    let ground = 0.12 * (view.sky_irradiance + view.sun_irradiance * max(view.sun_direction.y, 0.0));
-    return albedo / PI * mix(ground, view.sky_irradiance, up);
+    return albedo / PI * ambient_light(0.5 + 0.5 * normal.y);
 }
 
 @fragment
@@ -84,7 +85,7 @@ fn bark(in: Out) -> @location(0) vec4f {
 fn leaf(in: Out, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     var albedo = vec4f(in.color, 1.0) * material.factor;
     albedo *= textureSample(color_map, clamped, in.uv);
-    if (albedo.a < material.alpha_cutoff) {
+    if (albedo.a < material.alpha_cutoff || dither(in.clip.xy) < 1.0 - in.shown) {
         discard;
     }
     let to_eye = normalize(view.eye - in.world);

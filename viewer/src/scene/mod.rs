@@ -4,6 +4,7 @@
 mod asset;
 mod ground;
 mod image;
+mod impostor;
 mod sky;
 mod trees;
 
@@ -18,6 +19,7 @@ pub use genescape_schema::scene::{
 };
 pub use ground::{Apron, Ground};
 pub use image::{HdrImage, Image};
+pub use impostor::{Crown, Impostor};
 pub use sky::Sky;
 pub use trees::{Level, Material, Range, Template, TreeVertex, Trees};
 

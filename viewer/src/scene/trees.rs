@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use genescape_schema::scene::Instance;
 
-use super::Image;
+use super::{Image, Impostor};
 
 /// All trees of a landscape.
 #[derive(Clone, Debug, Default)]
@@ -34,6 +34,8 @@ pub struct Template {
     pub center_m: [f32; 3],
     /// Its radius.
     pub radius_m: f32,
+    /// Pictures of it, if the file has any.
+    pub impostor: Option<Impostor>,
 }
 
 /// A distinguished mesh.

@@ -4,6 +4,7 @@
 mod asset;
 mod exhibit;
 mod ground;
+mod impostors;
 mod plants;
 mod ring;
 mod sky;
@@ -20,6 +21,7 @@ pub use asset::{
 };
 pub use exhibit::{Exhibit, WeakExhibit};
 pub use ground::GroundBuffers;
+pub use impostors::{ImpostorData, ImpostorSet};
 pub use plants::{PLANT_BLOCK_M, PlantBuffers, PlantVertex};
 pub use ring::{Ring, RingVertex};
 pub use sky::SkyTextures;

@@ -11,6 +11,8 @@ use crate::scene::{HdrImage, Image};
 pub enum ImageUse {
     /// Colour in sRGB.
     Color,
+    /// The same, of which nothing is drawn where alpha is below ½: each level covers as much as the first.
+    Cutout,
     /// Numbers: normals, weights, light.
     Data,
 }
@@ -18,7 +20,7 @@ pub enum ImageUse {
 impl ImageUse {
     fn format(self) -> wgpu::TextureFormat {
         match self {
-            Self::Color => wgpu::TextureFormat::Rgba8UnormSrgb,
+            Self::Color | Self::Cutout => wgpu::TextureFormat::Rgba8UnormSrgb,
             Self::Data => wgpu::TextureFormat::Rgba8Unorm,
         }
     }
@@ -28,7 +30,7 @@ impl Uploader {
     /// An image as a texture. Mip levels that its file brings are used as they are (leaves keep their coverage by
     /// them); an image without gets averages.
     pub(super) fn image(&self, image: &Image, kind: ImageUse) -> Arc<wgpu::Texture> {
-        self.shared(format!("{kind:?} {}", image.name), || self.array(&[image], kind))
+        self.shared(format!("{kind:?} {}", image.name), || self.array(&[image], kind, 1))
     }
 
     /// Several images of one size as the layers of one texture.
@@ -42,12 +44,20 @@ impl Uploader {
             ));
         }
         let names: Vec<&str> = images.iter().map(|image| image.name.as_str()).collect();
-        Ok(self.shared(format!("{kind:?} {}", names.join(" ")), || self.array(images, kind)))
+        Ok(self.shared(format!("{kind:?} {}", names.join(" ")), || self.array(images, kind, 1)))
     }
 
-    fn array(&self, images: &[&Image], kind: ImageUse) -> wgpu::Texture {
+    /// Several strips of square pictures of one size as the layers of one texture, down to `least_px` a side: smaller, and
+    /// pictures run into each other.
+    pub(super) fn strips(&self, images: &[&Image], kind: ImageUse, least_px: u32) -> Arc<wgpu::Texture> {
+        let names: Vec<&str> = images.iter().map(|image| image.name.as_str()).collect();
+        self.shared(format!("strips {kind:?} {}", names.join(" ")), || self.array(images, kind, least_px))
+    }
+
+    fn array(&self, images: &[&Image], kind: ImageUse, least_px: u32) -> wgpu::Texture {
         let chains: Vec<Vec<Arc<[u8]>>> = images.iter().map(|image| chain(image, kind)).collect();
-        let levels = chains.iter().map(Vec::len).min().unwrap_or(1);
+        let wanted = (images[0].height_px.max(images[0].width_px) / least_px.max(1)).max(1).ilog2() as usize + 1;
+        let levels = chains.iter().map(Vec::len).min().unwrap_or(1).min(wanted);
         let (first, usage) = (images[0], wgpu::TextureUsages::TEXTURE_BINDING);
         let mut texture = flat(&first.name, [first.width_px, first.height_px], kind.format(), usage);
         texture.size.depth_or_array_layers = images.len() as u32;
@@ -78,6 +88,9 @@ impl Uploader {
     }
 }
 
+/// The least alpha that is drawn of a cutout.
+const CUT: u8 = 128;
+
 /// An image's mip levels: its own, or averages down to one pixel.
 fn chain(image: &Image, kind: ImageUse) -> Vec<Arc<[u8]>> {
     if image.levels.len() > 1 {
@@ -90,7 +103,31 @@ fn chain(image: &Image, kind: ImageUse) -> Vec<Arc<[u8]>> {
         (width, height) = ((width / 2).max(1), (height / 2).max(1));
         levels.push(coarser.into());
     }
+    if kind == ImageUse::Cutout {
+        keep_coverage(&mut levels);
+    }
     levels
+}
+
+/// Scales the alpha of each level so that as much of it passes ½ as of the first (Castaño, "Computing Alpha Mipmaps", 2010).
+fn keep_coverage(levels: &mut [Arc<[u8]>]) {
+    let Some((first, coarser)) = levels.split_first_mut() else { return };
+    let passes = first.chunks_exact(4).filter(|pixel| pixel[3] >= CUT).count();
+    let share = passes as f32 / (first.len() / 4).max(1) as f32;
+    for level in coarser {
+        let mut alphas: Vec<u8> = level.chunks_exact(4).map(|pixel| pixel[3]).collect();
+        let wanted = (share * alphas.len() as f32 + 0.5) as usize;
+        if wanted == 0 {
+            continue;
+        }
+        let (_, &mut lowest, _) = alphas.select_nth_unstable_by(wanted - 1, |a, b| b.cmp(a));
+        let scale = f32::from(CUT) / f32::from(lowest.max(1));
+        let scaled = level.chunks_exact(4).flat_map(|pixel| {
+            let alpha = (f32::from(pixel[3]) * scale).ceil().min(255.0) as u8;
+            [pixel[0], pixel[1], pixel[2], alpha]
+        });
+        *level = scaled.collect();
+    }
 }
 
 /// Averages of 2 × 2 pixels; colour is averaged as light.
@@ -107,7 +144,7 @@ fn halve(pixels: &[u8], width: u32, height: u32, kind: ImageUse) -> Vec<u8> {
             let four = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
             for channel in 0..4 {
                 let plain = || (four.iter().map(|&p| u32::from(pixels[p + channel])).sum::<u32>() + 2) / 4;
-                let value = if kind == ImageUse::Color && channel < 3 {
+                let value = if kind != ImageUse::Data && channel < 3 {
                     let light: f32 = four.iter().map(|&p| table[usize::from(pixels[p + channel])]).sum();
                     encode(0.25 * light)
                 } else {

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::{ImageUse, Uploader};
+use super::{ImageUse, ImpostorSet, Uploader};
 use crate::scene::{Image, Instance, Material, Template, TreeVertex, Trees};
 
 pub use crate::lod::tree::MAX_LEVELS;
@@ -42,6 +42,10 @@ pub struct TemplateData {
     pub capacity: u32,
     /// Error of the simple mode, [`crate::lod::tree::simple_error_m`].
     pub simple_error: f32,
+    /// Error of its pictures in metres; beyond all errors if it has none.
+    pub picture_error: f32,
+    /// Unused.
+    pub pad: [f32; 3],
 }
 
 /// The arguments of an indexed indirect draw.
@@ -91,12 +95,16 @@ pub struct TreeSet {
     pub template_count: u32,
     /// Levels of the template that has most.
     pub level_count: u32,
-    /// One for each material, level and template, in this order of significance, nearest levels first, with no trees yet.
+    /// One for each material, level and template, in this order of significance, nearest levels first, with no trees yet;
+    /// then one for the pictures of each template.
     pub commands: Vec<DrawCommand>,
     /// Triangles of one tree for each level and template, all materials together: index level · templates + template.
+    /// Pictures count as one more level.
     pub triangles: Vec<u32>,
     /// What the trees are made of.
     pub materials: Vec<TreeMaterial>,
+    /// Pictures of the templates, if all have some.
+    pub impostors: Option<ImpostorSet>,
     /// Entries of all lists of visible trees together.
     pub list_capacity: u32,
 }
@@ -140,6 +148,7 @@ impl Uploader {
             commands: lists.commands,
             triangles: lists.triangles,
             materials: materials.iter().map(|material| self.material(material)).collect(),
+            impostors: self.impostors(&trees.templates),
             list_capacity: lists.capacity,
         })
     }
@@ -174,10 +183,11 @@ struct Lists {
 }
 
 fn arrange(trees: &Trees, materials: &[Material]) -> Lists {
-    let templates = trees.templates.len();
+    let (templates, has_pictures) = (trees.templates.len(), ImpostorSet::suits(&trees.templates));
     let buckets = level_count(trees) * templates;
     let commands = vec![DrawCommand::default(); buckets * materials.len()];
     let mut lists = Lists { templates: Vec::new(), commands, triangles: vec![0; buckets], capacity: 0 };
+    lists.triangles.resize(buckets + templates, 2);
     let (mut base_vertex, mut base_index) = (0, 0);
     for (index, template) in trees.templates.iter().enumerate() {
         let capacity = trees.instances.iter().filter(|tree| tree.template as usize == index).count() as u32;
@@ -195,8 +205,14 @@ fn arrange(trees: &Trees, materials: &[Material]) -> Lists {
                 lists.triangles[bucket] += range.count / 3;
             }
         }
-        lists.templates.push(template_data(template, lists.capacity, capacity));
-        lists.capacity += capacity * depth(template) as u32;
+        let pictures = lists.capacity + depth(template) as u32 * capacity;
+        lists.commands.push(ImpostorSet::command(pictures));
+        let picture_error = template.impostor.as_ref().filter(|_| has_pictures).map(|pictures| pictures.error_m);
+        lists.templates.push(TemplateData {
+            picture_error: picture_error.unwrap_or(f32::MAX),
+            ..template_data(template, lists.capacity, capacity)
+        });
+        lists.capacity = pictures + capacity;
         base_vertex += template.vertices.len() as u32;
         base_index += template.indices.len() as u32;
     }
@@ -226,6 +242,7 @@ fn template_data(template: &Template, first: u32, capacity: u32) -> TemplateData
         first,
         capacity,
         simple_error: crate::lod::tree::simple_error_m(&errors[..levels]),
+        ..TemplateData::default()
     }
 }
 

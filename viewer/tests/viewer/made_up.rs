@@ -7,7 +7,7 @@ use genescape_schema::scene::{Heightfield, SkyImages, SkyLight};
 use genescape_viewer::headless::Headless;
 use genescape_viewer::passes::Shaders;
 use genescape_viewer::scene::{
-    Apron, Ground, GroundDetail, GroundSurface, HdrImage, Image, Instance, Level, Material, Range, Scene,
+    Apron, Crown, Ground, GroundDetail, GroundSurface, HdrImage, Image, Impostor, Instance, Level, Material, Range, Scene,
     Sky, StartView, Template, TerrainLod, TreeVertex, Trees,
 };
 use genescape_viewer::upload::{SceneBuffers, Uploader};
@@ -152,6 +152,26 @@ pub fn template(name: &str, errors_m: &[f32]) -> Template {
         }],
         center_m: [0.0, 3.4, 0.0],
         radius_m: 3.1,
+        impostor: None,
+    }
+}
+
+/// Pictures of any such tree: green discs in front of the axis, with that error.
+pub fn impostor(name: &str, error_m: f32) -> Impostor {
+    let strip = |name: String, pixel: &dyn Fn(f32) -> [u8; 4]| {
+        let disc = |n: u32| libm::hypotf((n % 128 % 32) as f32 - 15.5, (n / 128) as f32 - 15.5) / 12.0;
+        let pixels: Vec<u8> = (0..128 * 32).flat_map(|n| pixel(disc(n))).collect();
+        Image { name, width_px: 128, height_px: 32, levels: vec![pixels.into()] }
+    };
+    Impostor {
+        color: strip(format!("{name} colour"), &|r| [60, 120, 50, if r < 1.0 { 255 } else { 0 }]),
+        relief: strip(format!("{name} relief"), &|_| [160, 255, 0, 255]),
+        alpha_cutoff: 0.5,
+        axis_m: [0.0; 2],
+        low_m: 0.4,
+        size_m: [5.0, 6.0],
+        error_m,
+        crown: Crown { middle_m: [0.0, 3.4, 0.0], half_m: [1.6, 2.6, 1.6] },
     }
 }
 

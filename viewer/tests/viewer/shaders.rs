@@ -8,7 +8,7 @@ use genescape_viewer::passes::Shaders;
 use genescape_viewer::passes::{CullUniform, SHADERS, ViewUniform, grass, plants, terrain, trees};
 use genescape_viewer::scene::TreeVertex;
 use genescape_viewer::upload::{
-    DrawCommand, MaterialUniform, PlantVertex, RingVertex, TemplateData, TreeData,
+    DrawCommand, ImpostorData, MaterialUniform, PlantVertex, RingVertex, TemplateData, TreeData,
 };
 use naga::{ScalarKind, TypeInner};
 
@@ -126,16 +126,31 @@ fn uniforms_are_laid_out_alike() {
 
 #[test]
 fn elements_of_buffers_are_laid_out_alike() {
-    same!(["cull", "trees", "shadow"], "Tree", TreeData { rows, template_index, scale, pad });
+    same!(["cull", "trees", "impostors", "shadow"], "Tree", TreeData { rows, template_index, scale, pad });
     same!(
         ["cull"],
         "Template",
-        TemplateData { center, radius, errors, levels, first, capacity, simple_error }
+        TemplateData {
+            center,
+            radius,
+            errors,
+            levels,
+            first,
+            capacity,
+            simple_error,
+            picture_error,
+            pad,
+        }
+    );
+    same!(
+        ["impostors"],
+        "Frame",
+        ImpostorData { axis, size, crown_middle, low, crown_half, alpha_cutoff }
     );
     same!(["cull"], "Command", DrawCommand { indices, instances, first_index, base_vertex, first_instance });
     // What one pass writes as `Visible` the next reads as attributes.
-    agree("cull", "Visible", 8, &[("tree", 0), ("lambda", 4)]);
-    assert_eq!(trees::VISIBLE.map(|attribute| attribute.offset), [0, 4]);
+    agree("cull", "Visible", 12, &[("tree", 0), ("lambda", 4), ("shown", 8)]);
+    assert_eq!(trees::VISIBLE.map(|attribute| attribute.offset), [0, 4, 8]);
 }
 
 #[test]
@@ -212,9 +227,11 @@ fn shaders_read_the_attributes_as_they_are_written() {
         sets.concat().iter().map(one).collect()
     };
     assert_eq!(inputs("trees", "vertex"), written(&[&trees::VERTEX, &trees::VISIBLE]));
-    let shadow = inputs("shadow", "tree");
     let known = written(&[&trees::VERTEX, &trees::VISIBLE]);
-    assert!(shadow.iter().all(|input| known.contains(input)), "{shadow:?}");
+    for (shader, entry) in [("shadow", "tree"), ("impostors", "vertex")] {
+        let read = inputs(shader, entry);
+        assert!(read.iter().all(|input| known.contains(input)), "{shader}: {read:?}");
+    }
     assert_eq!(inputs("terrain", "block_vertex"), written(&[&terrain::BLOCK]));
     assert_eq!(inputs("terrain", "ring_vertex"), written(&[&terrain::RING]));
     assert_eq!(inputs("grass", "vertex"), written(&[&grass::CLUMP]));

@@ -1,0 +1,50 @@
+//! Draws the pictures of trees that are far away: one draw for all of them.
+
+use super::shaders::ShaderError;
+use super::trees::VISIBLE;
+use super::{BoundScene, Compiler, DrawPass, FilledOrWire, PipelineDesc, Shader, buffer_layout};
+use crate::options::Options;
+use crate::upload::{DrawCommand, MAX_LEVELS};
+
+pub const SHADER: Shader = Shader {
+    name: "impostors",
+    source: include_str!("impostors.wgsl"),
+    constants: &[("PICTURES_LEVEL", MAX_LEVELS as f64)],
+};
+
+#[derive(Debug)]
+pub struct Impostors {
+    pipelines: FilledOrWire<wgpu::RenderPipeline>,
+}
+
+impl Impostors {
+    pub(super) fn new(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
+        let (shader, layouts) = (compiler.module(&SHADER)?, compiler.layouts);
+        let groups = [&layouts.view, &layouts.impostors];
+        let buffers = [buffer_layout::<[u32; 3]>(wgpu::VertexStepMode::Instance, &VISIBLE)];
+        let pipelines = |wireframe: bool| {
+            let usual = PipelineDesc::new(&shader, &groups);
+            compiler.pipeline(&PipelineDesc { buffers: &buffers, wireframe, ..usual })
+        };
+        Ok(Self { pipelines: FilledOrWire::new(compiler.gpu, pipelines) })
+    }
+}
+
+impl DrawPass for Impostors {
+    fn is_needed(&self, bound: &BoundScene, options: &Options) -> bool {
+        options.draw_trees && bound.trees().is_some_and(|(set, _)| set.impostors.is_some())
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, bound: &BoundScene, options: &Options) -> u32 {
+        let Some((set, trees)) = bound.trees() else { return 0 };
+        let (Some(pictures), Some(group)) = (&set.impostors, &trees.impostors_group) else { return 0 };
+        pass.set_pipeline(self.pipelines.get(options.wireframe));
+        pass.set_bind_group(1, group, &[]);
+        pass.set_vertex_buffer(0, trees.visible.slice(..));
+        pass.set_index_buffer(pictures.indices.slice(..), wgpu::IndexFormat::Uint16);
+        let meshes = set.materials.len() as u64 * u64::from(trees.buckets);
+        let first = meshes * size_of::<DrawCommand>() as u64;
+        pass.multi_draw_indexed_indirect(&trees.commands, first, set.template_count);
+        1
+    }
+}

@@ -1,0 +1,108 @@
+// Trees that are far away: a rectangle around the tree's axis turns to the eye and shows the picture from the nearest of eight
+// sides (`GSC_impostor`), lit as its leaves and branches are on average.
+
+// The number by which tints know pictures from meshes.
+override PICTURES_LEVEL: f32;
+
+@group(1) @binding(0) var<storage, read> trees: array<Tree>;
+@group(1) @binding(1) var<storage, read> frames: array<Frame>;
+@group(1) @binding(2) var colors: texture_2d_array<f32>;
+@group(1) @binding(3) var reliefs: texture_2d_array<f32>;
+
+// The pictures of a template, as `ImpostorData` in Rust.
+struct Frame {
+    axis: vec2f,
+    size: vec2f,
+    crown_middle: vec3f,
+    low: f32,
+    crown_half: vec3f,
+    alpha_cutoff: f32,
+}
+
+struct Out {
+    @builtin(position) clip: vec4f,
+    @location(0) world: vec3f,
+    // The same in the template's space.
+    @location(1) local: vec3f,
+    @location(2) uv: vec2f,
+    // Towards the eye in the template's space, level, of unit length; and what that is in the world.
+    @location(3) @interpolate(flat) ahead: vec2f,
+    @location(4) @interpolate(flat) toward: vec3f,
+    // Direction of the eye in eighths of a turn, [0, 8]; number of the template.
+    @location(5) @interpolate(flat) turn: f32,
+    @location(6) @interpolate(flat) template_index: u32,
+    // Share of its pixels that are drawn.
+    @location(7) @interpolate(flat) shown: f32,
+}
+
+@vertex
+fn vertex(@location(8) tree: u32, @location(10) shown: f32, @builtin(vertex_index) index: u32) -> Out {
+    let rows = trees[tree].rows;
+    let frame = frames[trees[tree].template_index];
+    let corner = vec2f(f32(index & 1u), f32(index >> 1u));
+    let middle = vec3f(frame.axis.x, frame.low + 0.5 * frame.size.y, frame.axis.y);
+    let to_eye = view.eye - from_template(rows, middle);
+    // The rows of the linear part, weighted, are its transpose: for what is turned and scaled alike, the way back.
+    let back = rows[0].xyz * to_eye.x + rows[1].xyz * to_eye.y + rows[2].xyz * to_eye.z;
+    let ahead = normalize(back.xz + vec2f(0.0, 1e-6));
+    let across = vec3f(ahead.y, 0.0, -ahead.x) * ((corner.x - 0.5) * frame.size.x);
+    let local = vec3f(frame.axis.x, frame.low + corner.y * frame.size.y, frame.axis.y) + across;
+    var out: Out;
+    out.world = from_template(rows, local);
+    out.clip = view.clip_from_world * vec4f(out.world, 1.0);
+    out.local = local;
+    out.uv = vec2f(corner.x, 1.0 - corner.y);
+    out.ahead = ahead;
+    out.toward = vec3f(dot(rows[0].xz, ahead), dot(rows[1].xz, ahead), dot(rows[2].xz, ahead));
+    out.turn = fract(atan2(ahead.x, ahead.y) / (2.0 * PI) + 1.0) * 8.0;
+    out.template_index = trees[tree].template_index;
+    out.shown = shown;
+    return out;
+}
+
+// Of the light that falls on a matt surface in all directions, what an eye sees of it receives so much on average; the cosine
+// is that of the angle between light and eye.
+fn phase(cosine: f32) -> f32 {
+    let c = clamp(cosine, -1.0, 1.0);
+    let angle = acos(c);
+    return 2.0 / (3.0 * PI) * (sqrt(1.0 - c * c) + (PI - angle) * c);
+}
+
+@fragment
+fn fragment(in: Out) -> @location(0) vec4f {
+    // Half-way between two sides some places of the tree are seen from the one, some from the other.
+    let part = smoothstep(0.35, 0.65, fract(in.turn));
+    let place = floor(in.uv * 32.0);
+    let side = u32(in.turn) + select(0u, 1u, dither(place) < part);
+    // From behind it is its own mirror image.
+    let u = select(in.uv.x, 1.0 - in.uv.x, (side & 4u) != 0u);
+    let at = vec2f((f32(side & 3u) + u) * 0.25, in.uv.y);
+    let along_x = dpdx(in.uv) * vec2f(0.25, 1.0);
+    let along_y = dpdy(in.uv) * vec2f(0.25, 1.0);
+    let seen = textureSampleGrad(colors, clamped, at, in.template_index, along_x, along_y);
+    if (seen.a < frames[in.template_index].alpha_cutoff || dither(in.clip.xy) > in.shown) {
+        discard;
+    }
+    let frame = frames[in.template_index];
+    let relief = textureSampleGrad(reliefs, clamped, at, in.template_index, along_x, along_y).rg;
+    let before = (relief.r - 0.5) * frame.size.x;
+    let local = in.local + vec3f(in.ahead.x, 0.0, in.ahead.y) * before;
+    let world = in.world + in.toward * before;
+    let albedo = select(seen.rgb, level_tint(PICTURES_LEVEL) * 0.5, view.tint_levels != 0u);
+
+    let to_eye = normalize(view.eye - in.world);
+    let cosine = dot(to_eye, view.sun_direction);
+    let open = openness((local - frame.crown_middle) / frame.crown_half);
+    // As `leaf` and `bark` of `trees.wgsl`, averaged over all directions that face the eye.
+    let through = albedo * vec3f(0.75, 0.9, 0.3);
+    let same = 0.75 * phase(cosine) + 0.125 * (1.0 + cosine);
+    let other = 0.75 * phase(-cosine) + 0.125 * (1.0 - cosine);
+    let facing = max(-cosine, 0.0);
+    let glow = 0.6 * facing * facing * facing * facing * facing * facing;
+    let leaf_sun = (albedo * 0.8 * same + through * (0.6 * other + glow)) * smoothstep(0.0, 0.7, open);
+    let sun = mix(albedo * phase(cosine), leaf_sun, relief.g) * sun_visibility(world, 0.4);
+    let up = mix(0.5, 0.5 + 0.5 * (phase(to_eye.y) + phase(-to_eye.y)), relief.g);
+    let ambient = ambient_light(up) * mix(0.8, 0.15 + 0.75 * open * open, relief.g);
+    let radiance = (albedo * ambient + view.sun_irradiance * sun) / PI;
+    return vec4f(aerial_perspective(radiance, distance(in.world, view.eye)), 1.0);
+}

@@ -1,0 +1,88 @@
+//! Pictures of trees: the strips of all templates as layers of two textures, and where each stands.
+
+use std::sync::Arc;
+
+use super::{DrawCommand, ImageUse, Uploader};
+use crate::scene::{Impostor, Template};
+
+/// Mip levels end where a picture of a strip has so many pixels a side.
+const LEAST_PX: u32 = 8 * genescape_schema::scene::IMPOSTOR_PICTURES;
+
+/// The pictures of a template, as the shader reads it. Metres in the template's space.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct ImpostorData {
+    /// x and z of the vertical axis.
+    pub axis: [f32; 2],
+    /// Width and height.
+    pub size: [f32; 2],
+    /// Of the ellipsoid around the leaves.
+    pub crown_middle: [f32; 3],
+    /// y of the lower edge.
+    pub low: f32,
+    /// Semi-axes of that ellipsoid.
+    pub crown_half: [f32; 3],
+    /// Below this alpha nothing is drawn.
+    pub alpha_cutoff: f32,
+}
+
+/// The pictures of all templates.
+#[derive(Debug)]
+pub struct ImpostorSet {
+    /// [`ImpostorData`] of each.
+    pub frames: wgpu::Buffer,
+    /// Colour, a layer for each template.
+    pub colors: Arc<wgpu::Texture>,
+    /// Relief, likewise.
+    pub reliefs: Arc<wgpu::Texture>,
+    /// Two triangles.
+    pub indices: wgpu::Buffer,
+}
+
+impl ImpostorSet {
+    /// Whether all of these have pictures, of one size.
+    pub(super) fn suits(templates: &[Arc<Template>]) -> bool {
+        let size = |template: &Arc<Template>| {
+            template.impostor.as_ref().map(|pictures| [pictures.color.width_px, pictures.color.height_px])
+        };
+        let first = templates.first().and_then(size);
+        first.is_some() && templates.iter().all(|template| size(template) == first)
+    }
+
+    /// Draws the list that starts there, with no trees yet.
+    pub(super) fn command(first: u32) -> DrawCommand {
+        DrawCommand { indices: INDICES.len() as u32, first_instance: first, ..DrawCommand::default() }
+    }
+}
+
+const INDICES: [u16; 6] = [0, 1, 2, 2, 1, 3];
+
+impl Uploader {
+    pub(super) fn impostors(&self, templates: &[Arc<Template>]) -> Option<ImpostorSet> {
+        use wgpu::BufferUsages as Usage;
+        if !ImpostorSet::suits(templates) {
+            return None;
+        }
+        let all: Vec<&Impostor> = templates.iter().filter_map(|template| template.impostor.as_ref()).collect();
+        let frames: Vec<ImpostorData> = all.iter().map(|one| frame(one)).collect();
+        let [colors, reliefs]: [Vec<_>; 2] =
+            [all.iter().map(|one| &one.color).collect(), all.iter().map(|one| &one.relief).collect()];
+        Some(ImpostorSet {
+            frames: self.gpu.buffer("frames of pictures", &frames, Usage::STORAGE),
+            colors: self.strips(&colors, ImageUse::Cutout, LEAST_PX),
+            reliefs: self.strips(&reliefs, ImageUse::Data, LEAST_PX),
+            indices: self.gpu.buffer("triangles of a picture", &INDICES, Usage::INDEX),
+        })
+    }
+}
+
+fn frame(pictures: &Impostor) -> ImpostorData {
+    ImpostorData {
+        axis: pictures.axis_m,
+        size: pictures.size_m,
+        crown_middle: pictures.crown.middle_m,
+        low: pictures.low_m,
+        crown_half: pictures.crown.half_m,
+        alpha_cutoff: pictures.alpha_cutoff,
+    }
+}
