@@ -103,18 +103,27 @@ impl PlantChoice {
         self.draws.clear();
     }
 
-    /// The plants that an eye may see, instead of what was chosen before.
-    pub fn choose(&mut self, ground: &Ground, buffers: &PlantBuffers, eye_m: Vec3, frustum: &Frustum) {
+    /// The plants that an eye may see in a picture drawn at `part` of full resolution, instead of what was chosen before.
+    pub fn choose(
+        &mut self,
+        ground: &Ground,
+        buffers: &PlantBuffers,
+        eye_m: Vec3,
+        frustum: &Frustum,
+        part: f32,
+    ) {
         self.clear();
         for (kind, shape) in ground.surface.plants.kinds.iter().zip(&buffers.kinds) {
             let Some(map) = ground.plant_map(kind) else { continue };
+            // What has as few pixels at full resolution is so far away.
+            let reach_m = kind.reach_m * part;
             let half_m = 0.5 * ground.field.extent_m();
             let density =
                 |x: f32, z: f32| map.at(kind.channel, 0.5 + 0.5 * x / half_m, 0.5 + 0.5 * z / half_m);
             let first = self.instances.len() as u32;
             self.coarse.clear();
             let seen = |middle: Vec3| frustum.sees_sphere(middle, 0.75 * PLANT_BLOCK_M + AROUND_M);
-            for block in blocks(kind, ground, eye_m).filter(|&block| shape.grows_in(block)) {
+            for block in blocks(reach_m, ground, eye_m).filter(|&block| shape.grows_in(block)) {
                 let middle = (Vec2::new(block[0] as f32, block[1] as f32) + 0.5) * PLANT_BLOCK_M;
                 let middle = Vec3::new(middle.x, ground.field.height_m(middle.x, middle.y), middle.y);
                 if !seen(middle) {
@@ -122,7 +131,7 @@ impl PlantChoice {
                 }
                 for plant in cells(kind, block).filter_map(|cell| kind.in_cell(cell, density)) {
                     let height_m = ground.field.height_m(plant.x_m, plant.z_m);
-                    let away = Vec3::new(plant.x_m, height_m, plant.z_m).distance(eye_m) / kind.reach_m;
+                    let away = Vec3::new(plant.x_m, height_m, plant.z_m).distance(eye_m) / reach_m;
                     let size = plant.scale * presence(&plant, away);
                     if size > 0.0 {
                         let list = if away < FINE { &mut self.instances } else { &mut self.coarse };
@@ -164,10 +173,9 @@ fn presence(plant: &Plant, away: f32) -> f32 {
     ((share * (1.0 + GROWS) - plant.rank) / GROWS).clamp(0.0, 1.0) * ((1.0 - away) / 0.2).clamp(0.0, 1.0)
 }
 
-/// The blocks within a kind's reach: numbers of their north-west corners in blocks.
-fn blocks(kind: &PlantKind, ground: &Ground, eye_m: Vec3) -> impl Iterator<Item = [i32; 2]> {
+/// The blocks within a reach: numbers of their north-west corners in blocks.
+fn blocks(reach_m: f32, ground: &Ground, eye_m: Vec3) -> impl Iterator<Item = [i32; 2]> {
     let half_m = 0.5 * ground.field.extent_m();
-    let reach_m = kind.reach_m;
     let line = move |m: f32| (m.clamp(-half_m, half_m - 0.01) / PLANT_BLOCK_M).floor() as i32;
     let lines = move |m: f32| line(m - reach_m)..=line(m + reach_m);
     let near = move |block: &[i32; 2]| {

@@ -54,7 +54,7 @@ impl LandscapeChoice {
         if options.grass && !options.wireframe && !options.tint_levels && !options.overhead {
             let (ground, eye_m) = (&bound.scene.ground, lod_camera.position_m);
             grass::clumps(ground, eye_m, &frustum, frame.part, &mut self.clumps);
-            self.plants.choose(ground, &bound.scene.land.plants, eye_m, &frustum);
+            self.plants.choose(ground, &bound.scene.land.plants, eye_m, &frustum, frame.part);
         }
         bound.clumps.write(gpu, &self.clumps);
         bound.plants.write(gpu, &self.plants.instances);

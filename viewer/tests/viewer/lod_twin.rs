@@ -209,7 +209,7 @@ fn the_device_chooses_as_the_reference_does() {
         let more = compare(&studio, seed);
         seen = std::array::from_fn(|k| seen[k] + more[k]);
     }
-    assert!(seen.iter().all(|&count| count > 200), "all of it happens: {seen:?}");
+    assert!(seen.iter().all(|&count| count > 150), "all of it happens: {seen:?}");
 }
 
 prop_compose! {
