@@ -5,7 +5,7 @@ use std::sync::Arc;
 use anyhow::{Result, anyhow};
 use winit::window::Window;
 
-use super::picture_painter::PicturePainter;
+use super::ui_painter::UiPainter;
 use crate::gpu::{Gpu, GpuError, cleared};
 use crate::{settings, ui};
 
@@ -18,7 +18,7 @@ pub struct Screen {
     pub input: egui_winit::State,
     painter: egui_wgpu::Renderer,
     /// What the landscapes look like, for the painter.
-    pub pictures: PicturePainter,
+    pub pictures: UiPainter,
     /// What is for the next frame.
     later: Vec<egui::Event>,
     surface: wgpu::Surface<'static>,
@@ -51,7 +51,7 @@ impl Screen {
         let input = egui_winit::State::new(ctx.clone(), id, &window, Some(scale), window.theme(), Some(8192));
         let painter =
             egui_wgpu::Renderer::new(&gpu.device, config.format, egui_wgpu::RendererOptions::default());
-        let pictures = PicturePainter::new(&gpu, config.format);
+        let pictures = UiPainter::new(&gpu, config.format);
         let later = Vec::new();
         Ok((Self { window, ctx, input, painter, pictures, later, surface, config, gpu: gpu.clone() }, gpu))
     }
@@ -90,12 +90,12 @@ impl Screen {
         self.input.handle_platform_output(&self.window, output.platform_output);
         let pixels_per_point = output.pixels_per_point;
         let mut shapes = self.ctx.tessellate(output.shapes, pixels_per_point);
-        self.pictures.take_over(&mut shapes, self.ctx.viewport_rect());
         for (id, deltas) in &output.textures_delta.set {
             for delta in deltas {
                 self.painter.update_texture(&self.gpu.device, &self.gpu.queue, *id, delta);
             }
         }
+        self.pictures.take_over(&mut shapes, self.ctx.viewport_rect(), &self.painter);
         let screen = egui_wgpu::ScreenDescriptor {
             size_in_pixels: [self.config.width, self.config.height],
             pixels_per_point,

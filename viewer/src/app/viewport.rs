@@ -5,7 +5,7 @@ use std::sync::Arc;
 use egui::TextureId;
 
 use super::camera_control::CameraControl;
-use super::picture_painter::PicturePainter;
+use super::ui_painter::UiPainter;
 use crate::camera::Camera;
 use crate::gpu::Gpu;
 use crate::options::FrameInput;
@@ -109,7 +109,7 @@ impl Viewport {
     }
 
     /// Gives the picture its size in the window and tells the user interface where to find it.
-    pub fn fit(&mut self, passes: &Passes, pictures: &mut PicturePainter, size_px: [u32; 2], part: f32) {
+    pub fn fit(&mut self, passes: &Passes, pictures: &mut UiPainter, size_px: [u32; 2], part: f32) {
         self.part = part;
         let size_px = size_px.map(|side| (side as f32 * part).round() as u32);
         if !self.view.resize(passes, size_px) && self.picture.is_some() {

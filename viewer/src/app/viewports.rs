@@ -11,8 +11,8 @@ use wgpu_profiler::{GpuProfiler, GpuProfilerSettings, GpuTimerQueryResult};
 
 use super::camera_control::CameraControl;
 use super::lod_readback::LodReadback;
-use super::picture_painter::PicturePainter;
 use super::sharpness::{Before, Sharpness};
+use super::ui_painter::UiPainter;
 use super::viewport::Viewport;
 use crate::gpu::Gpu;
 use crate::image_file;
@@ -151,7 +151,7 @@ impl Viewports {
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        pictures: &mut PicturePainter,
+        pictures: &mut UiPainter,
         slots: &[Slot],
         wish: &Wish,
         control: &CameraControl,

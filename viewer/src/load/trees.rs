@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use genescape_schema::scene::{
-    GSC_IMPOSTOR, IMPOSTOR_PICTURES, ImpostorExtension, InstancesExtension, ProgressiveMeshExtension, Resource,
-    read_instances,
+    GSC_IMPOSTOR, IMPOSTOR_PICTURES, ImpostorExtension, InstancesExtension, ProgressiveMeshExtension,
+    Resource, read_instances,
 };
 use glam::Vec3;
 use gltf::Semantic;

@@ -133,7 +133,12 @@ impl BoundTrees {
             impostors_group: set.impostors.as_ref().map(|pictures| {
                 let textures = [&pictures.colors, &pictures.reliefs].map(|layers| Binding::layers(layers));
                 let buffers = [&set.trees, &pictures.frames].map(Binding::Buffer);
-                bind(gpu, "pictures of trees", &layouts.impostors, (0..).zip(buffers.into_iter().chain(textures)))
+                bind(
+                    gpu,
+                    "pictures of trees",
+                    &layouts.impostors,
+                    (0..).zip(buffers.into_iter().chain(textures)),
+                )
             }),
             trees_group: bind(gpu, "trees", &layouts.trees, [(0, Binding::Buffer(&set.trees))]),
             material_groups: set.materials.iter().map(material).collect(),

@@ -63,7 +63,8 @@ impl Uploader {
         if !ImpostorSet::suits(templates) {
             return None;
         }
-        let all: Vec<&Impostor> = templates.iter().filter_map(|template| template.impostor.as_ref()).collect();
+        let all: Vec<&Impostor> =
+            templates.iter().filter_map(|template| template.impostor.as_ref()).collect();
         let frames: Vec<ImpostorData> = all.iter().map(|one| frame(one)).collect();
         let [colors, reliefs]: [Vec<_>; 2] =
             [all.iter().map(|one| &one.color).collect(), all.iter().map(|one| &one.relief).collect()];

@@ -56,7 +56,8 @@ impl Uploader {
 
     fn array(&self, images: &[&Image], kind: ImageUse, least_px: u32) -> wgpu::Texture {
         let chains: Vec<Vec<Arc<[u8]>>> = images.iter().map(|image| chain(image, kind)).collect();
-        let wanted = (images[0].height_px.max(images[0].width_px) / least_px.max(1)).max(1).ilog2() as usize + 1;
+        let wanted =
+            (images[0].height_px.max(images[0].width_px) / least_px.max(1)).max(1).ilog2() as usize + 1;
         let levels = chains.iter().map(Vec::len).min().unwrap_or(1).min(wanted);
         let (first, usage) = (images[0], wgpu::TextureUsages::TEXTURE_BINDING);
         let mut texture = flat(&first.name, [first.width_px, first.height_px], kind.format(), usage);

@@ -207,7 +207,8 @@ fn arrange(trees: &Trees, materials: &[Material]) -> Lists {
         }
         let pictures = lists.capacity + depth(template) as u32 * capacity;
         lists.commands.push(ImpostorSet::command(pictures));
-        let picture_error = template.impostor.as_ref().filter(|_| has_pictures).map(|pictures| pictures.error_m);
+        let picture_error =
+            template.impostor.as_ref().filter(|_| has_pictures).map(|pictures| pictures.error_m);
         lists.templates.push(TemplateData {
             picture_error: picture_error.unwrap_or(f32::MAX),
             ..template_data(template, lists.capacity, capacity)

@@ -194,7 +194,11 @@ fn compare(studio: &Headless, seed: u64) -> [usize; 4] {
                 pictured(&control, error_m, away_m, scale, steepness)
             };
             let close = [0.999, 1.0, 1.001].map(|factor| (picture - share(factor * away_m)).abs() < 5e-3);
-            assert!(close.contains(&true), "seed {seed}, {mode:?}, tree {tree}: {picture}, not {}", share(away_m));
+            assert!(
+                close.contains(&true),
+                "seed {seed}, {mode:?}, tree {tree}: {picture}, not {}",
+                share(away_m)
+            );
         }
     }
     seen

@@ -7,8 +7,8 @@ use genescape_schema::scene::{Heightfield, SkyImages, SkyLight};
 use genescape_viewer::headless::Headless;
 use genescape_viewer::passes::Shaders;
 use genescape_viewer::scene::{
-    Apron, Crown, Ground, GroundDetail, GroundSurface, HdrImage, Image, Impostor, Instance, Level, Material, Range, Scene,
-    Sky, StartView, Template, TerrainLod, TreeVertex, Trees,
+    Apron, Crown, Ground, GroundDetail, GroundSurface, HdrImage, Image, Impostor, Instance, Level, Material,
+    Range, Scene, Sky, StartView, Template, TerrainLod, TreeVertex, Trees,
 };
 use genescape_viewer::upload::{SceneBuffers, Uploader};
 use glam::Vec3;

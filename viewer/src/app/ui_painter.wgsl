@@ -1,4 +1,4 @@
-// A picture where the user interface wants it: egui's vertices, its texture, its colour as a factor.
+// What the user interface consists of: egui's vertices, a texture, a colour as a factor.
 
 @group(0) @binding(0) var picture: texture_2d<f32>;
 @group(0) @binding(1) var linear: sampler;
