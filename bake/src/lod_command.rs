@@ -35,7 +35,7 @@ pub fn convert(input: &Path, out: &Path, crease_deg: f32) -> Result<()> {
     let levels = lod::levels(&imported.mesh, &lod::LodOptions::default());
     working.set_message("writing");
     let name = input.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy());
-    let glb = gltf::levelled_glb(&name, &levels, &materials(&imported))
+    let glb = gltf::levelled_glb(&name, &levels, &materials(&imported), None)
         .with_context(|| format!("{}: cannot be written as glTF", input.display()))?;
     atomic_write::replace(out, &glb).with_context(|| format!("cannot write {}", out.display()))?;
 

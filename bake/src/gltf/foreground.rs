@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::ExportError;
 use super::document::{ARRAY_BUFFER, Document, ELEMENT_ARRAY_BUFFER, FLOAT, Node, UNSIGNED_INT};
 use super::glb::write_glb;
-use super::levels::{Surface, add_vertices};
+use super::vertices::{Surface, add_vertices};
 use crate::model::{Foreground, Material};
 
 /// Mesh 0: the foreground with a material for each of `kinds` of ground, `TEXCOORD_1` on the maps of the whole

@@ -1,13 +1,12 @@
-//! Materials with their textures, for trees and for anyone's meshes.
+//! Materials with their textures, for trees and for anyone's meshes, and how they go into a document.
 
 use std::convert::Infallible;
 
 use serde_json::{Map, Value, json};
 
-use super::ExportError;
-use super::document::{Document, for_each_object, push};
-use super::levels::{Surface, levelled_glb};
-use crate::model::{LevelledMesh, Material, TreeTextures};
+use super::document::{Document, for_each_object};
+use super::vertices::Surface;
+use crate::model::Material;
 
 /// Trilinear filtering, repeating.
 pub const REPEATING: (u32, u32) = (9987, 10497);
@@ -28,6 +27,11 @@ pub enum Picture<'a> {
         bytes: &'a [u8],
         /// `image/png` or `image/jpeg`; may be empty where `bytes` begin as one of these.
         mime_type: &'a str,
+    },
+    /// A PNG file in a part of a buffer.
+    View {
+        /// An index into `bufferViews`.
+        buffer_view: usize,
     },
     /// A PNG file by relative URI, and its smaller mip levels likewise (level 1 first) if they are not plain
     /// averages: they go into the image's `extras.mipmaps`.
@@ -127,6 +131,7 @@ fn picture_json(document: &mut Document, picture: &Picture<'_>) -> Value {
             let view = document.view(bytes, None, None);
             json!({ "bufferView": view, "mimeType": mime_type })
         }
+        Picture::View { buffer_view } => json!({ "bufferView": buffer_view, "mimeType": "image/png" }),
         Picture::File { uri, mipmaps } => {
             let file = |uri: &String| json!({ "uri": uri, "mimeType": "image/png" });
             let mut image = file(uri);
@@ -136,69 +141,4 @@ fn picture_json(document: &mut Document, picture: &Picture<'_>) -> Value {
             image
         }
     }
-}
-
-/// Bark, leaf and blossom as glTF materials; cards only as far as `used` says that parts have them.
-pub(super) fn tree_materials<'a>(
-    textures: &TreeTextures<Picture<'a>>,
-    used: impl Fn(Material) -> bool,
-) -> MaterialSet<'a> {
-    let mut set = MaterialSet {
-        slots: vec![Material::Bark],
-        materials: vec![json!({ "name": "bark",
-            "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 },
-                "metallicFactor": 0, "roughnessFactor": 0.9 },
-            "normalTexture": { "index": 1 } })],
-        textures: vec![
-            json!({ "name": "bark colour", "sampler": 0, "source": 0 }),
-            json!({ "name": "bark normals", "sampler": 0, "source": 1 }),
-        ],
-        samplers: vec![sampler(REPEATING)],
-        images: vec![
-            ("bark colour".into(), textures.bark_color.clone()),
-            ("bark normals".into(), textures.bark_normal.clone()),
-        ],
-    };
-    let cards = [(Material::Leaf, "leaf", &textures.leaf), (Material::Blossom, "blossom", &textures.blossom)];
-    for (slot, name, levels) in cards {
-        let Some(picture) = card(levels).filter(|_| used(slot)) else { continue };
-        if set.samplers.len() == 1 {
-            set.samplers.push(sampler(CLAMPED));
-        }
-        let image = push(&mut set.images, (name.into(), picture));
-        let texture = push(&mut set.textures, json!({ "name": name, "sampler": 1, "source": image }));
-        set.slots.push(slot);
-        set.materials.push(json!({ "name": name,
-            "pbrMetallicRoughness": { "baseColorTexture": { "index": texture },
-                "metallicFactor": 0, "roughnessFactor": 0.65 },
-            "alphaMode": "MASK", "alphaCutoff": textures.alpha_cutoff, "doubleSided": true }));
-    }
-    set
-}
-
-/// A card with its mip levels, if it has any.
-fn card<'a>(levels: &[Picture<'a>]) -> Option<Picture<'a>> {
-    let (first, smaller) = levels.split_first()?;
-    let uri_of = |level: &Picture<'_>| match level {
-        Picture::File { uri, .. } => Some(uri.clone()),
-        Picture::Embedded { .. } => None,
-    };
-    Some(match uri_of(first) {
-        Some(uri) => Picture::File { uri, mipmaps: smaller.iter().filter_map(uri_of).collect() },
-        None => first.clone(),
-    })
-}
-
-/// One tree as a self-contained .glb (with `Picture::File`, one that shares its pictures): see [`levelled_glb`].
-///
-/// # Errors
-/// As [`levelled_glb`].
-pub fn tree_glb(
-    name: &str,
-    mesh: &LevelledMesh,
-    textures: &TreeTextures<Picture<'_>>,
-) -> Result<Vec<u8>, ExportError> {
-    let parts = || mesh.levels.iter().flat_map(|level| &level.mesh.parts);
-    let used = |slot| parts().any(|part| part.material == slot && !part.triangles.is_empty());
-    levelled_glb(name, mesh, &tree_materials(textures, used))
 }

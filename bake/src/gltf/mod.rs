@@ -7,6 +7,8 @@ mod document;
 pub mod exr;
 mod foreground;
 mod glb;
+mod impostor;
+mod level_scenes;
 mod levels;
 mod materials;
 pub mod png;
@@ -22,6 +24,10 @@ mod tangents;
 mod terrain;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_impostor;
+mod tree;
+mod vertices;
 
 use thiserror::Error;
 
@@ -29,11 +35,12 @@ pub(crate) use document::for_each_object;
 pub use foreground::foreground_glb;
 pub(crate) use glb::split_glb;
 pub use levels::levelled_glb;
-pub use materials::{MaterialSet, Picture, tree_glb};
+pub use materials::{MaterialSet, Picture};
 pub use scene::scene_gltf;
 pub use scene_parts::{Blob, GlbBlob, SceneParts};
 pub use single::single_glb;
 pub use terrain::terrain_glb;
+pub use tree::tree_glb;
 
 /// What `asset.generator` says.
 pub const GENERATOR: &str = concat!("Genescape ", env!("CARGO_PKG_VERSION"));

@@ -15,6 +15,7 @@ const MESHES: Places = &[
     "nodes/*/mesh",
     "nodes/*/extensions/GSC_instances/templates/*/mesh",
     "meshes/*/extensions/GSC_progressive_mesh/levels/*/mesh",
+    "meshes/*/extensions/GSC_impostor/mesh",
 ];
 const MATERIALS: Places = &["meshes/*/primitives/*/material"];
 const ACCESSORS: Places = &[

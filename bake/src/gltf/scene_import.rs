@@ -1,6 +1,9 @@
 //! Meshes of a .glb → meshes of a scene that has the .glb for a buffer: only tables are copied, never vertices.
 
-use genescape_schema::scene::{GSC_PROGRESSIVE_MESH, ProgressiveMeshExtension};
+use genescape_schema::scene::{
+    GSC_IMPOSTOR, GSC_PROGRESSIVE_MESH, ImpostorExtension, ProgressiveMeshExtension,
+};
+use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
 use super::ExportError;
@@ -82,6 +85,10 @@ impl GlbImport {
                 *extension = self.import_progressive(document, extension, first)?;
                 document.extensions_used.insert(GSC_PROGRESSIVE_MESH.into());
             }
+            if let Some(extension) = mesh.pointer_mut(&format!("/extensions/{GSC_IMPOSTOR}")) {
+                *extension = self.import_impostor(document, extension, first)?;
+                document.extensions_used.insert(GSC_IMPOSTOR.into());
+            }
             document.meshes.push(mesh);
         }
         Ok(first)
@@ -118,8 +125,7 @@ impl GlbImport {
         extension: &Value,
         first_mesh: usize,
     ) -> Result<Value, ExportError> {
-        let mut typed: ProgressiveMeshExtension = serde_json::from_value(extension.clone())
-            .map_err(|e| ExportError::NotGltf(self.uri.clone(), e.to_string()))?;
+        let mut typed: ProgressiveMeshExtension = self.typed(extension)?;
         typed.buffer_view = self.import_view(document, &typed.buffer_view.into())?;
         for level in &mut typed.levels {
             level.mesh += first_mesh;
@@ -128,6 +134,31 @@ impl GlbImport {
             }
         }
         Ok(json!(typed))
+    }
+
+    fn import_impostor(
+        &self,
+        document: &mut Document,
+        extension: &Value,
+        first_mesh: usize,
+    ) -> Result<Value, ExportError> {
+        let mut typed: ImpostorExtension = self.typed(extension)?;
+        typed.mesh += first_mesh;
+        if let Some(view) = &mut typed.relief.buffer_view {
+            *view = self.import_view(document, &(*view).into())?;
+        }
+        Ok(json!(typed))
+    }
+
+    fn typed<T: DeserializeOwned>(&self, extension: &Value) -> Result<T, ExportError> {
+        let typed = serde_json::from_value(extension.clone());
+        typed.map_err(|e| ExportError::NotGltf(self.uri.clone(), e.to_string()))
+    }
+
+    /// Adds the view of the embedded image of that name, if the file has one.
+    pub fn import_image(&self, document: &mut Document, name: &str) -> Result<Option<usize>, ExportError> {
+        let image = self.list("images").iter().find(|image| image["name"] == name);
+        image.map(|image| self.import_view(document, &image["bufferView"])).transpose()
     }
 
     /// Adds the last accessor and its view in place of an accessor and the view that only it uses.

@@ -10,9 +10,11 @@ use serde_json::json;
 
 use super::ExportError;
 use super::document::{Document, Node, push};
-use super::materials::tree_materials;
+use super::impostor::{self, IMPOSTOR};
+use super::materials::Picture;
 use super::scene_import::{FileMaterial, GlbImport};
 use super::scene_parts::SceneParts;
+use super::tree::tree_materials;
 use crate::model::Material;
 
 /// Triangles that any viewer opens quickly.
@@ -39,18 +41,26 @@ pub fn add_trees(
         files.push(GlbImport::open(document, template)?);
     }
     let has = |name: &str| files.iter().any(|file| file.material_names().any(|other| other == name));
-    let set = tree_materials(&parts.tree_images, |slot| match slot {
+    let mut set = tree_materials(&parts.tree_images, |slot| match slot {
         Material::Leaf => has("leaf"),
         Material::Blossom => has("blossom"),
         _ => true,
     });
+    let mut impostors = Vec::new();
+    for file in &files {
+        let picture = file.import_image(document, IMPOSTOR)?.map(|buffer_view| Picture::View { buffer_view });
+        impostors.push(picture.map(|picture| impostor::add_material(&mut set, picture)));
+    }
     let first_material = set.add_to(document);
     set.add_images_to(document);
-    let material_of = |material: FileMaterial<'_>| {
-        set.materials.iter().position(|m| m["name"] == material.name).map(|i| first_material + i)
-    };
     let (mut templates, mut levels) = (Vec::new(), Vec::new());
-    for (index, file) in files.iter().enumerate() {
+    for (index, (file, impostor)) in files.iter().zip(impostors).enumerate() {
+        let material_of = |material: FileMaterial<'_>| {
+            // All else is shared by the templates.
+            let shared = || set.materials.iter().position(|m| m["name"] == material.name);
+            let found = if material.name == IMPOSTOR { impostor } else { shared() };
+            found.map(|i| first_material + i)
+        };
         let mesh = file.import_meshes(document, &material_of)?;
         levels.push(levels_of(document, mesh));
         templates.push(InstancesTemplate { name: format!("tree-{index}"), mesh });

@@ -10,8 +10,8 @@ use genescape_schema::scene::{GroundSurface, Resource, SkyImages, write_instance
 use super::*;
 use crate::model::TreeFootprint;
 use crate::model::{
-    AlphaMask, CloudLayer, GroundDetail, Heightfield, Instance, Landform, Level, LevelledMesh, Material,
-    Mesh, Morph, Part, PartKind, Placement, SkyLight, TerrainMesh, TreeTextures,
+    CloudLayer, GroundDetail, Heightfield, Image8, Impostor, Instance, Landform, Level, LevelledMesh,
+    Material, Mesh, Morph, Part, PartKind, Placement, SkyLight, TerrainMesh, TreeTextures,
 };
 use crate::noise::{gradient2, hash01};
 use crate::stages::start::first_look;
@@ -277,6 +277,16 @@ pub fn tree_images() -> [Vec<u8>; 3] {
     [bark, normal, leaf]
 }
 
+/// Pictures of one colour each.
+pub fn impostor() -> Impostor {
+    let mut colors = Image8::new(32, 8, 4);
+    for (i, pixel) in colors.data.chunks_exact_mut(4).enumerate() {
+        pixel.copy_from_slice(&[0, 60 * (i as u8 % 32 / 8), 30, 255]);
+    }
+    let relief = Image8::new(32, 8, 3);
+    Impostor { colors, relief, axis_m: [0.1, -0.3], low_m: -0.4, size_m: [5.0, 8.5], error_m: 0.13 }
+}
+
 pub fn synthetic(count: u32) -> Synthetic {
     let land = landform();
     let mut files = Files::default();
@@ -287,14 +297,15 @@ pub fn synthetic(count: u32) -> Synthetic {
         bark_normal: embedded(&normal),
         leaf: vec![embedded(&leaf)],
         blossom: Vec::new(),
-        leaf_mask: AlphaMask::default(),
-        blossom_mask: AlphaMask::default(),
+        bark_linear: [0.1; 3],
+        leaf_small: Image8::default(),
+        blossom_small: Image8::default(),
         alpha_cutoff: 0.5,
     };
     let trees: Vec<_> = [false, true]
         .iter()
         .enumerate()
-        .map(|(i, &s)| tree_glb(&format!("tree-{i}"), &tree(s), &images).unwrap())
+        .map(|(i, &s)| tree_glb(&format!("tree-{i}"), &tree(s), &images, Some(&impostor())).unwrap())
         .collect();
     for (i, glb) in trees.iter().enumerate() {
         files.add(&format!("tree-{i}.glb"), glb.clone());
@@ -387,8 +398,9 @@ impl Synthetic {
                 bark_normal: file("bark-normal.png"),
                 leaf: vec![file("leaf.png"), file("leaf-1.png")],
                 blossom: Vec::new(),
-                leaf_mask: AlphaMask::default(),
-                blossom_mask: AlphaMask::default(),
+                bark_linear: [0.1; 3],
+                leaf_small: Image8::default(),
+                blossom_small: Image8::default(),
                 alpha_cutoff: 0.5,
             },
             trees: &self.placement.instances,

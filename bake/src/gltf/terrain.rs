@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::ExportError;
 use super::document::{Document, Node};
 use super::glb::write_glb;
-use super::levels::{Surface, add_vertices};
+use super::vertices::{Surface, add_vertices};
 use crate::model::{Mesh, TerrainMesh};
 
 /// Names of the meshes and materials of [`terrain_glb`], in order.

@@ -5,15 +5,15 @@ use serde_json::Value;
 
 use super::synthetic::*;
 use super::*;
-use crate::model::{AlphaMask, LevelledMesh, Material, Mesh, TreeTextures};
+use crate::model::{Image8, LevelledMesh, Material, Mesh, TreeTextures};
 
-fn gltf_of(glb: &[u8]) -> (gltf::Document, Vec<u8>) {
+pub(super) fn gltf_of(glb: &[u8]) -> (gltf::Document, Vec<u8>) {
     let gltf = gltf::Gltf::from_slice(glb).expect("the gltf crate reads it");
     (gltf.document, gltf.blob.unwrap_or_default())
 }
 
 /// All accessors lie inside their views and those inside their buffers.
-fn check_ranges(document: &gltf::Document, lengths: &[usize]) {
+pub(super) fn check_ranges(document: &gltf::Document, lengths: &[usize]) {
     for view in document.views() {
         assert!(view.offset() + view.length() <= lengths[view.buffer().index()]);
         assert_eq!(view.offset() % 4, 0, "view {} is not aligned", view.index());
@@ -33,14 +33,15 @@ fn images(pictures: &[Vec<u8>; 3]) -> TreeTextures<Picture<'_>> {
         bark_normal: embedded(&pictures[1]),
         leaf: vec![embedded(&pictures[2])],
         blossom: Vec::new(),
-        leaf_mask: AlphaMask::default(),
-        blossom_mask: AlphaMask::default(),
+        bark_linear: [0.1; 3],
+        leaf_small: Image8::default(),
+        blossom_small: Image8::default(),
         alpha_cutoff: 0.5,
     }
 }
 
-fn tree_file(mesh: &LevelledMesh) -> Vec<u8> {
-    tree_glb("tree", mesh, &images(&tree_images())).unwrap()
+pub(super) fn tree_file(mesh: &LevelledMesh) -> Vec<u8> {
+    tree_glb("tree", mesh, &images(&tree_images()), Some(&impostor())).unwrap()
 }
 
 #[test]
@@ -85,7 +86,8 @@ fn coarser_levels_take_the_trees_place() {
     let ids: Vec<usize> = serde_json::from_value(lod["ids"].clone()).unwrap();
     let levels: Vec<_> = ids.iter().map(|&id| document.nodes().nth(id).unwrap()).collect();
     let meshes = levels.iter().map(|node| node.mesh().unwrap().index());
-    assert_eq!(meshes.collect::<Vec<_>>(), (1..tree.levels.len()).collect::<Vec<_>>());
+    // The pictures' mesh comes after them.
+    assert_eq!(meshes.collect::<Vec<_>>(), (1..=tree.levels.len()).collect::<Vec<_>>());
     let (translation, rotation, scale) = finished.transform().decomposed();
     assert!(levels.iter().all(|node| node.transform().decomposed() == (translation, rotation, scale)));
     // Every node is in a scene, for Blender shows those that are in none.
@@ -94,7 +96,7 @@ fn coarser_levels_take_the_trees_place() {
     assert_eq!(held + roots, document.nodes().count());
     let extras: Value = serde_json::from_str(finished.extras().as_ref().unwrap().get()).unwrap();
     let coverage: Vec<f32> = serde_json::from_value(extras["MSFT_screencoverage"].clone()).unwrap();
-    assert_eq!(coverage.len(), tree.levels.len());
+    assert_eq!(coverage.len(), ids.len() + 1);
     assert!(
         coverage.is_sorted_by(|a, b| a > b) && coverage[0] <= 1.0 && coverage.ends_with(&[0.0]),
         "{coverage:?}"
@@ -154,13 +156,13 @@ fn sparse_indices_state_their_offset() {
 }
 
 /// The scene's JSON, and the lengths of its buffers.
-fn scene(count: u32) -> (Synthetic, Vec<u8>) {
+pub(super) fn scene(count: u32) -> (Synthetic, Vec<u8>) {
     let synthetic = synthetic(count);
     let bytes = scene_gltf(&synthetic.parts()).unwrap();
     (synthetic, bytes)
 }
 
-fn buffers(synthetic: &Synthetic, document: &gltf::Document) -> Vec<Vec<u8>> {
+pub(super) fn buffers(synthetic: &Synthetic, document: &gltf::Document) -> Vec<Vec<u8>> {
     let uri = |buffer: gltf::Buffer<'_>| match buffer.source() {
         gltf::buffer::Source::Uri(uri) => uri.to_owned(),
         gltf::buffer::Source::Bin => panic!("a scene has no chunk of its own"),
@@ -279,7 +281,7 @@ fn nothing_is_required_and_all_our_extensions_are_named() {
 fn bad_input_is_an_error() {
     let good = tree(false);
     let pictures = tree_images();
-    let glb = |tree: &LevelledMesh| tree_glb("tree", tree, &images(&pictures));
+    let glb = |tree: &LevelledMesh| tree_glb("tree", tree, &images(&pictures), None);
     let empty = LevelledMesh { levels: Vec::new(), progressive: Vec::new() };
     assert!(matches!(glb(&empty), Err(ExportError::Empty(_))));
     let mut nan = good.clone();
@@ -326,7 +328,7 @@ fn foreign_materials_pass_through() {
         images: vec![("lost".into(), Picture::Embedded { bytes: &[], mime_type: "" })],
         ..MaterialSet::default()
     };
-    let (document, bin) = gltf_of(&levelled_glb("thing", &mesh, &set).unwrap());
+    let (document, bin) = gltf_of(&levelled_glb("thing", &mesh, &set, None).unwrap());
     assert!(document.extensions_used().any(|name| name == "KHR_materials_unlit"));
     let gltf::image::Source::View { view, mime_type } = document.images().next().unwrap().source() else {
         panic!("images are embedded");

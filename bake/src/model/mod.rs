@@ -21,7 +21,7 @@ pub use image::{AlphaMask, Image8, ImageF16};
 pub use light::LightMap;
 pub use mesh::{Bounds, Material, Mesh, Part, PartKind};
 pub use terrain::{Landform, TerrainMesh};
-pub use tree::{Level, LevelledMesh, Morph, Placement, TreeFootprint, TreeTemplate, TreeTextures};
+pub use tree::{Impostor, Level, LevelledMesh, Morph, Placement, TreeFootprint, TreeTemplate, TreeTextures};
 
 /// The sky as pixels.
 pub type SkyImages = genescape_schema::scene::SkyImages<ImageF16, Image8>;

@@ -1,9 +1,10 @@
 //! Trees: templates, their levels of detail, and where they stand.
 
-use genescape_schema::scene::Instance;
+use genescape_schema::scene::{IMPOSTOR_PICTURES, Instance};
+use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-use super::{AlphaMask, Bounds, Mesh};
+use super::{Bounds, Image8, Mesh};
 
 /// One tree: its foot at the origin (roots reach a little below y = 0), growing along +y.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -30,10 +31,13 @@ pub struct TreeTextures<P> {
     pub leaf: Vec<P>,
     /// Blossom card, likewise.
     pub blossom: Vec<P>,
-    /// What the leaf card leaves opaque.
-    pub leaf_mask: AlphaMask,
-    /// What the blossom card leaves opaque.
-    pub blossom_mask: AlphaMask,
+    /// Mean colour of the bark, linear RGB.
+    pub bark_linear: [f32; 3],
+    /// The leaf card's mip level of 32 × 32 pixels, from which templates are simplified and their impostors made: these
+    /// need a card's shape and colours, but nothing finer. Empty on a bare tree.
+    pub leaf_small: Image8,
+    /// Blossom card, likewise.
+    pub blossom_small: Image8,
     /// Alpha below this is cut away.
     pub alpha_cutoff: f32,
 }
@@ -58,10 +62,45 @@ impl<P> TreeTextures<P> {
             bark_normal: f(&self.bark_normal)?,
             leaf: self.leaf.iter().map(&mut f).collect::<Result<_, _>>()?,
             blossom: self.blossom.iter().map(&mut f).collect::<Result<_, _>>()?,
-            leaf_mask: self.leaf_mask,
-            blossom_mask: self.blossom_mask,
+            bark_linear: self.bark_linear,
+            leaf_small: self.leaf_small.clone(),
+            blossom_small: self.blossom_small.clone(),
             alpha_cutoff: self.alpha_cutoff,
         })
+    }
+}
+
+/// Pictures of a template from four sides, side by side, as `schema/docs/GSC_impostor.md` defines them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Impostor {
+    /// Albedo in sRGB, and alpha for a cutoff of [`Impostor::ALPHA_CUTOFF`]: RGBA.
+    pub colors: Image8,
+    /// Red is how far what a pixel shows lies before the axis, 0.5 for none and 1 for half of the width; green the share
+    /// of leaves and blossom in it. RGB, linear.
+    pub relief: Image8,
+    /// x and z of the vertical axis.
+    pub axis_m: [f32; 2],
+    /// y of the lower edge.
+    pub low_m: f32,
+    /// Width and height of a picture; positive.
+    pub size_m: [f32; 2],
+    /// From this error on the pictures serve as well as any mesh; positive.
+    pub error_m: f32,
+}
+
+impl Impostor {
+    /// Alpha below this is cut away.
+    pub const ALPHA_CUTOFF: f32 = 0.5;
+    /// Azimuths from which the pictures are taken, as (sin, cos): every eighth of a turn, up to opposite directions.
+    pub const AZIMUTHS: [[f32; 2]; IMPOSTOR_PICTURES as usize] = {
+        const R: f32 = std::f32::consts::FRAC_1_SQRT_2;
+        [[0.0, 1.0], [R, R], [1.0, 0.0], [R, -R]]
+    };
+
+    /// Directions towards the eye and to the right of picture `k`, horizontal unit vectors.
+    pub fn eye_and_right(k: usize) -> [Vec3; 2] {
+        let [sin, cos] = Self::AZIMUTHS[k];
+        [Vec3::new(sin, 0.0, cos), Vec3::new(cos, 0.0, -sin)]
     }
 }
 

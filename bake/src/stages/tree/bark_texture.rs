@@ -8,7 +8,7 @@ use glam::Vec3;
 
 use super::mips::Encoder;
 use super::params::TreeTextureParams;
-use crate::math::{hermite as smooth, lerp, split};
+use crate::math::{hermite as smooth, lerp, linear_from_srgb, split};
 use crate::model::Image8;
 use crate::noise::{cellular2, gradient2, hash};
 use crate::raster::{square, square_image};
@@ -26,6 +26,18 @@ pub(super) fn paint(params: &TreeTextureParams) -> (Image8, Image8) {
     let place = |i: usize| i as f32 / COARSE as f32;
     let coarse = square(COARSE, |x, y| bark.texel(place(x), place(y)));
     (colors(&coarse, seed.wrapping_add(40)), normals(&coarse))
+}
+
+/// Mean of a picture in sRGB, in linear light.
+pub(super) fn mean_linear(image: &Image8) -> [f32; 3] {
+    let mut counts = [[0u32; 256]; 3];
+    for pixel in image.data.chunks_exact(3) {
+        (0..3).for_each(|c| counts[c][usize::from(pixel[c])] += 1);
+    }
+    let pixels = (image.data.len() / 3).max(1) as f32;
+    let light =
+        |(byte, &count): (usize, &u32)| linear_from_srgb(byte as f32 / 255.0) * (count as f32 / pixels);
+    counts.map(|counts| counts.iter().enumerate().map(light).sum())
 }
 
 /// Height in texels of `COARSE` and linear colour.

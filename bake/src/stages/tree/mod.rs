@@ -12,6 +12,7 @@ mod canvas;
 mod cards;
 mod crease;
 mod foliage;
+mod impostor;
 mod leaf_outline;
 mod leaf_texture;
 mod mips;
@@ -24,18 +25,19 @@ mod tests;
 
 use rayon::join;
 
-use crate::model::{AlphaMask, Image8, TreeTemplate, TreeTextures};
+use crate::model::{Image8, TreeTemplate, TreeTextures};
 use crate::seed::Dice;
 use budget::Budget;
 pub use stage::{TreeFiles, TreeStage, TreeTexturesStage, lod_options};
 
 pub use crease::crease_normals;
+pub use impostor::impostor;
 pub use params::{TreeParams, TreeTextureParams};
 
 /// Texels of leaf and blossom cards with less alpha than this are not drawn.
 pub const ALPHA_CUTOFF: f32 = 0.5;
-/// The mip level of a card of 256 texels that makes its mask.
-const MASK_LEVEL: usize = 3;
+/// The mip level of a card of 256 texels that has the 32 × 32 of an `AlphaMask`.
+const SMALL_LEVEL: usize = 3;
 
 /// Grows the `index`th template: a closed `Bark` surface, then `Leaf` and `Blossom` aggregates if it
 /// bears any. Metres; at most about 26,000 triangles.
@@ -69,17 +71,18 @@ pub fn textures(params: &TreeTextureParams) -> TreeTextures<Image8> {
         || bark_texture::paint(params),
         || join(|| leaf_texture::paint_leaves(params), || leaf_texture::paint_blossom(params)),
     );
-    let [leaf_mask, blossom_mask] = [&leaf, &blossom].map(|levels| {
-        let small = levels.get(MASK_LEVEL).or(levels.last());
-        small.map_or_else(AlphaMask::default, |image| AlphaMask::of(image, ALPHA_CUTOFF))
+    let [leaf_small, blossom_small] = [&leaf, &blossom].map(|levels: &Vec<Image8>| {
+        let small = levels.get(SMALL_LEVEL).or(levels.last());
+        small.cloned().unwrap_or_default()
     });
     TreeTextures {
+        bark_linear: bark_texture::mean_linear(&bark_color),
         bark_color,
         bark_normal,
         leaf,
         blossom,
-        leaf_mask,
-        blossom_mask,
+        leaf_small,
+        blossom_small,
         alpha_cutoff: ALPHA_CUTOFF,
     }
 }

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{TreeParams, TreeTextureParams, template, textures};
+use super::{ALPHA_CUTOFF, TreeParams, TreeTextureParams, impostor, template, textures};
 use crate::gltf::{Picture, png, tree_glb};
 use crate::graph::{Context, File, Input, Stage, StageError, Stored};
 use crate::model::TreeFootprint;
@@ -21,7 +21,7 @@ pub struct TreeTexturesStage {
 
 impl Stage for TreeTexturesStage {
     const NAME: &'static str = "tree textures";
-    const VERSION: u32 = 2;
+    const VERSION: u32 = 3;
     type Output = TreeTextures<File>;
 
     fn run(&self, context: &Context<'_>) -> Result<TreeTextures<File>, StageError> {
@@ -41,8 +41,9 @@ impl Stage for TreeTexturesStage {
             bark_normal,
             leaf,
             blossom,
-            leaf_mask: textures.leaf_mask,
-            blossom_mask: textures.blossom_mask,
+            bark_linear: textures.bark_linear,
+            leaf_small: textures.leaf_small,
+            blossom_small: textures.blossom_small,
             alpha_cutoff: textures.alpha_cutoff,
         })
     }
@@ -79,15 +80,18 @@ pub struct TreeFiles {
 
 impl Stage for TreeStage {
     const NAME: &'static str = "tree";
-    const VERSION: u32 = 5;
+    const VERSION: u32 = 6;
     type Output = TreeFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<TreeFiles, StageError> {
         let template = template(&self.params, self.index);
         let textures = context.get(&self.textures)?.try_map(|file| context.bytes(file))?;
-        let levels = lod::levels(&template.mesh, &lod_options(&template.mesh, &textures));
+        let (levels, impostor) = rayon::join(
+            || lod::levels(&template.mesh, &lod_options(&template.mesh, &textures)),
+            || impostor(&template.mesh, &textures),
+        );
         let embedded = textures.map(|bytes| Picture::Embedded { bytes, mime_type: "image/png" });
-        let glb = tree_glb(&format!("tree-{}", self.index), &levels, &embedded)?;
+        let glb = tree_glb(&format!("tree-{}", self.index), &levels, &embedded, Some(&impostor))?;
         let footprint = TreeFootprint {
             height_m: template.bounds.max.y,
             trunk_radius_m: template.trunk_radius_m,
@@ -109,8 +113,8 @@ impl Stage for TreeStage {
 /// How a template with these textures is simplified.
 pub fn lod_options<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> LodOptions {
     let mask = |part: &Part| match part.material {
-        Material::Leaf => textures.leaf_mask,
-        Material::Blossom => textures.blossom_mask,
+        Material::Leaf => AlphaMask::of(&textures.leaf_small, ALPHA_CUTOFF),
+        Material::Blossom => AlphaMask::of(&textures.blossom_small, ALPHA_CUTOFF),
         _ => AlphaMask::default(),
     };
     let masks = mesh.parts.iter().map(mask).collect();

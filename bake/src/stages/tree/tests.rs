@@ -23,12 +23,12 @@ fn random(seed: u32) -> Genome {
 }
 
 /// The genes that a stage reads from a genome.
-fn read<T: serde::de::DeserializeOwned>(genome: &Genome) -> T {
+pub(super) fn read<T: serde::de::DeserializeOwned>(genome: &Genome) -> T {
     genome.read(&SPACE).expect("the space declares every gene")
 }
 
 /// Genomes with the trees of `configs/presets`, by the names of their files.
-fn presets() -> Vec<(String, Genome)> {
+pub(super) fn presets() -> Vec<(String, Genome)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/presets");
     let mut files: Vec<PathBuf> = folder.read_dir().unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();

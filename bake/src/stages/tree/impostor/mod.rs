@@ -1,0 +1,98 @@
+//! A template → pictures of it from four sides, for where it is so far away that single leaves no longer count.
+
+mod picture;
+mod raster;
+#[cfg(test)]
+mod tests;
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::ALPHA_CUTOFF;
+use super::mips::Encoder;
+use crate::math::linear_from_srgb;
+use crate::model::{Image8, Impostor, Material, Mesh, TreeTextures};
+use picture::Picture;
+use raster::{Card, Look, Surface};
+
+/// Pixels a side of one picture.
+const SIDE: usize = 128;
+/// Each picture is drawn this many times as wide and high, and reduced.
+const SAMPLES: usize = 3;
+/// Pictures are larger than the tree by this factor, which leaves more than 3 of their pixels transparent along each
+/// edge: two mip levels on, a picture still doesn't show in the one beside it.
+const MARGIN: f32 = 1.06;
+/// No picture is smaller than this, in metres, not even of nothing.
+const MIN_SIZE_M: f32 = 1e-3;
+/// The error is this part of the picture, two of its pixels. Where an error of 1.5 pixels of the screen is allowed, a tree
+/// is then shown in 96 of them at most: it never takes more pixels than its picture has, with some to spare for supersampled
+/// or turned screens.
+const ERROR_PART: f32 = 1.0 / 64.0;
+
+/// What part of space the pictures show.
+#[derive(Clone, Copy, Debug)]
+struct Frame {
+    /// On the axis, at the lower edge.
+    foot_m: Vec3,
+    size_m: [f32; 2],
+}
+
+impl Frame {
+    fn of(mesh: &Mesh) -> Self {
+        let bounds = mesh.bounds();
+        let axis = 0.5 * (bounds.min + bounds.max);
+        let from_axis = |p: &[f32; 3]| {
+            let (x, z) = (p[0] - axis.x, p[2] - axis.z);
+            x * x + z * z
+        };
+        let reach_m = mesh.positions.iter().map(from_axis).fold(0.0, f32::max).sqrt();
+        let height_m = bounds.max.y - bounds.min.y;
+        let size_m = [2.0 * reach_m, height_m].map(|m| (MARGIN * m).max(MIN_SIZE_M));
+        Self { foot_m: axis.with_y(axis.y - 0.5 * size_m[1]), size_m }
+    }
+}
+
+/// Draws a template, whose D_0 `mesh` is, from four sides: the same bytes for any number of threads.
+pub fn impostor<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> Impostor {
+    let frame = Frame::of(mesh);
+    let cards = [&textures.leaf_small, &textures.blossom_small].map(card);
+    let bark = Surface::Wood(Vec3::from_array(textures.bark_linear));
+    let surface = |material: Material| match material {
+        Material::Leaf => Surface::Card(&cards[0]),
+        Material::Blossom => Surface::Card(&cards[1]),
+        _ => bark,
+    };
+    let draw = |k: usize| {
+        let samples = raster::draw(mesh, &surface, &Look::new(&frame, k));
+        Picture::of(&samples, frame.size_m[0])
+    };
+    let pictures: Vec<Picture> = (0..Impostor::AZIMUTHS.len()).into_par_iter().map(draw).collect();
+    let (colors, relief) = picture::side_by_side(&pictures, &Encoder::new());
+    Impostor {
+        colors,
+        relief,
+        axis_m: [frame.foot_m.x, frame.foot_m.z],
+        low_m: frame.foot_m.y,
+        size_m: frame.size_m,
+        error_m: ERROR_PART * frame.size_m[0].max(frame.size_m[1]),
+    }
+}
+
+/// A card's small picture, ready to be drawn; white and opaque where there is none.
+fn card(image: &Image8) -> Card {
+    if image.channels != 4 || image.data.is_empty() {
+        return Card { width: 1, height: 1, texels: vec![Some(Vec3::ONE)] };
+    }
+    let linear: Vec<f32> = (0..256).map(|byte| linear_from_srgb(byte as f32 / 255.0)).collect();
+    let texel = |pixel: &[u8]| {
+        let opaque = f32::from(pixel[3]) >= 255.0 * ALPHA_CUTOFF;
+        opaque.then(|| {
+            Vec3::new(linear[pixel[0] as usize], linear[pixel[1] as usize], linear[pixel[2] as usize])
+        })
+    };
+    Card {
+        width: image.width as usize,
+        height: image.height as usize,
+        texels: image.data.chunks_exact(4).map(texel).collect(),
+    }
+}

@@ -1,0 +1,117 @@
+//! Samples of one side → its picture: averaged, bled, and with an alpha that keeps the area at the cutoff.
+
+use glam::Vec3;
+
+use super::raster::{SIZE, Sample};
+use super::{SAMPLES, SIDE};
+use crate::math::unit_to_byte;
+use crate::model::{Image8, Impostor};
+use crate::stages::tree::mips::Encoder;
+
+/// How far colours are bled, in pixels: as far as a bilinear filter of three mip levels reaches. Beyond them is the mean.
+const BLED_PX: usize = 8;
+/// The first byte at which alpha is not cut away.
+const KEPT: u8 = (255.0 * Impostor::ALPHA_CUTOFF) as u8 + 1;
+
+/// What a pixel shows, on average over what is there.
+#[derive(Clone, Copy, Default)]
+struct Pixel {
+    /// Linear.
+    color: Vec3,
+    /// Red and green of the relief.
+    relief: [f32; 2],
+}
+
+impl Pixel {
+    fn mean(pixels: impl Iterator<Item = Self>) -> Option<Self> {
+        let (mut sum, mut count) = (Self::default(), 0.0f32);
+        for pixel in pixels {
+            sum.color += pixel.color;
+            (0..2).for_each(|c| sum.relief[c] += pixel.relief[c]);
+            count += 1.0;
+        }
+        (count > 0.0).then(|| Self { color: sum.color / count, relief: sum.relief.map(|sum| sum / count) })
+    }
+}
+
+/// `SIDE`² pixels, rows from the top.
+pub(super) struct Picture {
+    pixels: Vec<Pixel>,
+    alpha: Vec<u8>,
+}
+
+impl Picture {
+    /// Of a tree whose picture is `width_m` wide.
+    pub fn of(samples: &[Sample], width_m: f32) -> Self {
+        let relief = |sample: &Sample| {
+            [(0.5 + sample.depth_m / width_m).clamp(0.0, 1.0), f32::from(u8::from(sample.leaf))]
+        };
+        let (mut pixels, mut covered) = (Vec::new(), Vec::new());
+        for (y, x) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (y, x))) {
+            let first = (y * SIZE + x) * SAMPLES;
+            let rows = (0..SAMPLES).flat_map(|row| &samples[first + row * SIZE..][..SAMPLES]);
+            let seen = rows.filter(|sample| sample.depth_m > f32::NEG_INFINITY);
+            let each = seen.map(|sample| Pixel { color: sample.color, relief: relief(sample) });
+            covered.push(each.clone().count() as u32);
+            pixels.push(Pixel::mean(each));
+        }
+        Self { pixels: bled(pixels), alpha: alpha(&covered) }
+    }
+}
+
+/// Fills pixels in which nothing is from those around them.
+fn bled(mut pixels: Vec<Option<Pixel>>) -> Vec<Pixel> {
+    let mean = Pixel::mean(pixels.iter().flatten().copied()).unwrap_or_default();
+    for _ in 0..BLED_PX {
+        let before = pixels.clone();
+        for (i, pixel) in pixels.iter_mut().enumerate().filter(|(_, pixel)| pixel.is_none()) {
+            *pixel = Pixel::mean(around(i).filter_map(|j| before[j]));
+        }
+    }
+    pixels.into_iter().map(|pixel| pixel.unwrap_or(mean)).collect()
+}
+
+/// A pixel and its neighbours.
+fn around(i: usize) -> impl Iterator<Item = usize> {
+    let (x, y) = (i % SIDE, i / SIDE);
+    let near = |t: usize| t.saturating_sub(1)..(t + 2).min(SIDE);
+    near(y).flat_map(move |y| near(x).map(move |x| y * SIDE + x))
+}
+
+/// Alpha from how many samples of each pixel are covered, scaled so that as much of the picture passes the cutoff as
+/// samples are covered (Castaño, "Computing Alpha Mipmaps", 2010).
+///
+/// Nine samples give few different values, so that often hundreds of pixels are equally near to the cutoff; of these, the
+/// ones with more around them pass.
+fn alpha(covered: &[u32]) -> Vec<u8> {
+    const ALL: u32 = (SAMPLES * SAMPLES) as u32;
+    let wanted = ((covered.iter().sum::<u32>() + ALL / 2) / ALL) as usize;
+    let rank = |i: usize| (covered[i], around(i).map(|j| covered[j]).sum::<u32>());
+    let mut order: Vec<(u32, u32, usize)> =
+        (0..covered.len()).filter(|&i| covered[i] > 0).map(|i| (rank(i).0, rank(i).1, i)).collect();
+    order.sort_unstable_by(|a, b| b.cmp(a));
+    let lowest = wanted.checked_sub(1).and_then(|last| order.get(last)).map_or(ALL, |kept| kept.0);
+    let scale = Impostor::ALPHA_CUTOFF / lowest as f32;
+    let mut alpha = vec![0; covered.len()];
+    for (place, &(count, _, i)) in order.iter().enumerate() {
+        let byte = unit_to_byte(count as f32 * scale);
+        alpha[i] = if place < wanted { byte.max(KEPT) } else { byte.min(KEPT - 1) };
+    }
+    alpha
+}
+
+/// Colours with alpha, and relief, as files hold them.
+pub(super) fn side_by_side(pictures: &[Picture], encoder: &Encoder) -> (Image8, Image8) {
+    let image = |channels| Image8::new((SIDE * pictures.len()) as u32, SIDE as u32, channels);
+    let (mut colors, mut relief) = (image(4), image(3));
+    for (k, picture) in pictures.iter().enumerate() {
+        for (i, (pixel, &alpha)) in picture.pixels.iter().zip(&picture.alpha).enumerate() {
+            let at = (i / SIDE * pictures.len() + k) * SIDE + i % SIDE;
+            let [r, g, b] = pixel.color.to_array().map(|linear| encoder.byte(linear));
+            colors.data[4 * at..][..4].copy_from_slice(&[r, g, b, alpha]);
+            let [depth, leaf] = pixel.relief.map(unit_to_byte);
+            relief.data[3 * at..][..3].copy_from_slice(&[depth, leaf, 0]);
+        }
+    }
+    (colors, relief)
+}
