@@ -18,7 +18,7 @@ pub struct ImpostorExtension {
     /// the direction (sin, 0, cos); each is as wide and high as `size_m`.
     pub mesh: usize,
     /// A PNG file of as many pixels: red is how far what a pixel shows lies before the axis, 0.5 for none and 1 for half
-    /// of the width; green 1 for leaves and blossom, 0 for wood.
+    /// of the width; green 1 for leaves and blossom, 0 for wood; blue the share of the pixel that the tree covers.
     pub relief: Resource,
     /// From this error in metres on the pictures serve as well as any mesh; `error` in JSON.
     #[serde(rename = "error")]

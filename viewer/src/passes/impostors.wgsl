@@ -80,11 +80,14 @@ fn fragment(in: Out) -> @location(0) vec4f {
     let along_x = dpdx(in.uv) * vec2f(0.25, 1.0);
     let along_y = dpdy(in.uv) * vec2f(0.25, 1.0);
     let seen = textureSampleGrad(colors, clamped, at, in.template_index, along_x, along_y);
-    if (seen.a < frames[in.template_index].alpha_cutoff || dither(in.clip.xy) > in.shown) {
+    let relief = textureSampleGrad(reliefs, clamped, at, in.template_index, along_x, along_y).rgb;
+    let frame = frames[in.template_index];
+    let noise = dither(in.clip.xy);
+    // Twigs are thinner than pixels: of those, so many show one as it covers of each.
+    let is_there = select(relief.b > noise, seen.a >= frame.alpha_cutoff, relief.g > 0.5);
+    if (!is_there || noise > in.shown) {
         discard;
     }
-    let frame = frames[in.template_index];
-    let relief = textureSampleGrad(reliefs, clamped, at, in.template_index, along_x, along_y).rg;
     let before = (relief.r - 0.5) * frame.size.x;
     let local = in.local + vec3f(in.ahead.x, 0.0, in.ahead.y) * before;
     let world = in.world + in.toward * before;

@@ -10,6 +10,7 @@ pub struct Impostor {
     /// Albedo, sRGB, with alpha: four pictures side by side.
     pub color: Image,
     /// Red: how far what is seen lies before the axis, ½ for none, 1 for half of the width. Green: share of leaves.
+    /// Blue: share of the pixel that the tree covers.
     pub relief: Image,
     /// Below this alpha there is nothing.
     pub alpha_cutoff: f32,
