@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::synthetic::{Synthetic, impostor, synthetic, tree};
 use super::tests::{buffers, check_ranges, gltf_of, tree_file};
 use super::*;
-use crate::model::Impostor;
+use crate::model::{Image8, Impostor, TreeTextures};
 
 /// The impostors in a file: for each its extension, the cards' mesh, and the PNG files of colours and relief.
 fn impostors(json: &Value, buffers: &[Vec<u8>]) -> Vec<(ImpostorExtension, Value, Vec<u8>, Vec<u8>)> {
@@ -61,6 +61,33 @@ fn pictures_follow_a_trees_levels() {
     let lod = finished.extension_value("MSFT_lod").unwrap();
     let last = lod["ids"].as_array().unwrap().last().unwrap().as_u64().unwrap() as usize;
     assert_eq!(document.nodes().nth(last).unwrap().mesh().unwrap().index(), found.0.mesh);
+}
+
+#[test]
+fn no_mesh_is_shown_that_is_farther_from_the_tree_than_its_pictures() {
+    let tree = tree(false);
+    let finer = Impostor { error_m: 0.5 * tree.levels[1].error_m, ..impostor() };
+    let picture = || Picture::Embedded { bytes: &[], mime_type: "" };
+    let textures = TreeTextures {
+        bark_color: picture(),
+        bark_normal: picture(),
+        leaf: vec![picture()],
+        blossom: Vec::new(),
+        bark_linear: [0.1; 3],
+        leaf_small: Image8::default(),
+        blossom_small: Image8::default(),
+        alpha_cutoff: 0.5,
+    };
+    let (document, _) = gltf_of(&tree_glb("tree", &tree, &textures, Some(&finer)).unwrap());
+    let finished = document.default_scene().unwrap().nodes().next().unwrap();
+    let ids = finished.extension_value("MSFT_lod").unwrap()["ids"].as_array().unwrap();
+    let names = ids.iter().map(|id| document.nodes().nth(id.as_u64().unwrap() as usize).unwrap());
+    assert_eq!(names.map(|node| node.name().unwrap()).collect::<Vec<_>>(), ["tree impostor"]);
+    let extras: Value = serde_json::from_str(finished.extras().as_ref().unwrap().get()).unwrap();
+    assert_eq!(extras["MSFT_screencoverage"].as_array().unwrap().len(), 2);
+    // The row of scene 1 has all of them.
+    let row = document.scenes().nth(1).unwrap().nodes().next().unwrap();
+    assert_eq!(row.children().count(), tree.levels.len() + 1);
 }
 
 #[test]

@@ -11,9 +11,9 @@ use rayon::prelude::*;
 use super::ALPHA_CUTOFF;
 use super::mips::Encoder;
 use crate::math::linear_from_srgb;
-use crate::model::{Image8, Impostor, Material, Mesh, TreeTextures};
+use crate::model::{AlphaMask, Image8, Impostor, Material, Mesh, TreeTextures};
 use picture::Picture;
-use raster::{Card, Look, Surface};
+use raster::{Card, Drawing, Look, Surface};
 
 /// Pixels a side of one picture.
 const SIDE: usize = 128;
@@ -63,8 +63,8 @@ pub fn impostor<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> Impostor {
         _ => bark,
     };
     let draw = |k: usize| {
-        let samples = raster::draw(mesh, &surface, &Look::new(&frame, k));
-        Picture::of(&samples, frame.size_m[0])
+        let drawing = Drawing::new(mesh, &surface, &Look::new(&frame, k));
+        Picture::of(&drawing, frame.size_m[0])
     };
     let pictures: Vec<Picture> = (0..Impostor::AZIMUTHS.len()).into_par_iter().map(draw).collect();
     let (colors, relief) = picture::side_by_side(&pictures, &Encoder::new());
@@ -80,17 +80,14 @@ pub fn impostor<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> Impostor {
 
 /// A card's small picture, ready to be drawn; white and opaque where there is none.
 fn card(image: &Image8) -> Card {
+    let mask = AlphaMask::of(image, ALPHA_CUTOFF);
     if image.channels != 4 || image.data.is_empty() {
-        return Card { width: 1, height: 1, texels: vec![Some(Vec3::ONE)] };
+        return Card { mask, width: 1, height: 1, texels: vec![Vec3::ONE] };
     }
     let linear: Vec<f32> = (0..256).map(|byte| linear_from_srgb(byte as f32 / 255.0)).collect();
-    let texel = |pixel: &[u8]| {
-        let opaque = f32::from(pixel[3]) >= 255.0 * ALPHA_CUTOFF;
-        opaque.then(|| {
-            Vec3::new(linear[pixel[0] as usize], linear[pixel[1] as usize], linear[pixel[2] as usize])
-        })
-    };
+    let texel = |pixel: &[u8]| Vec3::from_array([0, 1, 2].map(|c| linear[usize::from(pixel[c])]));
     Card {
+        mask,
         width: image.width as usize,
         height: image.height as usize,
         texels: image.data.chunks_exact(4).map(texel).collect(),

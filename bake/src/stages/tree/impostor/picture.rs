@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::raster::{SIZE, Sample};
+use super::raster::Drawing;
 use super::{SAMPLES, SIDE};
 use crate::math::unit_to_byte;
 use crate::model::{Image8, Impostor};
@@ -23,14 +23,24 @@ struct Pixel {
 }
 
 impl Pixel {
-    fn mean(pixels: impl Iterator<Item = Self>) -> Option<Self> {
-        let (mut sum, mut count) = (Self::default(), 0.0f32);
-        for pixel in pixels {
+    /// And of how many pixels it is.
+    fn sum(pixels: impl Iterator<Item = Self>) -> (Self, u32) {
+        pixels.fold((Self::default(), 0), |(mut sum, count), pixel| {
             sum.color += pixel.color;
             (0..2).for_each(|c| sum.relief[c] += pixel.relief[c]);
-            count += 1.0;
-        }
-        (count > 0.0).then(|| Self { color: sum.color / count, relief: sum.relief.map(|sum| sum / count) })
+            (sum, count + 1)
+        })
+    }
+
+    /// The mean of which this is the sum.
+    fn over(self, count: u32) -> Option<Self> {
+        let over = 1.0 / count as f32;
+        (count > 0).then(|| Self { color: self.color * over, relief: self.relief.map(|sum| sum * over) })
+    }
+
+    fn mean(pixels: impl Iterator<Item = Self>) -> Option<Self> {
+        let (sum, count) = Self::sum(pixels);
+        sum.over(count)
     }
 }
 
@@ -42,18 +52,18 @@ pub(super) struct Picture {
 
 impl Picture {
     /// Of a tree whose picture is `width_m` wide.
-    pub fn of(samples: &[Sample], width_m: f32) -> Self {
-        let relief = |sample: &Sample| {
-            [(0.5 + sample.depth_m / width_m).clamp(0.0, 1.0), f32::from(u8::from(sample.leaf))]
-        };
+    pub fn of(drawing: &Drawing<'_>, width_m: f32) -> Self {
         let (mut pixels, mut covered) = (Vec::new(), Vec::new());
         for (y, x) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (y, x))) {
-            let first = (y * SIZE + x) * SAMPLES;
-            let rows = (0..SAMPLES).flat_map(|row| &samples[first + row * SIZE..][..SAMPLES]);
-            let seen = rows.filter(|sample| sample.depth_m > f32::NEG_INFINITY);
-            let each = seen.map(|sample| Pixel { color: sample.color, relief: relief(sample) });
-            covered.push(each.clone().count() as u32);
-            pixels.push(Pixel::mean(each));
+            let samples = (0..SAMPLES * SAMPLES).filter_map(|sample| {
+                drawing.sample(x * SAMPLES + sample % SAMPLES, y * SAMPLES + sample / SAMPLES)
+            });
+            let (sum, count) = Pixel::sum(samples.map(|sample| Pixel {
+                color: sample.color,
+                relief: [(0.5 + sample.depth_m / width_m).clamp(0.0, 1.0), f32::from(u8::from(sample.leaf))],
+            }));
+            pixels.push(sum.over(count));
+            covered.push(count);
         }
         Self { pixels: bled(pixels), alpha: alpha(&covered) }
     }
@@ -62,11 +72,14 @@ impl Picture {
 /// Fills pixels in which nothing is from those around them.
 fn bled(mut pixels: Vec<Option<Pixel>>) -> Vec<Pixel> {
     let mean = Pixel::mean(pixels.iter().flatten().copied()).unwrap_or_default();
+    let mut rim: Vec<usize> = (0..pixels.len()).filter(|&i| pixels[i].is_some()).collect();
     for _ in 0..BLED_PX {
-        let before = pixels.clone();
-        for (i, pixel) in pixels.iter_mut().enumerate().filter(|(_, pixel)| pixel.is_none()) {
-            *pixel = Pixel::mean(around(i).filter_map(|j| before[j]));
-        }
+        rim = rim.into_iter().flat_map(around).filter(|&i| pixels[i].is_none()).collect();
+        rim.sort_unstable();
+        rim.dedup();
+        let fill = |&i: &usize| Pixel::mean(around(i).filter_map(|j| pixels[j]));
+        let filled: Vec<_> = rim.iter().map(fill).collect();
+        rim.iter().zip(filled).for_each(|(&i, pixel)| pixels[i] = pixel);
     }
     pixels.into_iter().map(|pixel| pixel.unwrap_or(mean)).collect()
 }
@@ -86,9 +99,10 @@ fn around(i: usize) -> impl Iterator<Item = usize> {
 fn alpha(covered: &[u32]) -> Vec<u8> {
     const ALL: u32 = (SAMPLES * SAMPLES) as u32;
     let wanted = ((covered.iter().sum::<u32>() + ALL / 2) / ALL) as usize;
-    let rank = |i: usize| (covered[i], around(i).map(|j| covered[j]).sum::<u32>());
-    let mut order: Vec<(u32, u32, usize)> =
-        (0..covered.len()).filter(|&i| covered[i] > 0).map(|i| (rank(i).0, rank(i).1, i)).collect();
+    let mut order: Vec<(u32, u32, usize)> = (0..covered.len())
+        .filter(|&i| covered[i] > 0)
+        .map(|i| (covered[i], around(i).map(|j| covered[j]).sum(), i))
+        .collect();
     order.sort_unstable_by(|a, b| b.cmp(a));
     let lowest = wanted.checked_sub(1).and_then(|last| order.get(last)).map_or(ALL, |kept| kept.0);
     let scale = Impostor::ALPHA_CUTOFF / lowest as f32;

@@ -3,22 +3,28 @@
 use glam::{Vec2, Vec3};
 
 use super::{Frame, SAMPLES, SIDE};
-use crate::model::{Impostor, Material, Mesh};
+use crate::model::{AlphaMask, Impostor, Material, Mesh};
 
 /// Samples a side.
 pub(super) const SIZE: usize = SAMPLES * SIDE;
 
-/// A card's colours.
+/// Samples a side of a tile, and tiles a side.
+const TILE: usize = 8;
+const TILES: usize = SIZE / TILE;
+/// How often it is noted in which tiles nothing more can show.
+const ROUNDS: usize = 24;
+
+/// A card's colours, and where it is cut away.
 pub(super) struct Card {
+    pub mask: AlphaMask,
     pub width: usize,
     pub height: usize,
-    /// Rows from the top; linear, none where the card is cut away.
-    pub texels: Vec<Option<Vec3>>,
+    /// Rows from the top; linear.
+    pub texels: Vec<Vec3>,
 }
 
 impl Card {
-    #[inline]
-    fn at(&self, [u, v]: [f32; 2]) -> Option<Vec3> {
+    fn at(&self, u: f32, v: f32) -> Vec3 {
         let index = |t: f32, count: usize| ((t * count as f32).max(0.0) as usize).min(count - 1);
         self.texels[index(v, self.height) * self.width + index(u, self.width)]
     }
@@ -59,7 +65,7 @@ impl Look {
 /// The nearest surface at a sample.
 #[derive(Clone, Copy)]
 pub(super) struct Sample {
-    /// Metres before the axis; −∞ where nothing is.
+    /// Metres before the axis.
     pub depth_m: f32,
     /// Albedo, linear.
     pub color: Vec3,
@@ -67,59 +73,125 @@ pub(super) struct Sample {
     pub leaf: bool,
 }
 
-/// Rows of samples from the top.
-pub(super) fn draw<'a>(mesh: &Mesh, surface: &dyn Fn(Material) -> Surface<'a>, look: &Look) -> Vec<Sample> {
-    let nothing = Sample { depth_m: f32::NEG_INFINITY, color: Vec3::ZERO, leaf: false };
-    let mut samples = vec![nothing; SIZE * SIZE];
-    let places: Vec<Vec3> = mesh.positions.iter().map(|&p| look.project(p)).collect();
-    let color = |i: usize| {
-        mesh.colors.get(i).map_or(Vec3::ONE, |&[r, g, b, _]| Vec3::new(r.into(), g.into(), b.into()) / 255.0)
-    };
-    let uv = |i: usize| mesh.uvs.get(i).copied().unwrap_or_default();
-    for part in &mesh.parts {
-        let surface = surface(part.material);
-        for triangle in &part.triangles {
-            let corners = triangle.map(|i| i as usize);
-            let Some(shape) = Shape::new(corners.map(|i| places[i])) else { continue };
-            let tint = shape.plane(corners.map(color));
-            match surface {
-                Surface::Wood(wood) => shape.fill(&mut samples, |at| {
-                    Some(Sample { depth_m: 0.0, color: wood * tint.at(at), leaf: false })
-                }),
-                Surface::Card(card) => {
-                    let uv = shape.plane(corners.map(|i| Vec3::new(uv(i)[0], uv(i)[1], 0.0)));
-                    shape.fill(&mut samples, |at| {
-                        let place = uv.at(at);
-                        let color = card.at([place.x, place.y])? * tint.at(at);
-                        Some(Sample { depth_m: 0.0, color, leaf: true })
-                    });
+/// What is nearest at each sample, rows from the top.
+pub(super) struct Drawing<'a> {
+    triangles: Vec<Triangle<'a>>,
+    /// Metres before the axis; −∞ where nothing is.
+    depths_m: Vec<f32>,
+    nearest: Vec<u32>,
+}
+
+impl<'a> Drawing<'a> {
+    pub fn new(mesh: &Mesh, surface: &dyn Fn(Material) -> Surface<'a>, look: &Look) -> Self {
+        let places: Vec<Vec3> = mesh.positions.iter().map(|&p| look.project(p)).collect();
+        let mut triangles = Vec::with_capacity(mesh.triangle_count());
+        for part in &mesh.parts {
+            let surface = surface(part.material);
+            triangles.extend(part.triangles.iter().filter_map(|t| Triangle::new(mesh, &places, *t, surface)));
+        }
+        let (depths_m, nearest) = (vec![f32::NEG_INFINITY; SIZE * SIZE], vec![0; SIZE * SIZE]);
+        let mut drawing = Self { triangles: Vec::new(), depths_m, nearest };
+        drawing.draw(&triangles);
+        Self { triangles, ..drawing }
+    }
+
+    /// Draws the nearest triangles first, since most of what comes later is then hidden. Where two are equally near, the
+    /// one that comes first in the mesh is drawn.
+    fn draw(&mut self, triangles: &[Triangle<'_>]) {
+        let mut order: Vec<_> = triangles.iter().map(Triangle::nearest_m).zip(0u32..).collect();
+        order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        for some in order.chunks(order.len() / ROUNDS + 1) {
+            let tiles = self.tiles();
+            for &(nearest_m, number) in some {
+                let triangle = &triangles[number as usize];
+                if triangle.tiles().all(|tile| tiles[tile] >= nearest_m) {
+                    continue;
+                }
+                match triangle.surface {
+                    Surface::Wood(_) => self.fill(triangle, number, |_, _| true),
+                    Surface::Card(card) => {
+                        let [u, v] = &triangle.uv;
+                        let is_there = |x, y| card.mask.is_opaque([u.at(x, y), v.at(x, y)]);
+                        self.fill(triangle, number, is_there);
+                    }
                 }
             }
         }
     }
-    samples
+
+    /// The farthest depth in each tile: what lies behind it is hidden.
+    fn tiles(&self) -> Vec<f32> {
+        let mut tiles = vec![f32::INFINITY; TILES * TILES];
+        for (row, depths_m) in self.depths_m.chunks_exact(SIZE).enumerate() {
+            let tiles = &mut tiles[row / TILE * TILES..][..TILES];
+            for (tile, depths_m) in tiles.iter_mut().zip(depths_m.chunks_exact(TILE)) {
+                *tile = depths_m.iter().fold(*tile, |farthest, &depth_m| farthest.min(depth_m));
+            }
+        }
+        tiles
+    }
+
+    /// Puts a triangle where it is the nearest so far, and `is_there`.
+    #[inline]
+    fn fill(&mut self, triangle: &Triangle<'_>, number: u32, is_there: impl Fn(f32, f32) -> bool) {
+        let [a, b, c] = triangle.corners.map(|corner| corner.y);
+        for row in first(a.min(b).min(c))..first(a.max(b).max(c)) {
+            let y = row as f32 + 0.5;
+            let (left, right) = triangle.span(y);
+            let columns = first(left - EDGE)..first(right + EDGE).max(first(left - EDGE));
+            let line = row * SIZE + columns.start..row * SIZE + columns.end;
+            let depths_m = self.depths_m[line.clone()].iter_mut().zip(&mut self.nearest[line]);
+            for (column, (depth_m, nearest)) in columns.zip(depths_m) {
+                let x = column as f32 + 0.5;
+                let here_m = triangle.depth_m.at(x, y);
+                if here_m > *depth_m && is_there(x, y) {
+                    (*depth_m, *nearest) = (here_m, number);
+                }
+            }
+        }
+    }
+
+    /// What is seen at a sample, if anything is.
+    pub fn sample(&self, column: usize, row: usize) -> Option<Sample> {
+        let depth_m = self.depths_m[row * SIZE + column];
+        if depth_m == f32::NEG_INFINITY {
+            return None;
+        }
+        let triangle = &self.triangles[self.nearest[row * SIZE + column] as usize];
+        let (x, y) = (column as f32 + 0.5, row as f32 + 0.5);
+        let tint = Vec3::from_array([0, 1, 2].map(|c| triangle.tint[c].at(x, y)));
+        let [u, v] = &triangle.uv;
+        let (color, leaf) = match triangle.surface {
+            Surface::Wood(color) => (color, false),
+            Surface::Card(card) => (card.at(u.at(x, y), v.at(x, y)), true),
+        };
+        Some(Sample { depth_m, color: color * tint, leaf })
+    }
 }
 
 /// What varies linearly over a triangle.
 struct Plane {
-    origin: Vec3,
-    per_x: Vec3,
-    per_y: Vec3,
+    origin: f32,
+    per_x: f32,
+    per_y: f32,
 }
 
 impl Plane {
     #[inline]
-    fn at(&self, at: Vec2) -> Vec3 {
-        self.origin + self.per_x * at.x + self.per_y * at.y
+    fn at(&self, x: f32, y: f32) -> f32 {
+        self.origin + self.per_x * x + self.per_y * y
     }
 }
 
 /// A triangle on the screen.
-struct Shape {
+struct Triangle<'a> {
     /// x, y in samples and metres before the axis.
     corners: [Vec3; 3],
-    /// Inverse of twice its area with sign.
-    over_area: f32,
+    surface: Surface<'a>,
+    depth_m: Plane,
+    uv: [Plane; 2],
+    /// Linear factor on the surface's colour.
+    tint: [Plane; 3],
 }
 
 /// Triangles with less than this area in samples are seen from their edge.
@@ -127,51 +199,54 @@ const MIN_AREA: f32 = 1e-6;
 /// Samples this far outside of an edge are inside of both its triangles, so that rounding leaves no hole between them.
 const EDGE: f32 = 1e-3;
 
-impl Shape {
-    fn new(corners: [Vec3; 3]) -> Option<Self> {
-        let [a, b, c] = corners.map(Vec3::truncate);
-        let area = (b - a).perp_dot(c - a);
-        (area.abs() > MIN_AREA).then(|| Self { corners, over_area: 1.0 / area })
-    }
-
-    fn plane(&self, values: [Vec3; 3]) -> Plane {
-        let [a, b, c] = self.corners;
+impl<'a> Triangle<'a> {
+    fn new(mesh: &Mesh, places: &[Vec3], triangle: [u32; 3], surface: Surface<'a>) -> Option<Self> {
+        let vertices = triangle.map(|i| i as usize);
+        let corners = vertices.map(|i| places[i]);
+        let [a, b, c] = corners;
         let (ab, ac) = (b - a, c - a);
-        let (db, dc) = (values[1] - values[0], values[2] - values[0]);
-        let per_x = (db * ac.y - dc * ab.y) * self.over_area;
-        let per_y = (dc * ab.x - db * ac.x) * self.over_area;
-        Plane { origin: values[0] - per_x * a.x - per_y * a.y, per_x, per_y }
-    }
-
-    /// Puts what `shade` gives where the triangle is the nearest so far.
-    #[inline]
-    fn fill(&self, samples: &mut [Sample], shade: impl Fn(Vec2) -> Option<Sample>) {
-        let [a, b, c] = self.corners;
-        let depth = self.plane([a, b, c].map(|corner| Vec3::new(corner.z, 0.0, 0.0)));
-        let (top, bottom) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
-        for y in first(top)..first(bottom) {
-            let line = y as f32 + 0.5;
-            let (left, right) = self.span(line);
-            let (from, to) = (first(left - EDGE), first(right + EDGE));
-            for (x, sample) in samples[y * SIZE..(y + 1) * SIZE].iter_mut().enumerate().take(to).skip(from) {
-                let at = Vec2::new(x as f32 + 0.5, line);
-                let depth_m = depth.at(at).x;
-                if depth_m > sample.depth_m
-                    && let Some(seen) = shade(at)
-                {
-                    *sample = Sample { depth_m, ..seen };
-                }
-            }
+        let area = ab.truncate().perp_dot(ac.truncate());
+        if area.abs() < MIN_AREA {
+            return None;
         }
+        let plane = |value: &dyn Fn(usize) -> f32| {
+            let values = vertices.map(value);
+            let (db, dc) = (values[1] - values[0], values[2] - values[0]);
+            let (per_x, per_y) = ((db * ac.y - dc * ab.y) / area, (dc * ab.x - db * ac.x) / area);
+            Plane { origin: values[0] - per_x * a.x - per_y * a.y, per_x, per_y }
+        };
+        let uv = |i: usize, c: usize| mesh.uvs.get(i).map_or(0.0, |uv| uv[c]);
+        let tint = |i: usize, c: usize| mesh.colors.get(i).map_or(1.0, |color| f32::from(color[c]) / 255.0);
+        Some(Self {
+            corners,
+            surface,
+            depth_m: plane(&|i| places[i].z),
+            uv: [0, 1].map(|c| plane(&|i| uv(i, c))),
+            tint: [0, 1, 2].map(|c| plane(&|i| tint(i, c))),
+        })
     }
 
-    /// Where a horizontal line enters and leaves the triangle.
-    fn span(&self, line: f32) -> (f32, f32) {
+    /// Those that it may reach into.
+    fn tiles(&self) -> impl Iterator<Item = usize> {
+        let [columns, rows] = [0, 1].map(|axis| {
+            let ends = self.corners.map(|corner| corner[axis]);
+            let (low, high) = ends.iter().fold((f32::MAX, f32::MIN), |(l, h), &t| (l.min(t), h.max(t)));
+            first(low - EDGE).min(SIZE - 1) / TILE..first(high + EDGE).min(SIZE - 1) / TILE + 1
+        });
+        rows.flat_map(move |row| columns.clone().map(move |column| row * TILES + column))
+    }
+
+    fn nearest_m(&self) -> f32 {
+        self.corners.iter().map(|corner| corner.z).fold(f32::NEG_INFINITY, f32::max)
+    }
+
+    /// Where a horizontal line enters and leaves it.
+    fn span(&self, y: f32) -> (f32, f32) {
         let (mut left, mut right) = (f32::MAX, f32::MIN);
         for k in 0..3 {
             let (a, b) = (self.corners[k], self.corners[(k + 1) % 3]);
-            if (a.y <= line) != (b.y <= line) {
-                let x = a.x + (b.x - a.x) * ((line - a.y) / (b.y - a.y));
+            if (a.y <= y) != (b.y <= y) {
+                let x = a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y));
                 (left, right) = (left.min(x), right.max(x));
             }
         }
@@ -180,6 +255,7 @@ impl Shape {
 }
 
 /// The first sample whose middle is not before a place.
+#[inline]
 fn first(place: f32) -> usize {
     ((place + 0.5).max(0.0) as usize).min(SIZE)
 }
