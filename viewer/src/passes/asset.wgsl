@@ -2,23 +2,6 @@
 // the file's suns and by a room of soft lights. The room is a sum of spherical Gaussians, for what they look like in a
 // mirror of any roughness, and how they light a wall, follows without a picture (Wang et al. 2009).
 
-struct Light {
-    // Unit vector towards it.
-    direction: vec4f,
-    // On a surface that faces it; 0 for none.
-    irradiance: vec4f,
-}
-
-struct Studio {
-    lights: array<Light, 2>,
-    // Factor on the room's light.
-    room: f32,
-    // Of a sphere around what is shown, and side of a square of the grid: for the ground.
-    radius: f32,
-    cell: f32,
-    unused: f32,
-}
-
 // How texture coordinates are looked up: 2 × 2 by rows, what is added, and which set.
 struct UvMap {
     matrix: vec4f,
@@ -90,16 +73,10 @@ fn vertex(in: In) -> Out {
     let alpha = fract(in.lambda);
     let world = from_template(rows, in.position + alpha * in.delta);
     let turned = normalize(mix(octahedral(in.normal), octahedral(in.normal_end), alpha));
-    // Normals take the cofactors of the linear part, whose rows are crosses of its rows.
-    let normal = vec3f(
-        dot(cross(rows[1].xyz, rows[2].xyz), turned),
-        dot(cross(rows[2].xyz, rows[0].xyz), turned),
-        dot(cross(rows[0].xyz, rows[1].xyz), turned),
-    );
+    let normal = normal_from_template(rows, turned);
     // Of a mirrored copy they point inwards.
     let mirrored = dot(cross(rows[0].xyz, rows[1].xyz), rows[2].xyz) < 0.0;
-    let along = octahedral(in.tangent.xy);
-    let tangent = vec3f(dot(rows[0].xyz, along), dot(rows[1].xyz, along), dot(rows[2].xyz, along));
+    let tangent = way_from_template(rows, octahedral(in.tangent.xy));
     var out: Out;
     out.clip = view.clip_from_world * vec4f(world, 1.0);
     out.world = world;

@@ -78,6 +78,40 @@ fn from_template(rows: array<vec4f, 3>, point: vec3f) -> vec3f {
     return vec3f(dot(rows[0], local), dot(rows[1], local), dot(rows[2], local));
 }
 
+// A direction of a template in the world; as long as it becomes.
+fn way_from_template(rows: array<vec4f, 3>, way: vec3f) -> vec3f {
+    return vec3f(dot(rows[0].xyz, way), dot(rows[1].xyz, way), dot(rows[2].xyz, way));
+}
+
+// A normal of a template in the world, of any length: normals take the cofactors of the linear part, whose rows are crosses of
+// its rows.
+fn normal_from_template(rows: array<vec4f, 3>, normal: vec3f) -> vec3f {
+    return vec3f(
+        dot(cross(rows[1].xyz, rows[2].xyz), normal),
+        dot(cross(rows[2].xyz, rows[0].xyz), normal),
+        dot(cross(rows[0].xyz, rows[1].xyz), normal),
+    );
+}
+
+// A sun of a file that is no landscape.
+struct Light {
+    // Unit vector towards it.
+    direction: vec4f,
+    // On a surface that faces it; 0 for none.
+    irradiance: vec4f,
+}
+
+// What such a file is lit by, and how large it is.
+struct Studio {
+    lights: array<Light, 2>,
+    // Factor on the room's light.
+    room: f32,
+    // Of a sphere around what is shown, and side of a square of the grid: for the ground.
+    radius: f32,
+    cell: f32,
+    unused: f32,
+}
+
 const PI: f32 = 3.14159265;
 
 // Aerial perspective: of the light that comes from `distance` metres away some is replaced by the haze's own.
@@ -126,40 +160,46 @@ fn field_uv(world: vec2f) -> vec2f {
     return world / (2.0 * view.field.z) + 0.5;
 }
 
-// Bilinear height of the land.
-fn height_m(world: vec2f) -> f32 {
-    let last = view.field.x - 1.0;
-    let at = clamp(world / view.field.y + 0.5 * last, vec2f(0.0), vec2f(last));
-    let cell = min(floor(at), vec2f(last - 1.0));
-    let part = at - cell;
-    let c = vec2i(cell);
-    let a = textureLoad(heights, c, 0).r;
-    let b = textureLoad(heights, c + vec2i(1, 0), 0).r;
-    let d = textureLoad(heights, c + vec2i(0, 1), 0).r;
-    let e = textureLoad(heights, c + vec2i(1, 1), 0).r;
-    return mix(mix(a, b, part.x), mix(d, e, part.x), part.y);
+// The four samples around a place: their heights (north-west, north-east, south-west, south-east), the number of the first, and
+// how far the place is on the way from it to the others.
+struct Cell {
+    heights: vec4f,
+    number: vec2i,
+    part: vec2f,
 }
 
-// Height of the land as its triangles have it at full resolution: the diagonals of cells take turns.
-fn drawn_height_m(world: vec2f) -> f32 {
+fn cell_at(world: vec2f) -> Cell {
     let last = view.field.x - 1.0;
     let at = clamp(world / view.field.y + 0.5 * last, vec2f(0.0), vec2f(last));
     let cell = min(floor(at), vec2f(last - 1.0));
-    let p = at - cell;
     let c = vec2i(cell);
     let nw = textureLoad(heights, c, 0).r;
     let ne = textureLoad(heights, c + vec2i(1, 0), 0).r;
     let sw = textureLoad(heights, c + vec2i(0, 1), 0).r;
     let se = textureLoad(heights, c + vec2i(1, 1), 0).r;
-    if (((c.x + c.y) & 1) == 0) {
+    return Cell(vec4f(nw, ne, sw, se), c, at - cell);
+}
+
+// Bilinear height of the land.
+fn height_m(world: vec2f) -> f32 {
+    let cell = cell_at(world);
+    let sides = mix(cell.heights.xz, cell.heights.yw, cell.part.x);
+    return mix(sides.x, sides.y, cell.part.y);
+}
+
+// Height of the land as its triangles have it at full resolution: the diagonals of cells take turns.
+fn drawn_height_m(world: vec2f) -> f32 {
+    let cell = cell_at(world);
+    let p = cell.part;
+    let h = cell.heights;
+    if (((cell.number.x + cell.number.y) & 1) == 0) {
         // North-west to south-east.
-        let corner = select(nw + p.x * (ne - nw) + p.y * (se - ne), nw + p.y * (sw - nw) + p.x * (se - sw), p.y > p.x);
-        return corner;
+        return select(h.x + p.x * (h.y - h.x) + p.y * (h.w - h.y), h.x + p.y * (h.z - h.x) + p.x * (h.w - h.z), p.y > p.x);
     }
     if (p.x + p.y < 1.0) {
-        return nw + p.x * (ne - nw) + p.y * (sw - nw);
+        return h.x + p.x * (h.y - h.x) + p.y * (h.z - h.x);
     }
-    return se + (1.0 - p.x) * (sw - se) + (1.0 - p.y) * (ne - se);
+    return h.w + (1.0 - p.x) * (h.z - h.w) + (1.0 - p.y) * (h.y - h.w);
 }
 
 // Wind that comes in gusts and bends the top of a plant by so many times its height.

@@ -53,7 +53,7 @@ fn vertex(@location(8) tree: u32, @location(10) shown: f32, @builtin(vertex_inde
     out.local = local;
     out.uv = vec2f(corner.x, 1.0 - corner.y);
     out.ahead = ahead;
-    out.toward = vec3f(dot(rows[0].xz, ahead), dot(rows[1].xz, ahead), dot(rows[2].xz, ahead));
+    out.toward = way_from_template(rows, vec3f(ahead.x, 0.0, ahead.y));
     out.turn = fract(atan2(ahead.x, ahead.y) / (2.0 * PI) + 1.0) * 8.0;
     out.template_index = trees[tree].template_index;
     out.shown = shown;

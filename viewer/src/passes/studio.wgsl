@@ -1,19 +1,5 @@
 // What is around a file that is shown alone: an even backdrop, and a grid on the ground that says how large things are.
 
-struct Light {
-    direction: vec4f,
-    irradiance: vec4f,
-}
-
-// As in `asset.wgsl`.
-struct Studio {
-    lights: array<Light, 2>,
-    room: f32,
-    radius: f32,
-    cell: f32,
-    unused: f32,
-}
-
 @group(1) @binding(0) var<uniform> studio: Studio;
 
 struct Corner {

@@ -39,18 +39,11 @@ fn vertex(in: In) -> Out {
     let alpha = fract(in.lambda);
     let world = from_template(rows, in.position + alpha * in.delta);
     let turned = normalize(mix(octahedral(in.normal), octahedral(in.normal_end), alpha));
-    // Normals take the cofactors of the linear part, whose rows are crosses of its rows.
-    let normal = vec3f(
-        dot(cross(rows[1].xyz, rows[2].xyz), turned),
-        dot(cross(rows[2].xyz, rows[0].xyz), turned),
-        dot(cross(rows[0].xyz, rows[1].xyz), turned),
-    );
-    let along = octahedral(in.tangent);
-    let tangent = vec3f(dot(rows[0].xyz, along), dot(rows[1].xyz, along), dot(rows[2].xyz, along));
+    let tangent = way_from_template(rows, octahedral(in.tangent));
     var out: Out;
     out.clip = view.clip_from_world * vec4f(world, 1.0);
     out.world = world;
-    out.normal = normalize(normal);
+    out.normal = normalize(normal_from_template(rows, turned));
     out.tangent = vec4f(normalize(tangent), in.color.a * 2.0 - 1.0);
     out.uv = in.uv + alpha * in.uv_delta;
     out.color = select(in.color.rgb, level_tint(in.lambda) * 1.6, view.tint_levels != 0u);

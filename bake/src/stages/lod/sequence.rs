@@ -202,7 +202,15 @@ impl Sequence {
             }
         }
         self.state.log.finish_record();
-        self.error_m = self.error_m.max(cost);
+        // Nothing hides a twig of a bare tree: it is missed for its length as well.
+        let seen = if self.aggregates.is_empty() { cost.max(self.piece_size_m(index)) } else { cost };
+        self.error_m = self.error_m.max(seen);
+    }
+
+    /// The side of a square as large as a piece looks from the side.
+    fn piece_size_m(&self, index: u32) -> f64 {
+        let piece = &self.surface.topology.pieces[index as usize];
+        (piece.thickness_m * piece.extent_m).sqrt()
     }
 
     /// Where a point of a removed piece goes: to the nearest place of the line through the piece's middle along its

@@ -15,19 +15,19 @@ use crate::model::{AlphaMask, Image8, Impostor, Material, Mesh, TreeTextures};
 use picture::Picture;
 use raster::{Card, Drawing, Look, Surface};
 
-/// Pixels a side of one picture.
+/// Pixels a side of one picture, of a tree with leaves and of a bare one, whose twigs need more.
 const SIDE: usize = 128;
+const BARE_SIDE: usize = 256;
 /// Each picture is drawn this many times as wide and high, and reduced.
-const SAMPLES: usize = 3;
+const SAMPLES: usize = 2;
 /// Pictures are larger than the tree by this factor, which leaves more than 3 of their pixels transparent along each
 /// edge: two mip levels on, a picture still doesn't show in the one beside it.
 const MARGIN: f32 = 1.06;
 /// No picture is smaller than this, in metres, not even of nothing.
 const MIN_SIZE_M: f32 = 1e-3;
-/// The error is this part of the picture, two of its pixels. Where an error of 1.5 pixels of the screen is allowed, a tree
-/// is then shown in 96 of them at most: it never takes more pixels than its picture has, with some to spare for supersampled
-/// or turned screens.
-const ERROR_PART: f32 = 1.0 / 64.0;
+/// The error is so many of its pixels. Where an error of 1.5 pixels of the screen is allowed, a tree is then shown in three
+/// quarters as many as its picture has at most, with some to spare for supersampled or turned screens.
+const ERROR_PX: f32 = 2.0;
 
 /// What part of space the pictures show.
 #[derive(Clone, Copy, Debug)]
@@ -35,10 +35,14 @@ struct Frame {
     /// On the axis, at the lower edge.
     foot_m: Vec3,
     size_m: [f32; 2],
+    /// Pixels a side.
+    side: usize,
 }
 
 impl Frame {
     fn of(mesh: &Mesh) -> Self {
+        let has_cards =
+            mesh.parts.iter().any(|part| matches!(part.material, Material::Leaf | Material::Blossom));
         let bounds = mesh.bounds();
         let axis = 0.5 * (bounds.min + bounds.max);
         let from_axis = |p: &[f32; 3]| {
@@ -48,7 +52,8 @@ impl Frame {
         let reach_m = mesh.positions.iter().map(from_axis).fold(0.0, f32::max).sqrt();
         let height_m = bounds.max.y - bounds.min.y;
         let size_m = [2.0 * reach_m, height_m].map(|m| (MARGIN * m).max(MIN_SIZE_M));
-        Self { foot_m: axis.with_y(axis.y - 0.5 * size_m[1]), size_m }
+        let side = if has_cards { SIDE } else { BARE_SIDE };
+        Self { foot_m: axis.with_y(axis.y - 0.5 * size_m[1]), size_m, side }
     }
 }
 
@@ -64,7 +69,7 @@ pub fn impostor<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> Impostor {
     };
     let draw = |k: usize| {
         let drawing = Drawing::new(mesh, &surface, &Look::new(&frame, k));
-        Picture::of(&drawing, frame.size_m[0])
+        Picture::of(&drawing, &frame)
     };
     let pictures: Vec<Picture> = (0..Impostor::AZIMUTHS.len()).into_par_iter().map(draw).collect();
     let (colors, relief) = picture::side_by_side(&pictures, &Encoder::new());
@@ -74,7 +79,7 @@ pub fn impostor<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> Impostor {
         axis_m: [frame.foot_m.x, frame.foot_m.z],
         low_m: frame.foot_m.y,
         size_m: frame.size_m,
-        error_m: ERROR_PART * frame.size_m[0].max(frame.size_m[1]),
+        error_m: ERROR_PX / frame.side as f32 * frame.size_m[0].max(frame.size_m[1]),
     }
 }
 

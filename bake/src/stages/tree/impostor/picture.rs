@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::raster::Drawing;
-use super::{SAMPLES, SIDE};
+use super::{Frame, SAMPLES};
 use crate::math::unit_to_byte;
 use crate::model::{Image8, Impostor};
 use crate::stages::tree::mips::Encoder;
@@ -18,7 +18,7 @@ const KEPT: u8 = (255.0 * Impostor::ALPHA_CUTOFF) as u8 + 1;
 struct Pixel {
     /// Linear.
     color: Vec3,
-    /// Red and green of the relief.
+    /// Red and green of the relief; its blue is what is covered.
     relief: [f32; 2],
 }
 
@@ -44,17 +44,23 @@ impl Pixel {
     }
 }
 
-/// `SIDE`² pixels, rows from the top.
+/// Square, rows from the top.
 pub(super) struct Picture {
     pixels: Vec<Pixel>,
     alpha: Vec<u8>,
+    /// How many samples of each pixel are covered.
+    covered: Vec<u32>,
 }
 
+/// Samples of a pixel.
+const ALL: u32 = (SAMPLES * SAMPLES) as u32;
+
 impl Picture {
-    /// Of a tree whose picture is `width_m` wide.
-    pub fn of(drawing: &Drawing<'_>, width_m: f32) -> Self {
+    /// Of a tree that is drawn in that frame.
+    pub fn of(drawing: &Drawing<'_>, frame: &Frame) -> Self {
+        let (side, width_m) = (frame.side, frame.size_m[0]);
         let (mut pixels, mut covered) = (Vec::new(), Vec::new());
-        for (y, x) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (y, x))) {
+        for (y, x) in (0..side).flat_map(|y| (0..side).map(move |x| (y, x))) {
             let samples = (0..SAMPLES * SAMPLES).filter_map(|sample| {
                 drawing.sample(x * SAMPLES + sample % SAMPLES, y * SAMPLES + sample / SAMPLES)
             });
@@ -65,19 +71,19 @@ impl Picture {
             pixels.push(sum.over(count));
             covered.push(count);
         }
-        Self { pixels: bled(pixels), alpha: alpha(&covered) }
+        Self { pixels: bled(pixels, side), alpha: alpha(&covered, side), covered }
     }
 }
 
 /// Fills pixels in which nothing is from those around them.
-fn bled(mut pixels: Vec<Option<Pixel>>) -> Vec<Pixel> {
+fn bled(mut pixels: Vec<Option<Pixel>>, side: usize) -> Vec<Pixel> {
     let mean = Pixel::mean(pixels.iter().flatten().copied()).unwrap_or_default();
     let mut rim: Vec<usize> = (0..pixels.len()).filter(|&i| pixels[i].is_some()).collect();
     for _ in 0..BLED_PX {
-        rim = rim.into_iter().flat_map(around).filter(|&i| pixels[i].is_none()).collect();
+        rim = rim.into_iter().flat_map(|i| around(i, side)).filter(|&i| pixels[i].is_none()).collect();
         rim.sort_unstable();
         rim.dedup();
-        let fill = |&i: &usize| Pixel::mean(around(i).filter_map(|j| pixels[j]));
+        let fill = |&i: &usize| Pixel::mean(around(i, side).filter_map(|j| pixels[j]));
         let filled: Vec<_> = rim.iter().map(fill).collect();
         rim.iter().zip(filled).for_each(|(&i, pixel)| pixels[i] = pixel);
     }
@@ -85,23 +91,22 @@ fn bled(mut pixels: Vec<Option<Pixel>>) -> Vec<Pixel> {
 }
 
 /// A pixel and its neighbours.
-fn around(i: usize) -> impl Iterator<Item = usize> {
-    let (x, y) = (i % SIDE, i / SIDE);
-    let near = |t: usize| t.saturating_sub(1)..(t + 2).min(SIDE);
-    near(y).flat_map(move |y| near(x).map(move |x| y * SIDE + x))
+fn around(i: usize, side: usize) -> impl Iterator<Item = usize> {
+    let (x, y) = (i % side, i / side);
+    let near = move |t: usize| t.saturating_sub(1)..(t + 2).min(side);
+    near(y).flat_map(move |y| near(x).map(move |x| y * side + x))
 }
 
 /// Alpha from how many samples of each pixel are covered, scaled so that as much of the picture passes the cutoff as
 /// samples are covered (Castaño, "Computing Alpha Mipmaps", 2010).
 ///
-/// Nine samples give few different values, so that often hundreds of pixels are equally near to the cutoff; of these, the
+/// A few samples give few different values, so that often hundreds of pixels are equally near to the cutoff; of these, the
 /// ones with more around them pass.
-fn alpha(covered: &[u32]) -> Vec<u8> {
-    const ALL: u32 = (SAMPLES * SAMPLES) as u32;
+fn alpha(covered: &[u32], side: usize) -> Vec<u8> {
     let wanted = ((covered.iter().sum::<u32>() + ALL / 2) / ALL) as usize;
     let mut order: Vec<(u32, u32, usize)> = (0..covered.len())
         .filter(|&i| covered[i] > 0)
-        .map(|i| (covered[i], around(i).map(|j| covered[j]).sum(), i))
+        .map(|i| (covered[i], around(i, side).map(|j| covered[j]).sum(), i))
         .collect();
     order.sort_unstable_by(|a, b| b.cmp(a));
     let lowest = wanted.checked_sub(1).and_then(|last| order.get(last)).map_or(ALL, |kept| kept.0);
@@ -116,15 +121,20 @@ fn alpha(covered: &[u32]) -> Vec<u8> {
 
 /// Colours with alpha, and relief, as files hold them.
 pub(super) fn side_by_side(pictures: &[Picture], encoder: &Encoder) -> (Image8, Image8) {
-    let image = |channels| Image8::new((SIDE * pictures.len()) as u32, SIDE as u32, channels);
+    let side = pictures.first().map_or(0, |picture| picture.pixels.len().isqrt());
+    let image = |channels| Image8::new((side * pictures.len()) as u32, side as u32, channels);
     let (mut colors, mut relief) = (image(4), image(3));
     for (k, picture) in pictures.iter().enumerate() {
         for (i, (pixel, &alpha)) in picture.pixels.iter().zip(&picture.alpha).enumerate() {
-            let at = (i / SIDE * pictures.len() + k) * SIDE + i % SIDE;
+            let at = (i / side * pictures.len() + k) * side + i % side;
             let [r, g, b] = pixel.color.to_array().map(|linear| encoder.byte(linear));
             colors.data[4 * at..][..4].copy_from_slice(&[r, g, b, alpha]);
             let [depth, leaf] = pixel.relief.map(unit_to_byte);
-            relief.data[3 * at..][..3].copy_from_slice(&[depth, leaf, 0]);
+            relief.data[3 * at..][..3].copy_from_slice(&[
+                depth,
+                leaf,
+                (255 * picture.covered[i] / ALL) as u8,
+            ]);
         }
     }
     (colors, relief)

@@ -2,15 +2,11 @@
 
 use glam::{Vec2, Vec3};
 
-use super::{Frame, SAMPLES, SIDE};
+use super::{Frame, SAMPLES};
 use crate::model::{AlphaMask, Impostor, Material, Mesh};
 
-/// Samples a side.
-pub(super) const SIZE: usize = SAMPLES * SIDE;
-
-/// Samples a side of a tile, and tiles a side.
+/// Samples a side of a tile.
 const TILE: usize = 8;
-const TILES: usize = SIZE / TILE;
 /// How often it is noted in which tiles nothing more can show.
 const ROUNDS: usize = 24;
 
@@ -44,21 +40,24 @@ pub(super) struct Look {
     eye: Vec3,
     right: Vec3,
     samples_per_m: Vec2,
+    /// Samples a side.
+    size: usize,
 }
 
 impl Look {
     /// For picture `k`.
     pub fn new(frame: &Frame, k: usize) -> Self {
         let [eye, right] = Impostor::eye_and_right(k);
-        let samples_per_m = SIZE as f32 / Vec2::from_array(frame.size_m);
-        Self { foot_m: frame.foot_m, eye, right, samples_per_m }
+        let size = SAMPLES * frame.side;
+        let samples_per_m = size as f32 / Vec2::from_array(frame.size_m);
+        Self { foot_m: frame.foot_m, eye, right, samples_per_m, size }
     }
 
     /// Place in samples from the upper left corner, and metres before the axis.
     fn project(&self, position: [f32; 3]) -> Vec3 {
         let p = Vec3::from_array(position) - self.foot_m;
-        let x = 0.5 * SIZE as f32 + p.dot(self.right) * self.samples_per_m.x;
-        Vec3::new(x, SIZE as f32 - p.y * self.samples_per_m.y, p.dot(self.eye))
+        let x = 0.5 * self.size as f32 + p.dot(self.right) * self.samples_per_m.x;
+        Vec3::new(x, self.size as f32 - p.y * self.samples_per_m.y, p.dot(self.eye))
     }
 }
 
@@ -79,6 +78,8 @@ pub(super) struct Drawing<'a> {
     /// Metres before the axis; −∞ where nothing is.
     depths_m: Vec<f32>,
     nearest: Vec<u32>,
+    /// Samples a side.
+    size: usize,
 }
 
 impl<'a> Drawing<'a> {
@@ -89,8 +90,9 @@ impl<'a> Drawing<'a> {
             let surface = surface(part.material);
             triangles.extend(part.triangles.iter().filter_map(|t| Triangle::new(mesh, &places, *t, surface)));
         }
-        let (depths_m, nearest) = (vec![f32::NEG_INFINITY; SIZE * SIZE], vec![0; SIZE * SIZE]);
-        let mut drawing = Self { triangles: Vec::new(), depths_m, nearest };
+        let size = look.size;
+        let (depths_m, nearest) = (vec![f32::NEG_INFINITY; size * size], vec![0; size * size]);
+        let mut drawing = Self { triangles: Vec::new(), depths_m, nearest, size };
         drawing.draw(&triangles);
         Self { triangles, ..drawing }
     }
@@ -104,7 +106,7 @@ impl<'a> Drawing<'a> {
             let tiles = self.tiles();
             for &(nearest_m, number) in some {
                 let triangle = &triangles[number as usize];
-                if triangle.tiles().all(|tile| tiles[tile] >= nearest_m) {
+                if triangle.tiles(self.size).all(|tile| tiles[tile] >= nearest_m) {
                     continue;
                 }
                 match triangle.surface {
@@ -121,9 +123,10 @@ impl<'a> Drawing<'a> {
 
     /// The farthest depth in each tile: what lies behind it is hidden.
     fn tiles(&self) -> Vec<f32> {
-        let mut tiles = vec![f32::INFINITY; TILES * TILES];
-        for (row, depths_m) in self.depths_m.chunks_exact(SIZE).enumerate() {
-            let tiles = &mut tiles[row / TILE * TILES..][..TILES];
+        let across = self.size / TILE;
+        let mut tiles = vec![f32::INFINITY; across * across];
+        for (row, depths_m) in self.depths_m.chunks_exact(self.size).enumerate() {
+            let tiles = &mut tiles[row / TILE * across..][..across];
             for (tile, depths_m) in tiles.iter_mut().zip(depths_m.chunks_exact(TILE)) {
                 *tile = depths_m.iter().fold(*tile, |farthest, &depth_m| farthest.min(depth_m));
             }
@@ -135,11 +138,13 @@ impl<'a> Drawing<'a> {
     #[inline]
     fn fill(&mut self, triangle: &Triangle<'_>, number: u32, is_there: impl Fn(f32, f32) -> bool) {
         let [a, b, c] = triangle.corners.map(|corner| corner.y);
-        for row in first(a.min(b).min(c))..first(a.max(b).max(c)) {
+        let size = self.size;
+        for row in first(a.min(b).min(c), size)..first(a.max(b).max(c), size) {
             let y = row as f32 + 0.5;
             let (left, right) = triangle.span(y);
-            let columns = first(left - EDGE)..first(right + EDGE).max(first(left - EDGE));
-            let line = row * SIZE + columns.start..row * SIZE + columns.end;
+            let start = first(left - EDGE, size);
+            let columns = start..first(right + EDGE, size).max(start);
+            let line = row * size + columns.start..row * size + columns.end;
             let depths_m = self.depths_m[line.clone()].iter_mut().zip(&mut self.nearest[line]);
             for (column, (depth_m, nearest)) in columns.zip(depths_m) {
                 let x = column as f32 + 0.5;
@@ -153,19 +158,18 @@ impl<'a> Drawing<'a> {
 
     /// What is seen at a sample, if anything is.
     pub fn sample(&self, column: usize, row: usize) -> Option<Sample> {
-        let depth_m = self.depths_m[row * SIZE + column];
+        let depth_m = self.depths_m[row * self.size + column];
         if depth_m == f32::NEG_INFINITY {
             return None;
         }
-        let triangle = &self.triangles[self.nearest[row * SIZE + column] as usize];
+        let triangle = &self.triangles[self.nearest[row * self.size + column] as usize];
         let (x, y) = (column as f32 + 0.5, row as f32 + 0.5);
-        let tint = Vec3::from_array([0, 1, 2].map(|c| triangle.tint[c].at(x, y)));
         let [u, v] = &triangle.uv;
         let (color, leaf) = match triangle.surface {
             Surface::Wood(color) => (color, false),
             Surface::Card(card) => (card.at(u.at(x, y), v.at(x, y)), true),
         };
-        Some(Sample { depth_m, color: color * tint, leaf })
+        Some(Sample { depth_m, color: color * triangle.tint, leaf })
     }
 }
 
@@ -190,8 +194,8 @@ struct Triangle<'a> {
     surface: Surface<'a>,
     depth_m: Plane,
     uv: [Plane; 2],
-    /// Linear factor on the surface's colour.
-    tint: [Plane; 3],
+    /// Linear factor on the surface's colour, the mean of the corners'.
+    tint: Vec3,
 }
 
 /// Triangles with less than this area in samples are seen from their edge.
@@ -216,24 +220,29 @@ impl<'a> Triangle<'a> {
             Plane { origin: values[0] - per_x * a.x - per_y * a.y, per_x, per_y }
         };
         let uv = |i: usize, c: usize| mesh.uvs.get(i).map_or(0.0, |uv| uv[c]);
-        let tint = |i: usize, c: usize| mesh.colors.get(i).map_or(1.0, |color| f32::from(color[c]) / 255.0);
+        let tint = |&i: &usize| {
+            mesh.colors
+                .get(i)
+                .map_or(Vec3::ONE, |&[r, g, b, _]| Vec3::from_array([r, g, b].map(f32::from)) / 255.0)
+        };
         Some(Self {
             corners,
             surface,
             depth_m: plane(&|i| places[i].z),
             uv: [0, 1].map(|c| plane(&|i| uv(i, c))),
-            tint: [0, 1, 2].map(|c| plane(&|i| tint(i, c))),
+            tint: vertices.iter().map(tint).sum::<Vec3>() / 3.0,
         })
     }
 
     /// Those that it may reach into.
-    fn tiles(&self) -> impl Iterator<Item = usize> {
+    fn tiles(&self, size: usize) -> impl Iterator<Item = usize> {
         let [columns, rows] = [0, 1].map(|axis| {
             let ends = self.corners.map(|corner| corner[axis]);
             let (low, high) = ends.iter().fold((f32::MAX, f32::MIN), |(l, h), &t| (l.min(t), h.max(t)));
-            first(low - EDGE).min(SIZE - 1) / TILE..first(high + EDGE).min(SIZE - 1) / TILE + 1
+            let tile = |place: f32| first(place, size).min(size - 1) / TILE;
+            tile(low - EDGE)..tile(high + EDGE) + 1
         });
-        rows.flat_map(move |row| columns.clone().map(move |column| row * TILES + column))
+        rows.flat_map(move |row| columns.clone().map(move |column| row * (size / TILE) + column))
     }
 
     fn nearest_m(&self) -> f32 {
@@ -254,8 +263,8 @@ impl<'a> Triangle<'a> {
     }
 }
 
-/// The first sample whose middle is not before a place.
+/// The first of `size` samples whose middle is not before a place.
 #[inline]
-fn first(place: f32) -> usize {
-    ((place + 0.5).max(0.0) as usize).min(SIZE)
+fn first(place: f32, size: usize) -> usize {
+    ((place + 0.5).max(0.0) as usize).min(size)
 }

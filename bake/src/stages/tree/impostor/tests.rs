@@ -34,9 +34,14 @@ fn square(mesh: &mut Mesh, middle: Vec3, side_m: f32, material: Material, color:
     mesh.parts.push(Part { material, kind: PartKind::Surface, triangles });
 }
 
+/// Pixels a side of a picture.
+fn side(impostor: &Impostor) -> usize {
+    impostor.colors.height as usize
+}
+
 /// Pixel (x, y) of picture `k`, if it is kept: linear colour, and relief.
 fn pixel(impostor: &Impostor, k: usize, x: usize, y: usize) -> Option<([f32; 3], [f32; 2])> {
-    let x = (k * SIDE + x) as u32;
+    let x = (k * side(impostor) + x) as u32;
     let [color, relief] = [&impostor.colors, &impostor.relief].map(|image| image.pixel(x, y as u32));
     let linear = [0, 1, 2].map(|c| linear_from_srgb(f32::from(color[c]) / 255.0));
     (color[3] >= 128).then(|| (linear, [relief[0], relief[1]].map(|byte| f32::from(byte) / 255.0)))
@@ -142,14 +147,20 @@ fn pictures_cover_what_the_tree_covers_and_keep_their_borders() {
             Material::Blossom => AlphaMask::of(&textures.blossom_small, ALPHA_CUTOFF),
             _ => AlphaMask::default(),
         };
+        let side = side(&impostor);
+        let pixels = || (0..side).flat_map(|y| (0..side).map(move |x| (x, y)));
         for k in 0..4 {
-            let inside = |i: usize| pixel(&impostor, k, i % SIDE, i / SIDE).is_some();
-            let kept = (0..SIDE * SIDE).filter(|&i| inside(i)).count() as f32 / (SIDE * SIDE) as f32;
-            let target = covered(&tree.mesh, &masks, &impostor, k);
-            assert!((kept / target - 1.0).abs() < 0.01, "{name}, {k}: {kept} of {target}");
-            let border = |t: usize| !(3..SIDE - 3).contains(&t);
-            for (x, y) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))) {
-                let alpha = impostor.colors.pixel((k * SIDE + x) as u32, y as u32)[3];
+            let kept = pixels().filter(|&(x, y)| pixel(&impostor, k, x, y).is_some()).count();
+            let share = |(x, y): (usize, usize)| {
+                f32::from(impostor.relief.pixel((k * side + x) as u32, y as u32)[2]) / 255.0
+            };
+            let (all, target) = ((side * side) as f32, covered(&tree.mesh, &masks, &impostor, k));
+            for kept in [kept as f32 / all, pixels().map(share).sum::<f32>() / all] {
+                assert!((kept / target - 1.0).abs() < 0.01, "{name}, {k}: {kept} of {target}");
+            }
+            let border = |t: usize| !(3..side - 3).contains(&t);
+            for (x, y) in pixels() {
+                let alpha = impostor.colors.pixel((k * side + x) as u32, y as u32)[3];
                 assert!(alpha == 0 || !(border(x) || border(y)), "{name}, {k}: alpha {alpha} at {x}, {y}");
             }
         }
