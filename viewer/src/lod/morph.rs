@@ -6,8 +6,8 @@
 //! above the highest land. So D is at most the true distance of any land at (x, z), D grows at most as fast as one
 //! walks, and all moves with the camera without a jump.
 //!
-//! A vertex v of level l has slid by t(v) = clamp((λ(v) − l)/(1 − [`GAP`]), 0, 1) to its parent a. Since d₀ ≥ 16√2 cells,
-//! λ differs by less than log₂(17/16) < GAP between a vertex a of level m ≥ 1 with λ(a) > m and any sample of a cell of
+//! A vertex v of level l has slid by t(v) = clamp((λ(v) − l)/(1 − [`GAP`]), 0, 1) to its parent a. Since d₀ ≥ 8√2 cells,
+//! λ differs by less than log₂(9/8) < GAP between a vertex a of level m ≥ 1 with λ(a) > m and any sample of a cell of
 //! 2^m around it. So before a begins to slide, all finer vertices around it have arrived (t = 1), and
 //! - a vertex that has arrived *is* its parent, bit by bit: finer triangles vanish without leaving T-junctions;
 //! - where a cell's corners stand still, its centre and edge middles slide along the cell's own edges and diagonal, the
@@ -23,8 +23,8 @@ use crate::scene::Heightfield;
 /// Part of each level's band of λ in which its vertices have arrived and the next level's still stand.
 pub const GAP: f32 = 0.25;
 
-/// The least d₀ in cells: 16√2. Makes λ span at most [i, i+2] in a block of level i, see [`super::quadtree`].
-pub const MIN_UNIT_CELLS: f32 = 16.0 * std::f32::consts::SQRT_2;
+/// The least d₀ in cells: 8√2. Makes λ span at most [i, i+2] in a block of level i, see [`super::quadtree`].
+pub const MIN_UNIT_CELLS: f32 = 8.0 * std::f32::consts::SQRT_2;
 
 /// λ as a function of the place, for one frame of one view.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,13 +1,13 @@
 //! A view of a heightfield → the blocks to draw, all by one instanced draw (thesis 3.2, the vertex-program algorithm).
 //! Metres, pixels.
 //!
-//! A block of level i is 16 × 16 cells of 2^i samples' distance, whatever i; its vertices move by [`super::morph`]. It is
+//! A block of level i is 8 × 8 cells of 2^i samples' distance, whatever i; its vertices move by [`super::morph`]. It is
 //! drawn if λ ≥ i all over its closed square; else its four quarters are looked at. Then:
 //! - *λ ≤ i+2 in it.* Its parent of level i+1 ≤ top was refused, so it has a point with D < d₀·2^(i+1); a point of the
-//!   block lies at most the parent's diagonal of 32√2·2^i cells away, so D < d₀·2^(i+1) + 32√2·2^i cells ≤ d₀·2^(i+2) as
-//!   d₀ ≥ 16√2 cells. And where there is no parent (top), λ ≤ top = i.
-//! - *It draws what is within it.* A vertex of level < i+4 has its parents in the block's closed square; the corners'
-//!   levels are ≥ i+4 > λ, they stand.
+//!   block lies at most the parent's diagonal of 16√2·2^i cells away, so D < d₀·2^(i+1) + 16√2·2^i cells ≤ d₀·2^(i+2) as
+//!   d₀ ≥ 8√2 cells. And where there is no parent (top), λ ≤ top = i.
+//! - *It draws what is within it.* A vertex of level < i+3 has its parents in the block's closed square; the corners'
+//!   levels are ≥ i+3 > λ, they stand.
 //! - *Neighbours fit.* On the edge shared with a block of level j > i, λ ≥ j. So vertices of levels < j have arrived at
 //!   their parents, which lie on the edge as well, and both blocks draw the same points.
 //! - *No pop.* A block is split when somewhere λ < i; then the new vertices, of level i−1, still sit on their parents.
@@ -20,7 +20,7 @@ use crate::camera::Frustum;
 use crate::scene::{Heightfield, TerrainLod};
 
 /// log₂ of a block's cells a side.
-pub const BLOCK_BITS: u32 = 4;
+pub const BLOCK_BITS: u32 = 3;
 
 /// As many as a field of 2^15+1 samples a side has.
 const MAX_LEVELS: usize = 12;
@@ -77,7 +77,7 @@ pub fn top_level(field: &Heightfield) -> u32 {
     field.depth().saturating_sub(BLOCK_BITS)
 }
 
-/// Cells a side of every block: 16, or fewer if the whole field has fewer.
+/// Cells a side of every block: 8, or fewer if the whole field has fewer.
 pub fn block_cells(field: &Heightfield) -> u32 {
     (field.side - 1).min(1 << BLOCK_BITS)
 }

@@ -113,6 +113,9 @@ fn check_closed(field: &Heightfield, triangles: &[Triangle]) -> Result<(), TestC
     Ok(())
 }
 
+/// Cells a side of a block.
+const CELLS: u32 = 1 << quadtree::BLOCK_BITS;
+
 /// λ with the least d₀ that is allowed, times `unit`.
 fn detail_at(lod: &TerrainLod, eye_m: Vec3, unit: f32) -> Detail {
     let mut detail = quadtree::detail(lod, &Errors::default(), eye_m, 500.0, 1.0, f32::MAX);
@@ -143,16 +146,16 @@ proptest! {
     }
 
     #[test]
-    fn level_of_detail_spans_two_levels_in_a_block(eye in eye(), unit in 1f32..3., x in 0u32..=16, z in 0u32..=16) {
+    fn level_of_detail_spans_two_levels_in_a_block(eye in eye(), unit in 1f32..3., x in 0..=CELLS, z in 0..=CELLS) {
         let field = Arc::new(Heightfield { side: 1025, spacing_m: 1.0, ..Heightfield::default() });
         let lod = TerrainLod { field: field.clone(), ..TerrainLod::default() };
         let detail = detail_at(&lod, eye * field.extent_m(), unit);
         let mut blocks = Vec::new();
         quadtree::select(&lod, &detail, None, &mut blocks);
-        let cells: u64 = blocks.iter().map(|block| (16u64 << block.level) * (16u64 << block.level)).sum();
+        let cells: u64 = blocks.iter().map(|block| u64::from(CELLS << block.level).pow(2)).sum();
         prop_assert_eq!(cells, 1024 * 1024);
         // The greatest λ is at a corner, for distance is convex.
-        for ([x, z], block) in [[0, 0], [16, 0], [0, 16], [16, 16], [x, z]].iter().flat_map(|v| blocks.iter().map(move |b| (v, b))) {
+        for ([x, z], block) in [[0, 0], [CELLS, 0], [0, CELLS], [CELLS, CELLS], [x, z]].iter().flat_map(|v| blocks.iter().map(move |b| (v, b))) {
             let place = |from: u32, by: u32| field.place_m(from + (by << block.level));
             let lambda = lambda(&detail, Vec2::new(place(block.i, *x), place(block.j, *z)));
             let level = block.level as f32;
@@ -168,7 +171,7 @@ proptest! {
         let mut blocks = Vec::new();
         quadtree::select(&lod, &detail, None, &mut blocks);
         let holds = |block: &Block, place_m: Vec2| {
-            let side = 16u32 << block.level;
+            let side = CELLS << block.level;
             let [low, high] = [0, side].map(|by| Vec2::new(field.place_m(block.i + by), field.place_m(block.j + by)));
             place_m.cmpgt(low).all() && place_m.cmplt(high).all()
         };

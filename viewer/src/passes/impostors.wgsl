@@ -60,6 +60,13 @@ fn vertex(@location(8) tree: u32, @location(10) shown: f32, @builtin(vertex_inde
     return out;
 }
 
+// A number in [0, 1) for each cell of a grid, without a pattern (Hoskins 2014).
+fn scattered(cell: vec2f) -> f32 {
+    var p = fract(cell.xyx * 0.1031);
+    p += dot(p, p.yzx + 33.33);
+    return fract((p.x + p.y) * p.z);
+}
+
 // Of the light that falls on a matt surface in all directions, what an eye sees of it receives so much on average; the cosine
 // is that of the angle between light and eye.
 fn phase(cosine: f32) -> f32 {
@@ -73,7 +80,7 @@ fn fragment(in: Out) -> @location(0) vec4f {
     // Half-way between two sides some places of the tree are seen from the one, some from the other.
     let part = smoothstep(0.35, 0.65, fract(in.turn));
     let place = floor(in.uv * 32.0);
-    let side = u32(in.turn) + select(0u, 1u, dither(place) < part);
+    let side = u32(in.turn) + select(0u, 1u, scattered(place) < part);
     // From behind it is its own mirror image.
     let u = select(in.uv.x, 1.0 - in.uv.x, (side & 4u) != 0u);
     let at = vec2f((f32(side & 3u) + u) * 0.25, in.uv.y);
@@ -84,7 +91,7 @@ fn fragment(in: Out) -> @location(0) vec4f {
     let frame = frames[in.template_index];
     let noise = dither(in.clip.xy);
     // Twigs are thinner than pixels: of those, so many show one as it covers of each.
-    let is_there = select(relief.b > noise, seen.a >= frame.alpha_cutoff, relief.g > 0.5);
+    let is_there = select(relief.b > scattered(floor(in.uv * 256.0)), seen.a >= frame.alpha_cutoff, relief.g > 0.5);
     if (!is_there || noise > in.shown) {
         discard;
     }

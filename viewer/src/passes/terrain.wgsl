@@ -2,7 +2,7 @@
 // or any triangles of samples (ROAM), or every sample; and the coarse ring around it. Then what covers it.
 
 struct Block {
-    // First sample, and level: 16 × 16 cells of 2^level samples.
+    // First sample, and level: 8 × 8 cells of 2^level samples.
     @location(0) origin: vec2u,
     @location(1) level: u32,
 }
