@@ -17,6 +17,8 @@ pub struct BoundScene {
     trees: Option<BoundTrees>,
     /// Blocks, or sample numbers of a strip, as the LOD mode has it.
     pub terrain: Elements,
+    /// Sides of the picture as a part of full resolution.
+    pub part: f32,
     /// Clumps of grass.
     pub clumps: Elements,
     /// What is drawn of the ring's indices.
@@ -80,6 +82,7 @@ impl BoundScene {
             ground_group: bind(gpu, "ground", &layouts.ground, ground),
             trees: scene.trees.as_ref().map(|set| BoundTrees::new(gpu, layouts, set)),
             terrain: Elements::new(gpu, "terrain"),
+            part: 1.0,
             clumps: Elements::new(gpu, "clumps of grass"),
             ring: Vec::new(),
             plants: Elements::new(gpu, "small plants"),

@@ -32,6 +32,10 @@ const BLADES: u16 = 16;
 /// Vertices of a blade, and its triangles: two for the stalk, one for the tip.
 const BLADE_VERTICES: u16 = 5;
 const BLADE_TRIANGLES: [u16; 9] = [0, 1, 2, 2, 1, 3, 2, 3, 4];
+/// A blade as one triangle, straight from its root to its tip.
+const COARSE_BLADE: [u16; 3] = [0, 1, 4];
+/// In pictures at a smaller part of full resolution than this blades are that coarse.
+const FINE_PART: f32 = 0.6;
 /// Up to this distance in metres all clumps stand.
 const DENSE_M: f32 = 3.0;
 /// Beyond this distance in metres there are none.
@@ -57,6 +61,7 @@ pub const CLUMP: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Sint
 #[derive(Debug)]
 pub struct Grass {
     pipeline: wgpu::RenderPipeline,
+    /// Of a clump with fine blades, then with coarse ones.
     indices: wgpu::Buffer,
 }
 
@@ -66,8 +71,9 @@ impl Grass {
         let groups = [&compiler.layouts.view, &compiler.layouts.ground];
         let buffers = [buffer_layout::<Clump>(wgpu::VertexStepMode::Instance, &CLUMP)];
         let desc = PipelineDesc { buffers: &buffers, ..PipelineDesc::new(&module, &groups) };
-        let indices: Vec<u16> =
-            (0..BLADES).flat_map(|blade| BLADE_TRIANGLES.map(|v| blade * BLADE_VERTICES + v)).collect();
+        let fine = (0..BLADES).flat_map(|blade| BLADE_TRIANGLES.map(|v| blade * BLADE_VERTICES + v));
+        let coarse = (0..BLADES).flat_map(|blade| COARSE_BLADE.map(|v| blade * BLADE_VERTICES + v));
+        let indices: Vec<u16> = fine.chain(coarse).collect();
         Ok(Self {
             pipeline: compiler.pipeline(&desc),
             indices: compiler.gpu.buffer("blades", &indices, wgpu::BufferUsages::INDEX),
@@ -85,7 +91,10 @@ impl DrawPass for Grass {
         pass.set_bind_group(1, &bound.ground_group, &[]);
         pass.set_vertex_buffer(0, bound.clumps.buffer.slice(..));
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint16);
-        pass.draw_indexed(0..u32::from(BLADES) * BLADE_TRIANGLES.len() as u32, 0, 0..bound.clumps.count);
+        let fine = u32::from(BLADES) * BLADE_TRIANGLES.len() as u32;
+        let coarse = u32::from(BLADES) * COARSE_BLADE.len() as u32;
+        let indices = if bound.part < FINE_PART { fine..fine + coarse } else { 0..fine };
+        pass.draw_indexed(indices, 0, 0..bound.clumps.count);
         1
     }
 }

@@ -56,6 +56,7 @@ impl LandscapeChoice {
             grass::clumps(ground, eye_m, &frustum, frame.part, &mut self.clumps);
             self.plants.choose(ground, &bound.scene.land.plants, eye_m, &frustum, frame.part);
         }
+        bound.part = frame.part;
         bound.clumps.write(gpu, &self.clumps);
         bound.plants.write(gpu, &self.plants.instances);
         bound.plant_draws.clone_from(&self.plants.draws);
