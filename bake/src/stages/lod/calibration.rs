@@ -10,7 +10,7 @@ use crate::model::AlphaMask;
 
 /// A pixel count is close enough to its target when off by this part.
 const TOLERANCE: f32 = 0.003;
-/// Pixels a side of the views in which leaves are counted, and of those with twigs, which are thin.
+/// Pixels a side of the views in which leaves are counted, and of those of bare twigs, which are thin.
 const LEAVES_PX: usize = 128;
 const TWIGS_PX: usize = 320;
 /// Twigs may grow by this part of the mesh's diagonal.
@@ -52,7 +52,8 @@ impl Calibration {
         let diagonal_m = (high - low).max(Vec3::ZERO).length();
         let mut calibration = Self {
             leaves: Camera::of([low, high], LEAVES_PX),
-            twigs: Camera::of([low, high], TWIGS_PX),
+            // Among leaves nobody counts twigs, and leaves take their time.
+            twigs: Camera::of([low, high], if aggregates.is_empty() { TWIGS_PX } else { LEAVES_PX }),
             masks: masks.to_vec(),
             full_elements: Vec::new(),
             full: 0,
@@ -120,20 +121,24 @@ fn matching(target: u32, range: std::ops::Range<f32>, guess: f32, count: impl Fn
     let target = target as f32;
     let off = |x: f32| count(x) as f32 - target;
     let close = |off: f32| off.abs() <= TOLERANCE * target;
-    let (mut low, mut high) = ((range.start, off(range.start)), (range.end.max(range.start), f32::INFINITY));
-    if low.1 >= 0.0 || close(low.1) {
-        return low.0;
-    }
+    let (mut low, mut high) = ((range.start, f32::NEG_INFINITY), (range.end.max(range.start), f32::INFINITY));
     let mut at = guess.clamp(low.0, high.0);
-    for _ in 0..8 {
+    for _ in 0..9 {
         let here = (at, off(at));
         if close(here.1) || high.0 - low.0 <= 1e-4 * high.0 {
             return at;
         }
         if here.1 < 0.0 {
             low = here
+        } else if at <= range.start {
+            return at;
         } else {
             high = here
+        }
+        // Only a guess that is too large asks for the range's start.
+        if low.1 == f32::NEG_INFINITY {
+            at = range.start;
+            continue;
         }
         at = match high.1.is_finite() {
             true => {

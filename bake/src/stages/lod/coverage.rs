@@ -172,8 +172,8 @@ fn fill(pixels: &mut [u64], side: usize, [a, b, c]: [Vec2; 3], opaque: impl Fn(f
                 right = right.max(x);
             }
         }
-        let start = (left - 0.5).ceil().max(0.0) as usize;
-        let end = ((right - 0.5).ceil()).clamp(0.0, side as f32) as usize;
+        // Rounded without a call: this is the bake's innermost loop but one.
+        let (start, end) = ((left + 0.5).max(0.0) as usize, ((right + 0.5).max(0.0) as usize).min(side));
         for x in start..end {
             let (word, bit) = (&mut pixels[(row as usize * side + x) / 64], 1 << (x % 64));
             if *word & bit == 0 && opaque(x as f32 + 0.5, y) {
