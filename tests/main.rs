@@ -1,4 +1,5 @@
 //! What crosses the crates.
 
+mod distance;
 mod docs;
 mod round;

@@ -6,7 +6,7 @@ use super::{DrawCommand, ImageUse, Uploader};
 use crate::scene::{Impostor, Template};
 
 /// Mip levels end where a picture of a strip has so many pixels a side.
-const LEAST_PX: u32 = 8 * genescape_schema::scene::IMPOSTOR_PICTURES;
+const MIN_PX: u32 = 8 * genescape_schema::scene::IMPOSTOR_PICTURES;
 
 /// The pictures of a template, as the shader reads it. Metres in the template's space.
 #[repr(C)]
@@ -70,8 +70,8 @@ impl Uploader {
             [all.iter().map(|one| &one.color).collect(), all.iter().map(|one| &one.relief).collect()];
         Some(ImpostorSet {
             frames: self.gpu.buffer("frames of pictures", &frames, Usage::STORAGE),
-            colors: self.strips(&colors, ImageUse::Cutout, LEAST_PX),
-            reliefs: self.strips(&reliefs, ImageUse::Data, LEAST_PX),
+            colors: self.strips(&colors, ImageUse::Cutout, MIN_PX),
+            reliefs: self.strips(&reliefs, ImageUse::Data, MIN_PX),
             indices: self.gpu.buffer("triangles of a picture", &INDICES, Usage::INDEX),
         })
     }

@@ -47,17 +47,17 @@ impl Uploader {
         Ok(self.shared(format!("{kind:?} {}", names.join(" ")), || self.array(images, kind, 1)))
     }
 
-    /// Several strips of square pictures of one size as the layers of one texture, down to `least_px` a side: smaller, and
+    /// Several strips of square pictures of one size as the layers of one texture, down to `min_px` a side: smaller, and
     /// pictures run into each other.
-    pub(super) fn strips(&self, images: &[&Image], kind: ImageUse, least_px: u32) -> Arc<wgpu::Texture> {
+    pub(super) fn strips(&self, images: &[&Image], kind: ImageUse, min_px: u32) -> Arc<wgpu::Texture> {
         let names: Vec<&str> = images.iter().map(|image| image.name.as_str()).collect();
-        self.shared(format!("strips {kind:?} {}", names.join(" ")), || self.array(images, kind, least_px))
+        self.shared(format!("strips {kind:?} {}", names.join(" ")), || self.array(images, kind, min_px))
     }
 
-    fn array(&self, images: &[&Image], kind: ImageUse, least_px: u32) -> wgpu::Texture {
+    fn array(&self, images: &[&Image], kind: ImageUse, min_px: u32) -> wgpu::Texture {
         let chains: Vec<Vec<Arc<[u8]>>> = images.iter().map(|image| chain(image, kind)).collect();
         let wanted =
-            (images[0].height_px.max(images[0].width_px) / least_px.max(1)).max(1).ilog2() as usize + 1;
+            (images[0].height_px.max(images[0].width_px) / min_px.max(1)).max(1).ilog2() as usize + 1;
         let levels = chains.iter().map(Vec::len).min().unwrap_or(1).min(wanted);
         let (first, usage) = (images[0], wgpu::TextureUsages::TEXTURE_BINDING);
         let mut texture = flat(&first.name, [first.width_px, first.height_px], kind.format(), usage);
