@@ -67,6 +67,9 @@ fn scattered(cell: vec2f) -> f32 {
     return fract((p.x + p.y) * p.z);
 }
 
+// The relief of a pixel is a mean: so far before it are the outermost leaves, which are not in their own shade.
+const SHADOW_BIAS_M = 1.2;
+
 // Of the light that falls on a matt surface in all directions, what an eye sees of it receives so much on average; the cosine
 // is that of the angle between light and eye.
 fn phase(cosine: f32) -> f32 {
@@ -110,7 +113,7 @@ fn fragment(in: Out) -> @location(0) vec4f {
     let facing = max(-cosine, 0.0);
     let glow = 0.6 * facing * facing * facing * facing * facing * facing;
     let leaf_sun = (albedo * 0.8 * same + through * (0.6 * other + glow)) * smoothstep(0.0, 0.7, open);
-    let sun = mix(albedo * phase(cosine), leaf_sun, relief.g) * sun_visibility(world, 0.4);
+    let sun = mix(albedo * phase(cosine), leaf_sun, relief.g) * sun_visibility(world, SHADOW_BIAS_M);
     let up = mix(0.5, 0.5 + 0.5 * (phase(to_eye.y) + phase(-to_eye.y)), relief.g);
     let ambient = ambient_light(up) * mix(0.8, 0.15 + 0.75 * open * open, relief.g);
     let radiance = (albedo * ambient + view.sun_irradiance * sun) / PI;
