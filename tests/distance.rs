@@ -85,8 +85,8 @@ fn pictures_of_trees_cover_as_much_and_are_as_bright_as_trees() {
         let scene = studio.read(&path).expect("readable");
         for template in 0..2 {
             assert!(scene.trees.templates[template].impostor.is_some(), "{}", scene.name);
-            let [leaves, picture] =
-                [TreeLodMode::Off, TreeLodMode::Simple].map(|mode| look(&studio, &scene, template as u32, mode));
+            let [leaves, picture] = [TreeLodMode::Off, TreeLodMode::Simple]
+                .map(|mode| look(&studio, &scene, template as u32, mode));
             let brightness = |seen: &Seen| seen.light / seen.pixels;
             let covers = picture.pixels / leaves.pixels;
             let bright = brightness(&picture) / brightness(&leaves);

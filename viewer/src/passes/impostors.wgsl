@@ -78,8 +78,19 @@ fn phase(cosine: f32) -> f32 {
     return 2.0 / (3.0 * PI) * (sqrt(1.0 - c * c) + (PI - angle) * c);
 }
 
+// Which samples of a pixel show what covers a share of it: of four so many, of one now and then.
+fn samples_of(share: f32, noise: f32) -> u32 {
+    let is_covered = vec4f(share) > fract(vec4f(noise) + vec4f(0.0, 0.25, 0.5, 0.75));
+    return dot(select(vec4u(0u), vec4u(1u, 2u, 4u, 8u), is_covered), vec4u(1u));
+}
+
+struct Pixel {
+    @location(0) radiance: vec4f,
+    @builtin(sample_mask) samples: u32,
+}
+
 @fragment
-fn fragment(in: Out) -> @location(0) vec4f {
+fn fragment(in: Out) -> Pixel {
     // Half-way between two sides some places of the tree are seen from the one, some from the other.
     let part = smoothstep(0.35, 0.65, fract(in.turn));
     let place = floor(in.uv * 32.0);
@@ -92,10 +103,10 @@ fn fragment(in: Out) -> @location(0) vec4f {
     let seen = textureSampleGrad(colors, clamped, at, in.template_index, along_x, along_y);
     let relief = textureSampleGrad(reliefs, clamped, at, in.template_index, along_x, along_y).rgb;
     let frame = frames[in.template_index];
-    let noise = dither(in.clip.xy);
-    // Twigs are thinner than pixels: of those, so many show one as it covers of each.
-    let is_there = select(relief.b > scattered(floor(in.uv * 256.0)), seen.a >= frame.alpha_cutoff, relief.g > 0.5);
-    if (!is_there || noise > in.shown) {
+    // Twigs are thinner than pixels.
+    let twigs = samples_of(relief.b, scattered(floor(in.uv * 256.0)));
+    let samples = select(twigs, select(0u, 15u, seen.a >= frame.alpha_cutoff), relief.g > 0.5);
+    if (samples == 0u || dither(in.clip.xy) > in.shown) {
         discard;
     }
     let before = (relief.r - 0.5) * frame.size.x;
@@ -117,5 +128,5 @@ fn fragment(in: Out) -> @location(0) vec4f {
     let up = mix(0.5, 0.5 + 0.5 * (phase(to_eye.y) + phase(-to_eye.y)), relief.g);
     let ambient = ambient_light(up) * mix(0.8, 0.15 + 0.75 * open * open, relief.g);
     let radiance = (albedo * ambient + view.sun_irradiance * sun) / PI;
-    return vec4f(aerial_perspective(radiance, distance(in.world, view.eye)), 1.0);
+    return Pixel(vec4f(aerial_perspective(radiance, distance(in.world, view.eye)), 1.0), samples);
 }
