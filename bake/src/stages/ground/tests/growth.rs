@@ -1,0 +1,197 @@
+//! Small plants and stones: where they stand, and what they are made of.
+
+use super::*;
+
+/// The density in bytes of a kind of plants at each pixel of its map, with the height of the land above the lake.
+fn stands(plants: &GroundPlants<Image8>, name: &str) -> Vec<(u8, f32)> {
+    let Some(kind) = plants.kinds.iter().find(|kind| kind.name == name) else { return Vec::new() };
+    let map = &plants.maps[kind.channel as usize / 4];
+    let water_m = LAND.water_level_m.expect("a lake");
+    let place = |k: u32| ((k as f32 + 0.5) / map.width as f32 - 0.5) * 1024.0;
+    let above_m = |i: u32, j: u32| LAND.field.height_m(place(i), place(j)) - water_m;
+    let pixels = (0..map.height).flat_map(|j| (0..map.width).map(move |i| (i, j)));
+    pixels.map(|(i, j)| (map.pixel(i, j)[kind.channel as usize % 4], above_m(i, j))).collect()
+}
+
+#[test]
+fn reeds_stand_at_the_shore_and_flowers_where_it_is_dry() {
+    let grow = |name: &str| {
+        let there: Vec<f32> = stands(&FINE.plants, name)
+            .into_iter()
+            .filter(|&(part, _)| part > 8)
+            .map(|(_, above_m)| above_m)
+            .collect();
+        assert!(!there.is_empty(), "no {name} grows");
+        there
+    };
+    assert!(grow("reed").iter().all(|above_m| (-0.6..0.6).contains(above_m)));
+    for name in ["flower", "tussock", "shrub"] {
+        assert!(grow(name).iter().all(|&above_m| above_m > -0.05), "{name}");
+    }
+    assert!(grow("boulder").iter().all(|&above_m| above_m > -0.6));
+    let drained = Landform { water_level_m: None, ..LAND.clone() };
+    let dry = maps(&PARAMS, &Woods::none(), &drained, 128).plants;
+    assert!(dry.maps[0].data.iter().skip(3).step_by(4).all(|&part| part == 0), "reeds without a lake");
+}
+
+/// All of them, with the parts of rock, scree, snow and earth within two metres.
+fn standing(maps: &GroundMaps<Image8>) -> Vec<(&PlantKind, crate::model::Plant, [f32; 4])> {
+    let half_m = 0.5 * LAND.field.extent_m();
+    let part = |m: f32| 0.5 + 0.5 * m / half_m;
+    let last = maps.weights.width - 1;
+    let pixel = |m: f32| ((part(m) * (last + 1) as f32) as u32).min(last);
+    let mut all = Vec::new();
+    for kind in &maps.plants.kinds {
+        let map = &maps.plants.maps[kind.channel as usize / 4];
+        let map = DensityMap { width_px: map.width, height_px: map.height, rgba: &map.data };
+        let lines = (half_m / kind.cell_m()) as i32;
+        for (j, i) in (-lines..lines).flat_map(|j| (-lines..lines).map(move |i| (j, i))) {
+            let density = |x: f32, z: f32| map.at(kind.channel, part(x), part(z));
+            let Some(plant) = kind.in_cell([i, j], density) else { continue };
+            let mut weights = [0.0; 4];
+            for (x, z) in (-2..=2).flat_map(|x| (-2..=2).map(move |z| (x as f32, z as f32))) {
+                let texel = maps.weights.pixel(pixel(plant.x_m + x), pixel(plant.z_m + z));
+                (0..4).for_each(|k| weights[k] += f32::from(texel[k]) / (25.0 * 255.0));
+            }
+            all.push((kind, plant, weights));
+        }
+    }
+    all
+}
+
+#[test]
+fn nothing_stands_in_water_in_snow_or_on_cliffs() {
+    let water_m = LAND.water_level_m.expect("a lake");
+    let (mut counts, mut on_rock, mut hidden) = (std::collections::BTreeMap::new(), 0, 0);
+    for (kind, plant, [rock, _, snow, _]) in standing(&FINE) {
+        let name = kind.name.as_str();
+        *counts.entry(name).or_insert(0) += 1;
+        let above_m = LAND.field.height_m(plant.x_m, plant.z_m) - water_m;
+        let is_stone = ["stone", "boulder"].contains(&name);
+        // Stones may lie on the bed of a lake.
+        let lowest_m = if is_stone {
+            f32::NEG_INFINITY
+        } else if name == "reed" {
+            -0.8
+        } else {
+            -0.1
+        };
+        assert!(above_m > lowest_m, "a {name} at {above_m} m");
+        assert!(name != "reed" || above_m < 0.8, "a reed {above_m} m above the lake");
+        let steep = [[2.0, 0.0], [0.0, 2.0]].map(|[x, z]| {
+            let height_m = |way: f32| LAND.field.height_m(plant.x_m + way * x, plant.z_m + way * z);
+            (height_m(1.0) - height_m(-1.0)) / 4.0
+        });
+        let slope = (steep[0] * steep[0] + steep[1] * steep[1]).sqrt();
+        assert!(name != "boulder" || slope < 1.5, "a boulder on a slope of {slope}");
+        hidden += usize::from(name != "boulder" && snow > 0.8);
+        on_rock += usize::from(!is_stone && rock > 0.8);
+    }
+    // A few stand in clefts, where patches of snow and rock are smaller than pixels of the maps.
+    let few = counts.values().sum::<usize>() / 1000;
+    assert!(on_rock < few && hidden < few, "{on_rock} on rock, {hidden} in snow");
+    let common = ["flower", "tussock", "stone", "boulder"];
+    assert!(common.iter().all(|name| counts.get(name) > Some(&10)), "{counts:?}");
+}
+
+#[test]
+fn the_foreground_has_no_more_plants_than_a_file_can_bear() {
+    let mut crowded = maps(&PARAMS, &Woods::none(), &LAND, 256);
+    crowded.plants.maps.iter_mut().for_each(|map| map.data.fill(255));
+    let (_, made) = cut_with(&crowded.plants, 10.0, -35.0);
+    let count = made.grass.parts[1].triangles.len();
+    assert!((standing::MAX_TRIANGLES * 9 / 10..=standing::MAX_TRIANGLES).contains(&count), "{count}");
+    let used: std::collections::BTreeSet<u32> =
+        made.grass.parts.iter().flat_map(|part| part.triangles.as_flattened()).copied().collect();
+    assert_eq!(used.len(), made.grass.positions.len(), "vertices that no triangle has");
+}
+
+#[test]
+fn few_enough_stand_within_reach_to_draw_them_each_frame() {
+    let kinds = plants::all_kinds(&PARAMS, &LAND);
+    let most = |kind: &PlantKind| kind.per_m2 * std::f32::consts::PI * kind.reach_m * kind.reach_m;
+    assert!(kinds.len() == 8 && kinds.iter().all(|kind| most(kind) < 20_000.0));
+    assert!(kinds.iter().all(|kind| kind.shape.triangles.len() <= 300 && kind.shape.coarse <= 100));
+}
+
+#[test]
+fn no_plant_grows_on_rock_or_snow() {
+    let (weights, side) = (&MAPS.weights, MAPS.plants.maps[0].width);
+    for (k, growth) in MAPS.plants.maps[0].data.chunks_exact(4).enumerate() {
+        let (i, j) = (2 * (k as u32 % side), 2 * (k as u32 / side));
+        let around = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| weights.pixel(i + x, j + y));
+        let bare = around.iter().all(|w| u32::from(w[0]) + u32::from(w[2]) > 250);
+        assert!(!bare || growth[..3].iter().all(|&part| part < 100), "{growth:?} at {i}, {j}");
+    }
+}
+
+const MAPLE: LitterParams =
+    LitterParams { leaves_per_stem: 20, leaf_shape: 4, leaf_size_m: 0.1, leaf_hue_deg: 30.0, blossom: 0.0 };
+
+/// A tree at a place, upright.
+fn tree(x: f32, z: f32) -> crate::model::Instance {
+    let y = LAND.field.height_m(x, z);
+    crate::model::Instance {
+        template: 0,
+        world_from_tree: [[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z]],
+        trunk_cylinder_m: [x, z, 0.3],
+    }
+}
+
+#[test]
+fn leaves_lie_under_their_tree_and_in_its_colour() {
+    // The greenest place, so that nothing else lies there.
+    let green = |k: u32| MAPS.weights.pixel(k % 256, k / 256).iter().map(|&w| u32::from(w)).sum::<u32>();
+    let inside = |k: &u32| (20..236).contains(&(k % 256)) && (20..236).contains(&(k / 256));
+    let around = |k: u32| [0, 1, 2, 256, 512, 514].map(|d| green(k + d)).iter().sum::<u32>();
+    let k = (0..65536).filter(inside).min_by_key(|&k| around(k)).expect("a place");
+    let [x, z] = [k % 256 + 1, k / 256 + 1].map(|k| (k as f32 + 0.5) * 4.0 - 512.0);
+    let woods = Woods::new(&MAPLE, &LAND, &[tree(x, z)], &[9.0]);
+    let made = maps(&PARAMS, &woods, &LAND, 256);
+    let (mut reddest, mut changed) = (0.0f32, 0);
+    for (k, (new, old)) in made.color.data.chunks_exact(3).zip(MAPS.color.data.chunks_exact(3)).enumerate() {
+        if new == old {
+            continue;
+        }
+        let [dx, dz] = [(k % 256, x), (k / 256, z)].map(|(k, m)| (k as f32 + 0.5) * 4.0 - 512.0 - m);
+        assert!((dx * dx + dz * dz).sqrt() < 16.0, "{dx} {dz}");
+        reddest = reddest.max(f32::from(new[0]) / f32::from(new[1]));
+        changed += 1;
+    }
+    assert!(changed > 4 && reddest > 1.15, "{changed} {reddest}");
+    let of = |plants: &GroundPlants<Image8>| {
+        stands(plants, "litter").iter().filter(|(part, _)| *part > 60).count()
+    };
+    assert!(of(&made.plants) > 1 && of(&MAPS.plants) == 0);
+    let bare = Woods::new(&LitterParams { leaves_per_stem: 0, ..MAPLE }, &LAND, &[tree(x, z)], &[9.0]);
+    assert!(of(&maps(&PARAMS, &bare, &LAND, 256).plants) > 1, "last autumn's leaves lie under bare trees");
+}
+
+#[test]
+fn shapes_stand_on_the_ground_and_are_made_of_proper_triangles() {
+    for PlantKind { name, shape, scale, per_m2, .. } in &MAPS.plants.kinds {
+        let count = shape.positions_m.len();
+        assert!(count == shape.normals.len() && count == shape.tints.len(), "{name}");
+        assert!(shape.coarse > 0 && shape.coarse as usize <= shape.triangles.len(), "{name}");
+        let low = shape.positions_m.iter().map(|p| p[1]).fold(f32::MAX, f32::min);
+        assert!((-0.25..=0.03).contains(&low), "{name} begins at {low} m");
+        for corners in &shape.triangles {
+            let [a, b, c] = corners.map(|v| glam::Vec3::from_array(shape.positions_m[v as usize]));
+            assert!((b - a).cross(c - a).length() > 1e-6, "{name}: {a} {b} {c}");
+        }
+        assert!(scale[0] > 0.0 && scale[0] <= scale[1] && *per_m2 > 0.0, "{name}");
+        assert!(shape.tints.iter().all(|tint| (0.0..=1.0).contains(tint)), "{name}");
+    }
+}
+
+#[test]
+fn small_plants_of_the_foreground_stand_where_the_maps_have_them() {
+    let (_, made) = cut(10.0, -35.0);
+    let [_, part] = &made.grass.parts[..] else { panic!("grass and plants") };
+    assert!(part.triangles.len() > 200, "{} triangles", part.triangles.len());
+    for corner in part.triangles.as_flattened() {
+        let [x, y, z] = made.grass.positions[*corner as usize];
+        let above = y - LAND.field.height_m(x, z);
+        assert!((-1.0..3.0).contains(&above), "{above} m above the ground");
+    }
+}
