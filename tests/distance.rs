@@ -1,9 +1,8 @@
 //! A tree that is far away covers as much as it would if all its leaves were drawn, and is as bright.
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
 
-use genescape_viewer::baker::{Baker, BakerOptions, Event};
+use genescape_viewer::baker::Event;
 use genescape_viewer::camera::Camera;
 use genescape_viewer::headless::{Headless, scene_files};
 use genescape_viewer::lod_mode::TreeLodMode;
@@ -12,6 +11,8 @@ use genescape_viewer::passes::Shaders;
 use genescape_viewer::scene::{Instance, Scene};
 use genescape_world::Source;
 use glam::Vec3;
+
+use crate::round::Round;
 
 /// Pixels a side of the pictures in which trees are looked at, and those that a tree's height takes of them.
 const SIDE_PX: u32 = 96;
@@ -71,17 +72,11 @@ fn look(studio: &Headless, scene: &Scene, template: u32, mode: TreeLodMode) -> S
 #[test]
 #[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
 fn pictures_of_trees_cover_as_much_and_are_as_bright_as_trees() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let options = BakerOptions { threads: None, heightfield: 65, poll: false };
-    let baker = Baker::start(folder.path(), options, || {}).expect("a thread");
-    let start = Instant::now();
-    while !baker.events().any(|event| matches!(event, Event::Done { .. })) {
-        assert!(start.elapsed() < Duration::from_secs(120), "not baked");
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    let round = Round::new();
+    round.until(|event| matches!(event, Event::Done { .. }));
     let studio = Headless::open(&Shaders::builtin(), 1).expect("a device");
     let mut all = Vec::new();
-    for path in scene_files(&Source::World(folder.path().to_owned())).expect("scenes") {
+    for path in scene_files(&Source::World(round.files.root().to_owned())).expect("scenes") {
         let scene = studio.read(&path).expect("readable");
         for template in 0..2 {
             assert!(scene.trees.templates[template].impostor.is_some(), "{}", scene.name);

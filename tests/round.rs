@@ -9,9 +9,9 @@ use genescape_viewer::baker::{Baker, BakerOptions, Event};
 use genescape_viewer::edit_history::{Change as Edited, Edit};
 use genescape_world::{Change, Scope, Watch, World};
 
-struct Round {
+pub struct Round {
     _folder: tempfile::TempDir,
-    files: World,
+    pub files: World,
     baker: Baker,
     watch: Watch,
     edited: Vec<Edited>,
@@ -19,7 +19,8 @@ struct Round {
 }
 
 impl Round {
-    fn new() -> Self {
+    /// A world whose baker has begun.
+    pub fn new() -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let files = World::new(folder.path());
         let watch =
@@ -30,7 +31,7 @@ impl Round {
     }
 
     /// What the baker tells until it tells `what`; that comes last.
-    fn until(&self, what: impl Fn(&Event) -> bool) -> Vec<Event> {
+    pub fn until(&self, what: impl Fn(&Event) -> bool) -> Vec<Event> {
         let (mut told, start) = (Vec::new(), Instant::now());
         loop {
             for event in self.baker.events() {

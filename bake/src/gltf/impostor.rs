@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::ExportError;
 use super::document::{Document, push};
-use super::materials::{CLAMPED, MaterialSet, Picture, sampler};
+use super::materials::{MaterialSet, Picture};
 use super::vertices::{Surface, add_vertices};
 use crate::model::{Impostor, Material, Mesh, Part, PartKind};
 
@@ -44,18 +44,7 @@ impl Cards<'_> {
 
 /// Adds the material of cards whose pictures are an image; gives its number.
 pub fn add_material<'a>(set: &mut MaterialSet<'a>, picture: Picture<'a>) -> usize {
-    let clamped = sampler(CLAMPED);
-    let known = set.samplers.iter().position(|sampler| *sampler == clamped);
-    let sampler = known.unwrap_or_else(|| push(&mut set.samplers, clamped));
-    let image = push(&mut set.images, (IMPOSTOR.into(), picture));
-    let texture = push(&mut set.textures, json!({ "name": IMPOSTOR, "sampler": sampler, "source": image }));
-    push(
-        &mut set.materials,
-        json!({ "name": IMPOSTOR,
-            "pbrMetallicRoughness": { "baseColorTexture": { "index": texture },
-                "metallicFactor": 0, "roughnessFactor": 0.9 },
-            "alphaMode": "MASK", "alphaCutoff": Impostor::ALPHA_CUTOFF, "doubleSided": true }),
-    )
+    set.add_cards(IMPOSTOR, picture, Impostor::ALPHA_CUTOFF, 0.9)
 }
 
 /// A vertical rectangle for each picture; all cross in the axis.

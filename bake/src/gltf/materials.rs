@@ -4,7 +4,7 @@ use std::convert::Infallible;
 
 use serde_json::{Map, Value, json};
 
-use super::document::{Document, for_each_object};
+use super::document::{Document, for_each_object, push};
 use super::vertices::Surface;
 use crate::model::Material;
 
@@ -58,7 +58,29 @@ pub struct MaterialSet<'a> {
     pub images: Vec<(String, Picture<'a>)>,
 }
 
-impl MaterialSet<'_> {
+impl<'a> MaterialSet<'a> {
+    /// Adds a material of two-sided cards that a picture's alpha cuts out; gives its number.
+    pub(super) fn add_cards(
+        &mut self,
+        name: &str,
+        picture: Picture<'a>,
+        alpha_cutoff: f32,
+        roughness: f64,
+    ) -> usize {
+        let clamped = sampler(CLAMPED);
+        let known = self.samplers.iter().position(|sampler| *sampler == clamped);
+        let sampler = known.unwrap_or_else(|| push(&mut self.samplers, clamped));
+        let image = push(&mut self.images, (name.into(), picture));
+        let texture = push(&mut self.textures, json!({ "name": name, "sampler": sampler, "source": image }));
+        push(
+            &mut self.materials,
+            json!({ "name": name,
+                "pbrMetallicRoughness": { "baseColorTexture": { "index": texture },
+                    "metallicFactor": 0, "roughnessFactor": roughness },
+                "alphaMode": "MASK", "alphaCutoff": alpha_cutoff, "doubleSided": true }),
+        )
+    }
+
     /// Adds materials, textures and samplers; the images must follow before anyone else adds one. Gives the number
     /// that the first material got.
     pub(super) fn add_to(&self, document: &mut Document) -> usize {

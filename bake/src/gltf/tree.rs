@@ -3,10 +3,9 @@
 use serde_json::json;
 
 use super::ExportError;
-use super::document::push;
 use super::impostor::{Cards, add_material};
 use super::levels::levelled_glb;
-use super::materials::{CLAMPED, MaterialSet, Picture, REPEATING, sampler};
+use super::materials::{MaterialSet, Picture, REPEATING, sampler};
 use super::png;
 use crate::model::{Impostor, LevelledMesh, Material, TreeTextures};
 
@@ -34,16 +33,8 @@ pub fn tree_materials<'a>(
     let cards = [(Material::Leaf, "leaf", &textures.leaf), (Material::Blossom, "blossom", &textures.blossom)];
     for (slot, name, levels) in cards {
         let Some(picture) = card_picture(levels).filter(|_| used(slot)) else { continue };
-        if set.samplers.len() == 1 {
-            set.samplers.push(sampler(CLAMPED));
-        }
-        let image = push(&mut set.images, (name.into(), picture));
-        let texture = push(&mut set.textures, json!({ "name": name, "sampler": 1, "source": image }));
         set.slots.push(slot);
-        set.materials.push(json!({ "name": name,
-            "pbrMetallicRoughness": { "baseColorTexture": { "index": texture },
-                "metallicFactor": 0, "roughnessFactor": 0.65 },
-            "alphaMode": "MASK", "alphaCutoff": textures.alpha_cutoff, "doubleSided": true }));
+        set.add_cards(name, picture, textures.alpha_cutoff, 0.65);
     }
     set
 }

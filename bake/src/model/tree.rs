@@ -76,7 +76,7 @@ pub struct Impostor {
     /// Albedo in sRGB, and alpha for a cutoff of [`Impostor::ALPHA_CUTOFF`]: RGBA.
     pub colors: Image8,
     /// Red is how far what a pixel shows lies before the axis, 0.5 for none and 1 for half of the width; green the share
-    /// of leaves and blossom in it. RGB, linear.
+    /// of leaves and blossom in it, blue the share of the pixel that the tree covers. RGB, linear.
     pub relief: Image8,
     /// x and z of the vertical axis.
     pub axis_m: [f32; 2],

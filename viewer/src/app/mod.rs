@@ -345,10 +345,10 @@ impl App {
         let accessible = accessible.filter(|_| self.log.wants_widgets());
         let widgets = accessible.map(|update| log::widgets(update, full.pixels_per_point));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let (slots, pictures) = (&output.views.slots, &mut screen.pictures);
+        let (slots, painter) = (&output.views.slots, &mut screen.painter);
         let is_outdated = |view: usize| self.pace.is_shared() && model.views[view].state.is_to_come();
         let wish = Wish { frame, sharpness, outdated: std::array::from_fn(is_outdated) };
-        let (drawn, blurred) = viewports.record(&mut encoder, pictures, slots, &wish, &self.camera);
+        let (drawn, blurred) = viewports.record(&mut encoder, painter, slots, &wish, &self.camera);
         let again = if (0..model.views.len()).any(|view| viewports.picture(view) != model.views[view].picture)
         {
             // A first picture, which the user interface did not know of yet.

@@ -16,9 +16,10 @@ pub struct Screen {
     pub ctx: egui::Context,
     /// Translates the window's events.
     pub input: egui_winit::State,
-    painter: egui_wgpu::Renderer,
-    /// What the landscapes look like, for the painter.
-    pub pictures: UiPainter,
+    /// Keeps egui's textures.
+    renderer: egui_wgpu::Renderer,
+    /// Paints its triangles.
+    pub painter: UiPainter,
     /// What is for the next frame.
     later: Vec<egui::Event>,
     surface: wgpu::Surface<'static>,
@@ -49,11 +50,11 @@ impl Screen {
         let scale = window.scale_factor() as f32;
         let id = egui::ViewportId::ROOT;
         let input = egui_winit::State::new(ctx.clone(), id, &window, Some(scale), window.theme(), Some(8192));
-        let painter =
+        let renderer =
             egui_wgpu::Renderer::new(&gpu.device, config.format, egui_wgpu::RendererOptions::default());
-        let pictures = UiPainter::new(&gpu, config.format);
+        let painter = UiPainter::new(&gpu, config.format);
         let later = Vec::new();
-        Ok((Self { window, ctx, input, painter, pictures, later, surface, config, gpu: gpu.clone() }, gpu))
+        Ok((Self { window, ctx, input, renderer, painter, later, surface, config, gpu: gpu.clone() }, gpu))
     }
 
     /// What has happened since the last frame, up to a press.
@@ -92,16 +93,16 @@ impl Screen {
         let mut shapes = self.ctx.tessellate(output.shapes, pixels_per_point);
         for (id, deltas) in &output.textures_delta.set {
             for delta in deltas {
-                self.painter.update_texture(&self.gpu.device, &self.gpu.queue, *id, delta);
+                self.renderer.update_texture(&self.gpu.device, &self.gpu.queue, *id, delta);
             }
         }
-        self.pictures.take_over(&mut shapes, self.ctx.viewport_rect(), &self.painter);
+        self.painter.take_over(&mut shapes, self.ctx.viewport_rect(), &self.renderer);
         let screen = egui_wgpu::ScreenDescriptor {
             size_in_pixels: [self.config.width, self.config.height],
             pixels_per_point,
         };
         let (device, queue) = (&self.gpu.device, &self.gpu.queue);
-        let uploads = self.painter.update_buffers(device, queue, &mut encoder, &shapes, &screen);
+        let uploads = self.renderer.update_buffers(device, queue, &mut encoder, &shapes, &screen);
         let frame = self.frame();
         if let Some(frame) = &frame {
             let view = frame.texture.create_view(&Default::default());
@@ -112,11 +113,11 @@ impl Screen {
                     ..Default::default()
                 })
                 .forget_lifetime();
-            self.painter.render(&mut pass, &shapes, &screen);
+            self.renderer.render(&mut pass, &shapes, &screen);
         }
         self.gpu.queue.submit(uploads.into_iter().chain([encoder.finish()]));
         for id in &output.textures_delta.free {
-            self.painter.free_texture(id);
+            self.renderer.free_texture(id);
         }
         // Says that all is done; egui complains of changes that are dropped.
         output.textures_delta.clear();

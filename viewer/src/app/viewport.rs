@@ -109,7 +109,7 @@ impl Viewport {
     }
 
     /// Gives the picture its size in the window and tells the user interface where to find it.
-    pub fn fit(&mut self, passes: &Passes, pictures: &mut UiPainter, size_px: [u32; 2], part: f32) {
+    pub fn fit(&mut self, passes: &Passes, painter: &mut UiPainter, size_px: [u32; 2], part: f32) {
         self.part = part;
         let size_px = size_px.map(|side| (side as f32 * part).round() as u32);
         if !self.view.resize(passes, size_px) && self.picture.is_some() {
@@ -117,7 +117,7 @@ impl Viewport {
         }
         self.seen = None;
         let texture = self.view.targets().display.create_view(&Default::default());
-        self.picture = Some(pictures.set(self.number, &texture));
+        self.picture = Some(painter.set(self.number, &texture));
     }
 
     /// What the picture ought to show at its size; nothing without a landscape.

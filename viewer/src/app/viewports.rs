@@ -151,7 +151,7 @@ impl Viewports {
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        pictures: &mut UiPainter,
+        painter: &mut UiPainter,
         slots: &[Slot],
         wish: &Wish,
         control: &CameraControl,
@@ -168,7 +168,7 @@ impl Viewports {
             let is_outdated = outdated[slot.view] && one.shows_anything();
             let before = Before { part: one.part, is_right: one.shows(&wanted), is_outdated };
             let part = sharpness.of(before, &mut sharpened);
-            one.fit(&self.passes, pictures, slot.size_px, part.unwrap_or(one.part));
+            one.fit(&self.passes, painter, slot.size_px, part.unwrap_or(one.part));
             // Unless the window has got another size, which leaves nothing of what was there.
             let stays = part.is_none() && one.shows_anything();
             if !stays && !one.shows(&wanted) {

@@ -29,7 +29,7 @@ pub fn simple_error_m(errors_m: &[f32]) -> f32 {
 }
 
 /// Sines of the angles above or below from which on pictures are too steep to be of use, and are not used.
-const STEEP: [f32; 2] = [0.6, 0.75];
+pub const STEEP: [f32; 2] = [0.6, 0.75];
 
 /// The share of a tree that its picture shows, the rest being its mesh: none up to `error_m` of the picture, all from twice
 /// that on; none from steeply above or below. `steepness`: sine of the angle between the way to the eye and the level.

@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 use super::shaders::ShaderError;
 use super::{BoundTrees, Compiler, Shader, ViewUniform};
 use crate::camera::Frustum;
-use crate::lod::tree::MIN_DISTANCE_M;
+use crate::lod::tree::{MIN_DISTANCE_M, STEEP};
 use crate::lod_mode::TreeLodMode;
 use crate::options::Options;
 use crate::upload::TreeSet;
@@ -24,6 +24,8 @@ pub const SHADER: Shader = Shader {
         ("GROUP", GROUP as f64),
         ("MAX_GROUPS", MAX_GROUPS as f64),
         ("MIN_DISTANCE_M", MIN_DISTANCE_M as f64),
+        ("STEEP", STEEP[0] as f64),
+        ("TOO_STEEP", STEEP[1] as f64),
         ("SIMPLE", TreeLodMode::Simple as u32 as f64),
         ("DISCRETE", TreeLodMode::Discrete as u32 as f64),
         ("OFF", TreeLodMode::Off as u32 as f64),

@@ -11,7 +11,8 @@ override SIMPLE: u32;
 override DISCRETE: u32;
 override OFF: u32;
 // Sines of the angles from which on pictures are too steep to be of use, and are not used.
-const STEEP = vec2f(0.6, 0.75);
+override STEEP: f32;
+override TOO_STEEP: f32;
 
 struct Cull {
     // Unit normals and distances of the planes that bound the view; a point p is inside if n·p + d ≥ 0.
@@ -108,7 +109,7 @@ fn lod_number(template_index: u32, scale: f32, distance: f32) -> f32 {
 // that on, and none from steeply above or below. Its twin is `lod::tree::pictured`.
 fn pictured(template_index: u32, scale: f32, distance: f32, steepness: f32) -> f32 {
     let times = cull.error_per_m * distance / (scale * templates[template_index].picture_error);
-    let share = clamp(log2(max(times, 1.0)), 0.0, 1.0) * (1.0 - smoothstep(STEEP.x, STEEP.y, steepness));
+    let share = clamp(log2(max(times, 1.0)), 0.0, 1.0) * (1.0 - smoothstep(STEEP, TOO_STEEP, steepness));
     if (cull.lod_mode == OFF) {
         return 0.0;
     }

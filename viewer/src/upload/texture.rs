@@ -195,6 +195,25 @@ mod tests {
     }
 
     #[test]
+    fn cutouts_cover_as_much_at_every_level() {
+        let pixels = (0..64u32 * 64).flat_map(|n| {
+            let (x, y) = (n % 64, n / 64);
+            [90, 120, 60, if (x * x + 3 * y) % 7 < 2 || x.abs_diff(y) < 9 { 255 } else { 0 }]
+        });
+        let pixels: Vec<u8> = pixels.collect();
+        let image = Image { name: "leaf".into(), width_px: 64, height_px: 64, levels: vec![pixels.into()] };
+        let share = |level: &Arc<[u8]>| {
+            let passes = level.chunks_exact(4).filter(|pixel| pixel[3] >= CUT).count();
+            passes as f32 / (level.len() / 4) as f32
+        };
+        let [cut, plain] = [ImageUse::Cutout, ImageUse::Color].map(|kind| chain(&image, kind));
+        for level in &cut[1..4] {
+            assert!((share(level) - share(&cut[0])).abs() < 0.04, "{} of {}", share(level), share(&cut[0]));
+        }
+        assert!((share(&plain[3]) - share(&plain[0])).abs() > 0.1, "plain averages would not");
+    }
+
+    #[test]
     fn a_file_s_own_mips_are_left_as_they_are() {
         let mut image = checkered(10, 20);
         image.levels.push(vec![7; 16].into());

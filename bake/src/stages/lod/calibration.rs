@@ -10,7 +10,8 @@ use crate::model::AlphaMask;
 
 /// A pixel count is close enough to its target when off by this part.
 const TOLERANCE: f32 = 0.003;
-/// Pixels a side of the views in which leaves are counted, and of those of bare twigs, which are thin.
+/// Pixels a side of the views in which leaves are counted, with the twigs among them, and of those of bare twigs, which are
+/// thin.
 const LEAVES_PX: usize = 128;
 const TWIGS_PX: usize = 320;
 /// Twigs may grow by this part of the mesh's diagonal.
@@ -29,8 +30,7 @@ pub struct Sizes {
 
 /// Keeps coverage from level to level.
 pub struct Calibration {
-    leaves: Camera,
-    twigs: Camera,
+    camera: Camera,
     masks: Vec<AlphaMask>,
     /// Pixels that each aggregate covers when whole, and all parts together.
     full_elements: Vec<u32>,
@@ -51,20 +51,18 @@ impl Calibration {
     ) -> Self {
         let diagonal_m = (high - low).max(Vec3::ZERO).length();
         let mut calibration = Self {
-            leaves: Camera::of([low, high], LEAVES_PX),
-            // Among leaves nobody counts twigs, and leaves take their time.
-            twigs: Camera::of([low, high], if aggregates.is_empty() { TWIGS_PX } else { LEAVES_PX }),
+            camera: Camera::of([low, high], if aggregates.is_empty() { TWIGS_PX } else { LEAVES_PX }),
             masks: masks.to_vec(),
             full_elements: Vec::new(),
             full: 0,
             max_offset_m: if thickens { MAX_OFFSET * diagonal_m } else { 0.0 },
             last: Sizes { scales: vec![1.0; aggregates.len()], offset_m: 0.0 },
         };
-        let elements = calibration.elements(state, aggregates, &calibration.leaves);
-        let covered = |elements: &Elements| elements.covered(&calibration.leaves, 1.0);
+        let elements = calibration.elements(state, aggregates);
+        let covered = |elements: &Elements| elements.covered(&calibration.camera, 1.0);
         calibration.full_elements = elements.iter().map(covered).collect();
         if thickens {
-            let canvas = calibration.draw_elements(state, aggregates, &calibration.last);
+            let canvas = calibration.draw(&elements, &calibration.last);
             calibration.full = covered_with(state, &canvas, 0.0);
         }
         calibration
@@ -73,17 +71,17 @@ impl Calibration {
     /// First each aggregate covers what it did, then the surfaces make up for the rest.
     pub fn sizes(&mut self, state: &State, aggregates: &[Aggregate]) -> Sizes {
         let mut sizes = self.last.clone();
-        let elements = self.elements(state, aggregates, &self.leaves);
+        let elements = self.elements(state, aggregates);
         for (index, (elements, aggregate)) in elements.iter().zip(aggregates).enumerate() {
             let scale = sizes.scales[index];
             let range = MIN_SHRUNK * scale..aggregate.max_scale(scale);
             let guess = aggregate.same_area_scale();
             sizes.scales[index] = matching(self.full_elements[index], range, guess, |scale| {
-                elements.covered(&self.leaves, scale)
+                elements.covered(&self.camera, scale)
             });
         }
         if self.max_offset_m > 0.0 {
-            let canvas = self.draw_elements(state, aggregates, &sizes);
+            let canvas = self.draw(&elements, &sizes);
             let range = 0.0..self.max_offset_m;
             let guess = sizes.offset_m + 0.1 * self.max_offset_m;
             sizes.offset_m =
@@ -93,17 +91,16 @@ impl Calibration {
         sizes
     }
 
-    fn elements(&self, state: &State, aggregates: &[Aggregate], camera: &Camera) -> Vec<Elements> {
+    fn elements(&self, state: &State, aggregates: &[Aggregate]) -> Vec<Elements> {
         let project = |aggregate: &Aggregate| {
             let mask = self.masks.get(aggregate.part).copied().unwrap_or_default();
-            Elements::new(state, &state.parts[aggregate.part], camera, mask)
+            Elements::new(state, &state.parts[aggregate.part], &self.camera, mask)
         };
         aggregates.iter().map(project).collect()
     }
 
-    fn draw_elements(&self, state: &State, aggregates: &[Aggregate], sizes: &Sizes) -> Canvas {
-        let mut canvas = Canvas::empty(&self.twigs);
-        let elements = self.elements(state, aggregates, &self.twigs);
+    fn draw(&self, elements: &[Elements], sizes: &Sizes) -> Canvas {
+        let mut canvas = Canvas::empty(&self.camera);
         elements.iter().zip(&sizes.scales).for_each(|(part, &scale)| part.draw(scale, &mut canvas));
         canvas
     }
