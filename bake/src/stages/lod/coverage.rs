@@ -3,6 +3,7 @@
 //!
 //! Orthographic views of square pixels; a pixel counts when its centre is inside a triangle and opaque there.
 
+use std::cell::LazyCell;
 use std::f32::consts::FRAC_1_SQRT_2;
 
 use glam::{Vec2, Vec3};
@@ -117,9 +118,10 @@ impl Elements {
         for (view, pixels) in canvas.views.iter_mut().enumerate() {
             for triangle in &self.triangles {
                 let corners = triangle.corners[view].map(|by| triangle.centres[view] + by * scale);
-                let Some(texture) = Affine::through(corners, triangle.uvs) else { continue };
+                // Most small triangles show nothing that is not covered yet, so their texture is placed only when it counts.
+                let texture = LazyCell::new(|| Affine::through(corners, triangle.uvs));
                 fill(pixels, canvas.camera.side, corners, |x, y| {
-                    self.mask.is_opaque(texture.at(x, y).into())
+                    texture.as_ref().is_some_and(|texture| self.mask.is_opaque(texture.at(x, y).into()))
                 });
             }
         }
@@ -158,9 +160,12 @@ impl Affine {
 
 /// Sets the bits of pixels whose centres lie in a triangle and are opaque.
 fn fill(pixels: &mut [u64], side: usize, [a, b, c]: [Vec2; 3], opaque: impl Fn(f32, f32) -> bool) {
-    let (low, high) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
-    let first = (low - 0.5).max(-1.0).ceil() as i32;
-    let last = (high - 0.5).min(side as f32).floor() as i32;
+    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+    let first = (low.y - 0.5).max(-1.0).ceil() as i32;
+    let last = (high.y - 0.5).min(side as f32).floor() as i32;
+    if first > last || whole(low.x) == whole(high.x) {
+        return;
+    }
     let slopes = [(a, b), (b, c), (c, a)].map(|(p, q)| (q.x - p.x) / (q.y - p.y));
     for row in first.max(0)..=last.min(side as i32 - 1) {
         let y = row as f32 + 0.5;
@@ -172,13 +177,23 @@ fn fill(pixels: &mut [u64], side: usize, [a, b, c]: [Vec2; 3], opaque: impl Fn(f
                 right = right.max(x);
             }
         }
-        // Rounded without a call: this is the bake's innermost loop but one.
-        let (start, end) = ((left + 0.5).max(0.0) as usize, ((right + 0.5).max(0.0) as usize).min(side));
-        for x in start..end {
-            let (word, bit) = (&mut pixels[(row as usize * side + x) / 64], 1 << (x % 64));
-            if *word & bit == 0 && opaque(x as f32 + 0.5, y) {
-                *word |= bit;
+        let (start, end) = (whole(left), whole(right).min(side));
+        let line = &mut pixels[row as usize * side / 64..][..side / 64];
+        for word in start / 64..end.div_ceil(64) {
+            let (from, to) = (start.max(64 * word) % 64, end.min(64 * word + 64) - 64 * word);
+            let mut bare = !line[word] & u64::MAX << from & u64::MAX >> (64 - to);
+            while bare != 0 {
+                let bit = bare & bare.wrapping_neg();
+                bare ^= bit;
+                if opaque((64 * word) as f32 + bit.trailing_zeros() as f32 + 0.5, y) {
+                    line[word] |= bit;
+                }
             }
         }
     }
+}
+
+/// The first pixel whose centre is not left of a place: without a call, since this is the bake's innermost loop but one.
+fn whole(place: f32) -> usize {
+    (place + 0.5).max(0.0) as usize
 }

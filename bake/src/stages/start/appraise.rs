@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::panorama::{Kind, ROWS, Seen};
+use super::panorama::{Kind, Seen};
 use super::picture::{HALF_HEIGHT, Picture};
 
 /// What a view is wanted to have.
@@ -99,7 +99,7 @@ pub(super) fn appraise(picture: &Picture<'_>, footing: f32, light: f32) -> Appra
 
 impl Picture<'_> {
     fn open(&self) -> f32 {
-        let land = |seen: &Seen| !matches!(seen.kind, Kind::Sky | Kind::Tree);
+        let land = |seen: &Seen| seen.kind.is_land();
         let wall = self.part([-0.04, HALF_HEIGHT], |_, seen| land(seen) && seen.depth_m < 40.0);
         // On level ground a ray of slope −s reaches 1.6 m / s.
         let bank = self.part([-0.28, -0.04], |slope, seen| land(seen) && seen.depth_m * -slope < 0.7);
@@ -108,24 +108,14 @@ impl Picture<'_> {
     }
 
     fn depth(&self) -> f32 {
-        let farthest = |column: &&[Seen; ROWS]| {
-            let land = column.iter().filter(|seen| !matches!(seen.kind, Kind::Sky | Kind::Tree));
-            land.map(|seen| seen.depth_m).fold(1.0, f32::max)
-        };
-        let far = self.columns().iter().map(|column| libm::logf(farthest(column))).sum::<f32>();
-        let far = ramp(libm::logf(40.0), libm::logf(600.0), far / self.columns().len() as f32);
-        let between = |low: f32, high: f32| {
-            let here = self.share(|seen| (low..high).contains(&seen.depth_m));
-            ramp(0.0, 0.04, here)
-        };
+        let far = ramp(libm::logf(40.0), libm::logf(600.0), self.mean(|column| column.log_far));
+        let between = |low_m: f32, high_m: f32| ramp(0.0, 0.04, self.share_between(low_m..high_m, |_| true));
         let bands = between(10.0, 30.0) + between(30.0, 90.0) + between(90.0, 270.0) + between(270.0, 1e4);
         0.2 + 0.4 * far + 0.4 * ramp(0.8, 3.0, bands)
     }
 
     fn trees(&self) -> f32 {
-        let between = |low: f32, high: f32| {
-            self.share(|seen| seen.kind == Kind::Tree && (low..high).contains(&seen.depth_m))
-        };
+        let between = |low_m: f32, high_m: f32| self.share_between(low_m..high_m, |kind| kind == Kind::Tree);
         let (near, good, far) = (between(0.0, 10.0), between(10.0, 60.0), between(60.0, 1e4));
         let some = 0.2 + 0.8 * ramp(0.0, 0.1, good + 0.3 * far);
         let none_near = 0.2 + 0.8 * ramp(0.2, 0.04, near);
@@ -134,22 +124,22 @@ impl Picture<'_> {
     }
 
     fn water(&self) -> f32 {
-        let share = self.share(|seen| seen.kind == Kind::Water);
-        let at_feet = self.share(|seen| seen.kind == Kind::Water && seen.depth_m < 6.0);
+        let share = self.share(|kind| kind == Kind::Water);
+        let at_feet = self.share_between(0.0..6.0, |kind| kind == Kind::Water);
         let some = 0.85 + 0.15 * ramp(0.0, 0.03, share);
         some * (0.4 + 0.6 * ramp(0.45, 0.3, share)) * (0.4 + 0.6 * ramp(0.1, 0.0, at_feet))
     }
 
     fn horizon(&self) -> f32 {
         let from_top = 0.5 - (self.skyline - self.pitch) / (2.0 * HALF_HEIGHT);
-        let sky = self.share(|seen| seen.kind == Kind::Sky);
+        let sky = self.share(|kind| kind == Kind::Sky);
         let well = ramp(0.1, 0.33, from_top) * ramp(0.75, 0.52, from_top);
         (0.15 + 0.85 * well) * (0.2 + 0.8 * ramp(0.03, 0.2, sky))
     }
 
     fn green(&self) -> f32 {
-        let snow = self.share(|seen| seen.kind == Kind::Snow);
-        let land = self.share(|seen| !matches!(seen.kind, Kind::Sky | Kind::Tree));
+        let snow = self.share(|kind| kind == Kind::Snow);
+        let land = self.share(Kind::is_land);
         1.0 - 0.5 * ramp(0.4, 1.0, snow / land.max(0.05))
     }
 }

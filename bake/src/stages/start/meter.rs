@@ -30,7 +30,7 @@ const MIRRORED: f32 = 0.35;
 
 /// Factor by which the picture is to be made brighter; `lit` is the part of its ground that the sun reaches.
 pub(super) fn exposure(picture: &Picture<'_>, light: &SkyLight, lit: f32) -> f32 {
-    let snow = picture.share(|seen| seen.kind == Kind::Snow);
+    let snow = picture.share(|kind| kind == Kind::Snow);
     let key = libm::exp2f(SNOW_EV * (snow / MUCH_SNOW).min(1.0));
     let factor = key * libm::powf(NEUTRAL / log_average(picture, light, lit), ADAPTED);
     factor.clamp(LIMITS[0], LIMITS[1])

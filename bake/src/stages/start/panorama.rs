@@ -36,6 +36,16 @@ pub(super) enum Kind {
     Tree,
 }
 
+impl Kind {
+    pub const COUNT: usize = 5;
+    pub const ALL: [Self; Self::COUNT] = [Self::Sky, Self::Ground, Self::Snow, Self::Water, Self::Tree];
+
+    /// Also water.
+    pub fn is_land(self) -> bool {
+        !matches!(self, Self::Sky | Self::Tree)
+    }
+}
+
 /// What a ray meets first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Seen {
@@ -115,18 +125,30 @@ pub(super) struct Panorama {
     seen: Vec<[Seen; ROWS]>,
     /// For each column the slope of the skyline: of land, not of trees.
     skyline: Vec<f32>,
+    /// For each column the logarithm of the farthest land's depth, in metres.
+    log_far: Vec<f32>,
+}
+
+/// What is seen in one direction.
+#[derive(Clone, Copy)]
+pub(super) struct Column<'a> {
+    /// From bottom to top.
+    pub seen: &'a [Seen; ROWS],
+    pub skyline: f32,
+    pub log_far: f32,
 }
 
 impl Panorama {
     pub fn new(scene: &Surroundings<'_>, place: Vec2) -> Self {
         let eye_m = scene.surface_m(place) + StartView::EYE_HEIGHT_M;
-        let mut panorama = Self { eye_m, seen: Vec::with_capacity(COLUMNS), skyline: Vec::new() };
+        let mut panorama = Self { eye_m, seen: Vec::new(), skyline: Vec::new(), log_far: Vec::new() };
         for column in 0..COLUMNS {
             panorama.add_column(scene, place, column_towards(column));
         }
         for tree in &scene.trees {
             panorama.add_tree(tree, place);
         }
+        panorama.log_far = panorama.seen.iter().map(|seen| libm::logf(farthest_m(seen))).collect();
         panorama
     }
 
@@ -173,19 +195,25 @@ impl Panorama {
 
     /// A tree before a column's rows, unless land hides it.
     fn fill(&mut self, column: usize, [low, high]: [f32; 2], depth_m: f32) {
-        for (row, seen) in self.seen[column].iter_mut().enumerate() {
-            let slope = slope_of(row);
-            if slope > low - 0.5 * ROW_STEP && slope < high + 0.5 * ROW_STEP && depth_m < seen.depth_m {
+        // How many rows begin below a slope.
+        let rows = |slope: f32| ((slope + REACH) / ROW_STEP + 1.0).clamp(0.0, ROWS as f32) as usize;
+        for seen in &mut self.seen[column][rows(low).saturating_sub(1)..rows(high)] {
+            if depth_m < seen.depth_m {
                 *seen = Seen { kind: Kind::Tree, depth_m };
             }
         }
     }
 
-    /// The columns within `half` of one.
-    pub fn columns(&self, middle: usize, half: usize) -> impl Iterator<Item = (&[Seen; ROWS], f32)> + Clone {
-        let around = (0..=2 * half).map(move |k| (middle + COLUMNS + k - half) % COLUMNS);
-        around.map(|column| (&self.seen[column], self.skyline[column]))
+    /// The column `index - before` from north, all round.
+    pub fn column(&self, index: usize, before: usize) -> Column<'_> {
+        let k = (index + COLUMNS - before) % COLUMNS;
+        Column { seen: &self.seen[k], skyline: self.skyline[k], log_far: self.log_far[k] }
     }
+}
+
+/// The farthest land in a column, 1 m or more.
+fn farthest_m(seen: &[Seen; ROWS]) -> f32 {
+    seen.iter().filter(|seen| seen.kind.is_land()).map(|seen| seen.depth_m).fold(1.0, f32::max)
 }
 
 /// Slope of a row's middle.

@@ -1,9 +1,11 @@
 //! A panorama and a heading → the part of it that a picture shows, looking so far up or down that the skyline lies a
 //! little above the middle.
 
+use std::ops::Range;
+
 use genescape_schema::scene::Lookout;
 
-use super::panorama::{COLUMNS, Panorama, ROWS, Seen, slope_of};
+use super::panorama::{COLUMNS, Column, Kind, Panorama, ROWS, Seen, slope_of};
 
 /// Columns of the panorama in half a picture: ±41°, the viewer's 60° upright at 16:10.
 pub(super) const HALF_COLUMNS: usize = 11;
@@ -14,27 +16,39 @@ const SKYLINE_AT: f32 = 0.45;
 /// The look goes no steeper up or down.
 const MAX_PITCH: f32 = 0.17;
 
+/// Depths in metres between which rays are counted.
+const BANDS_M: [f32; 7] = [6.0, 10.0, 30.0, 60.0, 90.0, 270.0, 1e4];
+
 /// A heading's part of the panorama.
 pub(super) struct Picture<'a> {
-    columns: Vec<&'a [Seen; ROWS]>,
+    /// From left to right.
+    columns: [Column<'a>; 2 * HALF_COLUMNS + 1],
     /// Mean slope of the skyline.
     pub skyline: f32,
     /// Slope of the look.
     pub pitch: f32,
+    /// Rays of each kind in each band of depths.
+    counts: [[u32; BANDS_M.len() + 1]; Kind::COUNT],
 }
 
 impl<'a> Picture<'a> {
     pub fn new(panorama: &'a Panorama, lookout: Lookout) -> Self {
         let middle = lookout.heading() * COLUMNS / Lookout::HEADINGS;
-        let columns = panorama.columns(middle, HALF_COLUMNS);
-        let skyline = columns.clone().map(|(_, slope)| slope).sum::<f32>() / (2 * HALF_COLUMNS + 1) as f32;
-        let pitch = (skyline - 2.0 * HALF_HEIGHT * (0.5 - SKYLINE_AT)).clamp(-MAX_PITCH, MAX_PITCH);
-        Self { columns: columns.map(|(seen, _)| seen).collect(), skyline, pitch }
+        let columns = std::array::from_fn(|k| panorama.column(middle + k, HALF_COLUMNS));
+        let mut picture = Self { columns, skyline: 0.0, pitch: 0.0, counts: Default::default() };
+        picture.skyline = picture.mean(|column| column.skyline);
+        let pitch = picture.skyline - 2.0 * HALF_HEIGHT * (0.5 - SKYLINE_AT);
+        picture.pitch = pitch.clamp(-MAX_PITCH, MAX_PITCH);
+        let mut counts = picture.counts;
+        for (_, seen) in picture.rays() {
+            counts[seen.kind as usize][band(seen.depth_m)] += 1;
+        }
+        Self { counts, ..picture }
     }
 
-    /// From left to right.
-    pub fn columns(&self) -> &[&'a [Seen; ROWS]] {
-        &self.columns
+    /// Of all columns.
+    pub fn mean(&self, value: impl Fn(&Column<'_>) -> f32) -> f32 {
+        self.columns.iter().map(value).sum::<f32>() / self.columns.len() as f32
     }
 
     /// All of it: slope and what is seen.
@@ -45,24 +59,36 @@ impl<'a> Picture<'a> {
     fn rays_between(&self, [low, high]: [f32; 2]) -> impl Iterator<Item = (f32, &Seen)> {
         let rows = (0..ROWS).map(|row| (row, slope_of(row)));
         let rows = rows.filter(move |(_, slope)| (low..=high).contains(slope));
-        rows.flat_map(|(row, slope)| self.columns.iter().map(move |column| (slope, &column[row])))
+        rows.flat_map(|(row, slope)| self.columns.iter().map(move |column| (slope, &column.seen[row])))
     }
 
     /// Part of the rays with slopes between two bounds that meet what `wanted` says.
     pub fn part(&self, slopes: [f32; 2], wanted: impl Fn(f32, &Seen) -> bool) -> f32 {
-        part(self.rays_between(slopes), wanted)
+        let (mut all, mut met) = (0_u32, 0_u32);
+        for (slope, seen) in self.rays_between(slopes) {
+            (all, met) = (all + 1, met + u32::from(wanted(slope, seen)));
+        }
+        met as f32 / all.max(1) as f32
     }
 
-    /// Part of the picture.
-    pub fn share(&self, wanted: impl Fn(&Seen) -> bool) -> f32 {
-        part(self.rays(), |_, seen| wanted(seen))
+    /// Part of the picture that shows some kinds.
+    pub fn share(&self, wanted: impl Fn(Kind) -> bool) -> f32 {
+        self.share_between(0.0..f32::INFINITY, wanted)
+    }
+
+    /// Part of the picture that shows some kinds between two depths in metres, each one of [`BANDS_M`], 0 or infinite.
+    pub fn share_between(&self, depths_m: Range<f32>, wanted: impl Fn(Kind) -> bool) -> f32 {
+        let bands = match depths_m.end.is_finite() {
+            true => band(depths_m.start)..band(depths_m.end),
+            false => band(depths_m.start)..BANDS_M.len() + 1,
+        };
+        let met = Kind::ALL.into_iter().filter(|&kind| wanted(kind));
+        let met: u32 = met.flat_map(|kind| &self.counts[kind as usize][bands.clone()]).sum();
+        met as f32 / self.counts.as_flattened().iter().sum::<u32>().max(1) as f32
     }
 }
 
-fn part<'a>(rays: impl Iterator<Item = (f32, &'a Seen)>, wanted: impl Fn(f32, &Seen) -> bool) -> f32 {
-    let (mut all, mut met) = (0_u32, 0_u32);
-    for (slope, seen) in rays {
-        (all, met) = (all + 1, met + u32::from(wanted(slope, seen)));
-    }
-    met as f32 / all.max(1) as f32
+/// Number of the band in which a depth lies.
+fn band(depth_m: f32) -> usize {
+    BANDS_M.iter().filter(|&&band_m| band_m <= depth_m).count()
 }

@@ -74,9 +74,11 @@ pub(super) struct Sample {
 
 /// What is nearest at each sample, rows from the top.
 pub(super) struct Drawing<'a> {
+    /// Those that were not hidden when it was their turn.
     triangles: Vec<Triangle<'a>>,
     /// Metres before the axis; −∞ where nothing is.
     depths_m: Vec<f32>,
+    /// Index into `triangles`.
     nearest: Vec<u32>,
     /// Samples a side.
     size: usize,
@@ -84,41 +86,57 @@ pub(super) struct Drawing<'a> {
 
 impl<'a> Drawing<'a> {
     pub fn new(mesh: &Mesh, surface: &dyn Fn(Material) -> Surface<'a>, look: &Look) -> Self {
-        let places: Vec<Vec3> = mesh.positions.iter().map(|&p| look.project(p)).collect();
-        let mut triangles = Vec::with_capacity(mesh.triangle_count());
-        for part in &mesh.parts {
-            let surface = surface(part.material);
-            triangles.extend(part.triangles.iter().filter_map(|t| Triangle::new(mesh, &places, *t, surface)));
-        }
         let size = look.size;
         let (depths_m, nearest) = (vec![f32::NEG_INFINITY; size * size], vec![0; size * size]);
         let mut drawing = Self { triangles: Vec::new(), depths_m, nearest, size };
-        drawing.draw(&triangles);
-        Self { triangles, ..drawing }
+        drawing.draw(mesh, surface, look);
+        drawing
     }
 
     /// Draws the nearest triangles first, since most of what comes later is then hidden. Where two are equally near, the
     /// one that comes first in the mesh is drawn.
-    fn draw(&mut self, triangles: &[Triangle<'_>]) {
-        let mut order: Vec<_> = triangles.iter().map(Triangle::nearest_m).zip(0u32..).collect();
+    fn draw(&mut self, mesh: &Mesh, surface: &dyn Fn(Material) -> Surface<'a>, look: &Look) {
+        let places: Vec<Vec3> = mesh.positions.iter().map(|&p| look.project(p)).collect();
+        let corners = |triangle: [u32; 3]| triangle.map(|i| places[i as usize]);
+        let parts = mesh.parts.iter().map(|part| (surface(part.material), &part.triangles));
+        let all: Vec<_> = parts.flat_map(|(surface, part)| part.iter().map(move |&t| (surface, t))).collect();
+        let nearest_m = |&(_, t): &(_, [u32; 3])| corners(t).iter().map(|c| c.z).fold(f32::MIN, f32::max);
+        let mut order: Vec<(f32, u32)> = all.iter().map(nearest_m).zip(0..).collect();
         order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         for some in order.chunks(order.len() / ROUNDS + 1) {
-            let tiles = self.tiles();
-            for &(nearest_m, number) in some {
-                let triangle = &triangles[number as usize];
-                if triangle.tiles(self.size).all(|tile| tiles[tile] >= nearest_m) {
+            let farthest_m = self.tiles();
+            for &(nearest_m, index) in some {
+                let (surface, vertices) = all[index as usize];
+                let corners = corners(vertices);
+                if self.tiles_around(corners).all(|tile| farthest_m[tile] >= nearest_m) {
                     continue;
                 }
-                match triangle.surface {
-                    Surface::Wood(_) => self.fill(triangle, number, |_, _| true),
-                    Surface::Card(card) => {
-                        let [u, v] = &triangle.uv;
-                        let is_there = |x, y| card.mask.is_opaque([u.at(x, y), v.at(x, y)]);
-                        self.fill(triangle, number, is_there);
-                    }
+                if let Some(triangle) = Triangle::new(mesh, vertices, corners, surface) {
+                    self.add(triangle);
                 }
             }
         }
+    }
+
+    fn add(&mut self, triangle: Triangle<'a>) {
+        match triangle.surface {
+            Surface::Wood(_) => self.fill(&triangle, |_, _| true),
+            Surface::Card(card) => {
+                let [u, v] = &triangle.uv;
+                self.fill(&triangle, |x, y| card.mask.is_opaque([u.at(x, y), v.at(x, y)]));
+            }
+        }
+        self.triangles.push(triangle);
+    }
+
+    /// The tiles that a triangle may reach into.
+    fn tiles_around(&self, corners: [Vec3; 3]) -> impl Iterator<Item = usize> + use<> {
+        let size = self.size;
+        let (low, high) =
+            (corners[0].min(corners[1]).min(corners[2]), corners[0].max(corners[1]).max(corners[2]));
+        let tile = |place: f32| first(place, size).min(size - 1) / TILE;
+        let [columns, rows] = [0, 1].map(|axis| tile(low[axis] - EDGE)..tile(high[axis] + EDGE) + 1);
+        rows.flat_map(move |row| columns.clone().map(move |column| row * (size / TILE) + column))
     }
 
     /// The farthest depth in each tile: what lies behind it is hidden.
@@ -136,7 +154,8 @@ impl<'a> Drawing<'a> {
 
     /// Puts a triangle where it is the nearest so far, and `is_there`.
     #[inline]
-    fn fill(&mut self, triangle: &Triangle<'_>, number: u32, is_there: impl Fn(f32, f32) -> bool) {
+    fn fill(&mut self, triangle: &Triangle<'_>, is_there: impl Fn(f32, f32) -> bool) {
+        let index = self.triangles.len() as u32;
         let [a, b, c] = triangle.corners.map(|corner| corner.y);
         let size = self.size;
         for row in first(a.min(b).min(c), size)..first(a.max(b).max(c), size) {
@@ -150,7 +169,7 @@ impl<'a> Drawing<'a> {
                 let x = column as f32 + 0.5;
                 let here_m = triangle.depth_m.at(x, y);
                 if here_m > *depth_m && is_there(x, y) {
-                    (*depth_m, *nearest) = (here_m, number);
+                    (*depth_m, *nearest) = (here_m, index);
                 }
             }
         }
@@ -204,22 +223,20 @@ const MIN_AREA: f32 = 1e-6;
 const EDGE: f32 = 1e-3;
 
 impl<'a> Triangle<'a> {
-    fn new(mesh: &Mesh, places: &[Vec3], triangle: [u32; 3], surface: Surface<'a>) -> Option<Self> {
-        let vertices = triangle.map(|i| i as usize);
-        let corners = vertices.map(|i| places[i]);
+    fn new(mesh: &Mesh, vertices: [u32; 3], corners: [Vec3; 3], surface: Surface<'a>) -> Option<Self> {
+        let vertices = vertices.map(|i| i as usize);
         let [a, b, c] = corners;
         let (ab, ac) = (b - a, c - a);
         let area = ab.truncate().perp_dot(ac.truncate());
         if area.abs() < MIN_AREA {
             return None;
         }
-        let plane = |value: &dyn Fn(usize) -> f32| {
-            let values = vertices.map(value);
+        let plane = |values: [f32; 3]| {
             let (db, dc) = (values[1] - values[0], values[2] - values[0]);
             let (per_x, per_y) = ((db * ac.y - dc * ab.y) / area, (dc * ab.x - db * ac.x) / area);
             Plane { origin: values[0] - per_x * a.x - per_y * a.y, per_x, per_y }
         };
-        let uv = |i: usize, c: usize| mesh.uvs.get(i).map_or(0.0, |uv| uv[c]);
+        let uvs = vertices.map(|i| mesh.uvs.get(i).copied().unwrap_or_default());
         let tint = |&i: &usize| {
             mesh.colors
                 .get(i)
@@ -228,25 +245,10 @@ impl<'a> Triangle<'a> {
         Some(Self {
             corners,
             surface,
-            depth_m: plane(&|i| places[i].z),
-            uv: [0, 1].map(|c| plane(&|i| uv(i, c))),
+            depth_m: plane(corners.map(|corner| corner.z)),
+            uv: [0, 1].map(|axis| plane(uvs.map(|uv| uv[axis]))),
             tint: vertices.iter().map(tint).sum::<Vec3>() / 3.0,
         })
-    }
-
-    /// Those that it may reach into.
-    fn tiles(&self, size: usize) -> impl Iterator<Item = usize> {
-        let [columns, rows] = [0, 1].map(|axis| {
-            let ends = self.corners.map(|corner| corner[axis]);
-            let (low, high) = ends.iter().fold((f32::MAX, f32::MIN), |(l, h), &t| (l.min(t), h.max(t)));
-            let tile = |place: f32| first(place, size).min(size - 1) / TILE;
-            tile(low - EDGE)..tile(high + EDGE) + 1
-        });
-        rows.flat_map(move |row| columns.clone().map(move |column| row * (size / TILE) + column))
-    }
-
-    fn nearest_m(&self) -> f32 {
-        self.corners.iter().map(|corner| corner.z).fold(f32::NEG_INFINITY, f32::max)
     }
 
     /// Where a horizontal line enters and leaves it.
