@@ -1,6 +1,8 @@
 //! What is left of a mesh → how much larger its elements and how much thicker its twigs must be to cover as many pixels
 //! as the whole mesh does (Cook et al. 2007, "contrast and area are preserved").
 
+use std::ops::Range;
+
 use glam::Vec3;
 
 use super::aggregate::Aggregate;
@@ -37,6 +39,9 @@ pub struct Calibration {
     full: u32,
     max_offset_m: f32,
     last: Sizes,
+    /// For each aggregate, the scales that were found over those that give the elements their whole area: at the last two
+    /// levels, the latest first. They fall evenly, as elements come to hide each other, so the next one can be guessed.
+    found: Vec<[f32; 2]>,
 }
 
 impl Calibration {
@@ -57,6 +62,7 @@ impl Calibration {
             full: 0,
             max_offset_m: if thickens { MAX_OFFSET * diagonal_m } else { 0.0 },
             last: Sizes { scales: vec![1.0; aggregates.len()], offset_m: 0.0 },
+            found: vec![[1.0; 2]; aggregates.len()],
         };
         let elements = calibration.elements(state, aggregates);
         let covered = |elements: &Elements| elements.covered(&calibration.camera, 1.0);
@@ -75,10 +81,13 @@ impl Calibration {
         for (index, (elements, aggregate)) in elements.iter().zip(aggregates).enumerate() {
             let scale = sizes.scales[index];
             let range = MIN_SHRUNK * scale..aggregate.max_scale(scale);
-            let guess = aggregate.same_area_scale();
-            sizes.scales[index] = matching(self.full_elements[index], range, guess, |scale| {
+            let [last, before] = self.found[index];
+            let guess = aggregate.same_area_scale() * last * last / before;
+            let scale = matching(self.full_elements[index], range, guess, |scale| {
                 elements.covered(&self.camera, scale)
             });
+            sizes.scales[index] = scale;
+            self.found[index] = [scale / aggregate.same_area_scale(), last];
         }
         if self.max_offset_m > 0.0 {
             let canvas = self.draw(&elements, &sizes);
@@ -113,39 +122,31 @@ fn covered_with(state: &State, drawn: &Canvas, offset_m: f32) -> u32 {
     canvas.covered()
 }
 
-/// Where in a range a growing function comes closest to the target: by false position, from a guess.
-fn matching(target: u32, range: std::ops::Range<f32>, guess: f32, count: impl Fn(f32) -> u32) -> f32 {
+/// Where in a range a growing function comes closest to the target: by false position, between a guess and a point beyond
+/// the target.
+fn matching(target: u32, range: Range<f32>, guess: f32, count: impl Fn(f32) -> u32) -> f32 {
     let target = target as f32;
     let off = |x: f32| count(x) as f32 - target;
     let close = |off: f32| off.abs() <= TOLERANCE * target;
-    let (mut low, mut high) = ((range.start, f32::NEG_INFINITY), (range.end.max(range.start), f32::INFINITY));
-    let mut at = guess.clamp(low.0, high.0);
+    let (least, most) = (range.start, range.end.max(range.start));
+    let (mut low, mut high) = ((least, f32::NEG_INFINITY), (most, f32::INFINITY));
+    let mut at = guess.clamp(least, most);
+    let mut min_step = 0.02 * (most - least);
     for _ in 0..9 {
         let here = (at, off(at));
-        if close(here.1) || high.0 - low.0 <= 1e-4 * high.0 {
+        let beyond = if here.1 < 0.0 { at >= most } else { at <= least };
+        if close(here.1) || beyond || high.0 - low.0 <= 1e-4 * high.0 {
             return at;
         }
-        if here.1 < 0.0 {
-            low = here
-        } else if at <= range.start {
-            return at;
+        *(if here.1 < 0.0 { &mut low } else { &mut high }) = here;
+        at = if low.1.is_finite() && high.1.is_finite() {
+            let part = (-low.1 / (high.1 - low.1)).clamp(0.1, 0.9);
+            low.0 + (high.0 - low.0) * part
         } else {
-            high = here
-        }
-        // Only a guess that is too large asks for the range's start.
-        if low.1 == f32::NEG_INFINITY {
-            at = range.start;
-            continue;
-        }
-        at = match high.1.is_finite() {
-            true => {
-                let part = (-low.1 / (high.1 - low.1)).clamp(0.1, 0.9);
-                low.0 + (high.0 - low.0) * part
-            }
-            false if low.0 >= range.end => return low.0,
-            false => {
-                (low.0 + 1.5 * (low.0 - range.start).max(0.05 * (range.end - range.start))).min(range.end)
-            }
+            // About a third of what elements grow by is not hidden by others.
+            let step = (3.0 * here.1.abs() / target * at).max(min_step);
+            min_step *= 8.0;
+            (at - step.copysign(here.1)).clamp(least, most)
         };
     }
     at
