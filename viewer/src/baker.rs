@@ -133,8 +133,21 @@ fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
         .context("cannot start threads")
 }
 
-/// Puts the calling thread, which reads what was baked, behind the one that draws and before those that bake.
-pub fn lower_priority() {
+/// Threads to read what was baked: behind the one that draws and before those that bake.
+///
+/// # Errors
+/// If the system gives no threads.
+pub fn readers() -> Result<rayon::ThreadPool, rayon::ThreadPoolBuildError> {
+    rayon::ThreadPoolBuilder::new()
+        .thread_name(|index| format!("reader {index}"))
+        .start_handler(|_| lower_priority())
+        // It has told of itself; the pictures go on.
+        .panic_handler(drop)
+        .build()
+}
+
+/// Puts the calling thread behind the one that draws and before those that bake.
+fn lower_priority() {
     lower_priority_to(READING);
 }
 

@@ -1,4 +1,4 @@
-//! Reads landscapes and brings them to the device on a thread of its own, so that the pictures go on meanwhile.
+//! Reads landscapes and brings them to the device on threads of its own, so that the pictures go on meanwhile.
 //!
 //! Where the processor draws, a landscape's shadows take longer than all the rest: it is handed over with those around the
 //! eye, and the others are drawn when they are asked for, after every landscape that is waited for.
@@ -7,7 +7,6 @@ use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, TryIter, channel};
-use std::thread;
 
 use glam::Vec2;
 
@@ -54,17 +53,16 @@ impl Loader {
     /// Starts it. `wake` is called when there is something new in [`Loader::replies`] or [`Loader::shadowed`].
     ///
     /// # Errors
-    /// If the system gives no thread.
-    pub fn start(gpu: &Gpu, wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+    /// If the system gives no threads.
+    pub fn start(gpu: &Gpu, wake: impl Fn() + Send + 'static) -> Result<Self, rayon::ThreadPoolBuildError> {
         let (tasks, asked) = channel();
         let (answer, replies) = channel();
         let (finished, shadowed) = channel();
         let (gpu, wake, unfinished) = (gpu.clone(), Box::new(wake), VecDeque::new());
-        thread::Builder::new().name("loader".into()).spawn(move || {
-            baker::lower_priority();
+        baker::readers()?.spawn(move || {
             let loader = SceneLoader::new(&gpu);
             Worker { loader, gpu, asked, answer, finished, wake, unfinished }.run();
-        })?;
+        });
         Ok(Self { tasks, replies, shadowed })
     }
 

@@ -2,11 +2,12 @@
 //! it gets regular files inside its own folder and no others, of bounded size in all. Blobs of a cache may lie elsewhere:
 //! they are named by the digest of their bytes, which is checked, so whoever names one has it already.
 
-use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::{Error, ErrorKind, Result};
 use std::path::{Component, Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use percent_encoding::percent_decode_str;
 
@@ -20,8 +21,8 @@ pub const MAX_MODEL_BYTES: u64 = 2 << 30;
 pub struct NamedFiles {
     folder: PathBuf,
     /// How many bytes may still be read.
-    left: Cell<u64>,
-    read: RefCell<BTreeSet<PathBuf>>,
+    left: AtomicU64,
+    read: Mutex<BTreeSet<PathBuf>>,
 }
 
 impl NamedFiles {
@@ -30,8 +31,8 @@ impl NamedFiles {
         let folder = model.parent().filter(|folder| !folder.as_os_str().is_empty());
         Self {
             folder: folder.unwrap_or(Path::new(".")).to_owned(),
-            left: Cell::new(MAX_MODEL_BYTES),
-            read: RefCell::default(),
+            left: AtomicU64::new(MAX_MODEL_BYTES),
+            read: Mutex::default(),
         }
     }
 
@@ -52,19 +53,26 @@ impl NamedFiles {
         let digest = Path::new(name).file_stem().and_then(|stem| stem.to_str());
         let digest = digest.and_then(|stem| blake3::Hash::from_hex(stem).ok());
         let path = self.place(name, digest.is_some())?;
-        let bytes = regular_file::read(&path, self.left.get())?;
+        let bytes = regular_file::read(&path, self.left.load(Ordering::Relaxed))?;
         if digest.is_some_and(|promised| promised != blake3::hash(&bytes)) {
             let message = "it is damaged: its bytes are not those that its name promises";
             return Err(Error::new(ErrorKind::InvalidData, message));
         }
-        self.left.set(self.left.get() - bytes.len() as u64);
-        self.read.borrow_mut().insert(path);
+        let less = |left: u64| left.checked_sub(bytes.len() as u64);
+        if self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, less).is_err() {
+            return Err(Error::new(ErrorKind::FileTooLarge, "the files of one model are too large together"));
+        }
+        self.seen().insert(path);
         Ok(bytes)
     }
 
     /// What has been read so far.
     pub fn files(&self) -> Vec<PathBuf> {
-        self.read.borrow().iter().cloned().collect()
+        self.seen().iter().cloned().collect()
+    }
+
+    fn seen(&self) -> MutexGuard<'_, BTreeSet<PathBuf>> {
+        self.read.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Where a file of that name lies, with links resolved; it is there.
@@ -171,7 +179,7 @@ mod tests {
     #[test]
     fn all_files_together_are_bounded() {
         let (_folder, files) = folder();
-        files.left.set(7);
+        files.left.store(7, Ordering::Relaxed);
         files.read("sub/deep").expect("four bytes");
         let error = files.read("sub/deep").expect_err("four more");
         assert_eq!(error.kind(), ErrorKind::FileTooLarge, "{error}");

@@ -82,7 +82,7 @@ impl Stage for SceneStage {
                 byte_length: placed.instances.blob().len as usize,
             },
             light: &SkyLight { exposure: light.exposure * start.exposure, ..(*light).clone() },
-            sky: context.get(&self.sky)?.try_map(resource, resource)?,
+            sky: context.get(&self.sky)?.try_map(resource, resource, resource)?,
         };
         Ok(context.file(SCENE_EXT, scene_gltf(&parts)?))
     }

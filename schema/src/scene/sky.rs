@@ -31,13 +31,14 @@ pub struct SkyLight {
     pub exposure: f32,
 }
 
-/// The sky as images of radiance `H`, with sheets of cloud as images `C` that can be shown without tone mapping.
+/// The sky as images of radiance `H`, with sheets of cloud as images `C` that can be shown without tone mapping. `W` is
+/// the picture of the whole, `()` where only the faces are looked at.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub struct SkyImages<H, C = H> {
+pub struct SkyImages<H, C = H, W = H> {
     /// The whole sky with its clouds, equirectangular: the middle column looks along −z (north), columns run towards
     /// east (+x), row 0 is the zenith.
-    pub equirect: H,
+    pub equirect: W,
     /// The same as cube faces: +X, −X, +Y, −Y, +Z, −Z, each as seen from the middle, oriented as cube maps of Vulkan
     /// and WebGPU are.
     pub faces: Vec<H>,
@@ -73,28 +74,29 @@ pub struct SkyExtension {
 }
 
 impl<H, C> SkyImages<H, C> {
-    /// The same with `f` of each image of radiance and `g` of each cloud layer's image.
+    /// The same with `f` of the whole, `g` of each face and `h` of each cloud layer's image.
     ///
     /// # Errors
-    /// The first that `f` or `g` gives.
-    pub fn try_map<I, D, E>(
+    /// The first that any of them gives.
+    pub fn try_map<V, I, D, E>(
         &self,
-        mut f: impl FnMut(&H) -> Result<I, E>,
-        mut g: impl FnMut(&C) -> Result<D, E>,
-    ) -> Result<SkyImages<I, D>, E> {
+        f: impl FnOnce(&H) -> Result<V, E>,
+        mut g: impl FnMut(&H) -> Result<I, E>,
+        mut h: impl FnMut(&C) -> Result<D, E>,
+    ) -> Result<SkyImages<I, D, V>, E> {
         let layer = |layer: &CloudLayer<C>| {
             let CloudLayer { name, altitude_m, extent_m, image } = layer;
             Ok(CloudLayer {
                 name: name.clone(),
                 altitude_m: *altitude_m,
                 extent_m: *extent_m,
-                image: g(image)?,
+                image: h(image)?,
             })
         };
         Ok(SkyImages {
             equirect: f(&self.equirect)?,
-            faces: self.faces.iter().map(&mut f).collect::<Result<_, _>>()?,
-            clear_faces: self.clear_faces.iter().map(&mut f).collect::<Result<_, _>>()?,
+            faces: self.faces.iter().map(&mut g).collect::<Result<_, _>>()?,
+            clear_faces: self.clear_faces.iter().map(&mut g).collect::<Result<_, _>>()?,
             layers: self.layers.iter().map(layer).collect::<Result<_, _>>()?,
         })
     }

@@ -1,8 +1,7 @@
 //! An open `scene.gltf`: its JSON, and how to come by what it names.
 
-use std::cell::RefCell;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use genescape_schema::scene::Resource;
 use genescape_world::NamedFiles;
@@ -19,7 +18,7 @@ pub(super) struct Document<'a> {
     /// The file's own binary part, if it is a single .glb.
     embedded: Option<Arc<Vec<u8>>>,
     /// Buffers that were asked for so far: most are never needed when a template is known already.
-    buffers: RefCell<Vec<Option<Arc<Vec<u8>>>>>,
+    buffers: Vec<OnceLock<Arc<Vec<u8>>>>,
 }
 
 impl<'a> Document<'a> {
@@ -27,7 +26,7 @@ impl<'a> Document<'a> {
     pub fn of(path: &Path, bytes: &[u8], store: &'a Store) -> Result<Self> {
         let parsed = gltf::Gltf::from_slice(bytes)
             .map_err(|source| LoadError::NoGltf { path: path.to_owned(), source: Box::new(source) })?;
-        let buffers = RefCell::new(vec![None; parsed.document.buffers().len()]);
+        let buffers = parsed.document.buffers().map(|_| OnceLock::new()).collect();
         let embedded = parsed.blob.map(Arc::new);
         let (path, files) = (path.to_owned(), NamedFiles::of(path));
         let document = Self { path, gltf: parsed.document, store, files, embedded, buffers };
@@ -119,7 +118,8 @@ impl<'a> Document<'a> {
 
     /// A buffer's bytes.
     pub fn buffer(&self, index: usize) -> Result<Arc<Vec<u8>>> {
-        if let Some(Some(known)) = self.buffers.borrow().get(index) {
+        let known = self.buffers.get(index).ok_or_else(|| self.wrong(format!("it has no buffer {index}")))?;
+        if let Some(known) = known.get() {
             return Ok(known.clone());
         }
         let buffer = self.gltf.buffers().nth(index);
@@ -133,8 +133,7 @@ impl<'a> Document<'a> {
         if bytes.len() < buffer.length() {
             return Err(self.wrong(format!("buffer {index} is shorter than it should be")));
         }
-        self.buffers.borrow_mut()[index] = Some(bytes.clone());
-        Ok(bytes)
+        Ok(known.get_or_init(|| bytes).clone())
     }
 
     /// All buffers that an accessor needs, in memory.
@@ -156,12 +155,11 @@ impl<'a> Document<'a> {
         if accessor.size() != size_of::<T>() {
             return Err(self.wrong(format!("accessor {index} has another type than expected")));
         }
-        let buffers = self.buffers.borrow();
-        let length_of = |index: usize| buffers[index].as_ref().map_or(0, |bytes| bytes.len());
+        let length_of = |index: usize| self.buffers[index].get().map_or(0, |bytes| bytes.len());
         if !accessor::fits(&accessor, length_of) {
             return Err(self.wrong(format!("accessor {index} reaches beyond its buffer")));
         }
-        let get = |buffer: gltf::Buffer<'_>| buffers[buffer.index()].as_deref().map(Vec::as_slice);
+        let get = |buffer: gltf::Buffer<'_>| Some(self.buffers[buffer.index()].get()?.as_slice());
         let values = gltf::accessor::Iter::<T>::new(accessor, get);
         Ok(values.ok_or_else(|| self.wrong(format!("accessor {index} reaches beyond its buffer")))?.collect())
     }

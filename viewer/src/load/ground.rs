@@ -1,13 +1,15 @@
 //! The land of a scene file: heightfield, surface, and the coarse land around it.
 
+use std::convert::Infallible;
 use std::sync::Arc;
 
-use genescape_schema::scene::{GSC_HEIGHTFIELD, HeightfieldExtension, TerrainLod};
+use genescape_schema::scene::{GSC_HEIGHTFIELD, GroundSurface, HeightfieldExtension, Resource, TerrainLod};
+use rayon::prelude::*;
 
 use super::bounds::{MAX_LAND_M, is_plant, within};
 use super::document::Document;
 use super::{Result, images};
-use crate::scene::{Apron, Ground};
+use crate::scene::{Apron, Ground, Image};
 
 /// Kinds of small plants in a scene.
 const MAX_KINDS: usize = 64;
@@ -34,9 +36,21 @@ pub(super) fn read(document: &Document) -> Result<Ground> {
         field: lod.field.clone(),
         lod,
         water_level_m: extension.water_level_m,
-        surface: extension.surface.try_map(|image| images::png(document, image))?,
+        surface: surface(document, &extension.surface)?,
         apron: Arc::new(apron(document)?),
     })
+}
+
+/// With its images decoded side by side.
+fn surface(document: &Document, surface: &GroundSurface<Resource>) -> Result<GroundSurface<Image>> {
+    let mut resources = Vec::new();
+    let Ok(_) = surface.try_map(|image| {
+        resources.push(image.clone());
+        Ok::<_, Infallible>(())
+    });
+    let decoded = resources.par_iter().map(|image| images::png(document, image));
+    let mut decoded = decoded.collect::<Vec<_>>().into_iter();
+    surface.try_map(|image| decoded.next().unwrap_or_else(|| images::png(document, image)))
 }
 
 /// The mesh of the node "apron"; empty if the scene has none.

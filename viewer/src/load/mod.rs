@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 use genescape_cache::verified;
 use genescape_schema::scene::{
-    GSC_LOOKOUTS, GSC_SKY, Lookouts, LookoutsExtension, START_NODE, SkyExtension, StartView,
+    GSC_LOOKOUTS, GSC_SKY, Lookouts, LookoutsExtension, Resource, START_NODE, SkyExtension, StartView,
 };
 use genescape_world::{MAX_MODEL_BYTES, regular_file};
 use glam::Vec3;
@@ -95,11 +95,12 @@ pub fn scene(path: &Path, store: &Store) -> Result<Scene> {
 fn landscape(path: &Path, bytes: &[u8], store: &Store) -> Result<Scene> {
     let document = Document::of(path, bytes, store)?;
     let scene = document.scene()?;
-    let ground = ground::read(&document)?;
-    let trees = trees::read(&document)?;
+    let (ground, (trees, sky)) =
+        rayon::join(|| ground::read(&document), || rayon::join(|| trees::read(&document), || sky(&document)));
+    let (ground, trees, sky) = (ground?, trees?, sky?);
     let name = scene.name().unwrap_or("a landscape").to_owned();
     let (start, lookouts) = (start(&document, &ground), lookouts(&document)?);
-    Ok(Scene { name, start, lookouts, ground, trees, sky: sky(&document)? })
+    Ok(Scene { name, start, lookouts, ground, trees, sky })
 }
 
 /// The camera of the bake; without one, the middle of the land, looking north.
@@ -127,8 +128,8 @@ fn lookouts(document: &Document) -> Result<Option<Arc<Lookouts>>> {
 fn sky(document: &Document) -> Result<Sky> {
     let scene = document.scene()?;
     let SkyExtension { images, light } = document.extension(scene.extension_value(GSC_SKY), GSC_SKY)?;
-    let mut images =
-        images.try_map(|face| images::exr(document, face), |layer| images::png(document, layer))?;
+    let face = |face: &Resource| images::exr(document, face);
+    let mut images = images.try_map(|_| Ok(()), face, |layer| images::png(document, layer))?;
     if images.clear_faces.is_empty() {
         images.clear_faces = images.faces.clone();
     }

@@ -8,6 +8,7 @@ use genescape_schema::scene::{
 };
 use glam::Vec3;
 use gltf::Semantic;
+use rayon::prelude::*;
 
 use super::bounds::{is_placed, is_tree_sized};
 use super::document::Document;
@@ -25,7 +26,7 @@ pub(super) fn read(document: &Document) -> Result<Trees> {
         .map_err(|error| document.wrong(format!("its GSC_instances is wrong: {error}")))?;
     let templates = extension
         .templates
-        .iter()
+        .par_iter()
         .map(|entry| template(document, &entry.name, entry.mesh))
         .collect::<Result<Vec<_>>>()?;
     if let Some(tree) = instances.iter().find(|tree| tree.template as usize >= templates.len()) {

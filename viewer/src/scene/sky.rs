@@ -8,6 +8,6 @@ use super::{HdrImage, Image};
 #[derive(Clone, Debug)]
 pub struct Sky {
     /// Six faces, and six faces without clouds.
-    pub images: SkyImages<HdrImage, Image>,
+    pub images: SkyImages<HdrImage, Image, ()>,
     pub light: SkyLight,
 }

@@ -68,13 +68,17 @@ impl Uploader {
 
     /// Uploads a landscape. May run on any thread.
     pub fn upload(&self, scene: &Scene) -> Result<SceneBuffers, String> {
+        let (land, (trees, sky_textures)) = rayon::join(
+            || self.ground(&scene.ground),
+            || rayon::join(|| self.trees(&scene.trees), || self.sky(&scene.sky)),
+        );
         Ok(SceneBuffers {
             name: scene.name.clone(),
             ground: scene.ground.clone(),
             sky: scene.sky.light.clone(),
-            land: self.ground(&scene.ground)?,
-            sky_textures: self.sky(&scene.sky),
-            trees: self.trees(&scene.trees),
+            land: land?,
+            sky_textures,
+            trees,
             shadow_map: self.shadow_map(),
         })
     }

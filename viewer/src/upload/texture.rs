@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use super::Uploader;
 use crate::gpu::flat;
 use crate::scene::{HdrImage, Image};
@@ -55,7 +57,7 @@ impl Uploader {
     }
 
     fn array(&self, images: &[&Image], kind: ImageUse, min_px: u32) -> wgpu::Texture {
-        let chains: Vec<Vec<Arc<[u8]>>> = images.iter().map(|image| chain(image, kind)).collect();
+        let chains: Vec<Vec<Arc<[u8]>>> = images.par_iter().map(|image| chain(image, kind)).collect();
         let wanted =
             (images[0].height_px.max(images[0].width_px) / min_px.max(1)).max(1).ilog2() as usize + 1;
         let levels = chains.iter().map(Vec::len).min().unwrap_or(1).min(wanted);
@@ -133,29 +135,26 @@ fn keep_coverage(levels: &mut [Arc<[u8]>]) {
 
 /// Averages of 2 × 2 pixels; colour is averaged as light.
 fn halve(pixels: &[u8], width: u32, height: u32, kind: ImageUse) -> Vec<u8> {
-    let (half_width, half_height) = ((width / 2).max(1), (height / 2).max(1));
-    let mut halved = Vec::with_capacity((half_width * half_height * 4) as usize);
     let table = linear_table();
+    let plain = |four: [u8; 4]| ((four.iter().map(|&byte| u32::from(byte)).sum::<u32>() + 2) / 4) as u8;
+    let light = |four: [u8; 4]| encode(0.25 * four.iter().map(|&byte| table[usize::from(byte)]).sum::<f32>());
+    let (pixels, width, height) = (pixels.as_chunks::<4>().0, width as usize, height as usize);
+    let row = |y: usize| &pixels[y.min(height - 1) * width..][..width];
+    let (half_width, half_height) = ((width / 2).max(1), (height / 2).max(1));
+    let mut halved = Vec::with_capacity(half_width * half_height);
     for y in 0..half_height {
-        for x in 0..half_width {
-            let at = |dx: u32, dy: u32| {
-                let (x, y) = ((2 * x + dx).min(width - 1), (2 * y + dy).min(height - 1));
-                ((y * width + x) * 4) as usize
-            };
-            let four = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
-            for channel in 0..4 {
-                let plain = || (four.iter().map(|&p| u32::from(pixels[p + channel])).sum::<u32>() + 2) / 4;
-                let value = if kind != ImageUse::Data && channel < 3 {
-                    let light: f32 = four.iter().map(|&p| table[usize::from(pixels[p + channel])]).sum();
-                    encode(0.25 * light)
-                } else {
-                    plain() as u8
-                };
-                halved.push(value);
+        let (upper, lower) = (row(2 * y), row(2 * y + 1));
+        halved.extend((0..half_width).map(|x| {
+            let (left, right) = (2 * x, (2 * x + 1).min(width - 1));
+            let four = [upper[left], upper[right], lower[left], lower[right]];
+            let channel = |c: usize| four.map(|pixel| pixel[c]);
+            match kind {
+                ImageUse::Data => [0, 1, 2, 3].map(|c| plain(channel(c))),
+                _ => [light(channel(0)), light(channel(1)), light(channel(2)), plain(channel(3))],
             }
-        }
+        }));
     }
-    halved
+    halved.into_flattened()
 }
 
 /// Light of each byte of sRGB, [0, 1].
@@ -171,8 +170,18 @@ fn linear_table() -> &'static [f32; 256] {
 
 /// The byte of sRGB whose light is nearest.
 fn encode(light: f32) -> u8 {
+    // For each of so many steps of light, the first byte that is as bright as it: near black one byte has almost a step.
+    const STEPS: usize = 4096;
+    static FIRST: std::sync::OnceLock<Vec<u8>> = std::sync::OnceLock::new();
     let table = linear_table();
-    let above = table.partition_point(|&known| known < light).min(255);
+    let first = FIRST.get_or_init(|| {
+        let first = |step: usize| table.partition_point(|&known| known < step as f32 / STEPS as f32);
+        (0..=STEPS).map(|step| first(step).min(255) as u8).collect()
+    });
+    let mut above = usize::from(first[((light * STEPS as f32) as usize).min(STEPS)]);
+    while above < 255 && table[above] < light {
+        above += 1;
+    }
     if above > 0 && light - table[above - 1] < table[above] - light { above as u8 - 1 } else { above as u8 }
 }
 

@@ -94,7 +94,7 @@ pub fn scene(lod: TerrainLod, color: [u8; 4], sky: [f32; 3], trees: Trees) -> Sc
         trees,
         sky: Sky {
             images: SkyImages {
-                equirect: faces("equirect", |_| sky).remove(0),
+                equirect: (),
                 faces: faces(&format!("sky {sky:?}"), |_| sky),
                 clear_faces: faces(&format!("clear {sky:?}"), |_| sky),
                 layers: Vec::new(),
