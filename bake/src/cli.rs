@@ -1,7 +1,7 @@
 //! The command line: words → one [`Command`] for each thing that can be asked for.
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use bytesize::ByteSize;
@@ -10,6 +10,7 @@ use clap_complete::Shell;
 use genescape_schema::INDIVIDUALS;
 
 use crate::export::{Audience, Options};
+use crate::plan::Resolution;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -56,6 +57,13 @@ Examples:
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 pub struct BadInput(pub String);
+
+impl BadInput {
+    /// For a file that the person has named.
+    pub fn unread(path: &Path, error: &std::io::Error) -> Self {
+        Self(format!("cannot read {}: {error}", path.display()))
+    }
+}
 
 /// One of the four landscapes, which people count from 1; files and arrays count from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -142,7 +150,7 @@ pub struct RunArgs {
     #[arg(long, value_name = "N", global = true, value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
     /// Samples a side of the heightfield: 65, 129, 257, 513, 1025 or 2049.
-    #[arg(long, value_name = "N", default_value_t = 513, global = true, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = 513, global = true, value_parser = side, allow_negative_numbers = true)]
     pub size: u32,
     /// Print events as JSON, one a line, instead of a progress bar: of bakes and exports.
     #[arg(long, global = true)]
@@ -337,6 +345,12 @@ pub enum CacheCommand {
 }
 
 /// A number of threads: more than any machine's cores would only keep it from other work.
+/// A number of samples that a heightfield can have a side.
+pub fn side(text: &str) -> Result<u32, String> {
+    let side = text.parse().map_err(|_| "a whole number is needed".to_owned())?;
+    Resolution::of_side(side).map(|_| side).map_err(|error| error.to_string())
+}
+
 pub fn threads(text: &str) -> Result<usize, String> {
     const MAX_THREADS: usize = 1024;
     let threads = text.parse().ok().filter(|threads| (1..=MAX_THREADS).contains(threads));

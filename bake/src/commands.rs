@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use genescape_cache::{Change, Explanation};
 use genescape_schema::{Genome, Kinds, Population, Space};
 use genescape_world::output::BadOutput;
-use genescape_world::{World, WorldError, names};
+use genescape_world::{World, WorldError, file_limit, names};
 
 use crate::audition::{self, Auditioned, Redrawn};
 use crate::breed::NoVotes;
@@ -33,6 +33,7 @@ const INTERRUPTED_CODE: u8 = 130;
 
 /// Carries out the command line; returns the process's exit code.
 pub fn run(cli: Cli) -> u8 {
+    file_limit::is_an_error();
     let listen = ctrlc::set_handler(|| {
         // The second time, the person means it.
         if INTERRUPTED.swap(true, Ordering::SeqCst) {
@@ -188,18 +189,14 @@ fn summary(baked: &Baked) {
 }
 
 fn bake(Cli { run, population, watch, poll, .. }: &Cli) -> Result<()> {
-    if let Some(path) = population.as_ref().filter(|path| !path.exists())
-        && let Some(meant) = path.to_str().and_then(meant_command)
-    {
-        let word = path.display();
-        return Err(BadInput(format!(
-            "{word} is neither a population file nor a command; did you mean {meant}?"
-        ))
-        .into());
-    }
+    // Before a world is made for it.
     if let Some(path) = population.as_ref().filter(|path| !path.exists()) {
-        // Before a world is made for it.
-        return Err(WorldError::NoFile(path.clone()).into());
+        let Some(word) = path.to_str().filter(|word| !word.contains(['/', '\\', '.'])) else {
+            return Err(WorldError::NoFile(path.clone()).into());
+        };
+        let meant = meant_command(word)
+            .map_or("`bake --help` lists those".into(), |meant| format!("did you mean {meant}?"));
+        return Err(BadInput(format!("{word} is neither a population file nor a command; {meant}")).into());
     }
     let (mut session, console) = (open_session(run)?, Console::new(run));
     if population.is_none() && session.world().begin()? && !run.json {

@@ -20,8 +20,8 @@ pub fn convert(input: &Path, out: &Path, crease_deg: f32) -> Result<()> {
     }
     // Before the work, and once more after it, when all files that the model names are known.
     output::check(out, "glb", &[input.to_owned()])?;
-    let bytes = regular_file::read(input, MAX_MODEL_BYTES);
-    let bytes = bytes.with_context(|| format!("cannot read {}", input.display()))?;
+    let bytes =
+        regular_file::read(input, MAX_MODEL_BYTES).map_err(|error| BadInput::unread(input, &error))?;
     let files = NamedFiles::of(input);
     let extension = input.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
     let mut imported = import::read_mesh(&bytes, extension, &|name| files.read(name))

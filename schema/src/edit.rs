@@ -93,7 +93,7 @@ pub fn set_gene(
         let Value::List(individuals) = &list.value else {
             return Err(EditError::Missing("individuals".into()));
         };
-        let what = format!("individual {individual}");
+        let what = format!("landscape {}", individual + 1);
         let node = individuals.get(individual).ok_or_else(|| EditError::Missing(what.clone()))?;
         let genes = struct_fields(find(struct_fields(node, &what)?, category)?, category)?;
         match find(genes, name) {

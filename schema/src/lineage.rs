@@ -91,9 +91,10 @@ fn read_vote(checker: &mut Checker<'_>, category: Category, node: &Node<'_>) -> 
             Some(vote as usize)
         }
         Value::Number(_) => {
-            let last = INDIVIDUALS - 1;
-            let message =
-                format!("votes: {category}: {} is none of the individuals 0 … {last}", given(number));
+            let (given, last) = (given(number), INDIVIDUALS - 1);
+            let message = format!(
+                "votes: {category}: {given} is none of the four: Some(0) is landscape 1, Some({last}) landscape 4"
+            );
             checker.refuse(number.span(), message)
         }
         _ => checker.wrong_kind(number, &format!("votes: {category}"), "None or Some(0) … Some(3)"),

@@ -94,7 +94,7 @@ impl Loader<'_, '_> {
     }
 
     fn individual(&mut self, index: usize, node: &Node<'_>) -> Option<Individual> {
-        let what = format!("individual {index}");
+        let what = format!("landscape {}", index + 1);
         let fields = self.checker.record(node, &what, &["name", "descent", "tree", "terrain", "sky"])?;
         let [name, descent] = ["name", "descent"].map(|what| {
             let line = optional(&fields, what).and_then(|node| self.checker.line(node, what, MAX_NAME));
@@ -127,6 +127,8 @@ impl Loader<'_, '_> {
             let name = &parameter.name;
             let code = match (optional(&fields, name), parameter.default) {
                 (Some(node), _) => self.gene(parameter, node),
+                // What is wrong with the space is told once, there.
+                (None, Some(code)) if parameter.is_unread => Some(code),
                 (None, Some(code)) => {
                     filled_in.push(format!("{name} {}", parameter.value_text(code)));
                     Some(code)

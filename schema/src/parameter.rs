@@ -88,6 +88,8 @@ pub struct Parameter {
     pub help: String,
     /// The code that is used where a file lacks the gene; `None` if no file may.
     pub default: Option<u32>,
+    /// Landscapes are made without it: a world's own space declares a gene that the program does not know.
+    pub is_unread: bool,
     /// Where its bits begin in the chromosome.
     pub(crate) offset: u32,
 }

@@ -90,6 +90,7 @@ fn compare(
 ) -> Option<String> {
     let Some(known) = builtin.find(&gene.name) else {
         gene.default.get_or_insert(0);
+        gene.is_unread = true;
         let names: Vec<&str> = builtin.parameters().iter().map(|known| known.name.as_str()).collect();
         let near = did_you_mean(&gene.name, &names);
         return Some(checker.note(node, format!("{} is a gene that nothing reads{near}", gene.name)));
@@ -168,8 +169,19 @@ fn read_parameter(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<Paramete
     let group = optional(&fields, "group").map(|node| checker.line(node, "group", MAX_NAME));
     let group = group.map_or(Some(""), |group| group)?.to_owned();
     let (name, category, bits, scale) = (name?, category?, bits?, scale?);
-    let mut gene =
-        Parameter { name, category, group, bits, range: ends?, scale, unit, help, default: None, offset: 0 };
+    let mut gene = Parameter {
+        name,
+        category,
+        group,
+        bits,
+        range: ends?,
+        scale,
+        unit,
+        help,
+        default: None,
+        is_unread: false,
+        offset: 0,
+    };
     if let Some(fault) = range_fault(&gene) {
         return checker.refuse(range?.span(), format!("{}: {fault}", gene.name));
     }

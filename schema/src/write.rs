@@ -41,7 +41,8 @@ impl Population {
             "// Four landscapes. Edit any value within its range; the nearest value that its gene has is used.\n\
              // `bake params` says what each gene does.\n\
              Population(\n    generation: {generation},\n    seed: {seed},\n{parent}    \
-             // The best of each, 0 … 3, as Some((tree: Some(0), terrain: Some(2), sky: None)); None: no favourite.\n    \
+             // The best of each, as Some((tree: Some(0), terrain: Some(2), sky: None)): Some(0) is landscape 1, Some(3)\n    \
+             // landscape 4, None no favourite.\n    \
              votes: {votes},\n{locked}    individuals: [\n{individuals}    ],\n)\n"
         )
     }

@@ -122,7 +122,9 @@ fn seconds(text: &str) -> Result<f32, String> {
 }
 
 fn place(text: &str) -> Result<Place, String> {
-    let number = |part: &str| part.trim().parse().ok().filter(|number: &f32| number.is_finite());
+    // Beyond it even the farthest land is less than a pixel.
+    const FAR: f32 = 1e6;
+    let number = |part: &str| part.trim().parse().ok().filter(|number: &f32| number.abs() <= FAR);
     let numbers: Option<Vec<f32>> = text.split(',').map(number).collect();
     match numbers.as_deref() {
         Some(&[x_m, z_m, height_m, yaw_deg, pitch_deg]) => {
@@ -180,7 +182,7 @@ mod tests {
     fn places_are_read_or_refused_with_an_example() {
         let read = place("0,20,1.6,45,-5").expect("five numbers");
         assert_eq!(read, Place { x_m: 0.0, z_m: 20.0, height_m: 1.6, yaw_deg: 45.0, pitch_deg: -5.0 });
-        for wrong in ["", "1,2,3,4", "1,2,3,4,5,6", "1,2,x,4,5", "1,2,nan,4,5", "1,2,,4,5"] {
+        for wrong in ["", "1,2,3,4", "1,2,3,4,5,6", "1,2,x,4,5", "1,2,nan,4,5", "1e30,2,3,4,5", "1,2,,4,5"] {
             assert!(place(wrong).is_err_and(|text| text.contains("0,20,1.6,45,-5")), "{wrong}");
         }
     }

@@ -44,18 +44,25 @@ pub fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>> {
 /// Pixels of a picture: to draw one takes some 60 bytes for each.
 const MAX_PIXELS: u64 = 1 << 26;
 
+/// That a picture is larger than the device can draw.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct TooLarge(String);
+
 /// Whether a device can draw a picture of that size.
 ///
 /// # Errors
 /// What the largest is.
-pub fn check_size(gpu: &Gpu, [width, height]: [u32; 2]) -> Result<()> {
+pub fn check_size(gpu: &Gpu, [width, height]: [u32; 2]) -> Result<(), TooLarge> {
     let limits = gpu.device.limits();
     let (side, pixels) = (limits.max_texture_dimension_2d, (limits.max_buffer_size / 4).min(MAX_PIXELS));
     let is_small = width.max(height) <= side && u64::from(width) * u64::from(height) <= pixels;
     let name = &gpu.name;
-    is_small.then_some(()).with_context(|| {
+    is_small.then_some(()).ok_or_else(|| {
         let millions = pixels / 1_000_000;
-        format!("--size {width}x{height}: at most {side} pixels a side and {millions} million in all, drawn by {name}")
+        TooLarge(format!(
+            "--size {width}x{height}: at most {side} pixels a side and {millions} million in all, drawn by {name}"
+        ))
     })
 }
 

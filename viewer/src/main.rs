@@ -6,10 +6,11 @@ use anyhow::Result;
 use clap::Parser;
 use genescape_schema::printable;
 use genescape_viewer::cli::{Cli, Command};
+use genescape_viewer::image_file::TooLarge;
 use genescape_viewer::load::LoadError;
 use genescape_viewer::{app, bench, manual, screenshot};
 use genescape_world::output::BadOutput;
-use genescape_world::{Source, WorldError};
+use genescape_world::{Source, WorldError, file_limit};
 
 const FAILED: u8 = 1;
 /// As for what clap refuses.
@@ -17,6 +18,7 @@ const BAD_INPUT: u8 = 2;
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
+    file_limit::is_an_error();
     #[cfg(target_os = "linux")]
     if cli.screenshot.is_some() || matches!(cli.command, Some(Command::Bench(_))) {
         leave_the_desktop_alone();
@@ -25,6 +27,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             let is_bad_input = error.is::<BadOutput>()
+                || error.is::<TooLarge>()
                 || error.downcast_ref().is_some_and(WorldError::is_bad_input)
                 || error.downcast_ref().is_some_and(LoadError::is_bad_input);
             eprintln!("error: {}", printable(&format!("{error:#}")));

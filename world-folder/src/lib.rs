@@ -17,6 +17,7 @@
 
 pub mod atomic_write;
 mod error;
+pub mod file_limit;
 mod folder;
 mod kinds;
 mod named_files;

@@ -12,6 +12,8 @@ use genescape_world::{MAX_MODEL_BYTES, regular_file};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
+use crate::cli::BadInput;
+
 /// Where scenes find their blobs.
 const BLOBS: &str = "../../blobs/";
 
@@ -25,10 +27,11 @@ impl SceneFile {
     /// # Errors
     /// A file that cannot be read, or is no JSON.
     pub fn open(path: &Path) -> Result<Self> {
-        let text = regular_file::read(path, MAX_MODEL_BYTES)
-            .with_context(|| format!("cannot read {}", path.display()))?;
-        let json = serde_json::from_slice(&text)
-            .with_context(|| format!("{} is no scene.gltf as bake writes it", path.display()))?;
+        let text =
+            regular_file::read(path, MAX_MODEL_BYTES).map_err(|error| BadInput::unread(path, &error))?;
+        let json = serde_json::from_slice(&text).map_err(|error| {
+            BadInput(format!("{} is no scene.gltf as bake writes it: {error}", path.display()))
+        })?;
         Ok(Self { path: path.to_owned(), json })
     }
 

@@ -57,7 +57,7 @@ fn every_fault_is_told_at_once_with_its_place() {
         "p.ron:2:15: generation: expected a whole number from 0 to 4294967295, found a number: -1",
         "p.ron:3:3: Population has no sed; did you mean seed?",
         "p.ron:4:16: individuals: the population is empty; there must be 4",
-        "p.ron:5:27: votes: tree: 4 is none of the individuals 0 … 3",
+        "p.ron:5:27: votes: tree: 4 is none of the four: Some(0) is landscape 1, Some(3) landscape 4",
     ] {
         assert!(told.contains(line), "{line}\nis not in\n{told}");
     }
@@ -105,7 +105,7 @@ fn wrong_genes_say_what_would_be_right() {
         (with("votes: None", "votes: Some(true)"), "votes: expected named values in brackets"),
         (
             with("votes: None", "votes: Some((sky: Some(1.5)))"),
-            "votes: sky: 1.5 is none of the individuals 0 … 3",
+            "votes: sky: 1.5 is none of the four: Some(0) is landscape 1, Some(3) landscape 4",
         ),
         (with("votes: None", "votes: Some((sun: Some(1)))"), "votes has no sun"),
         (with("Population(", "Populatoin("), "expected Population(…), found Populatoin"),

@@ -12,8 +12,10 @@ use crate::walk::{Feel, Land, Mode, Pose, Rig, start_pose, suits_all};
 enum Place {
     /// It doesn't matter: the first landscape of a generation that is to come says where the walk begins.
     Awaited,
-    /// At the start of those landscapes that were there.
+    /// At the start of the first landscapes that were there.
     Start,
+    /// At a start that all landscapes were asked about, or that the person went back to.
+    Settled,
     /// Where the person has gone.
     Chosen,
 }
@@ -82,12 +84,15 @@ impl CameraControl {
     pub fn lands_changed(&mut self, all: &[&Land], own: &[&Land], complete: bool) {
         self.around_subject = all.iter().any(|land| land.subject.is_some());
         let begins = self.place == Place::Awaited && !own.is_empty();
-        let is_bad = || self.place == Place::Start && !suits_all(own, &self.rig.pose());
-        if begins || complete && is_bad() {
+        let settles = complete && (begins || self.place == Place::Start);
+        if begins || settles && !suits_all(own, &self.rig.pose()) {
             self.rig.go(start_pose(own), own);
             self.place = Place::Start;
         } else {
             self.rig.settle(all);
+        }
+        if settles {
+            self.place = Place::Settled;
         }
     }
 
@@ -99,7 +104,7 @@ impl CameraControl {
     /// Goes to where every walk starts.
     pub fn go_to_start(&mut self, lands: &[&Land]) {
         self.rig.go(start_pose(lands), lands);
-        self.leave(Place::Start);
+        self.leave(Place::Settled);
     }
 
     /// While landscapes are awaited, a walk in the old ones changes nothing.
@@ -166,9 +171,15 @@ impl CameraControl {
         }
     }
 
-    /// The place to come back to at the next start, if there is one and the camera has come to rest.
-    pub fn rested_at(&self) -> Option<Bookmark> {
-        (self.place != Place::Awaited && self.resting).then(|| self.bookmark())
+    /// The place to come back to at the next start, once the camera has come to rest; `None` at a start, which the
+    /// landscapes give again. `before`: what it was.
+    pub fn place_to_keep(&self, before: Option<Bookmark>) -> Option<Bookmark> {
+        match self.place {
+            Place::Awaited => before,
+            Place::Start | Place::Settled => None,
+            Place::Chosen if self.resting => Some(self.bookmark()),
+            Place::Chosen => before,
+        }
     }
 
     /// Goes to a remembered place.
@@ -265,6 +276,31 @@ mod tests {
                 "which the second scores {score} from the first's place"
             );
         }
+    }
+
+    #[test]
+    fn an_edit_moves_nobody() {
+        let (good, bad) = (land(&[(48, 200), (72, 90)]), land(&[(48, 20), (72, 90)]));
+        let mut control = control();
+        control.lands_changed(&[&good], &[&good], true);
+        control.lands_changed(&[&bad], &[&bad], true);
+        assert_eq!(x_m(&control), x_of(48), "the walk has begun");
+        control.go_to_start(&[&bad]);
+        assert_eq!(x_m(&control), x_of(72), "as the person wanted");
+        control.lands_changed(&[&good], &[&good], true);
+        assert_eq!(x_m(&control), x_of(72));
+    }
+
+    #[test]
+    fn a_place_is_kept_only_if_the_person_has_gone_there() {
+        let (land, before) = (land(&[(48, 200)]), Some(control().bookmark()));
+        let mut control = control();
+        assert_eq!(control.place_to_keep(before), before, "nothing is known yet");
+        control.lands_changed(&[&land], &[&land], true);
+        assert_eq!(control.place_to_keep(before), None);
+        walk(&mut control, &[&land]);
+        control.step(0.25, &Comfort::default(), &[&land]);
+        assert_eq!(control.place_to_keep(before), Some(control.bookmark()));
     }
 
     #[test]

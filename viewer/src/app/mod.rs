@@ -76,9 +76,23 @@ pub fn run(cli: Cli, source: Source) -> Result<()> {
         "no window can be opened; without a display `viewer --screenshot OUT.png` draws to a file",
     )?;
     let log = Log::create(cli.log.as_deref())?;
+    explain_a_lost_display();
     let mut app = App::new(cli, source, log, events.create_proxy());
     events.run_app(&mut app)?;
     app.failure.map_or(Ok(()), Err)
+}
+
+/// winit panics when the display goes, at whatever it asks of it next; that is told in words, without a backtrace. What the
+/// person made is in files already.
+fn explain_a_lost_display() {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if panic.location().is_some_and(|place| place.file().contains("winit")) {
+            eprintln!("error: the display is gone, or no longer answers");
+            std::process::exit(1);
+        }
+        usual(panic);
+    }));
 }
 
 /// All parts of the application; each has one owner, and none owns the others.
@@ -415,7 +429,7 @@ impl App {
         self.editor.keep(&mut kept);
         // Not at every step of a walk, or the file would be written for as long as it goes.
         if self.editor.world().is_some() {
-            kept.place = self.camera.rested_at().or(kept.place);
+            kept.place = self.camera.place_to_keep(kept.place);
             kept.generation = Some(self.editor.generations().0);
         }
         if kept != settings.world(source) {

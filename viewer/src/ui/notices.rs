@@ -72,6 +72,8 @@ pub struct Notices {
 impl Notices {
     pub fn add(&mut self, tone: Tone, text: String, event: Option<Event>) {
         self.count += 1;
+        // What is said again is said once, from now on.
+        self.list.retain(|notice| notice.text != text);
         self.list.push(Notice { number: self.count, tone, text, event, ends_s: None });
         if self.list.len() > MAX {
             self.list.remove(0);

@@ -23,12 +23,15 @@ pub fn show(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool) -
         return rect.min;
     }
     let compared = Arrangement::Compare { left: view, right: (view + 1) % INDIVIDUALS };
-    let tools: &[(Icon, &str, Arrangement)] = match model.arrangement {
+    let alone = Command::Maximise(view as u8 + 1);
+    let tools: &[(Icon, &str, Arrangement, Command)] = match model.arrangement {
         Arrangement::Grid => &[
-            (Icon::Maximise, "Show this one alone", Arrangement::One(view)),
-            (Icon::Compare, "Compare with another", compared),
+            (Icon::Maximise, "Show this one alone", Arrangement::One(view), alone),
+            (Icon::Compare, "Compare with another", compared, Command::Compare),
         ],
-        Arrangement::One(_) if model.count > 1 => &[(Icon::Grid, "Show all four", Arrangement::Grid)],
+        Arrangement::One(_) if model.count > 1 => {
+            &[(Icon::Grid, "Show all four", Arrangement::Grid, Command::ShowAll)]
+        }
         Arrangement::One(_) | Arrangement::Compare { .. } => &[],
     };
     // Where they would be, so that the name stays as it is when they come.
@@ -43,13 +46,13 @@ pub fn show(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool) -
         ViewState::Failed { what, remedy } => failed(ui, view, rect, what, remedy),
     }
     let mut corner = rect.right_top() + vec2(-10.0 - BUTTON, 10.0);
-    for &(icon, label, arrangement) in tools.iter().filter(|_| lively) {
+    for &(icon, label, arrangement, command) in tools.iter().filter(|_| lively) {
         let rect = Rect::from_min_size(corner, vec2(BUTTON, BUTTON));
         let name = format!("{label}: {}", view + 1);
         let (response, lit) = painted_button(ui, rect, (label, view), &name, false);
         ui.painter().rect_filled(rect, 13, scrim(lit));
         icon.paint(ui.painter(), rect.shrink(7.0), theme::ON_SCRIM);
-        response.on_hover_text(label).asks(Event::Arrange(arrangement));
+        response.on_hover_text(model.with_key(label, command)).asks(Event::Arrange(arrangement));
         corner.x -= BUTTON + 4.0;
     }
     if lively && exports && matches!(model.views[view].state, ViewState::Ready) {

@@ -8,7 +8,7 @@ use genescape_schema::Category;
 use super::icon::Icon;
 use super::model::Model;
 use super::theme;
-use super::widgets::{Asks, painted_button, progress_ring};
+use super::widgets::{Asks, painted_button, progress_ring, tooltip_above};
 use crate::ballots::Ballot;
 use crate::event::Event;
 use crate::input::{Best, Command};
@@ -136,7 +136,7 @@ pub fn hub(ui: &mut Ui, model: &Model, anchor: Pos2, picture_width: f32) {
     let rest =
         Rect::from_min_max(first.min + 3.0 * step + step.normalized() * 2.0, rect.max - vec2(6.0, 6.0));
     match (&model.baking, hindrance) {
-        (_, None) => next_button(ui, rest, words),
+        (_, None) => next_button(ui, model, rest, words),
         // Without a tooltip: the pointer rests there since it has pressed the button, and it would hide a name.
         (Some(baking), Some(_)) => {
             let rest_color = Color32::from_white_alpha(45);
@@ -149,7 +149,7 @@ pub fn hub(ui: &mut Ui, model: &Model, anchor: Pos2, picture_width: f32) {
 /// The hub is dark in both themes, as everything that lies on pictures.
 const DARK_ACCENT: Color32 = theme::DARK.accent;
 
-fn next_button(ui: &mut Ui, rect: Rect, words: bool) {
+fn next_button(ui: &mut Ui, model: &Model, rect: Rect, words: bool) {
     let name = "Next generation (hub)";
     let (response, lit) = painted_button(ui, rect, "next generation", name, false);
     let fill = if lit { DARK_ACCENT.lerp_to_gamma(Color32::WHITE, 0.3) } else { DARK_ACCENT };
@@ -161,8 +161,9 @@ fn next_button(ui: &mut Ui, rect: Rect, words: bool) {
         let at = pos2(rect.left() + 14.0, rect.center().y);
         ui.painter().text(at, Align2::LEFT_CENTER, "Next generation", word_font(), ink);
     }
+    let text = model.with_key("Breed four new landscapes from what you chose", Command::NextGeneration);
+    tooltip_above(&response, text);
     response.asks(Command::NextGeneration);
-    response.on_hover_text("Breed four new landscapes from what you chose");
 }
 
 /// One category's ballot: who won, or that none pleases; a click says "none", a second takes that back.
@@ -196,9 +197,10 @@ fn chip(ui: &mut Ui, model: &Model, category: Category, rect: Rect) {
             Icon::from(category).paint(painter, icon_rect, bright);
         }
     }
-    response.on_hover_text(match ballot {
+    let text = match ballot {
         Ballot::Open => format!("{title}: not voted yet. Click if none of the four pleases."),
         Ballot::NoFavourite => format!("{title}: none of the four. Click to take that back."),
         Ballot::For(best) => format!("{title}: {} is best. Click if none of the four pleases.", best + 1),
-    });
+    };
+    tooltip_above(&response, model.with_key(&text, Command::Vote(Best { category, landscape: None })));
 }

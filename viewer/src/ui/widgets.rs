@@ -1,8 +1,9 @@
 //! The few controls that egui does not bring: buttons of a pictogram, switches, choices in a row, progress rings, keys.
 //! Each has a name for those who use a screen reader (and for the tests).
 
-use egui::{Align, Align2, AsIdSalt, Color32, Context, FontId, Id, Layout, Painter, Pos2, Rect, Response};
-use egui::{RichText, Role, Sense, Shape, Stroke, StrokeKind, TextStyle, Ui, Vec2, WidgetInfo, vec2};
+use egui::{Align, Align2, AsIdSalt, Color32, Context, FontId, Id, Layout, Painter, Pos2, Rect, RectAlign};
+use egui::{Response, RichText, Role, Sense, Shape, Stroke, StrokeKind, TextStyle, Tooltip, Ui, Vec2};
+use egui::{WidgetInfo, WidgetText, vec2};
 
 use super::icon::{Icon, arc};
 use super::theme::{self, Palette};
@@ -67,6 +68,13 @@ impl Asks for Response {
             ask(&self.ctx, event.into());
         }
     }
+}
+
+/// A tooltip above the widget: below it lies something that has to be read.
+pub fn tooltip_above(response: &Response, text: impl Into<WidgetText>) {
+    let mut tooltip = Tooltip::for_enabled(response);
+    tooltip.popup = tooltip.popup.align(RectAlign::TOP);
+    tooltip.show(|ui| ui.label(text));
 }
 
 /// Asks for something. Until [`asked`] takes it egui keeps it, so that no function has to pass it on.

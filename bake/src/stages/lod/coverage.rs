@@ -179,14 +179,14 @@ fn fill(pixels: &mut [u64], side: usize, [a, b, c]: [Vec2; 3], opaque: impl Fn(f
         }
         let (start, end) = (whole(left), whole(right).min(side));
         let line = &mut pixels[row as usize * side / 64..][..side / 64];
-        for word in start / 64..end.div_ceil(64) {
+        for (word, covered) in line.iter_mut().enumerate().take(end.div_ceil(64)).skip(start / 64) {
             let (from, to) = (start.max(64 * word) % 64, end.min(64 * word + 64) - 64 * word);
-            let mut bare = !line[word] & u64::MAX << from & u64::MAX >> (64 - to);
+            let mut bare = !*covered & u64::MAX << from & u64::MAX >> (64 - to);
             while bare != 0 {
                 let bit = bare & bare.wrapping_neg();
                 bare ^= bit;
                 if opaque((64 * word) as f32 + bit.trailing_zeros() as f32 + 0.5, y) {
-                    line[word] |= bit;
+                    *covered |= bit;
                 }
             }
         }
