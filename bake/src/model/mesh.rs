@@ -39,6 +39,13 @@ pub enum Material {
     Foreign(u32),
 }
 
+impl Material {
+    /// Alpha-masked cards.
+    pub fn is_card(self) -> bool {
+        matches!(self, Self::Leaf | Self::Blossom)
+    }
+}
+
 /// How a part is simplified.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PartKind {
@@ -84,6 +91,11 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// Whether any part is made of cards.
+    pub fn has_cards(&self) -> bool {
+        self.parts.iter().any(|part| part.material.is_card())
+    }
+
     /// Triangles of all parts.
     pub fn triangle_count(&self) -> usize {
         self.parts.iter().map(|part| part.triangles.len()).sum()

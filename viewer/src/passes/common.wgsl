@@ -254,10 +254,46 @@ fn before_drift(direction: vec3f, moved: vec2f) -> vec3f {
     return normalize(vec3f(place.x, direction.y * away, place.y));
 }
 
+// Two random numbers of a lattice's point, -1 to 1: PCG (Jarzynski and Olano 2020).
+fn random_pair(point: vec2f) -> vec2f {
+    var v = vec2u(vec2i(point)) * 1664525u + 1013904223u;
+    v += vec2u(v.y, 0u) * 1664525u;
+    v += vec2u(0u, v.x) * 1664525u;
+    v ^= v >> vec2u(16u);
+    v += vec2u(v.y, 0u) * 1664525u;
+    v += vec2u(0u, v.x) * 1664525u;
+    return vec2f(v >> vec2u(16u)) / 32767.5 - 1.0;
+}
+
+fn noise_pair(place: vec2f) -> vec2f {
+    let corner = floor(place);
+    let part = smoothstep(vec2f(0.0), vec2f(1.0), place - corner);
+    let near = mix(random_pair(corner), random_pair(corner + vec2f(1.0, 0.0)), part.x);
+    let far = mix(random_pair(corner + vec2f(0.0, 1.0)), random_pair(corner + vec2f(1.0, 1.0)), part.x);
+    return mix(near, far, part.y);
+}
+
+// How far edges of clouds are frayed, in texels of the painted sky.
+const FRAYED: f32 = 1.3;
+
+// A direction beside, by about a texel of the painted sky: its clouds, magnified, get edges finer than its texels. Where a
+// pixel covers a texel there is nothing to add.
+fn frayed(direction: vec3f) -> vec3f {
+    let texels = f32(textureDimensions(sky_cube).x) / 2.0;
+    let place = direction.xz / (direction.y + 0.2) * texels;
+    let beside = noise_pair(place / 3.1) + 0.55 * noise_pair(place / 1.3 + 17.0);
+    let right = normalize(vec3f(direction.z, 0.0, -direction.x) + vec3f(1e-4, 0.0, 0.0));
+    // Around the sun the clear sky, which is taken from the painted one, changes within a texel.
+    let beside_sun = smoothstep(0.9990, 0.9900, dot(normalize(direction), view.sun_direction));
+    let reach = FRAYED / texels * smoothstep(0.7, 1.8, view.focal_px / texels) * beside_sun;
+    return direction + (right * beside.x + cross(direction, right) * beside.y) * reach;
+}
+
 // What clouds add to the clear sky, or take from it.
 fn cloud_difference(direction: vec3f) -> vec3f {
-    let painted = textureSampleLevel(sky_cube, clamped, direction, 0.0).rgb;
-    return painted - textureSampleLevel(clear_cube, clamped, direction, 0.0).rgb;
+    let there = frayed(direction);
+    let painted = textureSampleLevel(sky_cube, clamped, there, 0.0).rgb;
+    return painted - textureSampleLevel(clear_cube, clamped, there, 0.0).rgb;
 }
 
 // The sky in a direction, without the sun's disc: the painted clouds, drifting if that is wished for. At the horizon they

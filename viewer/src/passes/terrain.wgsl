@@ -287,10 +287,32 @@ fn ring_vertex(in: RingVertex) -> RingOut {
     return RingOut(view.clip_from_world * vec4f(in.position, 1.0), in.position, in.normal, in.color.rgb);
 }
 
+// Metres of a tile of far rock, which stands for crags and gullies that the ring is too coarse for, and how far its bumps
+// lean.
+const CRAGS_M: f32 = 230.0;
+const CRAGS_LEAN: f32 = 0.8;
+
+// Crags at two scales: their bumps and a factor on the colour.
+fn crags(place: vec2f) -> Tiles {
+    let turn = mat2x2f(0.82, 0.57, -0.57, 0.82);
+    let wide = place / CRAGS_M;
+    let fine = turn * place / (0.23 * CRAGS_M);
+    let factor = textureSample(details, repeating, wide, 1).rgb + textureSample(details, repeating, fine, 1).rgb;
+    let wide_bump = textureSample(detail_normals, repeating, wide, 1).xy * 2.0 - 1.0;
+    let fine_bump = textureSample(detail_normals, repeating, fine, 1).xy * 2.0 - 1.0;
+    return Tiles(factor * (0.5 * 255.0 / 128.0), vec3f(wide_bump + vec2f(0.82, -0.57) * fine_bump.x + vec2f(0.57, 0.82) * fine_bump.y, 1.0));
+}
+
 @fragment
 fn ring(in: RingOut) -> @location(0) vec4f {
-    let normal = normalize(in.normal);
+    let smooth_normal = normalize(in.normal);
+    let tiles = crags(in.world.xz);
+    // Plains are smooth, slopes are not.
+    let rough = mix(0.12, 1.0, smoothstep(0.97, 0.78, smooth_normal.y));
+    let lean = tiles.bump.xy * (CRAGS_LEAN * rough);
+    let normal = normalize(vec3f(smooth_normal.x + lean.x, smooth_normal.y, smooth_normal.z - lean.y));
+    let albedo = in.color * mix(vec3f(1.0), tiles.factor, rough);
     let sun = view.sun_irradiance * max(dot(normal, view.sun_direction), 0.0);
     let sky = view.sky_irradiance * (0.5 + 0.5 * normal.y);
-    return vec4f(aerial_perspective(in.color / PI * (sun + sky), distance(in.world, view.eye)), 1.0);
+    return vec4f(aerial_perspective(albedo / PI * (sun + sky), distance(in.world, view.eye)), 1.0);
 }

@@ -18,5 +18,6 @@ mod mistakes;
 mod program;
 mod shaders;
 mod shadows;
+mod sky;
 mod window;
 mod window_file;

@@ -60,7 +60,7 @@ impl Crown {
 }
 
 fn opacity(material: Material) -> f32 {
-    if matches!(material, Material::Leaf | Material::Blossom) { LEAF_OPACITY } else { 1.0 }
+    if material.is_card() { LEAF_OPACITY } else { 1.0 }
 }
 
 /// A tree's shadow.

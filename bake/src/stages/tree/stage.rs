@@ -80,16 +80,14 @@ pub struct TreeFiles {
 
 impl Stage for TreeStage {
     const NAME: &'static str = "tree";
-    const VERSION: u32 = 8;
+    const VERSION: u32 = 9;
     type Output = TreeFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<TreeFiles, StageError> {
         let template = template(&self.params, self.index);
         let textures = context.get(&self.textures)?.try_map(|file| context.bytes(file))?;
-        let (levels, impostor) = rayon::join(
-            || lod::levels(&template.mesh, &lod_options(&template.mesh, &textures)),
-            || impostor(&template.mesh, &textures),
-        );
+        let levels = lod::levels(&template.mesh, &lod_options(&template.mesh, &textures));
+        let impostor = impostor(drawn_from_afar(&levels.levels), &textures);
         let embedded = textures.map(|bytes| Picture::Embedded { bytes, mime_type: "image/png" });
         let glb = tree_glb(&format!("tree-{}", self.index), &levels, &embedded, Some(&impostor))?;
         let footprint = TreeFootprint {
@@ -108,6 +106,12 @@ impl Stage for TreeStage {
     fn label(&self) -> String {
         format!("tree {}", self.index)
     }
+}
+
+/// The level of which pictures are drawn: with half of the leaves, which cover as much, in half of the time; a leaf is less
+/// than a pixel of them. A bare tree has no leaf to spare.
+fn drawn_from_afar(levels: &[Level]) -> &Mesh {
+    &levels[usize::from(levels[0].mesh.has_cards() && levels.len() > 1)].mesh
 }
 
 /// How a template with these textures is simplified.

@@ -41,8 +41,7 @@ struct Frame {
 
 impl Frame {
     fn of(mesh: &Mesh) -> Self {
-        let has_cards =
-            mesh.parts.iter().any(|part| matches!(part.material, Material::Leaf | Material::Blossom));
+        let has_cards = mesh.has_cards();
         let bounds = mesh.bounds();
         let axis = 0.5 * (bounds.min + bounds.max);
         let from_axis = |p: &[f32; 3]| {
@@ -57,7 +56,7 @@ impl Frame {
     }
 }
 
-/// Draws a template, whose D_0 `mesh` is, from four sides: the same bytes for any number of threads.
+/// Draws a template, whose finest or next level `mesh` is, from four sides: the same bytes for any number of threads.
 pub fn impostor<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> Impostor {
     let frame = Frame::of(mesh);
     let cards = [&textures.leaf_small, &textures.blossom_small].map(card);
