@@ -1,7 +1,7 @@
 //! The command line: words → one [`Command`] for each thing that can be asked for.
 
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::str::FromStr;
 
 use bytesize::ByteSize;
@@ -9,6 +9,7 @@ use clap::{Args, CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
 use genescape_schema::INDIVIDUALS;
 
+use crate::bad_input::BadInput;
 use crate::export::{Audience, Options};
 use crate::plan::Resolution;
 
@@ -52,18 +53,6 @@ const MAN_EXAMPLES: &str = "\
 Examples:
   bake man | man -l -
   bake man ~/.local/share/man/man1  from then on: man bake-export";
-
-/// Input that the person must correct, as against a failure of the program: exit code 2.
-#[derive(Debug, thiserror::Error)]
-#[error("{0}")]
-pub struct BadInput(pub String);
-
-impl BadInput {
-    /// For a file that the person has named.
-    pub fn unread(path: &Path, error: &std::io::Error) -> Self {
-        Self(format!("cannot read {}: {error}", path.display()))
-    }
-}
 
 /// One of the four landscapes, which people count from 1; files and arrays count from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,11 +9,14 @@ use genescape_cache::{Change, Explanation};
 use genescape_schema::{Genome, Kinds, Population, Space};
 use genescape_world::output::BadOutput;
 use genescape_world::{World, WorldError, file_limit, names};
+use signal_hook::consts::SIGINT;
+use signal_hook::flag;
 
 use crate::audition::{self, Auditioned, Redrawn};
+use crate::bad_input::BadInput;
 use crate::breed::NoVotes;
 use crate::cache_commands::GaveUp;
-use crate::cli::{BadInput, Cli, Command, Landscape, RunArgs, meant_command};
+use crate::cli::{Cli, Command, Landscape, RunArgs, meant_command};
 use crate::events::{Event, Listener};
 use crate::export::InTheWay;
 use crate::plan::Resolution;
@@ -34,13 +37,9 @@ const INTERRUPTED_CODE: u8 = 130;
 /// Carries out the command line; returns the process's exit code.
 pub fn run(cli: Cli) -> u8 {
     file_limit::is_an_error();
-    let listen = ctrlc::set_handler(|| {
-        // The second time, the person means it.
-        if INTERRUPTED.swap(true, Ordering::SeqCst) {
-            std::process::exit(i32::from(INTERRUPTED_CODE));
-        }
-    });
-    if let Err(error) = listen {
+    // The second time, the person means it.
+    let end = flag::register_conditional_shutdown(SIGINT, i32::from(INTERRUPTED_CODE), &INTERRUPTED);
+    if let Err(error) = end.and_then(|_| flag::register(SIGINT, &INTERRUPTED)) {
         eprintln!("note: Ctrl-C will end the bake at once: {error}");
     }
     match dispatch(&cli) {

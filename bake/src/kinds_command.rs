@@ -6,7 +6,8 @@ use serde_json::{Map, json};
 
 use anyhow::Result;
 
-use crate::cli::{BadInput, KindsCommand, RunArgs};
+use crate::bad_input::BadInput;
+use crate::cli::{KindsCommand, RunArgs};
 use crate::say;
 
 /// Carries out the command.

@@ -3,6 +3,7 @@
 pub mod say;
 
 pub mod audition;
+mod bad_input;
 pub mod bench;
 pub mod breed;
 mod cache_commands;

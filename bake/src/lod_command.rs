@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use genescape_world::{MAX_MODEL_BYTES, NamedFiles, atomic_write, output, regular_file};
 
-use crate::cli::BadInput;
+use crate::bad_input::BadInput;
 use crate::gltf::{self, MaterialSet, Picture};
 use crate::import::{self, Imported, ImportedImage, Repair};
 use crate::model::Material;

@@ -78,6 +78,12 @@ pub fn contact_sheet(images: &[RgbaImage], columns: usize) -> Option<RgbaImage> 
     Some(sheet)
 }
 
+/// Makes the folder of a file that is to be written.
+pub fn make_folder(path: &Path) -> Result<()> {
+    let Some(folder) = path.parent() else { return Ok(()) };
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))
+}
+
 /// Writes a PNG file; its folder must exist.
 pub fn write_png(path: &Path, image: &RgbaImage) -> Result<()> {
     let written = image.save_with_format(path, ImageFormat::Png);

@@ -1,9 +1,8 @@
 //! What `viewer --screenshot` does: landscapes → one PNG file.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Result, anyhow};
 use genescape_world::{Source, output};
 use glam::{Vec2, Vec3};
 
@@ -22,10 +21,7 @@ const DEFAULT_SIZE_PX: [u32; 2] = [1280, 800];
 pub fn take(cli: &Cli, source: &Source, out: &Path) -> Result<()> {
     // Scenes have other endings: none can be written over.
     output::check(out, "png", &[])?;
-    if let Some(folder) = out.parent() {
-        // Before the work.
-        fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
-    }
+    image_file::make_folder(out)?;
     let paths = chosen(cli, scene_files(source)?)?;
     let options = cli.drawing;
     let headless = Headless::open(&Shaders::from(cli.shaders.clone()), options.samples)?;

@@ -12,7 +12,7 @@ use genescape_world::{MAX_MODEL_BYTES, regular_file};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use crate::cli::BadInput;
+use crate::bad_input::BadInput;
 
 /// Where scenes find their blobs.
 const BLOBS: &str = "../../blobs/";
