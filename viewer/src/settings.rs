@@ -133,6 +133,8 @@ impl Default for Window {
 pub struct WorldSettings {
     /// Where the person was last.
     pub place: Option<Bookmark>,
+    /// That is where landscapes begin: nobody has walked from there.
+    pub at_start: bool,
     /// The generation that was shown last.
     pub generation: Option<u32>,
     /// Places to go back to, by the number of their key.

@@ -4,7 +4,7 @@ use glam::Vec2;
 use winit::window::{CursorGrabMode, Window};
 
 use crate::input::{Command, Held};
-use crate::settings::{Bookmark, Comfort};
+use crate::settings::{Bookmark, Comfort, WorldSettings};
 use crate::walk::{Feel, Land, Mode, Pose, Rig, start_pose, suits_all};
 
 /// How the camera came to be where it is.
@@ -14,8 +14,6 @@ enum Place {
     Awaited,
     /// At the start of the first landscapes that were there.
     Start,
-    /// At a start that all landscapes were asked about, or that the person went back to.
-    Settled,
     /// Where the person has gone.
     Chosen,
 }
@@ -28,6 +26,8 @@ pub struct CameraControl {
     /// The pointer steers the view.
     captured: bool,
     place: Place,
+    /// The generation whose landscapes were all asked about the start.
+    asked: Option<u32>,
     /// What is shown is anyone's file, which stands alone.
     around_subject: bool,
     /// Nothing was held at the last step.
@@ -56,6 +56,7 @@ impl CameraControl {
             held: Held::default(),
             captured: false,
             place: Place::Awaited,
+            asked: None,
             around_subject: false,
             resting: true,
             #[cfg(feature = "gamepad")]
@@ -71,7 +72,7 @@ impl CameraControl {
 
     /// A generation is born: the walk begins anew with its first landscape.
     pub fn await_landscapes(&mut self) {
-        self.place = Place::Awaited;
+        (self.place, self.asked) = (Place::Awaited, None);
     }
 
     /// Landscapes have changed. `own`: those of the generation on show, of `all` that are walked in; `complete`: no more
@@ -81,18 +82,18 @@ impl CameraControl {
     /// minute later, spent in a lake. Each of the others might know a better start, but a person who looks around must
     /// not be moved again and again. So that is asked once, when all are known, of someone who has not moved, and only
     /// if the place is bad for one of them.
-    pub fn lands_changed(&mut self, all: &[&Land], own: &[&Land], complete: bool) {
+    pub fn lands_changed(&mut self, all: &[&Land], own: &[&Land], generation: u32, complete: bool) {
         self.around_subject = all.iter().any(|land| land.subject.is_some());
         let begins = self.place == Place::Awaited && !own.is_empty();
-        let settles = complete && (begins || self.place == Place::Start);
-        if begins || settles && !suits_all(own, &self.rig.pose()) {
+        let asks = complete && self.place == Place::Start && self.asked != Some(generation);
+        if begins || asks && !suits_all(own, &self.rig.pose()) {
             self.rig.go(start_pose(own), own);
             self.place = Place::Start;
         } else {
             self.rig.settle(all);
         }
-        if settles {
-            self.place = Place::Settled;
+        if complete {
+            self.asked = Some(generation);
         }
     }
 
@@ -104,7 +105,7 @@ impl CameraControl {
     /// Goes to where every walk starts.
     pub fn go_to_start(&mut self, lands: &[&Land]) {
         self.rig.go(start_pose(lands), lands);
-        self.leave(Place::Settled);
+        self.leave(Place::Start);
     }
 
     /// While landscapes are awaited, a walk in the old ones changes nothing.
@@ -171,15 +172,11 @@ impl CameraControl {
         }
     }
 
-    /// The place to come back to at the next start, once the camera has come to rest; `None` at a start, which the
-    /// landscapes give again. `before`: what it was.
-    pub fn place_to_keep(&self, before: Option<Bookmark>) -> Option<Bookmark> {
-        match self.place {
-            Place::Awaited => before,
-            Place::Start | Place::Settled => None,
-            Place::Chosen if self.resting => Some(self.bookmark()),
-            Place::Chosen => before,
-        }
+    /// The place to come back to at the next start, if there is one and the camera has come to rest; and whether it is
+    /// where landscapes begin.
+    pub fn rested_at(&self) -> Option<(Bookmark, bool)> {
+        let rests = self.place != Place::Awaited && self.resting;
+        rests.then(|| (self.bookmark(), self.place == Place::Start))
     }
 
     /// Goes to a remembered place.
@@ -199,10 +196,14 @@ impl CameraControl {
     }
 
     /// Before landscapes are loaded: goes to where the last session ended. Without such a place the landscapes decide.
-    pub fn return_to(&mut self, place: Option<&Bookmark>) {
+    /// At a start, those of another generation than the last may say that there is a better one.
+    pub fn return_to(&mut self, place: Option<&Bookmark>, last: &WorldSettings) {
         self.place = Place::Awaited;
-        if let Some(place) = place {
-            self.go_to(place, &[]);
+        if let Some(mark) = place {
+            self.go_to(mark, &[]);
+            if last.at_start {
+                (self.place, self.asked) = (Place::Start, last.generation);
+            }
         }
     }
 
@@ -261,15 +262,15 @@ mod tests {
         for (score, expected) in [(150, 48), (20, 72)] {
             let second = land(&[(48, score), (72, 90)]);
             let mut control = control();
-            control.lands_changed(&[&old], &[&old], true);
+            control.lands_changed(&[&old], &[&old], 1, true);
             walk(&mut control, &[&old]);
             control.await_landscapes();
             walk(&mut control, &[&old]);
-            control.lands_changed(&[&first, &old], &[&first], false);
+            control.lands_changed(&[&first, &old], &[&first], 1, false);
             assert_eq!(x_m(&control), x_of(48), "whoever walked while it grew is taken along");
-            control.lands_changed(&[&first, &second], &[&first, &second], false);
+            control.lands_changed(&[&first, &second], &[&first, &second], 1, false);
             assert_eq!(x_m(&control), x_of(48), "not before the last is there");
-            control.lands_changed(&[&first, &second], &[&first, &second], true);
+            control.lands_changed(&[&first, &second], &[&first, &second], 1, true);
             assert_eq!(
                 x_m(&control),
                 x_of(expected),
@@ -282,41 +283,47 @@ mod tests {
     fn an_edit_moves_nobody() {
         let (good, bad) = (land(&[(48, 200), (72, 90)]), land(&[(48, 20), (72, 90)]));
         let mut control = control();
-        control.lands_changed(&[&good], &[&good], true);
-        control.lands_changed(&[&bad], &[&bad], true);
+        control.lands_changed(&[&good], &[&good], 1, true);
+        control.lands_changed(&[&bad], &[&bad], 1, true);
         assert_eq!(x_m(&control), x_of(48), "the walk has begun");
         control.go_to_start(&[&bad]);
         assert_eq!(x_m(&control), x_of(72), "as the person wanted");
-        control.lands_changed(&[&good], &[&good], true);
+        control.lands_changed(&[&good], &[&good], 1, true);
         assert_eq!(x_m(&control), x_of(72));
     }
 
     #[test]
-    fn a_place_is_kept_only_if_the_person_has_gone_there() {
-        let (land, before) = (land(&[(48, 200)]), Some(control().bookmark()));
+    fn a_place_that_is_a_start_gives_way_to_a_better_one_after_a_restart_and_in_another_generation() {
+        let (good, bad) = (land(&[(48, 200), (72, 90)]), land(&[(48, 20), (72, 90)]));
         let mut control = control();
-        assert_eq!(control.place_to_keep(before), before, "nothing is known yet");
-        control.lands_changed(&[&land], &[&land], true);
-        assert_eq!(control.place_to_keep(before), None);
-        walk(&mut control, &[&land]);
-        control.step(0.25, &Comfort::default(), &[&land]);
-        assert_eq!(control.place_to_keep(before), Some(control.bookmark()));
+        control.lands_changed(&[&good], &[&good], 1, true);
+        control.step(0.25, &Comfort::default(), &[&good]);
+        let (mark, is_start) = control.rested_at().expect("it rests");
+        for (at_start, generation, expected) in [(is_start, 0, 72), (is_start, 1, 48), (false, 0, 48)] {
+            let mut again = self::control();
+            let last = WorldSettings { at_start, generation: Some(1), ..WorldSettings::default() };
+            again.return_to(Some(&mark), &last);
+            again.lands_changed(&[&bad], &[&bad], generation, true);
+            assert_eq!(x_m(&again), x_of(expected), "generation {generation}, at a start: {at_start}");
+        }
+        control.lands_changed(&[&bad], &[&bad], 0, true);
+        assert_eq!(x_m(&control), x_of(72), "another generation");
     }
 
     #[test]
     fn whoever_walks_on_in_the_new_generation_is_left_alone_and_so_is_whoever_stays() {
         let (old, first, wall) = (land(&[(24, 200)]), land(&[(48, 200)]), land(&[(72, 200)]));
         let mut control = control();
-        control.lands_changed(&[&old], &[&old], true);
+        control.lands_changed(&[&old], &[&old], 1, true);
         walk(&mut control, &[&old]);
         let before = control.rig.pose();
-        control.lands_changed(&[&first, &old], &[&first], false);
+        control.lands_changed(&[&first, &old], &[&first], 1, false);
         assert_eq!(control.rig.pose(), before, "nothing was awaited");
         control.await_landscapes();
-        control.lands_changed(&[&first], &[&first], false);
+        control.lands_changed(&[&first], &[&first], 1, false);
         walk(&mut control, &[&first]);
         let before = control.rig.pose();
-        control.lands_changed(&[&first, &wall], &[&first, &wall], true);
+        control.lands_changed(&[&first, &wall], &[&first, &wall], 1, true);
         assert_eq!(control.rig.pose(), before);
     }
 }

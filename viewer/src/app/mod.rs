@@ -145,7 +145,7 @@ impl App {
         let (mut camera, problem) = CameraControl::new();
         let kept = file.settings.world(&source);
         let editor = Editor::open(source.clone(), &kept);
-        camera.return_to(place_to_return_to(&editor, &kept, &file.settings.comfort.value));
+        camera.return_to(place_to_return_to(&editor, &kept, &file.settings.comfort.value), &kept);
         let now = Instant::now();
         let mut app = Self {
             layout: Layout::of(editor.count(), Default::default()),
@@ -208,7 +208,7 @@ impl App {
         self.layout = Layout::of(self.editor.count(), self.layout.panels);
         self.source = source;
         let comfort = &self.file.settings.comfort.value;
-        self.camera.return_to(place_to_return_to(&self.editor, &kept, comfort));
+        self.camera.return_to(place_to_return_to(&self.editor, &kept, comfort), &kept);
         if let Some(live) = &mut self.live {
             live.viewports.clear();
             live.screen.window.set_title(&title(&self.source));
@@ -289,7 +289,8 @@ impl App {
             let of_generation = |view: &usize| self.editor.state(*view) == ViewState::Ready;
             let own = (0..INDIVIDUALS).filter(of_generation).filter_map(|view| live.viewports.land(view));
             let complete = !self.editor.awaits_scenes();
-            self.camera.lands_changed(&live.viewports.lands(), &own.collect::<Vec<_>>(), complete);
+            let (lands, generation) = (live.viewports.lands(), self.editor.generations().0);
+            self.camera.lands_changed(&lands, &own.collect::<Vec<_>>(), generation, complete);
         }
         if let Some(first) = notes.first() {
             let more = if notes.len() > 1 { "; more in “About this file”" } else { "" };
@@ -429,7 +430,9 @@ impl App {
         self.editor.keep(&mut kept);
         // Not at every step of a walk, or the file would be written for as long as it goes.
         if self.editor.world().is_some() {
-            kept.place = self.camera.place_to_keep(kept.place);
+            if let Some((place, at_start)) = self.camera.rested_at() {
+                (kept.place, kept.at_start) = (Some(place), at_start);
+            }
             kept.generation = Some(self.editor.generations().0);
         }
         if kept != settings.world(source) {
