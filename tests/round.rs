@@ -4,6 +4,7 @@
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
+use genescape_bake::plan::Resolution;
 use genescape_schema::{Category, Parent, Space, Votes};
 use genescape_viewer::baker::{Baker, BakerOptions, Event};
 use genescape_viewer::edit_history::{Change as Edited, Edit};
@@ -25,7 +26,11 @@ impl Round {
         let files = World::new(folder.path());
         let watch =
             Watch::start(Scope { scenes: true, ..Scope::of(files.clone()) }, false, || {}).expect("watched");
-        let options = BakerOptions { threads: None, heightfield: 65, poll: false };
+        let options = BakerOptions {
+            threads: None,
+            heightfield: Resolution::of_side(65).expect("a side"),
+            poll: false,
+        };
         let baker = Baker::start(files.root(), options, || {}).expect("a thread");
         Self { _folder: folder, files, baker, watch, edited: Vec::new(), changes: BTreeSet::new() }
     }
@@ -107,7 +112,8 @@ fn a_bake_ends_soon_after_its_baker_and_another_goes_on() {
     round.until(|event| matches!(event, Event::Started { .. }));
     let Round { _folder, files, baker, .. } = round;
     drop(baker);
-    let options = BakerOptions { threads: None, heightfield: 65, poll: false };
+    let options =
+        BakerOptions { threads: None, heightfield: Resolution::of_side(65).expect("a side"), poll: false };
     let baker = Baker::start(files.root(), options, || {}).expect("a thread");
     let (mut done, start) = (false, Instant::now());
     while !done && start.elapsed() < Duration::from_secs(120) {

@@ -123,7 +123,8 @@ fn tree_cost(
     let template = samples.time("generating it", || tree::template(params, index));
     let options = tree::lod_options(&template.mesh, textures);
     let levels = samples.time("progressive mesh, levels, strips", || lod::levels(&template.mesh, &options));
-    let impostor = samples.time("pictures from four sides", || tree::impostor(&template.mesh, textures));
+    let drawn = tree::drawn_from_afar(&levels.levels);
+    let impostor = samples.time("pictures from four sides", || tree::impostor(drawn, textures));
     // The textures are made once a scene, and timed there.
     let pictures = textures.map(|_| Picture::Embedded { bytes: &[], mime_type: "image/png" });
     samples.time("writing the file", || gltf::tree_glb("tree", &levels, &pictures, Some(&impostor)))?;

@@ -139,8 +139,8 @@ pub struct RunArgs {
     #[arg(long, value_name = "N", global = true, value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
     /// Samples a side of the heightfield: 65, 129, 257, 513, 1025 or 2049.
-    #[arg(long, value_name = "N", default_value_t = 513, global = true, value_parser = side, allow_negative_numbers = true)]
-    pub size: u32,
+    #[arg(long, value_name = "N", default_value_t, global = true, allow_negative_numbers = true)]
+    pub size: Resolution,
     /// Print events as JSON, one a line, instead of a progress bar: of bakes and exports.
     #[arg(long, global = true)]
     pub json: bool,
@@ -334,12 +334,6 @@ pub enum CacheCommand {
 }
 
 /// A number of threads: more than any machine's cores would only keep it from other work.
-/// A number of samples that a heightfield can have a side.
-pub fn side(text: &str) -> Result<u32, String> {
-    let side = text.parse().map_err(|_| "a whole number is needed".to_owned())?;
-    Resolution::of_side(side).map(|_| side).map_err(|error| error.to_string())
-}
-
 pub fn threads(text: &str) -> Result<usize, String> {
     const MAX_THREADS: usize = 1024;
     let threads = text.parse().ok().filter(|threads| (1..=MAX_THREADS).contains(threads));

@@ -19,7 +19,6 @@ use crate::cache_commands::GaveUp;
 use crate::cli::{Cli, Command, Landscape, RunArgs, meant_command};
 use crate::events::{Event, Listener};
 use crate::export::InTheWay;
-use crate::plan::Resolution;
 use crate::progress::{JsonLines, ProgressBar};
 use crate::run::RunError;
 use crate::say;
@@ -87,7 +86,7 @@ fn dispatch(cli: &Cli) -> Result<()> {
         Command::Export { scene, out, options } => export_command::run(scene, out, *options, run),
         Command::Lod { input, out, crease_deg } => lod_command::convert(input, out, *crease_deg),
         Command::Cache { action } => cache_commands::look_after(&run.world, action, &stopped),
-        Command::Bench { runs } => bench::bench(*runs, &pool(run.threads)?, resolution(run.size)?),
+        Command::Bench { runs } => bench::bench(*runs, &pool(run.threads)?, run.size),
         Command::Completions { shell } => manual::completions(*shell),
         Command::Man { folder } => manual::man(folder.as_deref()),
     }
@@ -98,13 +97,8 @@ fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
     builder.build().context("cannot start threads")
 }
 
-fn resolution(size: u32) -> Result<Resolution> {
-    Resolution::of_side(size).map_err(|text| BadInput(text).into())
-}
-
 fn open_session(args: &RunArgs) -> Result<Session> {
-    let resolution = resolution(args.size)?;
-    Session::new(World::open_or_create(&args.world)?, pool(args.threads)?, resolution)
+    Session::new(World::open_or_create(&args.world)?, pool(args.threads)?, args.size)
 }
 
 /// Reports bakes to a person or to a program.

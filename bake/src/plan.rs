@@ -15,6 +15,9 @@
 //! Nodes that do the same job on the same inputs are one node: children that share a chromosome with a parent, or
 //! scenes that share one with each other, share the work.
 
+use std::fmt;
+use std::str::FromStr;
+
 use genescape_schema::{Genome, GenomeError, Population, Space};
 
 use crate::graph::{Graph, Node, NodeId};
@@ -46,26 +49,48 @@ pub struct Resolution {
     pub equirect_px: u32,
 }
 
-impl Resolution {
-    /// The default: 513 samples, 2 m apart.
-    pub const DEFAULT_SIDE: u32 = 513;
+/// 513 samples, 2 m apart.
+impl Default for Resolution {
+    fn default() -> Self {
+        Self::of_cells(512)
+    }
+}
 
+impl Resolution {
     /// The resolution for a heightfield of `side` samples; an error text unless it is 2^k+1 in 65 … 2049.
     pub fn of_side(side: u32) -> Result<Self, String> {
         if !(65..=2049).contains(&side) || !(side - 1).is_power_of_two() {
-            return Err(format!(
-                "--size {side}: a heightfield has 65, 129, 257, 513 (default), 1025 or 2049 samples a side"
-            ));
+            return Err(
+                "a heightfield has 65, 129, 257, 513 (default), 1025 or 2049 samples a side".to_owned()
+            );
         }
-        let cells = side - 1;
+        Ok(Self::of_cells(side - 1))
+    }
+
+    fn of_cells(cells: u32) -> Self {
         // The clouds are drawn in 1088 directions around: finer pictures would only hold larger files.
         let face_px = (3 * cells / 4).min(512);
-        Ok(Self {
-            side,
+        Self {
+            side: cells + 1,
             map_px: (2 * cells).clamp(128, 2048).min(cells.max(1024)),
             face_px,
             equirect_px: 4 * face_px,
-        })
+        }
+    }
+}
+
+/// As a person writes it: samples a side of the heightfield.
+impl FromStr for Resolution {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        Self::of_side(text.parse().map_err(|_| "a whole number is needed".to_owned())?)
+    }
+}
+
+impl fmt::Display for Resolution {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.side.fmt(f)
     }
 }
 

@@ -93,7 +93,7 @@ fn read_vote(checker: &mut Checker<'_>, category: Category, node: &Node<'_>) -> 
         Value::Number(_) => {
             let (given, last) = (given(number), INDIVIDUALS - 1);
             let message = format!(
-                "votes: {category}: {given} is none of the four: Some(0) is landscape 1, Some({last}) landscape 4"
+                "votes: {category}: {given} is none of the four: Some(0) is landscape 1, Some({last}) landscape {INDIVIDUALS}"
             );
             checker.refuse(number.span(), message)
         }

@@ -16,7 +16,7 @@ use std::sync::mpsc::{Receiver, Sender, TryIter, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Error, Result};
+use anyhow::{Context, Result};
 use genescape_bake::cli::threads;
 use genescape_bake::events::{Listener, Untold};
 use genescape_bake::plan::Resolution;
@@ -49,18 +49,12 @@ pub struct BakerOptions {
     pub threads: Option<usize>,
 
     /// Samples a side of the heightfields that are baked, as in `bake --size`: 65, 129, 257, 513, 1025 or 2049
-    #[arg(long, value_name = "N", default_value_t = Resolution::DEFAULT_SIDE, value_parser = heightfield)]
-    pub heightfield: u32,
+    #[arg(long, value_name = "N", default_value_t)]
+    pub heightfield: Resolution,
 
     /// Look several times a second instead of waiting for events, for network folders that send none
     #[arg(long)]
     pub poll: bool,
-}
-
-fn heightfield(text: &str) -> Result<u32, String> {
-    let side = text.parse().ok();
-    side.filter(|side| Resolution::of_side(*side).is_ok())
-        .ok_or_else(|| "a heightfield has 65, 129, 257, 513, 1025 or 2049 samples a side".to_owned())
 }
 
 /// A bake in the background. Dropped, it ends.
@@ -113,10 +107,9 @@ impl Drop for Baker {
 
 /// Watches and bakes until told to stop, or until it can't go on.
 fn bake(root: &Path, options: &BakerOptions, reporter: &Reporter) -> Result<()> {
-    let resolution = Resolution::of_side(options.heightfield).map_err(Error::msg)?;
     let world = World::open_or_create(root)?;
     world.begin()?;
-    let mut session = Session::new(world, pool(options.threads)?, resolution)?;
+    let mut session = Session::new(world, pool(options.threads)?, options.heightfield)?;
     let options = watch_loop::Options { population: None, poll: options.poll };
     watch_loop::run(&mut session, &options, reporter)
 }
@@ -267,8 +260,9 @@ mod tests {
 
     #[test]
     fn the_same_failure_is_told_once_and_another_again() {
-        let told =
-            supervised(4, |attempt| Err(Error::msg(if attempt < 3 { "no disk" } else { "no folder" })));
+        let told = supervised(4, |attempt| {
+            Err(anyhow::Error::msg(if attempt < 3 { "no disk" } else { "no folder" }))
+        });
         assert_eq!(told, ["no disk", "no folder"]);
     }
 
@@ -299,7 +293,11 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let space = folder.path().join("space.ron");
         std::fs::write(&space, "Space(").expect("written");
-        let options = BakerOptions { threads: Some(1), heightfield: 65, poll: false };
+        let options = BakerOptions {
+            threads: Some(1),
+            heightfield: Resolution::of_side(65).expect("a side"),
+            poll: false,
+        };
         let baker = Baker::start(folder.path(), options, || {}).expect("a thread");
         let failed = wait_for(&baker, |event| matches!(event, Event::Failed { .. }));
         assert!(matches!(failed, Event::Failed { message } if message.contains("space.ron:1:")));

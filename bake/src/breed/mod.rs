@@ -26,8 +26,8 @@ use descent::Origin;
 /// Why there is no next generation.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "nobody has voted on generation {generation} yet: in its file, say which of 0 … 3 has the best of each, \
-     as votes: Some((tree: Some(0), terrain: Some(2), sky: None)), where Some(0) is the first and None means none of them"
+    "nobody has voted on generation {generation} yet: in its file, say which has the best of each, \
+     as votes: Some((tree: Some(0), terrain: Some(2), sky: None)), where Some(0) is landscape 1 and None means none of them"
 )]
 pub struct NoVotes {
     pub generation: u32,

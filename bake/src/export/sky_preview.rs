@@ -43,8 +43,8 @@ const MAX_EV: f32 = 4.026_069;
 pub(crate) fn film(linear: [f32; 3]) -> [f32; 3] {
     let ev = rows(&INSET, linear).map(|c| (libm::log2f(c.max(1e-10)) - MIN_EV) / (MAX_EV - MIN_EV));
     let toned = ev.map(|x| curve(x.clamp(0.0, 1.0)).max(0.0));
-    let grey = libm::powf(0.2126 * toned[0] + 0.7152 * toned[1] + 0.0722 * toned[2], 1.18);
-    rows(&OUTSET, toned.map(|c| grey + 1.12 * (libm::powf(c, 1.18) - grey)))
+    let grey = libm::powf(0.2126 * toned[0] + 0.7152 * toned[1] + 0.0722 * toned[2], 1.25);
+    rows(&OUTSET, toned.map(|c| grey + 1.22 * (libm::powf(c, 1.25) - grey)))
 }
 
 fn curve(x: f32) -> f32 {

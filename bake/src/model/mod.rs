@@ -5,6 +5,7 @@
 mod climate;
 mod ground;
 mod image;
+mod leaf_color;
 mod light;
 mod mesh;
 mod terrain;
@@ -18,6 +19,7 @@ pub use genescape_schema::scene::{
 pub use climate::{Climate, SnowMap, dryness};
 pub use ground::{Foreground, GroundMaps};
 pub use image::{AlphaMask, Image8, ImageF16};
+pub use leaf_color::leaf_color;
 pub use light::LightMap;
 pub use mesh::{Bounds, Material, Mesh, Part, PartKind};
 pub use terrain::{Landform, TerrainMesh};

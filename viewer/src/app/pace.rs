@@ -20,7 +20,7 @@ const SHARP_AFTER: Duration = Duration::from_millis(200);
 /// The same while the processor has better things to do, and since the last picture was drawn.
 const SHARP_BESIDE_WORK_AFTER: Duration = Duration::from_secs(2);
 /// Between two frames that nobody asked for, while the processor has better things to do.
-const BESIDE_WORK: Duration = Duration::from_millis(500);
+const BESIDE_WORK: Duration = Duration::from_millis(250);
 /// Clouds and waves rest when nobody has touched anything for so long.
 const IDLE_AFTER: Duration = Duration::from_secs(10);
 /// Frames at a new resolution before it is judged: the first still show what came before.

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::plants::PlantDraw;
-use super::{Binding, CullUniform, Layouts, bind};
+use super::{Binding, BoundMirror, CullUniform, Layouts, bind};
 use crate::gpu::Gpu;
 use crate::upload::{SceneBuffers, TreeSet};
 
@@ -15,6 +15,8 @@ pub struct BoundScene {
     pub view_group: wgpu::BindGroup,
     pub ground_group: wgpu::BindGroup,
     trees: Option<BoundTrees>,
+    /// None without a lake.
+    pub mirror: Option<BoundMirror>,
     /// Blocks, or sample numbers of a strip, as the LOD mode has it.
     pub terrain: Elements,
     /// Sides of the picture as a part of full resolution.
@@ -62,25 +64,29 @@ impl BoundScene {
     pub fn new(gpu: &Gpu, layouts: &Layouts, scene: Arc<SceneBuffers>, uniform: &wgpu::Buffer) -> Self {
         use Binding::{Buffer, Sampler};
         let (sky, land) = (&scene.sky_textures, &scene.land);
-        let view = [
-            Buffer(uniform),
-            Sampler(&layouts.repeating),
-            Sampler(&layouts.clamped),
-            Binding::cube(&sky.cube),
-            Binding::cube(&sky.clear_cube),
-            Binding::texture(&sky.cumulus),
-            Binding::texture(&sky.cirrus),
-            Binding::texture(&scene.shadow_map),
-            Sampler(&layouts.comparing),
-            Binding::texture(&land.heights),
-            Binding::texture(&land.light),
-        ];
+        let view = |uniform: &wgpu::Buffer| {
+            let bound = [
+                Buffer(uniform),
+                Sampler(&layouts.repeating),
+                Sampler(&layouts.clamped),
+                Binding::cube(&sky.cube),
+                Binding::cube(&sky.clear_cube),
+                Binding::texture(&sky.cumulus),
+                Binding::texture(&sky.cirrus),
+                Binding::texture(&scene.shadow_map),
+                Sampler(&layouts.comparing),
+                Binding::texture(&land.heights),
+                Binding::texture(&land.light),
+            ];
+            bind(gpu, "view", &layouts.view, (0..).zip(bound))
+        };
         let ground = [&land.color, &land.weights, &land.details, &land.detail_normals];
         let ground = (0..).zip(ground.map(|texture| Binding::texture(texture)));
         Self {
-            view_group: bind(gpu, "view", &layouts.view, (0..).zip(view)),
+            view_group: view(uniform),
             ground_group: bind(gpu, "ground", &layouts.ground, ground),
             trees: scene.trees.as_ref().map(|set| BoundTrees::new(gpu, layouts, set)),
+            mirror: BoundMirror::new(gpu, layouts, &scene, view),
             terrain: Elements::new(gpu, "terrain"),
             part: 1.0,
             clumps: Elements::new(gpu, "clumps of grass"),

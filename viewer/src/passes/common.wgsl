@@ -274,17 +274,18 @@ fn noise_pair(place: vec2f) -> vec2f {
 }
 
 // How far edges of clouds are frayed, in texels of the painted sky.
-const FRAYED: f32 = 1.3;
+const FRAYED: f32 = 1.4;
 
 // A direction beside, by about a texel of the painted sky: its clouds, magnified, get edges finer than its texels. Where a
 // pixel covers a texel there is nothing to add.
 fn frayed(direction: vec3f) -> vec3f {
     let texels = f32(textureDimensions(sky_cube).x) / 2.0;
-    let place = direction.xz / (direction.y + 0.2) * texels;
+    // Below the horizon there is haze alone.
+    let place = direction.xz / (max(direction.y, 0.0) + 0.2) * texels;
     let beside = noise_pair(place / 3.1) + 0.55 * noise_pair(place / 1.3 + 17.0);
     let right = normalize(vec3f(direction.z, 0.0, -direction.x) + vec3f(1e-4, 0.0, 0.0));
     // Around the sun the clear sky, which is taken from the painted one, changes within a texel.
-    let beside_sun = smoothstep(0.9990, 0.9900, dot(normalize(direction), view.sun_direction));
+    let beside_sun = smoothstep(0.9990, 0.9900, dot(direction, view.sun_direction));
     let reach = FRAYED / texels * smoothstep(0.7, 1.8, view.focal_px / texels) * beside_sun;
     return direction + (right * beside.x + cross(direction, right) * beside.y) * reach;
 }

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use glam::{Vec2, Vec3};
+use strum::VariantArray;
 
 use super::shaders::ShaderError;
 use super::{BoundTrees, Compiler, Shader, ViewUniform};
@@ -16,6 +17,8 @@ use crate::upload::TreeSet;
 const GROUP: u32 = 64;
 /// The most workgroups along one axis.
 const MAX_GROUPS: u32 = 65535;
+/// What stands in the place of a mode where all trees are to be drawn as their pictures.
+const PICTURES: u32 = TreeLodMode::VARIANTS.len() as u32;
 
 pub const SHADER: Shader = Shader {
     name: "cull",
@@ -29,6 +32,7 @@ pub const SHADER: Shader = Shader {
         ("SIMPLE", TreeLodMode::Simple as u32 as f64),
         ("DISCRETE", TreeLodMode::Discrete as u32 as f64),
         ("OFF", TreeLodMode::Off as u32 as f64),
+        ("PICTURES", PICTURES as f64),
     ],
 };
 
@@ -67,6 +71,12 @@ impl CullUniform {
             planes_used: 1,
             ..Self::sizes(set)
         }
+    }
+
+    /// For a mirror: pictures of all trees that `frustum` sees.
+    pub fn for_mirror(set: &TreeSet, frustum: &Frustum) -> Self {
+        let planes = frustum.planes.map(Into::into);
+        Self { planes, lod_mode: PICTURES, planes_used: 1, ..Self::sizes(set) }
     }
 
     /// For a shadow map with texels of that size: of `trees` all, each at the coarsest level whose error is no larger.

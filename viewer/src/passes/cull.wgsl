@@ -10,6 +10,8 @@ override MIN_DISTANCE_M: f32;
 override SIMPLE: u32;
 override DISCRETE: u32;
 override OFF: u32;
+// No mode: all trees are pictures.
+override PICTURES: u32;
 // Sines of the angles from which on pictures are too steep to be of use, and are not used.
 override STEEP: f32;
 override TOO_STEEP: f32;
@@ -112,6 +114,9 @@ fn pictured(template_index: u32, scale: f32, distance: f32, steepness: f32) -> f
     let share = clamp(log2(max(times, 1.0)), 0.0, 1.0) * (1.0 - smoothstep(STEEP, TOO_STEEP, steepness));
     if (cull.lod_mode == OFF) {
         return 0.0;
+    }
+    if (cull.lod_mode == PICTURES) {
+        return 1.0;
     }
     return select(share, step(0.5, share), cull.lod_mode == DISCRETE);
 }

@@ -2,9 +2,9 @@
 
 use super::shaders::ShaderError;
 use super::trees::VISIBLE;
-use super::{BoundScene, Compiler, DrawPass, FilledOrWire, PipelineDesc, Shader, buffer_layout};
+use super::{BoundScene, BoundTrees, Compiler, DrawPass, FilledOrWire, PipelineDesc, Shader, buffer_layout};
 use crate::options::Options;
-use crate::upload::{DrawCommand, MAX_LEVELS};
+use crate::upload::{DrawCommand, MAX_LEVELS, TreeSet};
 
 pub const SHADER: Shader = Shader {
     name: "impostors",
@@ -36,15 +36,19 @@ impl DrawPass for Impostors {
     }
 
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, bound: &BoundScene, options: &Options) -> u32 {
-        let Some((set, trees)) = bound.trees() else { return 0 };
-        let (Some(pictures), Some(group)) = (&set.impostors, &trees.impostors_group) else { return 0 };
         pass.set_pipeline(self.pipelines.get(options.wireframe));
-        pass.set_bind_group(1, group, &[]);
-        pass.set_vertex_buffer(0, trees.visible.slice(..));
-        pass.set_index_buffer(pictures.indices.slice(..), wgpu::IndexFormat::Uint16);
-        let meshes = set.materials.len() as u64 * u64::from(trees.buckets);
-        let first = meshes * size_of::<DrawCommand>() as u64;
-        pass.multi_draw_indexed_indirect(&trees.commands, first, set.template_count);
-        1
+        bound.trees().map_or(0, |(set, trees)| draw(pass, set, trees))
     }
+}
+
+/// Draws the pictures that culling left and tells how many draws that takes.
+pub(super) fn draw(pass: &mut wgpu::RenderPass<'_>, set: &TreeSet, trees: &BoundTrees) -> u32 {
+    let (Some(pictures), Some(group)) = (&set.impostors, &trees.impostors_group) else { return 0 };
+    pass.set_bind_group(1, group, &[]);
+    pass.set_vertex_buffer(0, trees.visible.slice(..));
+    pass.set_index_buffer(pictures.indices.slice(..), wgpu::IndexFormat::Uint16);
+    let meshes = set.materials.len() as u64 * u64::from(trees.buckets);
+    let first = meshes * size_of::<DrawCommand>() as u64;
+    pass.multi_draw_indexed_indirect(&trees.commands, first, set.template_count);
+    1
 }

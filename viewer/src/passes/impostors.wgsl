@@ -89,8 +89,7 @@ struct Pixel {
     @builtin(sample_mask) samples: u32,
 }
 
-@fragment
-fn fragment(in: Out) -> Pixel {
+fn pixel(in: Out, is_kept: bool) -> Pixel {
     // Half-way between two sides some places of the tree are seen from the one, some from the other.
     let part = smoothstep(0.35, 0.65, fract(in.turn));
     let place = floor(in.uv * 32.0);
@@ -106,7 +105,7 @@ fn fragment(in: Out) -> Pixel {
     // Twigs are thinner than pixels.
     let twigs = samples_of(relief.b, scattered(floor(in.uv * 256.0)));
     let samples = select(twigs, select(0u, 15u, seen.a >= frame.alpha_cutoff), relief.g > 0.5);
-    if (samples == 0u || dither(in.clip.xy) > in.shown) {
+    if (samples == 0u || !is_kept) {
         discard;
     }
     let before = (relief.r - 0.5) * frame.size.x;
@@ -129,4 +128,15 @@ fn fragment(in: Out) -> Pixel {
     let ambient = ambient_light(up) * mix(0.8, 0.15 + 0.75 * open * open, relief.g);
     let radiance = (albedo * ambient + view.sun_irradiance * sun) / PI;
     return Pixel(vec4f(aerial_perspective(radiance, distance(in.world, view.eye)), 1.0), samples);
+}
+
+@fragment
+fn fragment(in: Out) -> Pixel {
+    return pixel(in, dither(in.clip.xy) <= in.shown);
+}
+
+// As a lake mirrors it: what is above the water.
+@fragment
+fn mirrored(in: Out) -> Pixel {
+    return pixel(in, in.world.y > view.water_level);
 }

@@ -27,6 +27,8 @@ pub struct Layouts {
     pub material: BindGroupLayout,
     /// Group 1 of culling.
     pub cull: BindGroupLayout,
+    /// Group 1 of water: what it mirrors, and how far away that is.
+    pub mirror: BindGroupLayout,
     /// Group 1 of tone mapping: radiance.
     pub radiance: BindGroupLayout,
     /// Repeats, with mip levels.
@@ -83,6 +85,7 @@ impl Layouts {
             impostors: all("pictures of trees", both, &[READ, READ, LAYERS, LAYERS]),
             material: all("material", fragment, &[UNIFORM, IMAGE, IMAGE]),
             cull: all("culling", ShaderStages::COMPUTE, &[READ, READ, READ, WRITE, WRITE, WRITE]),
+            mirror: all("mirror", fragment, &[IMAGE, DEPTH_MAP]),
             radiance: all("radiance", fragment, &[DATA]),
             repeating: sampler(gpu, repeat, anisotropy, None),
             clamped: sampler(gpu, clamp, 1, None),

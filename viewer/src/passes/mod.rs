@@ -1,17 +1,19 @@
 //! The passes: each an immutable set of pipelines that records its part of a picture, with its WGSL beside it.
 //!
-//! Order of a picture: culling, then in one render pass what [`Passes::picture`] lists, then tone mapping. Shadows are
-//! drawn once for each landscape, before its first picture. A file that is no landscape has two passes of its own. A new
+//! Order of a picture: culling, where it shows a lake what that mirrors, then in one render pass what [`Passes::picture`]
+//! lists, then tone mapping. Shadows are drawn once for each landscape, before its first picture. A file that is no landscape has two passes of its own. A new
 //! pass is a file here with its WGSL, a line in
 //! [`SHADERS`], and a line in [`Passes::picture`].
 
 pub mod asset;
 mod bound;
 mod bound_asset;
+mod bound_mirror;
 mod cull;
 pub mod grass;
 pub mod impostors;
 mod layouts;
+mod mirror;
 mod pipeline;
 pub mod plants;
 mod shaders;
@@ -25,10 +27,12 @@ mod view_uniform;
 mod water;
 
 pub use asset::AssetPass;
-pub use bound::{BoundScene, BoundTrees};
+pub use bound::{BoundScene, BoundTrees, Elements};
 pub use bound_asset::{AssetDraw, BoundAsset};
+pub use bound_mirror::{BoundMirror, Reflection};
 pub use cull::{Cull, CullUniform};
 pub use layouts::{Binding, Layouts, bind};
+pub use mirror::Mirror;
 pub use pipeline::Shader;
 pub use shaders::{ShaderError, Shaders};
 pub use shadow::{Shadow, ShadowBake};
@@ -83,6 +87,8 @@ pub struct Passes {
     pub layouts: Layouts,
     pub shadow: Shadow,
     pub cull: Cull,
+    /// What a lake mirrors, before the picture.
+    pub mirror: Mirror,
     /// By name, in the order in which they draw.
     pub picture: [(&'static str, Box<dyn DrawPass>); 7],
     /// Of files that are no landscapes.
@@ -101,6 +107,7 @@ impl Passes {
         Ok(Self {
             shadow: Shadow::new(&compiler)?,
             cull: Cull::new(&compiler)?,
+            mirror: Mirror::new(&compiler)?,
             picture: [
                 (trees::SHADER.name, Box::new(trees::Trees::new(&compiler)?)),
                 (impostors::SHADER.name, Box::new(impostors::Impostors::new(&compiler)?)),

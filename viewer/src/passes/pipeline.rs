@@ -36,6 +36,8 @@ pub(super) struct Module {
 pub(super) enum Target {
     /// Radiance with reversed depth.
     Radiance,
+    /// The same with one sample a pixel, whatever the picture has.
+    Mirror,
     /// Values for the screen.
     Display,
     /// Depth from the sun alone.
@@ -112,6 +114,7 @@ impl Compiler<'_> {
         use wgpu::CompareFunction::{GreaterEqual, Less};
         let (color, depth, samples) = match desc.target {
             Target::Radiance => (Some(RADIANCE), Some((DEPTH, GreaterEqual)), self.samples),
+            Target::Mirror => (Some(RADIANCE), Some((DEPTH, GreaterEqual)), 1),
             Target::Display => (Some(DISPLAY), None, 1),
             Target::Shadow => (None, Some((SHADOW, Less)), 1),
         };

@@ -1,7 +1,8 @@
 //! Draws the terrain in one draw, whatever the LOD mode, and the coarse ring around it in another.
 
 use super::shaders::ShaderError;
-use super::{BoundScene, Compiler, DrawPass, FilledOrWire, PipelineDesc, Shader, buffer_layout};
+use super::{BoundScene, Compiler, DrawPass, Elements, FilledOrWire, PipelineDesc, Shader, buffer_layout};
+use crate::gpu::Gpu;
 use crate::lod::{morph, quadtree};
 use crate::lod_mode::TerrainLodMode;
 use crate::options::Options;
@@ -22,8 +23,29 @@ pub const RING: [wgpu::VertexAttribute; 3] =
 #[derive(Debug)]
 pub struct Terrain {
     pipelines: FilledOrWire<Pipelines>,
-    block_indices: wgpu::Buffer,
-    block_index_count: u32,
+    block_indices: BlockIndices,
+}
+
+/// The triangles of any block.
+#[derive(Debug)]
+pub(super) struct BlockIndices {
+    buffer: wgpu::Buffer,
+    count: u32,
+}
+
+impl BlockIndices {
+    pub fn new(gpu: &Gpu) -> Self {
+        let indices = quadtree::block_indices(1 << quadtree::BLOCK_BITS);
+        let buffer = gpu.buffer("block triangles", &indices, wgpu::BufferUsages::INDEX);
+        Self { buffer, count: indices.len() as u32 }
+    }
+
+    /// All of these blocks in one draw.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, blocks: &Elements) {
+        pass.set_vertex_buffer(0, blocks.buffer.slice(..));
+        pass.set_index_buffer(self.buffer.slice(..), wgpu::IndexFormat::Uint16);
+        pass.draw_indexed(0..self.count, 0, 0..blocks.count);
+    }
 }
 
 #[derive(Debug)]
@@ -55,12 +77,9 @@ impl Terrain {
             let [blocks, strip, ring] = [blocks, strip, ring].map(|desc| compiler.pipeline(&desc));
             Pipelines { blocks, strip, ring }
         };
-        let indices = quadtree::block_indices(1 << quadtree::BLOCK_BITS);
-        let usage = wgpu::BufferUsages::INDEX;
         Ok(Self {
             pipelines: FilledOrWire::new(compiler.gpu, pipelines),
-            block_indices: compiler.gpu.buffer("block triangles", &indices, usage),
-            block_index_count: indices.len() as u32,
+            block_indices: BlockIndices::new(compiler.gpu),
         })
     }
 }
@@ -79,15 +98,9 @@ impl DrawPass for Terrain {
             pass.draw_indexed(0..terrain.count, 0, 0..1);
         } else {
             pass.set_pipeline(&pipelines.blocks);
-            pass.set_vertex_buffer(0, terrain.buffer.slice(..));
-            pass.set_index_buffer(self.block_indices.slice(..), wgpu::IndexFormat::Uint16);
-            pass.draw_indexed(0..self.block_index_count, 0, 0..terrain.count);
+            self.block_indices.draw(pass, terrain);
         }
-        let ring = &bound.scene.land.ring;
         pass.set_pipeline(&pipelines.ring);
-        pass.set_vertex_buffer(0, ring.vertices.slice(..));
-        pass.set_index_buffer(ring.indices.slice(..), wgpu::IndexFormat::Uint32);
-        bound.ring.iter().for_each(|seen| pass.draw_indexed(seen.clone(), 0, 0..1));
-        1 + bound.ring.len() as u32
+        1 + bound.scene.land.ring.draw(pass, &bound.ring)
     }
 }

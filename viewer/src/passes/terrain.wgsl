@@ -135,8 +135,11 @@ fn along(axis: u32, place: vec3f) -> vec2f {
     return select(select(place.xy, place.zy, axis == 1u), place.xz, axis == 0u);
 }
 
+// Some 35°.
+const TURN = mat2x2f(0.82, 0.57, -0.57, 0.82);
+
 // One look at a tiling texture: which texture, seen along which axis, at which of two scales. The wide scale is larger and
-// turned by some 35°, and takes over with distance (`far`, 0 to 1), so that no pattern of tiles shows.
+// turned, and takes over with distance (`far`, 0 to 1), so that no pattern of tiles shows.
 fn look(k: u32, at: Surface, parts: array<f32, 5>, far: f32) -> Tiles {
     let layer = min(k / 6u, 4u);
     let axis = (k / 2u) % 3u;
@@ -146,11 +149,10 @@ fn look(k: u32, at: Surface, parts: array<f32, 5>, far: f32) -> Tiles {
     var p = along(axis, at.world) / tile_m;
     var dx = along(axis, at.dx) / tile_m;
     var dy = along(axis, at.dy) / tile_m;
-    let turn = mat2x2f(0.82, 0.57, -0.57, 0.82);
     if (wide) {
-        p = turn * p / 4.3;
-        dx = turn * dx / 4.3;
-        dy = turn * dy / 4.3;
+        p = TURN * p / 4.3;
+        dx = TURN * dx / 4.3;
+        dy = TURN * dy / 4.3;
     }
     let shorter = less_stretched(dx, dy);
     dx *= shorter.x;
@@ -160,8 +162,8 @@ fn look(k: u32, at: Surface, parts: array<f32, 5>, far: f32) -> Tiles {
     if (wide) {
         // v runs against the bitangent: normals turn back the other way.
         // And fainter: from afar it stands for patches, not for giant blades and pebbles.
-        let rough = select(0.4, 0.85, layer == 1u);
-        bump = vec3f(turn * bump.xy * rough, bump.z);
+        let rough = select(0.8, 0.9, layer == 1u);
+        bump = vec3f(TURN * bump.xy * rough, bump.z);
         factor = mix(vec3f(1.0), factor, rough);
     }
     let seen = select(select(at.sides.z, at.sides.x, axis == 1u), at.sides.y, axis == 0u);
@@ -263,9 +265,39 @@ fn ground(in: Out) -> @location(0) vec4f {
         relief = clamp(dot(bumped, view.sun_direction) / max(dot(normal, view.sun_direction), 0.2), 0.0, 2.0);
         normal = bumped;
     }
-    albedo = select(albedo, level_tint(in.level) * 0.5, view.tint_levels != 0u);
+    albedo = select(albedo * wetness(in.world.y), level_tint(in.level) * 0.5, view.tint_levels != 0u);
     let irradiance = view.sun_irradiance * light.g * relief + view.sky_irradiance * light.r * (0.6 + 0.4 * normal.y);
     return vec4f(aerial_perspective(albedo / PI * irradiance, away), 1.0);
+}
+
+// Metres above the lake up to which the ground is wet.
+const WET_M: f32 = 0.16;
+
+// Factor on the albedo of ground at a height: what is wet, on the shore and under water, is darker.
+fn wetness(height: f32) -> f32 {
+    return mix(0.55, 1.0, smoothstep(0.3 * WET_M, WET_M, height - view.water_level));
+}
+
+// Pixels by which the land that a lake mirrors may differ from what it is, and so leave a gap to the shore: as far below the
+// surface it is mirrored, too.
+const MIRRORED_ERROR_PX: f32 = 3.0;
+
+fn is_sunk(world: vec3f) -> bool {
+    return world.y < view.water_level - distance(world, view.eye) * MIRRORED_ERROR_PX / view.focal_px;
+}
+
+// As a lake mirrors it: what is above the water, with no detail.
+@fragment
+fn mirrored_ground(in: Out) -> @location(0) vec4f {
+    let uv = field_uv(in.world.xz);
+    let albedo = textureSample(ground_color, clamped, uv).rgb;
+    let light = textureSample(light_map, clamped, uv);
+    if (is_sunk(in.world)) {
+        discard;
+    }
+    let up = 0.6 + 0.4 * normalize(in.normal).y;
+    let irradiance = view.sun_irradiance * light.g + view.sky_irradiance * light.r * up;
+    return vec4f(aerial_perspective(albedo * wetness(in.world.y) / PI * irradiance, distance(in.world, view.eye)), 1.0);
 }
 
 // The ring around the field.
@@ -294,17 +326,15 @@ const CRAGS_LEAN: f32 = 0.8;
 
 // Crags at two scales: their bumps and a factor on the colour.
 fn crags(place: vec2f) -> Tiles {
-    let turn = mat2x2f(0.82, 0.57, -0.57, 0.82);
     let wide = place / CRAGS_M;
-    let fine = turn * place / (0.23 * CRAGS_M);
+    let fine = TURN * place / (0.23 * CRAGS_M);
     let factor = textureSample(details, repeating, wide, 1).rgb + textureSample(details, repeating, fine, 1).rgb;
     let wide_bump = textureSample(detail_normals, repeating, wide, 1).xy * 2.0 - 1.0;
     let fine_bump = textureSample(detail_normals, repeating, fine, 1).xy * 2.0 - 1.0;
-    return Tiles(factor * (0.5 * 255.0 / 128.0), vec3f(wide_bump + vec2f(0.82, -0.57) * fine_bump.x + vec2f(0.57, 0.82) * fine_bump.y, 1.0));
+    return Tiles(factor * (0.5 * 255.0 / 128.0), vec3f(wide_bump + TURN * fine_bump, 1.0));
 }
 
-@fragment
-fn ring(in: RingOut) -> @location(0) vec4f {
+fn ring_radiance(in: RingOut) -> vec3f {
     let smooth_normal = normalize(in.normal);
     let tiles = crags(in.world.xz);
     // Plains are smooth, slopes are not.
@@ -314,5 +344,19 @@ fn ring(in: RingOut) -> @location(0) vec4f {
     let albedo = in.color * mix(vec3f(1.0), tiles.factor, rough);
     let sun = view.sun_irradiance * max(dot(normal, view.sun_direction), 0.0);
     let sky = view.sky_irradiance * (0.5 + 0.5 * normal.y);
-    return vec4f(aerial_perspective(albedo / PI * (sun + sky), distance(in.world, view.eye)), 1.0);
+    return aerial_perspective(albedo / PI * (sun + sky), distance(in.world, view.eye));
+}
+
+@fragment
+fn ring(in: RingOut) -> @location(0) vec4f {
+    return vec4f(ring_radiance(in), 1.0);
+}
+
+@fragment
+fn mirrored_ring(in: RingOut) -> @location(0) vec4f {
+    let radiance = ring_radiance(in);
+    if (in.world.y < view.water_level) {
+        discard;
+    }
+    return vec4f(radiance, 1.0);
 }

@@ -32,15 +32,15 @@ fn film(linear: vec3f) -> vec3f {
     let wide = max(INSET * linear, vec3f(1e-10));
     let ev = clamp((log2(wide) - MIN_EV) / (MAX_EV - MIN_EV), vec3f(0.0), vec3f(1.0));
     var toned = curve(ev);
-    // A little more contrast and colour than the neutral look (Troy Sobotka's "Punchy", half way).
+    // A little more contrast and colour than the neutral look (Troy Sobotka's "Punchy", two thirds of the way).
     let luma = dot(toned, vec3f(0.2126, 0.7152, 0.0722));
-    toned = pow(max(toned, vec3f(0.0)), vec3f(1.18));
-    toned = luma_mix(toned, luma, 1.12);
+    toned = pow(max(toned, vec3f(0.0)), vec3f(1.25));
+    toned = luma_mix(toned, luma, 1.22);
     return clamp(OUTSET * toned, vec3f(0.0), vec3f(1.0));
 }
 
 fn luma_mix(color: vec3f, luma: f32, saturation: f32) -> vec3f {
-    let grey = pow(luma, 1.18);
+    let grey = pow(luma, 1.25);
     return vec3f(grey) + saturation * (color - vec3f(grey));
 }
 

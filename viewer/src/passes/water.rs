@@ -1,7 +1,7 @@
 //! Draws the lake over everything else.
 
 use super::shaders::ShaderError;
-use super::{BoundScene, Compiler, DrawPass, PipelineDesc, Shader};
+use super::{BoundMirror, BoundScene, Compiler, DrawPass, PipelineDesc, Shader};
 use crate::options::Options;
 
 pub const SHADER: Shader = Shader { name: "water", source: include_str!("water.wgsl"), constants: &[] };
@@ -13,7 +13,8 @@ pub struct Water {
 
 impl Water {
     pub(super) fn new(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
-        let (module, groups) = (compiler.module(&SHADER)?, [&compiler.layouts.view]);
+        let (module, groups) =
+            (compiler.module(&SHADER)?, [&compiler.layouts.view, &compiler.layouts.mirror]);
         // Not culled: a diver sees the surface from below.
         let blend = Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
         let desc = PipelineDesc { blend, ..PipelineDesc::new(&module, &groups) };
@@ -23,11 +24,13 @@ impl Water {
 
 impl DrawPass for Water {
     fn is_needed(&self, bound: &BoundScene, options: &Options) -> bool {
-        options.draw_terrain && bound.scene.ground.water_level_m.is_some()
+        options.draw_terrain && bound.mirror.as_ref().is_some_and(|mirror| mirror.reflection.is_some())
     }
 
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, _: &BoundScene, _: &Options) -> u32 {
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, bound: &BoundScene, _: &Options) -> u32 {
+        let Some(mirrored) = bound.mirror.as_ref().and_then(BoundMirror::group) else { return 0 };
         pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(1, mirrored, &[]);
         pass.draw(0..6, 0..1);
         1
     }

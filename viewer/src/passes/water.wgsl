@@ -1,9 +1,18 @@
-// The lake: sky mirrored by small waves, the ground showing through where it is shallow.
+// The lake: land, trees and sky mirrored by small waves, the ground showing through where it is shallow.
+
+// What an even surface would mirror of land and trees, seen as this picture sees it, and how far away that is. Empty where
+// there is sky.
+@group(1) @binding(0) var mirror: texture_2d<f32>;
+@group(1) @binding(1) var mirror_depth: texture_depth_2d;
 
 struct Out {
     @builtin(position) clip: vec4f,
     @location(0) world: vec3f,
 }
+
+// Pixels by which the land as it is drawn may differ from what it is: so much higher may it stand and not hide the lake, whose
+// edge is where the land itself goes under. On a flat shore a hand's breadth moves the edge by many metres.
+const LAND_ERROR_PX: f32 = 2.0;
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> Out {
@@ -12,41 +21,73 @@ fn vertex(@builtin(vertex_index) index: u32) -> Out {
         vec2f(-1.0, -1.0), vec2f(-1.0, 1.0), vec2f(1.0, 1.0), vec2f(-1.0, -1.0), vec2f(1.0, 1.0), vec2f(1.0, -1.0),
     )[index];
     let world = vec3f(corner.x * 4096.0, view.water_level, corner.y * 4096.0);
-    return Out(view.clip_from_world * vec4f(world, 1.0), world);
+    var clip = view.clip_from_world * vec4f(world, 1.0);
+    // As deep as a surface which that many pixels are higher, in the same place of the picture.
+    clip.z *= 1.0 + clip.w * LAND_ERROR_PX / (view.focal_px * max(abs(view.eye.y - view.water_level), 0.5));
+    return Out(clip, world);
 }
 
-// Slope of the surface: waves of five directions and lengths, none shorter than a pixel.
-fn slope(place: vec2f, pixel_m: f32) -> vec2f {
-    var sum = vec2f(0.0);
+const WAVES: u32 = 6u;
+const STEEPNESS: f32 = 0.014;
+
+// The surface's slope, and the variance of what of it is too fine to be seen.
+struct Slope {
+    seen: vec2f,
+    variance: f32,
+}
+
+// Waves of six directions and lengths.
+fn slope(place: vec2f, pixel_m: f32) -> Slope {
+    var sum = Slope(vec2f(0.0), 0.0);
     var turn = 0.4;
     var length_m = 5.3;
-    for (var wave = 0; wave < 6; wave++) {
+    for (var wave = 0u; wave < WAVES; wave++) {
         let direction = vec2f(cos(turn), sin(turn));
         let k = 2.0 * PI / length_m;
         // Deep water: the square of the frequency is g·k.
         let phase = dot(direction, place) * k - sqrt(9.81 * k) * view.time_s;
-        let seen = smoothstep(0.7, 0.2, pixel_m / length_m);
-        sum += direction * cos(phase + 1.7 * sin(dot(place.yx, direction) * k * 0.23)) * 0.014 * seen;
+        let seen = smoothstep(0.5, 0.12, pixel_m / length_m);
+        sum.seen += direction * cos(phase + 1.7 * sin(dot(place.yx, direction) * k * 0.23)) * STEEPNESS * seen;
+        sum.variance += 0.5 * STEEPNESS * STEEPNESS * (1.0 - seen * seen);
         turn += 2.1;
         length_m *= 0.61;
     }
     return sum;
 }
 
-// Where a mirrored ray meets the land: 1 where it does, and how far away.
-fn meets_land(start: vec3f, direction: vec3f) -> vec2f {
-    var away = 6.0;
-    for (var i = 0; i < 14; i++) {
-        let at = start + direction * away;
-        if (any(abs(at.xz) > vec2f(view.field.z)) || at.y > view.field.w) {
-            break;
-        }
-        if (at.y < height_m(at.xz)) {
-            return vec2f(1.0, away);
-        }
-        away *= 1.45;
+fn mirror_uv(clip: vec4f) -> vec2f {
+    return clip.xy / max(clip.w, 1e-3) * vec2f(0.5, -0.5) + 0.5;
+}
+
+// Metres along the line of sight, as w counts them, to what is mirrored there; 0 for sky. `near`: what depth is times w.
+fn mirrored_w(uv: vec2f, near: f32) -> f32 {
+    let size = vec2f(textureDimensions(mirror_depth));
+    let depth = textureLoad(mirror_depth, vec2i(clamp(uv * size, vec2f(0.0), size - 1.0)), 0);
+    return select(0.0, near / depth, depth > 0.0);
+}
+
+const TAPS: i32 = 6;
+
+// Land and trees that a ray meets which a place of the surface sends off in a direction, premultiplied; `spread` is how far
+// the ray's rise varies within a pixel.
+fn mirrored_land(world: vec3f, direction: vec3f, spread: f32) -> vec4f {
+    let start = view.clip_from_world * vec4f(world, 1.0);
+    // In the mirror's picture what is above is below.
+    let way = view.clip_from_world * vec4f(direction.x, -direction.y, direction.z, 0.0);
+    let down = -view.clip_from_world[1];
+    // How far the ray goes is only known where it ends: what is there if it goes on for ever, or else what an even surface
+    // would show.
+    let near = start.z;
+    let endless = mirrored_w(mirror_uv(start * 1e-3 + way), near);
+    let even = mirrored_w(mirror_uv(start), near);
+    let end = select(even, endless, endless > 0.0);
+    let away = select(1e4, max(end - start.w, 0.0) / max(way.w, 1e-3), end > 0.0);
+    var sum = vec4f(0.0);
+    for (var tap = 0; tap < TAPS; tap++) {
+        let lean = ((f32(tap) + 0.5) / f32(TAPS) - 0.5) * spread;
+        sum += textureSampleLevel(mirror, clamped, mirror_uv(start + (way + down * lean) * away), 0.0);
     }
-    return vec2f(0.0, away);
+    return sum / f32(TAPS);
 }
 
 @fragment
@@ -60,33 +101,35 @@ fn fragment(in: Out) -> @location(0) vec4f {
         depth = view.water_level - height_m(in.world.xz);
     }
     let pixel_m = away / view.focal_px / max(look.y, 0.02);
-    let tilt = slope(in.world.xz, pixel_m) * smoothstep(0.0, 0.6, depth);
+    let waves = slope(in.world.xz, pixel_m);
+    // At low angles the backs of waves are hidden.
+    let shown = smoothstep(0.0, 0.6, depth) * clamp(look.y / 0.12, 0.2, 1.0);
+    let tilt = waves.seen * shown;
     let normal = normalize(vec3f(-tilt.x, 1.0, -tilt.y));
     var mirrored = reflect(-look, normal);
     mirrored.y = max(mirrored.y, 0.01);
     mirrored = normalize(mirrored);
-    var sky = sky_radiance(mirrored);
-    let hit = meets_land(in.world, mirrored);
-    if (hit.x > 0.5) {
-        let shore = field_uv(in.world.xz + mirrored.xz * hit.y);
-        let light = textureSampleLevel(light_map, clamped, shore, 0.0);
-        let lit = vec3f(0.07, 0.075, 0.05) / PI * (view.sun_irradiance * light.g + view.sky_irradiance * light.r);
-        sky = aerial_perspective(lit, hit.y);
-    }
+    let spread = 4.0 * sqrt(waves.variance) * shown;
+    let land = mirrored_land(in.world, mirrored, spread);
+    let sky = sky_radiance(mirrored);
     // Schlick's fresnel with the reflectance of water.
     let facing = clamp(dot(normal, look), 0.0, 1.0);
-    let mirror = 0.02 + 0.98 * pow(1.0 - facing, 5.0);
+    let reflectance = 0.02 + 0.98 * pow(1.0 - facing, 5.0);
     let half_way = normalize(look + view.sun_direction);
     var light = vec4f(1.0);
     if (inside) {
         light = textureSampleLevel(light_map, clamped, field_uv(in.world.xz), 0.0);
     }
-    let glint = pow(max(dot(normal, half_way), 0.0), 900.0) * 60.0 * light.b;
+    let glint = pow(max(dot(normal, half_way), 0.0), 900.0) * 60.0 * light.b * (1.0 - land.a);
     let body = vec3f(0.012, 0.035, 0.032) * (view.sky_irradiance * light.r + 0.5 * view.sun_irradiance * light.b);
     let clearness = exp(-max(depth, 0.0) * vec3f(0.9, 0.55, 0.6));
     let opaque = 1.0 - (clearness.x + clearness.y + clearness.z) / 3.0;
-    let edge = smoothstep(0.0, 0.12, depth);
-    let radiance = mix(body * opaque, sky, mirror) + view.sun_irradiance * glint * mirror;
-    let alpha = (mirror + (1.0 - mirror) * opaque) * edge;
-    return vec4f(aerial_perspective(radiance, away) * edge, alpha);
+    // A film mirrors as well as deep water does.
+    let edge = smoothstep(0.0, 0.04, depth);
+    let radiance = mix(body * opaque, sky * (1.0 - land.a), reflectance) + view.sun_irradiance * glint * reflectance;
+    // What comes from land and trees has been through all of the air; the rest only arrives from here.
+    let share = reflectance + (1.0 - reflectance) * opaque;
+    let clear = exp(-away * view.haze_extinction);
+    let own = radiance * clear + view.haze * (1.0 - clear) * (share - reflectance * land.a);
+    return vec4f((own + land.rgb * reflectance) * edge, share * edge);
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{ImageUse, PlantBuffers, Ring, Uploader};
+use super::{ImageUse, Lake, PlantBuffers, Ring, Uploader};
 use crate::lod::quadtree;
 use crate::scene::{Ground, GroundDetail, Image};
 
@@ -27,6 +27,8 @@ pub struct GroundBuffers {
     pub tiles_m: [f32; 5],
     /// The coarse land around the field.
     pub ring: Ring,
+    /// Where water is, if there is any.
+    pub lake: Option<Lake>,
     /// Small plants, stones and leaves.
     pub plants: PlantBuffers,
 }
@@ -54,6 +56,7 @@ impl Uploader {
             detail_normals: self.layers(&pick(|detail| &detail.normal), ImageUse::Data)?,
             tiles_m: std::array::from_fn(|layer| surface.details[layer].tile_m),
             ring: self.ring(&ground.apron, 0.5 * ground.field.extent_m()),
+            lake: Lake::of(ground),
             plants: self.plants(ground),
         })
     }

@@ -5,6 +5,7 @@ mod asset;
 mod exhibit;
 mod ground;
 mod impostors;
+mod lake;
 mod plants;
 mod ring;
 mod sky;
@@ -22,6 +23,7 @@ pub use asset::{
 pub use exhibit::{Exhibit, WeakExhibit};
 pub use ground::GroundBuffers;
 pub use impostors::{ImpostorData, ImpostorSet};
+pub use lake::{Lake, Window};
 pub use plants::{PLANT_BLOCK_M, PlantBuffers, PlantVertex};
 pub use ring::{Ring, RingVertex};
 pub use sky::SkyTextures;

@@ -62,6 +62,14 @@ impl Ring {
     pub fn seen(&self, frustum: &Frustum, out: &mut Vec<Range<u32>>) {
         seen(&self.sectors, frustum, out);
     }
+
+    /// Draws these parts of its indices and tells how many draws that takes.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, parts: &[Range<u32>]) -> u32 {
+        pass.set_vertex_buffer(0, self.vertices.slice(..));
+        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
+        parts.iter().for_each(|part| pass.draw_indexed(part.clone(), 0, 0..1));
+        parts.len() as u32
+    }
 }
 
 /// Sectors beside each other make one range.

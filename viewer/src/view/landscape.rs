@@ -1,6 +1,7 @@
 //! The order in which passes draw a landscape.
 
 use super::Drawn;
+use super::mirror::MirrorChoice;
 use super::targets::Targets;
 use super::terrain::TerrainChoice;
 use crate::camera::Camera;
@@ -14,6 +15,7 @@ use crate::passes::{BoundScene, Cull, CullUniform, Passes, ViewUniform};
 #[derive(Debug, Default)]
 pub(super) struct LandscapeChoice {
     terrain: TerrainChoice,
+    mirror: MirrorChoice,
     /// Clumps of grass.
     clumps: Vec<Clump>,
     /// Small plants and stones.
@@ -61,7 +63,9 @@ impl LandscapeChoice {
         bound.plants.write(gpu, &self.plants.instances);
         bound.plant_draws.clone_from(&self.plants.draws);
         bound.scene.land.ring.seen(&camera.frustum(size[0] / size[1]), &mut bound.ring);
-        Drawn { draws: draw(scope, passes, bound, targets, options), triangles, copies_by_level: Vec::new() }
+        let mirrored = self.mirror.record(bound, gpu, scope, passes, size_px, frame, [camera, lod_camera]);
+        let draws = mirrored + draw(scope, passes, bound, targets, options);
+        Drawn { draws, triangles, copies_by_level: Vec::new() }
     }
 }
 

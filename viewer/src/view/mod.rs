@@ -2,6 +2,7 @@
 
 mod asset;
 mod landscape;
+mod mirror;
 mod targets;
 mod terrain;
 

@@ -9,7 +9,7 @@ use crate::options::Options;
 use crate::passes::BoundScene;
 
 /// No block of the terrain is wider, so that what is not seen can be left out.
-const MAX_BLOCK_M: f32 = 256.0;
+pub(super) const MAX_BLOCK_M: f32 = 256.0;
 
 /// Lists that are kept from frame to frame.
 #[derive(Debug, Default)]

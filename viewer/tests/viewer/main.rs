@@ -19,5 +19,6 @@ mod program;
 mod shaders;
 mod shadows;
 mod sky;
+mod water;
 mod window;
 mod window_file;

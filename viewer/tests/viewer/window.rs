@@ -91,7 +91,7 @@ fn the_first_landscapes_grow(stage: &Stage, viewer: &mut Viewer) {
         line["what"] == "bake"
             && line["done"].as_u64().is_some_and(|done| Some(done) < line["total"].as_u64())
     };
-    assert!(viewer.lines.iter().filter(part).count() > 4, "no progress was seen");
+    assert!(viewer.lines.iter().filter(part).count() > 10, "no progress was seen");
     let first = viewer.lines.iter().position(|line| line["what"] == "landscape" && !line["name"].is_null());
     let end = viewer.lines.iter().rposition(|line| line["what"] == "bake");
     assert!(first < end, "landscapes do not come one by one");

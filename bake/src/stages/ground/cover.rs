@@ -2,10 +2,10 @@
 //! reflectance.
 
 use super::GroundParams;
-use super::palette::{Palette, Rgb, step};
+use super::palette::{Palette, Rgb, petals, step};
 use super::snow::Snow;
 use super::traits::Traits;
-use super::woods::{Litter, Woods};
+use super::woods::{Litter, Offspring, Woods};
 use crate::math::lerp_array as lerp;
 use crate::model::{Climate, Landform};
 use crate::noise::hash01;
@@ -86,7 +86,9 @@ const SAND: Rgb = [0.37, 0.30, 0.20];
 const GRAVEL: Rgb = [0.185, 0.176, 0.150];
 /// Heath and moss, which grow in patches of their own.
 const HEATH: Rgb = [0.082, 0.060, 0.034];
-const MOSS: Rgb = [0.040, 0.060, 0.014];
+pub(super) const MOSS: Rgb = [0.040, 0.060, 0.014];
+/// Part of the light from a meadow in full bloom that comes from petals, most of which stand beyond where they are drawn.
+const IN_BLOOM: f32 = 0.035;
 /// Kinds of rock: granite, limestone, basalt, sandstone, slate.
 const ROCKS: [Rgb; 5] = [
     [0.205, 0.195, 0.185],
@@ -100,6 +102,7 @@ const ROCKS: [Rgb; 5] = [
 pub(super) struct Painter {
     pub palette: Palette,
     pub litter: Litter,
+    pub offspring: Option<Offspring>,
     pub water_m: f32,
     pub rock: Rgb,
     pub rock_band: Rgb,
@@ -113,6 +116,8 @@ pub(super) struct Painter {
     bare_slope: f32,
     /// How dry it is beside other lands of its climate: 0 lush, 1 arid.
     thirst: f32,
+    /// Most flowers of the land.
+    bloom: Rgb,
     shore: Rgb,
     /// Shores of low lands are lower: 1 or more.
     shore_scale: f32,
@@ -134,6 +139,7 @@ impl Painter {
         let shore = lerp(lerp(WET_MUD, GRAVEL, 0.5), SAND, step(0.25, 0.6, thirst));
         Self {
             litter: woods.litter,
+            offspring: woods.offspring,
             dryness: climate.dryness(),
             snow: Snow::new(land),
             water_m: land.water_level_m.unwrap_or(lo - 1e4),
@@ -146,6 +152,7 @@ impl Painter {
             rock_band: lerp(rock, other, 0.3),
             shore_scale: (80.0 / (hi - lo).max(1.0)).clamp(1.6, 3.2),
             shore: palette.shore(shore),
+            bloom: petals(params.terrain_seed)[0],
             climate,
             palette,
         }
@@ -209,6 +216,14 @@ impl Painter {
             return 0.0;
         }
         self.litter.amount * step(0.1, 1.2, t.shade + 0.45 * n.fine + 0.35 * n.broad + 0.2 * t.tuft)
+    }
+
+    /// How densely flowers stand in the grass, 0 to 1: in drifts, in the sun, where it is neither dry nor cold.
+    #[inline]
+    pub fn bloom(&self, t: &Traits, n: &Noise) -> f32 {
+        let Palette { thirst, frost, .. } = self.palette;
+        let drift = step(-0.3, 0.6, 0.6 * t.tuft + 0.4 * t.patch + 0.4 * n.broad);
+        drift * (1.0 - thirst) * (1.0 - 0.6 * frost) * (1.0 - step(0.1, 0.6, t.shade))
     }
 
     /// Where heath grows, 0 to 1.
@@ -276,10 +291,10 @@ impl Painter {
     pub fn grass(&self, t: &Traits, n: &Noise) -> Rgb {
         let altitude = (t.height_m - self.lowest_m) / self.relief_m;
         let moist = 0.75 * t.flow + 0.35 * t.hollow + 0.12 * t.deposit;
-        let dry = 0.7 + 2.9 * self.thirst + 1.0 * t.patch + 0.45 * t.tuft + 0.5 * altitude
+        let dry = 0.6 + 1.9 * self.thirst + 1.2 * t.patch + 1.25 * t.tuft + 0.5 * altitude
             - 1.5 * (moist - 0.25)
             + 0.35 * t.slope
-            + 0.42 * n.broad
+            + 0.55 * n.broad
             + 0.34 * n.fine
             + 0.25 * n.grain;
         // The sun dries what lacks water, and warms what lacks warmth.
@@ -287,8 +302,8 @@ impl Painter {
         let dry = (dry + t.sunny * (0.9 * thirst - 0.5 * frost)).clamp(0.0, 4.999);
         let k = dry as usize;
         let grass = lerp(growth[k], growth[k + 1], dry - k as f32);
-        let heath = self.heath(t, n) * 0.6;
-        scale(lerp(grass, HEATH, heath), 1.0 + 0.16 * n.fine + 0.10 * n.broad + 0.18 * n.grain)
+        let grass = lerp(lerp(grass, HEATH, 0.6 * self.heath(t, n)), self.bloom, IN_BLOOM * self.bloom(t, n));
+        scale(grass, 1.0 + 0.16 * n.fine + 0.10 * n.broad + 0.18 * n.grain)
     }
 
     /// Bare earth or sand, paler on crests.

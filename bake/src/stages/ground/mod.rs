@@ -24,6 +24,7 @@ mod textures;
 mod traits;
 mod window;
 mod woods;
+mod woody;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};

@@ -6,6 +6,8 @@
 
 use crate::math::{hermite, lerp, lerp_array};
 use crate::model::Climate;
+use crate::noise::hash01;
+use crate::seed::noise_seed;
 
 /// Linear reflectance.
 pub(super) type Rgb = [f32; 3];
@@ -20,11 +22,11 @@ const DRYNESS: [f32; 4] = [-1.5, 0.0, 1.2, 2.6];
 
 /// Grass of the temperate meadow.
 const MEADOW: Ramp = [
-    [0.030, 0.056, 0.016],
-    [0.048, 0.076, 0.023],
-    [0.078, 0.094, 0.033],
-    [0.130, 0.120, 0.052],
-    [0.205, 0.168, 0.080],
+    [0.028, 0.060, 0.014],
+    [0.046, 0.084, 0.020],
+    [0.074, 0.108, 0.028],
+    [0.118, 0.128, 0.042],
+    [0.205, 0.175, 0.078],
     [0.290, 0.230, 0.135],
 ];
 
@@ -49,7 +51,7 @@ const RAMPS: [[Ramp; 5]; 4] = [
         // Dry tundra; cold steppe; steppe; maquis; dry savanna on red soil.
         ramp([0.078, 0.062, 0.028], [0.145, 0.108, 0.055], [0.230, 0.190, 0.135]),
         ramp([0.070, 0.070, 0.034], [0.150, 0.132, 0.066], [0.260, 0.220, 0.145]),
-        ramp([0.075, 0.080, 0.032], [0.190, 0.160, 0.070], [0.330, 0.265, 0.150]),
+        ramp([0.080, 0.090, 0.032], [0.218, 0.190, 0.080], [0.335, 0.272, 0.152]),
         ramp([0.070, 0.075, 0.032], [0.215, 0.165, 0.075], [0.370, 0.265, 0.150]),
         ramp([0.075, 0.080, 0.026], [0.260, 0.185, 0.070], [0.340, 0.160, 0.070]),
     ],
@@ -68,6 +70,24 @@ const STAINED: Rgb = [0.300, 0.155, 0.085];
 const MOSSY: Rgb = [0.095, 0.105, 0.070];
 /// Shells and quartz of warm shores.
 const BEACH: Rgb = [0.520, 0.450, 0.330];
+
+/// Of flowers.
+const PETALS: [Rgb; 7] = [
+    [0.72, 0.72, 0.66],
+    [0.75, 0.52, 0.03],
+    [0.34, 0.16, 0.52],
+    [0.60, 0.06, 0.02],
+    [0.66, 0.28, 0.40],
+    [0.13, 0.20, 0.62],
+    [0.74, 0.66, 0.20],
+];
+
+/// Petals of a land's flowers: of the colours that there are most have one, and some its neighbours.
+pub(super) fn petals(terrain_seed: u32) -> [Rgb; 5] {
+    let seed = noise_seed(terrain_seed.into(), "ground plants", 0);
+    let first = (hash01(seed, 1, 0, 0) * PETALS.len() as f32) as usize;
+    [0, 0, 0, 1, 3].map(|step| PETALS[(first + step) % PETALS.len()])
+}
 
 /// Six colours through three: lush, usual, bare.
 const fn ramp(lush: Rgb, usual: Rgb, bare: Rgb) -> Ramp {

@@ -1,19 +1,21 @@
 //! Traits of places and what covers them → how densely small plants and stones stand, and the kinds that grow in a land.
 
+use genescape_schema::scene::Lookout;
+use glam::Vec2;
+
 use super::GroundParams;
-use super::cover::{Cover, Noise, Painter};
+use super::cover::{Cover, MOSS, Noise, Painter};
 use super::grain::Grain;
 use super::palette::Palette;
-use super::palette::{Rgb, step};
+use super::palette::{Rgb, petals, step};
 use super::shapes;
 use super::traits::{Traits, TraitsMap};
+use super::woody::{self, Foliage};
 use crate::math::lerp_array as lerp;
 use crate::model::{GroundPlants, Image8, Landform, PlantKind, PlantShape};
-use crate::noise::hash01;
 use crate::raster::square_image;
-use crate::seed::noise_seed;
 
-/// Channels of the two maps.
+/// Channels of the maps, four in each.
 const FLOWER: usize = 0;
 const FERN: usize = 1;
 const SHRUB: usize = 2;
@@ -22,10 +24,19 @@ const STONE: usize = 4;
 const BOULDER: usize = 5;
 const LITTER: usize = 6;
 const TUSSOCK: usize = 7;
-const CHANNELS: usize = 8;
+const BUSH: usize = 8;
+const SAPLING: usize = 9;
+const LOG: usize = 10;
+const STUMP: usize = 11;
+const CHANNELS: usize = 12;
+/// Of a map.
+const IN_MAP: usize = 4;
 
 /// Those that stand in no water.
-const ON_LAND: [usize; 5] = [FLOWER, FERN, SHRUB, TUSSOCK, LITTER];
+const ON_LAND: [usize; 9] = [FLOWER, FERN, SHRUB, TUSSOCK, LITTER, BUSH, SAPLING, LOG, STUMP];
+
+/// Those that are as large as their trees make them.
+const OF_TREES: [usize; 3] = [SAPLING, LOG, STUMP];
 
 /// How a kind stands, see [`PlantKind`].
 struct Habit {
@@ -39,12 +50,16 @@ struct Habit {
 const HABITS: [Habit; CHANNELS] = [
     Habit { name: "flower", per_m2: 3.0, scale: [0.7, 1.4], reach_m: 24.0, sway: 0.25 },
     Habit { name: "fern", per_m2: 0.9, scale: [0.6, 1.5], reach_m: 36.0, sway: 0.06 },
-    Habit { name: "shrub", per_m2: 0.6, scale: [0.5, 1.6], reach_m: 55.0, sway: 0.03 },
+    Habit { name: "shrub", per_m2: 0.6, scale: [0.5, 1.6], reach_m: 70.0, sway: 0.03 },
     Habit { name: "reed", per_m2: 2.2, scale: [0.6, 1.2], reach_m: 50.0, sway: 0.12 },
     Habit { name: "stone", per_m2: 1.6, scale: [0.05, 0.30], reach_m: 22.0, sway: 0.0 },
     Habit { name: "boulder", per_m2: 0.03, scale: [0.5, 2.6], reach_m: 160.0, sway: 0.0 },
     Habit { name: "litter", per_m2: 3.0, scale: [0.8, 1.2], reach_m: 11.0, sway: 0.0 },
     Habit { name: "tussock", per_m2: 0.8, scale: [0.5, 1.3], reach_m: 40.0, sway: 0.2 },
+    Habit { name: "bush", per_m2: 0.09, scale: [0.6, 1.9], reach_m: 120.0, sway: 0.03 },
+    Habit { name: "sapling", per_m2: 0.07, scale: [0.3, 1.0], reach_m: 90.0, sway: 0.04 },
+    Habit { name: "log", per_m2: 0.008, scale: [0.6, 1.3], reach_m: 90.0, sway: 0.0 },
+    Habit { name: "stump", per_m2: 0.006, scale: [0.6, 1.2], reach_m: 70.0, sway: 0.0 },
 ];
 
 /// Metres uphill of a place where a cliff may stand from which stones fell.
@@ -61,7 +76,7 @@ pub(super) fn plants(
 ) -> GroundPlants<Image8> {
     let side = (weights.width / 2).max(1) as usize;
     let place = |k: usize| (k as f32 + 0.5) / side as f32;
-    let both = square_image::<CHANNELS, _>(side, |j| {
+    let mut all = square_image::<CHANNELS, _>(side, |j| {
         let (row, place) = (traits.row(place(j)), &place);
         move |i| {
             let (here, noise) = (row.at(place(i)), grain.at(2 * i, 2 * j));
@@ -75,21 +90,47 @@ pub(super) fn plants(
             growth.map(byte)
         }
     });
-    let half = |first: usize| {
-        let data =
-            both.data.chunks_exact(CHANNELS).flat_map(|pixel| &pixel[first..first + 4]).copied().collect();
-        Image8 { channels: 4, data, ..both }
+    clear_lookouts(&mut all, land.field.extent_m());
+    let map = |number: usize| {
+        let channels = IN_MAP * number..IN_MAP * (number + 1);
+        let pixels = all.data.chunks_exact(CHANNELS);
+        let data = pixels.flat_map(|pixel| &pixel[channels.clone()]).copied().collect();
+        Image8 { channels: IN_MAP as u8, data, ..all }
     };
     let grows =
-        |kind: &PlantKind| both.data.iter().skip(kind.channel as usize).step_by(CHANNELS).any(|&d| d > 0);
+        |kind: &PlantKind| all.data.iter().skip(kind.channel as usize).step_by(CHANNELS).any(|&d| d > 0);
     let kinds = kinds(params, painter).into_iter().filter(grows).collect();
-    GroundPlants { maps: vec![half(0), half(4)], kinds }
+    GroundPlants { maps: (0..CHANNELS / IN_MAP).map(map).collect(), kinds }
 }
 
 /// All kinds, whether they grow in a land or not.
 #[cfg(test)]
 pub(super) fn all_kinds(params: &GroundParams, land: &Landform) -> Vec<PlantKind> {
     kinds(params, &Painter::new(params, land, &super::Woods::none()))
+}
+
+/// Those that would hide a landscape from who stands before them.
+const HIGH: [usize; 5] = [BOULDER, BUSH, SAPLING, LOG, STUMP];
+/// Metres around each lookout that a landscape may first be seen from in which none of them stands.
+const CLEARING_M: f32 = 6.0;
+
+fn clear_lookouts(all: &mut Image8, extent_m: f32) {
+    let pixel_m = extent_m / all.width as f32;
+    // What is read between pixels is 0 where all four around are.
+    let reach = CLEARING_M / pixel_m + 1.0;
+    for place in Lookout::places_m(extent_m) {
+        let middle = place / pixel_m + 0.5 * all.width as f32;
+        let lines =
+            |at: f32| ((at - reach).max(0.0) as usize)..((at + reach + 1.0) as usize).min(all.width as usize);
+        for j in lines(middle.y) {
+            for i in lines(middle.x) {
+                if Vec2::new(i as f32 + 0.5, j as f32 + 0.5).distance(middle) < reach {
+                    let pixel = &mut all.data[CHANNELS * (j * all.width as usize + i)..][..CHANNELS];
+                    HIGH.into_iter().for_each(|kind| pixel[kind] = 0);
+                }
+            }
+        }
+    }
 }
 
 fn byte(density: f32) -> u8 {
@@ -147,11 +188,7 @@ impl Painter {
         let (damp, green) = (self.damp(t), step(0.3, 0.8, grass) * step(0.25, 0.6, above_m));
         let patch = 0.6 * t.tuft + 0.4 * t.patch + 0.4 * n.broad;
         let (cold, dry) = (palette.frost, palette.thirst);
-        growth[FLOWER] = green
-            * step(-0.3, 0.6, patch)
-            * (1.0 - dry)
-            * (1.0 - 0.6 * cold)
-            * (1.0 - step(0.1, 0.6, t.shade));
+        growth[FLOWER] = green * self.bloom(t, n);
         let moist = (damp + 0.25 + 0.5 * palette.rain) * (1.0 - 2.0 * dry).max(0.0) * (1.0 - cold);
         // In the open they stand in rainforests alone.
         let shady = step(0.05, 0.45, t.shade).max(palette.rain * step(0.5, 1.0, palette.rain + damp - 0.3));
@@ -185,23 +222,47 @@ impl Painter {
                 + 0.03 * green * step(0.5, 0.9, t.outcrop))
             .min(1.0);
         growth[LITTER] = cover.litter() * (0.35 + 0.65 * t.shade);
+        self.wood(t, n, green, cover, &mut growth);
         let dry_land = step(0.15, 0.4, above_m) * free;
         ON_LAND.into_iter().for_each(|kind| growth[kind] *= dry_land);
         growth
     }
 }
 
+impl Painter {
+    /// What has wood: bushes by the woods and by water and scattered over open land, young trees and dead ones where old
+    /// ones stand.
+    fn wood(&self, t: &Traits, n: &Noise, green: f32, cover: &Cover, growth: &mut [f32; CHANNELS]) {
+        let palette = &self.palette;
+        let (cold, dry) = (palette.frost, palette.thirst);
+        let holds = 1.0 - step(0.5, 0.85, t.slope);
+        let soft = (green + 0.7 * cover.litter()).min(1.0) * holds;
+        let fringe = step(0.0, 0.2, t.shade) * (1.0 - step(0.5, 0.9, t.shade));
+        let thicket = 0.5 * t.patch - 0.5 * t.tuft + 0.6 * n.broad;
+        let by_water = step(0.0, 0.5, self.damp(t)) * (1.0 - 0.6 * dry);
+        let scattered = (0.16 + 0.5 * dry * (1.0 - dry)) * step(0.25, 0.8, thicket);
+        let bushes = (0.6 * fringe + 0.35 * by_water) * step(-0.2, 0.6, thicket) + scattered;
+        growth[BUSH] = soft * bushes * (1.0 - 0.85 * cold) * (1.0 - step(0.75, 1.0, dry));
+        growth[SAPLING] = 0.8 * soft * fringe * step(-0.3, 0.5, 0.7 * n.broad - 0.4 * t.tuft);
+        let dead = soft * step(0.05, 0.4, t.shade) * (0.4 + 0.6 * step(-0.2, 0.4, n.broad));
+        growth[LOG] = 0.7 * dead;
+        growth[STUMP] = dead;
+        if self.offspring.is_none() {
+            [SAPLING, LOG, STUMP].into_iter().for_each(|kind| growth[kind] = 0.0);
+        }
+    }
+}
+
 /// The kinds that may grow in a land, in the order of their channels.
 fn kinds(params: &GroundParams, painter: &Painter) -> Vec<PlantKind> {
     let palette = &painter.palette;
-    let seed = noise_seed(params.terrain_seed.into(), "ground plants", 0);
     let growth = palette.growth;
     let stone = |tone: f32| [0.75, 1.15].map(|shade| painter.rock.map(|c| c * tone * shade));
     let stones = vec![stone(1.0), stone(0.85), [painter.rock_band.map(|c| 0.8 * c), painter.rock_band]];
     let litter = painter.litter;
     // In the order of the channels.
     let looks: [(PlantShape, Vec<[Rgb; 2]>); CHANNELS] = [
-        (shapes::flower(), flowers(seed, growth[1])),
+        (shapes::flower(), flowers(params.terrain_seed, growth[1])),
         (shapes::fern(), ferns(growth[1])),
         (shapes::shrub(), shrubs(palette)),
         (shapes::reed(), reeds()),
@@ -212,27 +273,52 @@ fn kinds(params: &GroundParams, painter: &Painter) -> Vec<PlantKind> {
             vec![litter.colors, litter.colors.map(|c| c.map(|c| 0.7 * c))],
         ),
         (shapes::tussock(), vec![[growth[1], growth[3]], [growth[2], growth[4]]]),
+        (woody::bush(), bushes(palette)),
+        (woody::sapling(painter.offspring.map_or(Foliage::Bare, |young| young.foliage)), saplings(painter)),
+        (woody::log(), logs(palette)),
+        (woody::stump(), logs(palette).into_iter().map(|[bark, _]| [bark, HEARTWOOD]).collect()),
     ];
+    let young = painter.offspring;
     let kind = |(channel, (habit, (shape, colors))): (u32, (Habit, _))| {
-        let Habit { name, per_m2, scale, reach_m, sway } = habit;
+        let Habit { name, per_m2, mut scale, reach_m, sway } = habit;
+        if OF_TREES.contains(&(channel as usize)) {
+            scale = scale.map(|factor| factor * young.map_or(1.0, |young| young.size));
+        }
         PlantKind { name: name.into(), channel, per_m2, scale, reach_m, sway, colors, shape }
     };
     (0..).zip(HABITS.into_iter().zip(looks)).map(kind).collect()
 }
 
-/// Three kinds of flowers of the colours that there are, most of them of one, and the green of their stalks.
-fn flowers(seed: u32, stalk: Rgb) -> Vec<[Rgb; 2]> {
-    const PETALS: [Rgb; 7] = [
-        [0.72, 0.72, 0.66],
-        [0.75, 0.52, 0.03],
-        [0.34, 0.16, 0.52],
-        [0.60, 0.06, 0.02],
-        [0.66, 0.28, 0.40],
-        [0.13, 0.20, 0.62],
-        [0.74, 0.66, 0.20],
-    ];
-    let first = (hash01(seed, 1, 0, 0) * 7.0) as usize;
-    [0, 0, 0, 1, 3].map(|step| [stalk, PETALS[(first + step) % 7]]).into()
+/// Bark of young and of fallen trees, wood that the sun has faded, and wood inside.
+const BARK: Rgb = [0.105, 0.085, 0.066];
+const DRIFTWOOD: Rgb = [0.185, 0.168, 0.145];
+const HEARTWOOD: Rgb = [0.240, 0.175, 0.100];
+
+/// Three greens of the climate.
+fn bushes(palette: &Palette) -> Vec<[Rgb; 2]> {
+    let mild = lerp([0.115, 0.180, 0.044], [0.140, 0.150, 0.052], palette.frost);
+    let leaf = lerp(lerp(mild, [0.075, 0.170, 0.030], palette.heat), [0.180, 0.182, 0.105], palette.thirst);
+    let of = |factor: Rgb| {
+        let tip = [0, 1, 2].map(|k| leaf[k] * factor[k]);
+        [tip.map(|c| 0.4 * c), tip]
+    };
+    vec![of([1.0, 1.0, 1.0]), of([1.25, 1.12, 1.0]), of([0.78, 0.86, 1.05])]
+}
+
+fn saplings(painter: &Painter) -> Vec<[Rgb; 2]> {
+    let leaf = painter.offspring.map_or(BARK, |young| young.leaf);
+    [0.8, 1.0, 1.2].map(|light| [BARK, leaf.map(|c| light * c)]).into()
+}
+
+/// Under moss where it rains, faded where it doesn't.
+fn logs(palette: &Palette) -> Vec<[Rgb; 2]> {
+    let top = lerp(DRIFTWOOD, MOSS, step(0.0, 1.0, 0.35 + palette.rain - palette.thirst));
+    vec![[BARK, top], [BARK.map(|c| 1.3 * c), lerp(DRIFTWOOD, top, 0.4)]]
+}
+
+/// Flowers of a land, most of them of one kind, and the green of their stalks.
+fn flowers(terrain_seed: u32, stalk: Rgb) -> Vec<[Rgb; 2]> {
+    petals(terrain_seed).map(|petals| [stalk, petals]).into()
 }
 
 fn ferns(lush: Rgb) -> Vec<[Rgb; 2]> {

@@ -1,4 +1,4 @@
-//! Nothing → the shapes of ground plants and stones: a few triangles each, coarse ones first. Metres.
+//! Nothing → the shapes of herbs, dwarf shrubs and stones, and what all shapes are drawn with: a few triangles each, coarse ones first. Metres.
 
 use glam::Vec3;
 
@@ -10,19 +10,19 @@ use std::f32::consts::TAU;
 
 /// A shape in the making.
 #[derive(Default)]
-struct Drawing {
+pub(super) struct Drawing {
     shape: PlantShape,
     seed: u32,
     dice: i32,
 }
 
 impl Drawing {
-    fn new(seed: u32) -> Self {
+    pub(super) fn new(seed: u32) -> Self {
         Self { seed, ..Self::default() }
     }
 
     /// In [0, 1).
-    fn unit(&mut self) -> f32 {
+    pub(super) fn unit(&mut self) -> f32 {
         self.dice += 1;
         hash01(self.seed, self.dice, 7, 1)
     }
@@ -40,13 +40,25 @@ impl Drawing {
     fn leaf(&mut self, corners: [Vec3; 3], tints: [f32; 3]) {
         let [a, b, c] = corners;
         let across = (b - a).cross(c - a).normalize_or(Vec3::Y);
-        let normal = Vec3::Y + 0.6 * if across.y < 0.0 { -across } else { across };
+        self.lit(corners, Vec3::Y + 0.6 * if across.y < 0.0 { -across } else { across }, tints);
+    }
+
+    /// A triangle that is lit as if it faced along `normal`, of any length.
+    pub(super) fn lit(&mut self, corners: [Vec3; 3], normal: Vec3, tints: [f32; 3]) {
         let triangle = [0, 1, 2].map(|k| self.vertex(corners[k], normal, tints[k]));
         self.shape.triangles.push(triangle);
     }
 
+    /// A stem or a twig of tint 0: two crossed slivers that end in a point, lit from the side.
+    pub(super) fn stalk(&mut self, root: Vec3, tip: Vec3, radius: f32) {
+        let side = (tip - root).cross(Vec3::new(0.31, 0.17, 0.94)).normalize_or(Vec3::X);
+        for across in [side, (tip - root).cross(side).normalize_or(Vec3::Z)] {
+            self.lit([root - radius * across, root + radius * across, tip], across + 0.6 * Vec3::Y, [0.0; 3]);
+        }
+    }
+
     /// A blade that bends from `root` outwards in the direction of a turn and ends in a point.
-    fn blade(&mut self, root: Vec3, turn: f32, [height, lean, width]: [f32; 3], tints: [f32; 2]) {
+    pub(super) fn blade(&mut self, root: Vec3, turn: f32, [height, lean, width]: [f32; 3], tints: [f32; 2]) {
         let out = heading(turn);
         let side = Vec3::new(-out.z, 0.0, out.x) * (0.5 * width);
         let middle = root + out * (0.3 * lean) + Vec3::Y * (0.62 * height);
@@ -58,11 +70,11 @@ impl Drawing {
     }
 
     /// The triangles until here are enough from afar.
-    fn coarse(&mut self) {
+    pub(super) fn coarse(&mut self) {
         self.shape.coarse = self.shape.triangles.len() as u32;
     }
 
-    fn done(mut self) -> PlantShape {
+    pub(super) fn done(mut self) -> PlantShape {
         if self.shape.coarse == 0 {
             self.coarse();
         }
@@ -71,7 +83,7 @@ impl Drawing {
 }
 
 /// Level, from +x towards +z.
-fn heading(turn: f32) -> Vec3 {
+pub(super) fn heading(turn: f32) -> Vec3 {
     Vec3::new(libm::cosf(turn), 0.0, libm::sinf(turn))
 }
 

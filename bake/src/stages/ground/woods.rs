@@ -3,12 +3,15 @@
 use serde::{Deserialize, Serialize};
 
 use super::palette::Rgb;
+use super::woody::Foliage;
 use crate::math::lerp_array;
+use crate::model::leaf_color;
 use crate::model::{Instance, Landform};
 
 /// The genes of trees that the ground shows; names, ranges and meanings as in the parameter space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LitterParams {
+    pub height_m: f32,
     /// Bare trees stand on last autumn's leaves.
     pub leaves_per_stem: u32,
     pub leaf_shape: u32,
@@ -37,6 +40,32 @@ pub(super) struct Litter {
     pub colors: [Rgb; 2],
     pub leaf_m: f32,
     pub is_needles: bool,
+}
+
+/// What comes up under a kind of tree.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Offspring {
+    pub foliage: Foliage,
+    /// Of leaves in the light.
+    pub leaf: Rgb,
+    /// Factor on the size of young trees and dead ones: 1 under trees of middling height.
+    pub size: f32,
+}
+
+/// Part of a leaf's albedo that a spray of leaves has, which shade each other.
+const SPRAY: f32 = 0.8;
+
+impl Offspring {
+    fn new(params: &LitterParams) -> Self {
+        let foliage = match params.leaf_shape {
+            _ if params.leaves_per_stem == 0 => Foliage::Bare,
+            NEEDLES => Foliage::Needles,
+            FRONDS => Foliage::Fronds,
+            _ => Foliage::Leaves,
+        };
+        let size = (params.height_m / 14.0).clamp(0.3, 1.3);
+        Self { foliage, leaf: (SPRAY * leaf_color(params.leaf_hue_deg)).to_array(), size }
+    }
 }
 
 impl Litter {
@@ -78,6 +107,8 @@ pub(super) fn stride(land: &Landform) -> u32 {
 /// What trees do to the ground.
 pub struct Woods {
     pub(super) litter: Litter,
+    /// None without trees.
+    pub(super) offspring: Option<Offspring>,
     /// Samples a side; 0 if there are no trees.
     side: usize,
     /// How much lies under crowns, 0 to 1, row by row.
@@ -87,7 +118,7 @@ pub struct Woods {
 impl Woods {
     /// Land without trees.
     pub fn none() -> Self {
-        Self { litter: Litter::default(), side: 0, shade: Vec::new() }
+        Self { litter: Litter::default(), offspring: None, side: 0, shade: Vec::new() }
     }
 
     /// The woods of a land; `crowns_m` gives the radius of each template's crown at scale 1.
@@ -108,7 +139,7 @@ impl Woods {
                 crown_m / spacing_m,
             );
         }
-        Self { litter: Litter::new(params), side, shade }
+        Self { litter: Litter::new(params), offspring: Some(Offspring::new(params)), side, shade }
     }
 
     /// Shade at a sample of the traits' grid.

@@ -10,7 +10,7 @@ use crate::math::interpolate;
 use crate::model::SkyLight;
 
 /// The log-average that needs no exposure, in the units of [`SkyLight`].
-const NEUTRAL: f32 = 0.22;
+const NEUTRAL: f32 = 0.25;
 /// Part of a difference from it, in stops, that the eye adapts to.
 const ADAPTED: f32 = 0.6;
 /// What a photographer adds for snow, which a meter takes for grey; all of it where this part of the picture is snow.

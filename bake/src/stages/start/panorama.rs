@@ -37,8 +37,7 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    pub const COUNT: usize = 5;
-    pub const ALL: [Self; Self::COUNT] = [Self::Sky, Self::Ground, Self::Snow, Self::Water, Self::Tree];
+    pub const ALL: [Self; 5] = [Self::Sky, Self::Ground, Self::Snow, Self::Water, Self::Tree];
 
     /// Also water.
     pub fn is_land(self) -> bool {

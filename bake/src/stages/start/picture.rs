@@ -28,7 +28,7 @@ pub(super) struct Picture<'a> {
     /// Slope of the look.
     pub pitch: f32,
     /// Rays of each kind in each band of depths.
-    counts: [[u32; BANDS_M.len() + 1]; Kind::COUNT],
+    counts: [[u32; BANDS_M.len() + 1]; Kind::ALL.len()],
 }
 
 impl<'a> Picture<'a> {

@@ -10,6 +10,7 @@ use super::mips;
 use super::params::{Habit, TreeTextureParams, autumn, card_length_m};
 use crate::math::{cell, lerp};
 use crate::model::Image8;
+use crate::model::leaf_color;
 use crate::seed::Dice;
 
 /// Texels a side.
@@ -41,24 +42,6 @@ pub(super) fn paint_leaves(params: &TreeTextureParams) -> Vec<Image8> {
         Habit::Broad => brush.broad(leaf),
     }
     mips::chain(&brush.canvas)
-}
-
-/// Albedo of a leaf by hue: green is dark, yellow is bright, orange and red between. Linear RGB.
-pub(super) fn leaf_color(hue_deg: f32) -> Vec3 {
-    // Hue; albedo as in spectra of green, senescent and red leaves.
-    const STOPS: [(f32, Vec3); 7] = [
-        (15.0, Vec3::new(0.36, 0.045, 0.016)),
-        (30.0, Vec3::new(0.46, 0.125, 0.018)),
-        (48.0, Vec3::new(0.52, 0.32, 0.030)),
-        (66.0, Vec3::new(0.30, 0.31, 0.042)),
-        (90.0, Vec3::new(0.155, 0.275, 0.048)),
-        (115.0, Vec3::new(0.090, 0.220, 0.055)),
-        (150.0, Vec3::new(0.055, 0.165, 0.100)),
-    ];
-    let hue = hue_deg.clamp(15.0, 150.0);
-    let above = STOPS.iter().position(|stop| stop.0 >= hue).unwrap_or(6).max(1);
-    let (a, b) = (STOPS[above - 1], STOPS[above]);
-    a.1.lerp(b.1, (hue - a.0) / (b.0 - a.0))
 }
 
 struct Brush {
@@ -98,8 +81,8 @@ impl Brush {
 
     /// One leaf's paint: no two are quite alike; those laid on later are lighter.
     fn paint(&mut self, light: f32) -> Paint {
-        let hue = self.hue_deg + (5.0 + 9.0 * autumn(self.hue_deg)) * self.dice.signed();
-        let color = leaf_color(hue) * light * (1.0 + 0.13 * self.dice.signed());
+        let hue = self.hue_deg + (8.0 + 8.0 * autumn(self.hue_deg)) * self.dice.signed();
+        let color = leaf_color(hue) * light * (1.0 + 0.18 * self.dice.signed());
         let fold = 0.13 * if self.dice.unit() < 0.5 { 1.0 } else { -1.0 };
         Paint { color, veins: 0.3, pairs: self.pairs, fold }
     }
@@ -137,13 +120,15 @@ impl Brush {
         let fine = leaf < 0.3;
         if fine {
             // Side twigs in alternation; lower ones longer, so that the whole is round.
-            let count = (1.15 / leaf).round().clamp(4.0, 7.0) as usize;
+            // None like another, or the whole looks like one large lobed leaf.
+            let count = (1.7 / leaf).round().clamp(5.0, 10.0) as usize;
             for k in 0..count {
-                let t = 0.12 + 0.72 * k as f32 / count as f32;
+                let t = 0.10 + 0.78 * (k as f32 + 0.4 * self.dice.signed()).max(0.0) / count as f32;
                 let (at, angle) = point(&main, t);
-                let sign = alternating(k);
-                let turn = sign * (0.85 + 0.15 * self.dice.signed()) + angle;
+                let sign = if self.dice.unit() < 0.2 { -alternating(k) } else { alternating(k) };
+                let turn = sign * (0.85 + 0.35 * self.dice.signed()) + angle;
                 let length = (0.44 - 0.75 * leaf * 0.5) * libm::sinf(0.7 + 1.9 * t).max(0.35);
+                let length = length * (0.8 + 0.38 * self.dice.signed());
                 let side = self.twig(at, turn, length, -0.35 * sign, 0.007);
                 self.spots(&side, leaf, 0.25, &mut spots);
             }
@@ -157,13 +142,13 @@ impl Brush {
         for (i, &(at, angle)) in spots.iter().enumerate() {
             let length = leaf * (size + variation * self.dice.signed());
             let length = self.fit(at, angle, length);
-            self.leaf(at, angle, length, 0.72 + 0.36 * i as f32 / spots.len() as f32);
+            self.leaf(at, angle, length, 0.58 + 0.62 * i as f32 / spots.len() as f32);
         }
     }
 
     /// Places of leaves along a twig: alternating, the last at its tip.
     fn spots(&mut self, twig: &[(Vec2, f32)], leaf: f32, from: f32, spots: &mut Vec<(Vec2, f32)>) {
-        let count = ((1.0 - from) * length(twig) / (0.30 * leaf)).round().max(2.0) as usize;
+        let count = ((1.0 - from) * length(twig) / (0.35 * leaf)).round().max(2.0) as usize;
         for k in 0..count {
             let t = from + (1.0 - from) * k as f32 / count as f32;
             let (at, angle) = point(twig, t);
@@ -207,10 +192,10 @@ impl Brush {
 
     /// A flat spray of conifer twigs, needles all along.
     fn needles(&mut self, leaf: f32) {
-        let needle = (0.24 * leaf).clamp(0.034, 0.055);
+        let needle = (0.17 * leaf).clamp(0.030, 0.040);
         let mut twigs = vec![(Vec2::ZERO, 0.0, 0.93)];
-        for k in 0..8 {
-            let t = 0.07 + 0.099 * k as f32;
+        for k in 0..11 {
+            let t = 0.05 + 0.075 * k as f32;
             for sign in [-1.0, 1.0] {
                 let at = Vec2::new(0.0, 0.93 * (t + 0.02 * self.dice.signed()));
                 let length = (0.46 - 0.30 * t) * (1.0 + 0.15 * self.dice.signed());
@@ -221,7 +206,7 @@ impl Brush {
             self.canvas.stroke(at, at + towards(angle) * length, (0.007, 0.004), TWIG);
         }
         for &(at, angle, length) in twigs.iter().rev() {
-            let count = (length / 0.0095) as usize;
+            let count = (length / 0.0082) as usize;
             for k in 0..count {
                 let t = k as f32 / count as f32;
                 let base = at + towards(angle) * (length * t);
@@ -230,7 +215,7 @@ impl Brush {
                     let size = needle * (1.0 - 0.3 * t) * (0.9 + 0.2 * self.dice.signed());
                     let color = leaf_color(self.hue_deg + 8.0 * self.dice.signed());
                     let light = (0.8 + 0.35 * t) * (1.0 + 0.22 * self.dice.signed());
-                    self.canvas.stroke(base, base + towards(lean) * size, (0.006, 0.0035), color * light);
+                    self.canvas.stroke(base, base + towards(lean) * size, (0.0044, 0.0022), color * light);
                 }
             }
         }
@@ -264,33 +249,54 @@ impl Brush {
         self.canvas.stroke(Vec2::ZERO, Vec2::new(0.0, 0.97), (0.011, 0.002), color);
     }
 
-    /// Clusters of five-petalled flowers along a twig, with a few young leaves.
+    /// Clusters of five-petalled flowers along a twig, among young leaves.
     fn flowers(&mut self) {
+        const CLUSTERS: usize = 11;
         let bend = 0.25 * self.dice.signed();
         let half = 0.5 * self.canvas.width;
         let main = self.twig(Vec2::ZERO, -0.4 * bend, 0.9, bend, 0.013);
-        let pink = 0.35 + 0.65 * self.dice.unit();
-        for k in 0..64 {
-            let (at, _) = point(&main, (k as f32 + 0.5) / 64.0);
-            let spread = half * 0.86 - 0.075;
-            let at = at + Vec2::new(spread * self.dice.signed(), 0.08 * self.dice.signed());
-            let at = at.clamp(Vec2::new(-half + 0.085, 0.085), Vec2::new(half - 0.085, 0.915));
-            let size = 0.075 + 0.02 * self.dice.unit();
-            self.flower(at, size, pink, 0.8 + 0.25 * k as f32 / 64.0);
+        let pink = 0.75 * self.dice.unit();
+        let clusters: Vec<Vec2> = (0..CLUSTERS)
+            .map(|k| {
+                let (at, angle) = point(&main, (k as f32 + 0.9) / CLUSTERS as f32);
+                let turn = angle + alternating(k) * (1.05 + 0.25 * self.dice.signed());
+                let reach = if k + 1 == CLUSTERS { 0.0 } else { half * (0.38 + 0.32 * self.dice.signed()) };
+                let middle = at + towards(turn) * reach;
+                self.canvas.stroke(at, middle, (0.007, 0.004), TWIG);
+                middle.clamp(Vec2::new(0.15 - half, 0.13), Vec2::new(half - 0.15, 0.87))
+            })
+            .collect();
+        for (k, &middle) in clusters.iter().enumerate() {
+            for way in [-1.1, 0.6] {
+                let (angle, light) =
+                    (alternating(k) * way + 0.5 * self.dice.signed(), 0.6 + 0.3 * self.dice.unit());
+                let paint =
+                    Paint { veins: 0.3, pairs: 5.0, fold: 0.1, color: leaf_color(self.hue_deg) * light };
+                self.canvas.leaf(&self.outline, middle, towards(angle), 0.13, &paint);
+            }
+        }
+        for middle in clusters {
+            // From the rim inwards: those in the middle lie above the others.
+            for k in 0..13 {
+                let away = 0.088 * (1.0 - k as f32 / 13.0).sqrt();
+                let at = middle + towards(2.4 * k as f32 + 0.4 * self.dice.signed()) * away;
+                let size = 0.043 + 0.012 * self.dice.unit();
+                self.flower(at, size, pink, 0.72 + 0.33 * k as f32 / 13.0);
+            }
         }
     }
 
     fn flower(&mut self, at: Vec2, size: f32, pink: f32, light: f32) {
         let turn = self.dice.unit() * std::f32::consts::TAU;
-        let white = Vec3::new(0.80, 0.74, 0.76);
-        let rose = Vec3::new(0.78, 0.42, 0.52);
+        let white = Vec3::new(0.82, 0.80, 0.76);
+        let rose = Vec3::new(0.80, 0.48, 0.55);
         for petal in 0..5 {
             let angle = turn + petal as f32 * std::f32::consts::TAU / 5.0;
             let color = white.lerp(rose, pink * (0.5 + 0.5 * self.dice.unit())) * light.min(1.0);
             let paint = Paint { color, veins: -0.1, pairs: 0.0, fold: 0.05 };
             self.canvas.leaf(&self.outline, at, towards(angle), size, &paint);
         }
-        self.canvas.stroke(at, at, (0.016, 0.016), Vec3::new(0.62, 0.24, 0.2) * light);
+        self.canvas.stroke(at, at, (0.009, 0.009), Vec3::new(0.55, 0.45, 0.12) * light);
     }
 }
 

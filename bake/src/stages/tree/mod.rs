@@ -28,7 +28,7 @@ use rayon::join;
 use crate::model::{Image8, TreeTemplate, TreeTextures};
 use crate::seed::Dice;
 use budget::Budget;
-pub use stage::{TreeFiles, TreeStage, TreeTexturesStage, lod_options};
+pub use stage::{TreeFiles, TreeStage, TreeTexturesStage, drawn_from_afar, lod_options};
 
 pub use crease::crease_normals;
 pub use impostor::impostor;

@@ -21,7 +21,7 @@ pub struct TreeTexturesStage {
 
 impl Stage for TreeTexturesStage {
     const NAME: &'static str = "tree textures";
-    const VERSION: u32 = 3;
+    const VERSION: u32 = 4;
     type Output = TreeTextures<File>;
 
     fn run(&self, context: &Context<'_>) -> Result<TreeTextures<File>, StageError> {
@@ -80,7 +80,7 @@ pub struct TreeFiles {
 
 impl Stage for TreeStage {
     const NAME: &'static str = "tree";
-    const VERSION: u32 = 9;
+    const VERSION: u32 = 10;
     type Output = TreeFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<TreeFiles, StageError> {
@@ -110,7 +110,7 @@ impl Stage for TreeStage {
 
 /// The level of which pictures are drawn: with half of the leaves, which cover as much, in half of the time; a leaf is less
 /// than a pixel of them. A bare tree has no leaf to spare.
-fn drawn_from_afar(levels: &[Level]) -> &Mesh {
+pub fn drawn_from_afar(levels: &[Level]) -> &Mesh {
     &levels[usize::from(levels[0].mesh.has_cards() && levels.len() > 1)].mesh
 }
 

@@ -110,7 +110,7 @@ fn the_foreground_has_no_more_plants_than_a_file_can_bear() {
 fn few_enough_stand_within_reach_to_draw_them_each_frame() {
     let kinds = plants::all_kinds(&PARAMS, &LAND);
     let most = |kind: &PlantKind| kind.per_m2 * std::f32::consts::PI * kind.reach_m * kind.reach_m;
-    assert!(kinds.len() == 8 && kinds.iter().all(|kind| most(kind) < 20_000.0));
+    assert!(kinds.len() == 12 && kinds.iter().all(|kind| most(kind) < 20_000.0));
     assert!(kinds.iter().all(|kind| kind.shape.triangles.len() <= 300 && kind.shape.coarse <= 100));
 }
 
@@ -125,8 +125,14 @@ fn no_plant_grows_on_rock_or_snow() {
     }
 }
 
-const MAPLE: LitterParams =
-    LitterParams { leaves_per_stem: 20, leaf_shape: 4, leaf_size_m: 0.1, leaf_hue_deg: 30.0, blossom: 0.0 };
+const MAPLE: LitterParams = LitterParams {
+    height_m: 14.0,
+    leaves_per_stem: 20,
+    leaf_shape: 4,
+    leaf_size_m: 0.1,
+    leaf_hue_deg: 30.0,
+    blossom: 0.0,
+};
 
 /// A tree at a place, upright.
 fn tree(x: f32, z: f32) -> crate::model::Instance {
@@ -165,6 +171,51 @@ fn leaves_lie_under_their_tree_and_in_its_colour() {
     assert!(of(&made.plants) > 1 && of(&MAPS.plants) == 0);
     let bare = Woods::new(&LitterParams { leaves_per_stem: 0, ..MAPLE }, &LAND, &[tree(x, z)], &[9.0]);
     assert!(of(&maps(&PARAMS, &bare, &LAND, 256).plants) > 1, "last autumn's leaves lie under bare trees");
+}
+
+#[test]
+fn young_trees_and_dead_ones_stand_by_trees_alone() {
+    let half_m = 0.5 * LAND.field.extent_m();
+    let part = |m: f32| ((0.5 + 0.5 * m / half_m) * 128.0) as u32;
+    let is_green = |[x, z]: [f32; 2]| MAPS.weights.pixel(2 * part(x), 2 * part(z)).iter().all(|&w| w < 40);
+    let lines = || (-22..22).map(|k| 20.0 * k as f32);
+    let places: Vec<[f32; 2]> =
+        lines().flat_map(|x| lines().map(move |z| [x, z])).filter(|&at| is_green(at)).collect();
+    let trees: Vec<_> = places.iter().step_by(3).map(|&[x, z]| tree(x, z)).collect();
+    let made = maps(&PARAMS, &Woods::new(&MAPLE, &LAND, &trees, &[6.0]), &LAND, 256);
+    let near = |k: usize| {
+        let [x, z] = [k as u32 % 128, k as u32 / 128].map(|k| ((k as f32 + 0.5) / 64.0 - 1.0) * half_m);
+        trees
+            .iter()
+            .any(|tree| libm::hypotf(tree.trunk_cylinder_m[0] - x, tree.trunk_cylinder_m[1] - z) < 20.0)
+    };
+    for name in ["sapling", "log", "stump"] {
+        let parts = stands(&made.plants, name);
+        assert!(parts.iter().filter(|(part, _)| *part > 60).count() > 5, "hardly any {name}");
+        assert!(
+            parts.iter().enumerate().all(|(k, (part, _))| *part == 0 || near(k)),
+            "a {name} far from trees"
+        );
+        assert!(stands(&MAPS.plants, name).is_empty(), "a {name} without a tree");
+    }
+    let bushes =
+        |plants: &GroundPlants<Image8>| stands(plants, "bush").iter().filter(|(part, _)| *part > 60).count();
+    assert!(bushes(&made.plants) > bushes(&MAPS.plants) + 20, "no bushes at the edge of the woods");
+}
+
+#[test]
+fn nothing_high_stands_before_a_lookout() {
+    let half_m = 0.5 * LAND.field.extent_m();
+    for kind in FINE.plants.kinds.iter().filter(|kind| ["boulder", "bush"].contains(&kind.name.as_str())) {
+        let map = &FINE.plants.maps[kind.channel as usize / 4];
+        let map = DensityMap { width_px: map.width, height_px: map.height, rgba: &map.data };
+        let around =
+            |place: glam::Vec2| (0..8).map(move |k| place + 5.0 * glam::Vec2::from_angle(k as f32 * 0.785));
+        for at in genescape_schema::scene::Lookout::places_m(2.0 * half_m).flat_map(around) {
+            let [u, v] = [at.x, at.y].map(|m| 0.5 + 0.5 * m / half_m);
+            assert_eq!(map.at(kind.channel, u, v), 0.0, "a {} at {at}", kind.name);
+        }
+    }
 }
 
 #[test]

@@ -1,0 +1,260 @@
+//! Nothing → the shapes of what has wood: bushes, young trees, fallen trunks and stumps. Metres.
+
+use glam::Vec3;
+
+use super::shapes::{Drawing, heading};
+use crate::math::lerp;
+use crate::model::PlantShape;
+
+use std::f32::consts::TAU;
+
+/// By which turns neighbours along a stem differ, so that no two stand above each other.
+const GOLDEN: f32 = 2.4;
+
+/// What a young tree bears.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Foliage {
+    Leaves,
+    Needles,
+    Fronds,
+    Bare,
+}
+
+/// A bush of a metre: sprays in all directions, and leaves that stand out from their ends. Tint 0 is that of its inside.
+pub(super) fn bush() -> PlantShape {
+    const SPRAYS: u32 = 46;
+    let mut d = Drawing::new(71);
+    let sprays: Vec<(Vec3, Vec3)> = (0..SPRAYS)
+        .map(|k| {
+            let up = 1.0 - 1.6 * (k as f32 + 0.5) / SPRAYS as f32;
+            let out =
+                heading(GOLDEN * k as f32 + 0.9 * d.unit()) * (1.0 - up * up).max(0.0).sqrt() + Vec3::Y * up;
+            // Not round: lobes of different heights.
+            let lobe =
+                0.75 + 0.3 * libm::sinf(2.6 * out.x + 1.0) * libm::cosf(3.4 * out.z + 0.5) + 0.35 * d.unit();
+            (
+                Vec3::Y * 0.3 + Vec3::new(0.2, 0.12, 0.2) * out,
+                Vec3::Y * 0.38 + Vec3::new(0.66, 0.6, 0.66) * out * lobe,
+            )
+        })
+        .collect();
+    for &(root, tip) in &sprays {
+        let out = (tip - root).normalize_or(Vec3::Y);
+        let [_, wide] = tangents(out, d.unit() * TAU);
+        let middle = root.lerp(tip, 0.6) + 0.15 * wide * d.unit();
+        let tint = 0.35 + 0.35 * d.unit();
+        for wide in [0.085 * wide, -0.085 * wide] {
+            d.lit([root, middle + wide, tip], out + 0.4 * Vec3::Y, [0.0, tint, tint + 0.25]);
+        }
+    }
+    d.coarse();
+    for &(root, tip) in &sprays {
+        for k in 0..4 {
+            let out = (tip - root).normalize_or(Vec3::Y);
+            let from = root.lerp(tip, 0.55 + 0.14 * k as f32);
+            let [aside, _] = tangents(out, d.unit() * TAU);
+            let aim = (aside + (0.3 + 0.5 * d.unit()) * out).normalize_or(out);
+            let leaf = aim * (0.15 + 0.07 * d.unit());
+            let [_, wide] = tangents(aim, d.unit() * TAU);
+            let tint = 0.45 + 0.55 * d.unit();
+            d.lit(
+                [from, from + 0.45 * leaf + 0.07 * wide, from + leaf],
+                out + 0.5 * aim,
+                [0.7 * tint, tint, tint],
+            );
+        }
+    }
+    d.done()
+}
+
+/// A young tree of two metres, from afar as well. Tint 0 is that of its stem, 1 that of its leaves.
+pub(super) fn sapling(foliage: Foliage) -> PlantShape {
+    let mut d = Drawing::new(72);
+    match foliage {
+        Foliage::Needles => spire(&mut d),
+        Foliage::Fronds => rosette(&mut d),
+        Foliage::Leaves | Foliage::Bare => whip(&mut d, foliage == Foliage::Leaves),
+    }
+    d.done()
+}
+
+/// A stem with twigs all around, each with some leaves.
+fn whip(d: &mut Drawing, has_leaves: bool) {
+    const TWIGS: u32 = 17;
+    d.stalk(Vec3::ZERO, Vec3::new(0.05, 2.0, 0.03), 0.03);
+    let twigs: Vec<(Vec3, Vec3)> = (0..TWIGS)
+        .map(|k| {
+            let t = k as f32 / TWIGS as f32;
+            let long = lerp(0.62, 0.22, t) * (0.8 + 0.4 * d.unit());
+            let out = heading(GOLDEN * k as f32 + 0.4 * d.unit()) + Vec3::Y * lerp(0.4, 1.1, t);
+            let root = Vec3::new(0.05, 2.0, 0.03) * lerp(0.22, 0.97, t);
+            (root, root + out.normalize_or(Vec3::Y) * long)
+        })
+        .collect();
+    for &(root, tip) in &twigs {
+        d.stalk(root, tip, 0.012);
+        if !has_leaves {
+            continue;
+        }
+        // From afar one for all leaves of a twig.
+        let out = (tip - root).normalize_or(Vec3::Y);
+        let [_, wide] = tangents(out, d.unit() * TAU);
+        let middle = root.lerp(tip, 0.55);
+        let tint = 0.6 + 0.3 * d.unit();
+        d.lit(
+            [root.lerp(tip, 0.15), middle + 0.04 * wide, tip + 0.02 * out],
+            out + Vec3::Y,
+            [0.4, tint, tint],
+        );
+        d.lit(
+            [root.lerp(tip, 0.15), tip + 0.02 * out, middle - 0.04 * wide],
+            out + Vec3::Y,
+            [0.4, tint, tint],
+        );
+    }
+    d.coarse();
+    if !has_leaves {
+        return;
+    }
+    for &(root, tip) in &twigs {
+        for k in 0..8 {
+            let out = (tip - root).normalize_or(Vec3::Y);
+            let from = root.lerp(tip, 0.2 + 0.1 * k as f32);
+            let aim = (heading(d.unit() * TAU) + 0.35 * out + Vec3::Y * 0.15).normalize_or(out);
+            let leaf = aim * (0.13 + 0.05 * d.unit());
+            let [_, wide] = tangents(aim, d.unit() * TAU);
+            let tint = 0.55 + 0.45 * d.unit();
+            d.lit(
+                [from, from + 0.45 * leaf + 0.07 * wide, from + leaf],
+                out + Vec3::Y,
+                [0.8 * tint, tint, tint],
+            );
+        }
+    }
+}
+
+/// Whorls of drooping sprays that get shorter towards the top.
+fn spire(d: &mut Drawing) {
+    const WHORLS: u32 = 9;
+    d.stalk(Vec3::ZERO, Vec3::Y * 1.7, 0.035);
+    let spray = |d: &mut Drawing, whorl: u32, turn: f32, small: f32| {
+        let t = whorl as f32 / WHORLS as f32;
+        let long = lerp(0.62, 0.1, t) * small * (0.85 + 0.3 * d.unit());
+        let (out, root) = (heading(turn), Vec3::Y * lerp(0.16, 1.72, t));
+        let tip = root + out * long + Vec3::Y * (0.12 - 0.22 * long);
+        let side = Vec3::new(-out.z, 0.0, out.x) * (0.32 * long);
+        let middle = root.lerp(tip, 0.45) + Vec3::Y * 0.05;
+        let tint = 0.55 + 0.4 * d.unit();
+        d.lit([root, middle + side, tip], out + 0.7 * Vec3::Y, [0.1, 0.8 * tint, tint]);
+        d.lit([root, tip, middle - side], out + 0.7 * Vec3::Y, [0.1, tint, 0.8 * tint]);
+    };
+    for whorl in 0..WHORLS {
+        for k in 0..5 {
+            spray(d, whorl, TAU * (k as f32 + 0.5 * whorl as f32) / 5.0, 1.0);
+        }
+    }
+    d.coarse();
+    for whorl in 0..WHORLS {
+        for k in 0..9 {
+            let turn = TAU * (k as f32 + 0.3 + 0.4 * d.unit()) / 9.0;
+            spray(d, whorl, turn, 0.75);
+        }
+    }
+}
+
+/// Young fronds from one root.
+fn rosette(d: &mut Drawing) {
+    for k in 0..11 {
+        let (turn, long) = (GOLDEN * k as f32, 1.0 + 0.5 * d.unit());
+        d.blade(Vec3::Y * 0.02, turn, [long, 0.35 + 0.06 * k as f32, 0.14], [0.2, 1.0]);
+    }
+}
+
+/// A trunk that fell, with stubs of branches, half sunk. Tint 1 is that of what grows on it or has faded in the sun.
+pub(super) fn log() -> PlantShape {
+    const RINGS: u32 = 6;
+    const AROUND: u32 = 7;
+    let mut d = Drawing::new(73);
+    let middle = |t: f32| Vec3::new(lerp(-2.2, 2.2, t), lerp(0.17, 0.09, t), 0.14 * libm::sinf(4.0 * t));
+    let grid: Vec<Vec<Vec3>> = (0..=RINGS)
+        .map(|ring| {
+            let t = ring as f32 / RINGS as f32;
+            let radius = lerp(0.26, 0.10, t) * (0.92 + 0.16 * d.unit());
+            (0..AROUND)
+                .map(|k| {
+                    let turn = heading(k as f32 / AROUND as f32 * TAU);
+                    middle(t) + radius * (0.95 + 0.1 * d.unit()) * Vec3::new(0.0, turn.x, turn.z)
+                })
+                .collect()
+        })
+        .collect();
+    for (ring, pair) in grid.windows(2).enumerate() {
+        let axis = middle((ring as f32 + 0.5) / RINGS as f32);
+        for k in 0..AROUND as usize {
+            let next = (k + 1) % AROUND as usize;
+            let [a, b, c, e] = [pair[0][k], pair[0][next], pair[1][k], pair[1][next]];
+            let out = (a + b + c + e) * 0.25 - axis;
+            let tint = |p: Vec3| ((p.y - axis.y) * 3.0 + 0.2).clamp(0.0, 1.0);
+            d.lit([a, b, c], out, [a, b, c].map(tint));
+            d.lit([b, e, c], out, [b, e, c].map(tint));
+        }
+    }
+    for (ring, out) in [(0, Vec3::NEG_X), (RINGS as usize, Vec3::X)] {
+        let ends = &grid[ring];
+        for k in 1..AROUND as usize - 1 {
+            d.lit([ends[0], ends[k], ends[k + 1]], out, [0.85; 3]);
+        }
+    }
+    d.coarse();
+    for (t, turn, long) in
+        [(0.35, 0.9, 0.5), (0.5, -0.7, 0.7), (0.68, 0.3, 0.6), (0.8, -1.2, 0.45), (0.9, 0.8, 0.5)]
+    {
+        let root = middle(t);
+        let aim = Vec3::new(0.55, libm::cosf(turn), libm::sinf(turn)).normalize_or(Vec3::Y);
+        d.stalk(root, root + aim * long, 0.045);
+    }
+    d.done()
+}
+
+/// What is left of a tree whose trunk broke: splintered at the top, with roots. Tint 1 is that of the wood inside.
+pub(super) fn stump() -> PlantShape {
+    const AROUND: usize = 9;
+    let mut d = Drawing::new(74);
+    let ring = |d: &mut Drawing, radius: f32, high: [f32; 2], flare: f32| -> Vec<Vec3> {
+        (0..AROUND)
+            .map(|k| {
+                let root = 1.0 + flare * if k % 3 == 0 { 1.0 } else { 0.0 };
+                let reach = radius * root * (0.92 + 0.16 * d.unit());
+                heading(k as f32 / AROUND as f32 * TAU) * reach + Vec3::Y * lerp(high[0], high[1], d.unit())
+            })
+            .collect()
+    };
+    let rings = [
+        ring(&mut d, 0.36, [-0.12, -0.06], 0.7),
+        ring(&mut d, 0.25, [0.14, 0.18], 0.1),
+        ring(&mut d, 0.22, [0.42, 0.75], 0.0),
+    ];
+    for (pair, tints) in rings.windows(2).zip([[0.35, 0.15], [0.15, 0.3]]) {
+        for k in 0..AROUND {
+            let next = (k + 1) % AROUND;
+            let [a, b, c, e] = [pair[0][k], pair[0][next], pair[1][k], pair[1][next]];
+            let out = ((a + b + c + e) * 0.25).with_y(0.0);
+            d.lit([a, b, c], out, [tints[0], tints[0], tints[1]]);
+            d.lit([b, e, c], out, [tints[0], tints[1], tints[1]]);
+        }
+    }
+    let heart = Vec3::Y * 0.40;
+    for k in 0..AROUND {
+        let (a, b) = (rings[2][k], rings[2][(k + 1) % AROUND]);
+        d.lit([a, b, heart], Vec3::Y, [0.8, 0.8, 1.0]);
+    }
+    d.done()
+}
+
+/// Two unit vectors along the surface that faces `out`, turned around it.
+fn tangents(out: Vec3, turn: f32) -> [Vec3; 2] {
+    let across = out.cross(Vec3::new(0.3, 0.9, 0.2)).normalize_or(Vec3::X);
+    let up = across.cross(out);
+    let (sin, cos) = libm::sincosf(turn);
+    [across * cos + up * sin, up * cos - across * sin]
+}

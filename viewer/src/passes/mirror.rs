@@ -1,0 +1,77 @@
+//! Draws what a lake mirrors: the land, the ring around it, and trees as their pictures, as seen by an eye as far below the
+//! surface as the picture's is above. `water.wgsl` reads it.
+
+use super::bound_mirror::{BoundMirror, Reflection};
+use super::shaders::ShaderError;
+use super::terrain::{self, BLOCK, BlockIndices, RING};
+use super::trees::VISIBLE;
+use super::{BoundScene, Compiler, PipelineDesc, Target, buffer_layout, impostors};
+use crate::lod::quadtree;
+use crate::options::Options;
+use crate::upload::RingVertex;
+
+#[derive(Debug)]
+pub struct Mirror {
+    blocks: wgpu::RenderPipeline,
+    ring: wgpu::RenderPipeline,
+    trees: wgpu::RenderPipeline,
+    block_indices: BlockIndices,
+}
+
+impl Mirror {
+    pub const NAME: &str = "mirror";
+
+    pub(super) fn new(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
+        use wgpu::VertexStepMode::{Instance, Vertex};
+        let (land, trees) = (compiler.module(&terrain::SHADER)?, compiler.module(&impostors::SHADER)?);
+        let layouts = compiler.layouts;
+        let on_land = [&layouts.view, &layouts.ground];
+        let pictures = [&layouts.view, &layouts.impostors];
+        let pipeline = |vertex: &str, fragment: &str, cull, buffers: &[_]| {
+            let usual = PipelineDesc::new(&land, &on_land);
+            let (fragment, target) = (Some(fragment), Target::Mirror);
+            compiler.pipeline(&PipelineDesc { vertex, fragment, cull, buffers, target, ..usual })
+        };
+        // A mirror turns triangles round.
+        let outside = Some(wgpu::Face::Front);
+        let blocks = [buffer_layout::<quadtree::Block>(Instance, &BLOCK)];
+        let ring = [buffer_layout::<RingVertex>(Vertex, &RING)];
+        Ok(Self {
+            blocks: pipeline("block_vertex", "mirrored_ground", outside, &blocks),
+            ring: pipeline("ring_vertex", "mirrored_ring", outside, &ring),
+            trees: compiler.pipeline(&PipelineDesc {
+                fragment: Some("mirrored"),
+                buffers: &[buffer_layout::<[u32; 3]>(Instance, &VISIBLE)],
+                target: Target::Mirror,
+                ..PipelineDesc::new(&trees, &pictures)
+            }),
+            block_indices: BlockIndices::new(compiler.gpu),
+        })
+    }
+
+    /// Records its draws and tells how many they are.
+    pub fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        bound: &BoundScene,
+        mirror: &BoundMirror,
+        reflection: &Reflection,
+        options: &Options,
+    ) -> u32 {
+        let [left, top, width, height] = reflection.window_px;
+        pass.set_scissor_rect(left, top, width, height);
+        pass.set_bind_group(0, &mirror.view_group, &[]);
+        let trees = if options.draw_trees { self.draw_trees(pass, bound, mirror) } else { 0 };
+        pass.set_bind_group(1, &bound.ground_group, &[]);
+        pass.set_pipeline(&self.blocks);
+        self.block_indices.draw(pass, &mirror.blocks);
+        pass.set_pipeline(&self.ring);
+        trees + 1 + bound.scene.land.ring.draw(pass, &mirror.ring)
+    }
+
+    fn draw_trees(&self, pass: &mut wgpu::RenderPass<'_>, bound: &BoundScene, mirror: &BoundMirror) -> u32 {
+        let Some((set, trees)) = bound.scene.trees.as_ref().zip(mirror.trees.as_ref()) else { return 0 };
+        pass.set_pipeline(&self.trees);
+        impostors::draw(pass, set, trees)
+    }
+}

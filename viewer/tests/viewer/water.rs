@@ -1,0 +1,106 @@
+//! A lake mirrors trees and land as they look, hills hide what is behind them in the mirror, too, and its edge is where the
+//! land goes under.
+
+use std::sync::Arc;
+
+use genescape_viewer::camera::Camera;
+use genescape_viewer::headless::Headless;
+use genescape_viewer::options::{FrameInput, Options};
+use genescape_viewer::scene::{Scene, Trees};
+use glam::Vec3;
+use image::RgbaImage;
+
+use crate::made_up;
+
+const SIZE_PX: [u32; 2] = [240, 160];
+const GREEN: [u8; 4] = [60, 110, 50, 255];
+/// Where the tree stands, north of the lake, and its middle above the surface.
+const TREE_M: [f32; 3] = [0.0, 1.0, -45.0];
+const MIDDLE_M: f32 = 6.0;
+
+/// A lake from south to north, land a metre above it around; perhaps a tree on its far shore, and a hill before that.
+fn lakeside(has_tree: bool, has_hill: bool, color: [u8; 4]) -> Scene {
+    let (side, spacing_m) = (257, 0.5);
+    let place_m = |line: u32| (line as f32 - 128.0) * spacing_m;
+    let height_m = |i: u32, j: u32| {
+        let (x, z) = (place_m(i), place_m(j));
+        let to_shore = (30.0 - x.abs()).min(32.0 - (z - 0.0).abs());
+        let hill = if has_hill && (-42.0..-36.0).contains(&z) { 14.0 } else { 1.0 };
+        if to_shore > 0.0 { -3.0 } else { hill }
+    };
+    let template = genescape_viewer::scene::Template {
+        impostor: Some(made_up::impostor("disc", 0.3)),
+        ..made_up::template("cones", &[0.02, 0.07])
+    };
+    let instances = if has_tree { vec![made_up::instance(0, TREE_M, 1.5, 0.0)] } else { Vec::new() };
+    let trees = Trees { templates: vec![Arc::new(template)], instances: instances.into() };
+    let mut scene = made_up::scene(made_up::land(side, spacing_m, height_m), color, [0.5, 0.7, 1.0], trees);
+    scene.ground.water_level_m = Some(0.0);
+    scene
+}
+
+fn camera() -> Camera {
+    Camera { position_m: Vec3::new(0.0, 3.0, 40.0), yaw_rad: 0.0, pitch_rad: 0.0, fov_y_rad: 1.0 }
+}
+
+fn shoot(studio: &Headless, scene: &Scene) -> RgbaImage {
+    let options = Options { grass: false, ..Options::default() };
+    let frame = FrameInput { options, ..FrameInput::default() };
+    let mut view = studio.view(made_up::upload(studio, scene), SIZE_PX);
+    studio.shoot(&mut view, &frame, &camera(), &camera()).expect("a picture")
+}
+
+/// Mean colour where an even lake shows the middle of the tree.
+fn mirrored(picture: &RgbaImage) -> [f32; 3] {
+    let [width, height] = SIZE_PX.map(|side| side as f32);
+    let clip = camera().clip_from_world(width / height) * Vec3::new(0.0, -MIDDLE_M, TREE_M[2]).extend(1.0);
+    let [x, y] = [0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w];
+    let (x, y) = ((x * width) as u32, (y * height) as u32);
+    let pixels = (x - 2..=x + 2).flat_map(|x| (y - 1..=y + 1).map(move |y| picture.get_pixel(x, y)));
+    let sum = pixels.fold([0.0; 3], |sum, pixel| [0, 1, 2].map(|n| sum[n] + f32::from(pixel[n])));
+    sum.map(|channel| channel / 15.0)
+}
+
+#[test]
+#[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
+fn a_lake_mirrors_trees_unless_a_hill_hides_them() {
+    let studio = made_up::studio();
+    let look = |has_tree, has_hill| mirrored(&shoot(&studio, &lakeside(has_tree, has_hill, GREEN)));
+    let [bare, tree] = [false, true].map(|has_tree| look(has_tree, false));
+    assert!(tree[2] < bare[2] - 25.0, "a tree is less blue than the sky: {tree:?}, {bare:?}");
+    assert!(tree[1] > tree[2], "and green: {tree:?}");
+    let [bare, tree] = [false, true].map(|has_tree| look(has_tree, true));
+    assert_eq!(tree, bare, "behind a hill");
+}
+
+#[test]
+#[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
+fn a_lake_mirrors_land_in_its_colour() {
+    let studio = made_up::studio();
+    let look = |color| mirrored(&shoot(&studio, &lakeside(false, true, color)));
+    let (red, green) = (look([150, 40, 40, 255]), look(GREEN));
+    assert!(red[0] > red[1] + 20.0 && green[1] > green[0] + 10.0, "{red:?}, {green:?}");
+}
+
+#[test]
+#[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
+fn a_lake_mirrors_alike_in_pictures_of_all_sizes_and_nothing_from_below() {
+    let studio = made_up::studio();
+    let scene = made_up::upload(&studio, &lakeside(true, false, GREEN));
+    let mut view = studio.view(scene, [31, 17]);
+    let shoot = |view: &mut genescape_viewer::view::View, camera: &Camera| {
+        let frame =
+            FrameInput { options: Options { grass: false, ..Options::default() }, ..FrameInput::default() };
+        studio.shoot(view, &frame, camera, camera).expect("a picture")
+    };
+    shoot(&mut view, &camera());
+    view.resize(&studio.passes, SIZE_PX);
+    let resized = shoot(&mut view, &camera());
+    // Away from the lake, under water, and back: nothing is left over.
+    let away = Camera { yaw_rad: std::f32::consts::PI, ..camera() };
+    let below = Camera { position_m: Vec3::new(0.0, -1.0, 0.0), pitch_rad: 0.5, ..camera() };
+    shoot(&mut view, &away);
+    shoot(&mut view, &below);
+    assert_eq!(shoot(&mut view, &camera()), resized);
+    assert_eq!(self::shoot(&studio, &lakeside(true, false, GREEN)), resized);
+}
