@@ -6,7 +6,7 @@
 use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, TryIter, channel};
+use std::sync::mpsc::{Receiver, Sender, TryIter, TryRecvError, channel};
 
 use glam::Vec2;
 
@@ -37,7 +37,7 @@ pub struct Reply {
     pub result: Result<Loaded, String>,
 }
 
-/// The thread; ends when dropped.
+/// The thread; ends when dropped, which waits for it.
 pub struct Loader {
     tasks: Sender<Task>,
     replies: Receiver<Reply>,
@@ -92,8 +92,18 @@ impl Loader {
     }
 }
 
+impl Drop for Loader {
+    /// The thread may be the last to hold the device. Letting go of that unloads the driver, and to do so while the process
+    /// ends crashes in it.
+    fn drop(&mut self) {
+        self.tasks = channel().0;
+        while self.replies.recv().is_ok() {}
+    }
+}
+
 /// The thread's side.
 struct Worker {
+    // In this order: who sees `answer` closed knows that the device was let go of.
     loader: SceneLoader,
     gpu: Gpu,
     asked: Receiver<Task>,
@@ -139,8 +149,12 @@ impl Worker {
         let bake = passes.shadow.begin(&gpu, passes, buffers);
         let mut next = Some(0);
         while let Some(first) = next {
-            while let Ok(task) = self.asked.try_recv() {
-                self.begin(task);
+            loop {
+                match self.asked.try_recv() {
+                    Ok(task) => self.begin(task),
+                    Err(TryRecvError::Empty) => break,
+                    Err(TryRecvError::Disconnected) => return,
+                }
             }
             next = bake.trees_from(first);
         }
