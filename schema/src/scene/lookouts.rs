@@ -34,6 +34,8 @@ impl Lookout {
     pub const COUNT: usize = PLACES * HEADINGS;
     /// How many share a place: they follow one another in the list.
     pub const HEADINGS: usize = HEADINGS;
+    /// Metres around each in which nothing stands that would hide the landscape.
+    pub const CLEARING_M: f32 = 6.0;
 
     /// All of them, in order.
     pub fn all() -> impl Iterator<Item = Self> {

@@ -222,7 +222,7 @@ impl Painter {
     #[inline]
     pub fn bloom(&self, t: &Traits, n: &Noise) -> f32 {
         let Palette { thirst, frost, .. } = self.palette;
-        let drift = step(-0.3, 0.6, 0.6 * t.tuft + 0.4 * t.patch + 0.4 * n.broad);
+        let drift = step(-0.3, 0.6, in_patches(t, n));
         drift * (1.0 - thirst) * (1.0 - 0.6 * frost) * (1.0 - step(0.1, 0.6, t.shade))
     }
 
@@ -324,6 +324,12 @@ impl Painter {
         let mud = lerp(mud, lerp(WET_MUD, self.shore, 0.35), step(0.5, 4.0, -above));
         scale(mud, 1.0 + 0.12 * n.fine + 0.22 * n.grain)
     }
+}
+
+/// About [-1, 1] in patches of several sizes, by which plants gather.
+#[inline]
+pub(super) fn in_patches(t: &Traits, n: &Noise) -> f32 {
+    0.6 * t.tuft + 0.4 * t.patch + 0.4 * n.broad
 }
 
 #[inline]

@@ -4,7 +4,7 @@ use genescape_schema::scene::Lookout;
 use glam::Vec2;
 
 use super::GroundParams;
-use super::cover::{Cover, MOSS, Noise, Painter};
+use super::cover::{Cover, MOSS, Noise, Painter, in_patches};
 use super::grain::Grain;
 use super::palette::Palette;
 use super::palette::{Rgb, petals, step};
@@ -111,13 +111,12 @@ pub(super) fn all_kinds(params: &GroundParams, land: &Landform) -> Vec<PlantKind
 
 /// Those that would hide a landscape from who stands before them.
 const HIGH: [usize; 5] = [BOULDER, BUSH, SAPLING, LOG, STUMP];
-/// Metres around each lookout that a landscape may first be seen from in which none of them stands.
-const CLEARING_M: f32 = 6.0;
 
+/// None of them stands in the clearing around a lookout.
 fn clear_lookouts(all: &mut Image8, extent_m: f32) {
     let pixel_m = extent_m / all.width as f32;
     // What is read between pixels is 0 where all four around are.
-    let reach = CLEARING_M / pixel_m + 1.0;
+    let reach = Lookout::CLEARING_M / pixel_m + 1.0;
     for place in Lookout::places_m(extent_m) {
         let middle = place / pixel_m + 0.5 * all.width as f32;
         let lines =
@@ -186,7 +185,7 @@ impl Painter {
         }
         let palette = &self.palette;
         let (damp, green) = (self.damp(t), step(0.3, 0.8, grass) * step(0.25, 0.6, above_m));
-        let patch = 0.6 * t.tuft + 0.4 * t.patch + 0.4 * n.broad;
+        let patch = in_patches(t, n);
         let (cold, dry) = (palette.frost, palette.thirst);
         growth[FLOWER] = green * self.bloom(t, n);
         let moist = (damp + 0.25 + 0.5 * palette.rain) * (1.0 - 2.0 * dry).max(0.0) * (1.0 - cold);

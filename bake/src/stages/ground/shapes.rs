@@ -69,6 +69,29 @@ impl Drawing {
         self.leaf([middle - 0.8 * side, middle + 0.8 * side, tip], [half, half, tints[1]]);
     }
 
+    /// Two halves of a leaf or of a spray of leaves: from root to tip, widest at `middle` ± `side`, each with its tint.
+    pub(super) fn diamond(
+        &mut self,
+        [root, middle, tip]: [Vec3; 3],
+        side: Vec3,
+        normal: Vec3,
+        [at_root, at_side, at_tip]: [f32; 3],
+    ) {
+        self.lit([root, middle + side, tip], normal, [at_root, at_side, at_tip]);
+        self.lit([root, tip, middle - side], normal, [at_root, at_tip, at_side]);
+    }
+
+    /// The band between two rings; `look` says of each four corners, see [`corners`], the normal and the tints.
+    pub(super) fn band(&mut self, pair: &[Vec<Vec3>], mut look: impl FnMut([Vec3; 4]) -> (Vec3, [f32; 4])) {
+        for k in 0..pair[0].len() {
+            let quad = corners(pair, k);
+            let (normal, tints) = look(quad);
+            for (triangle, tints) in halves(quad).into_iter().zip(halves(tints)) {
+                self.lit(triangle, normal, tints);
+            }
+        }
+    }
+
     /// The triangles until here are enough from afar.
     pub(super) fn coarse(&mut self) {
         self.shape.coarse = self.shape.triangles.len() as u32;
@@ -85,6 +108,17 @@ impl Drawing {
 /// Level, from +x towards +z.
 pub(super) fn heading(turn: f32) -> Vec3 {
     Vec3::new(libm::cosf(turn), 0.0, libm::sinf(turn))
+}
+
+/// Where two rings of as many points have their `k`-th quadrangle: two corners on the first, two on the second.
+fn corners(pair: &[Vec<Vec3>], k: usize) -> [Vec3; 4] {
+    let next = (k + 1) % pair[0].len();
+    [pair[0][k], pair[0][next], pair[1][k], pair[1][next]]
+}
+
+/// The triangles of a quadrangle.
+fn halves<T: Copy>([a, b, c, d]: [T; 4]) -> [[T; 3]; 2] {
+    [[a, b, c], [b, d, c]]
 }
 
 /// Three stalks with a head of six petals each, and leaves; tint 1 is the petals'.
@@ -272,8 +306,7 @@ pub(super) fn stone(rings: u32) -> PlantShape {
         facet([top, grid[0][(k + 1) % n], grid[0][k]]);
         facet([bottom, grid[grid.len() - 1][k], grid[grid.len() - 1][(k + 1) % n]]);
         for pair in grid.windows(2) {
-            facet([pair[0][k], pair[0][(k + 1) % n], pair[1][k]]);
-            facet([pair[0][(k + 1) % n], pair[1][(k + 1) % n], pair[1][k]]);
+            halves(corners(pair, k)).into_iter().for_each(&mut facet);
         }
     }
     d.done()

@@ -54,14 +54,7 @@ pub(super) fn bush() -> PlantShape {
             let from = root.lerp(tip, 0.55 + 0.14 * k as f32);
             let [aside, _] = tangents(out, d.unit() * TAU);
             let aim = (aside + (0.3 + 0.5 * d.unit()) * out).normalize_or(out);
-            let leaf = aim * (0.15 + 0.07 * d.unit());
-            let [_, wide] = tangents(aim, d.unit() * TAU);
-            let tint = 0.45 + 0.55 * d.unit();
-            d.lit(
-                [from, from + 0.45 * leaf + 0.07 * wide, from + leaf],
-                out + 0.5 * aim,
-                [0.7 * tint, tint, tint],
-            );
+            twig_leaf(&mut d, [from, aim, out + 0.5 * aim], [0.15, 0.07], [0.45, 0.55], 0.7);
         }
     }
     d.done()
@@ -101,16 +94,8 @@ fn whip(d: &mut Drawing, has_leaves: bool) {
         let [_, wide] = tangents(out, d.unit() * TAU);
         let middle = root.lerp(tip, 0.55);
         let tint = 0.6 + 0.3 * d.unit();
-        d.lit(
-            [root.lerp(tip, 0.15), middle + 0.04 * wide, tip + 0.02 * out],
-            out + Vec3::Y,
-            [0.4, tint, tint],
-        );
-        d.lit(
-            [root.lerp(tip, 0.15), tip + 0.02 * out, middle - 0.04 * wide],
-            out + Vec3::Y,
-            [0.4, tint, tint],
-        );
+        let along = [root.lerp(tip, 0.15), middle, tip + 0.02 * out];
+        d.diamond(along, 0.04 * wide, out + Vec3::Y, [0.4, tint, tint]);
     }
     d.coarse();
     if !has_leaves {
@@ -121,14 +106,7 @@ fn whip(d: &mut Drawing, has_leaves: bool) {
             let out = (tip - root).normalize_or(Vec3::Y);
             let from = root.lerp(tip, 0.2 + 0.1 * k as f32);
             let aim = (heading(d.unit() * TAU) + 0.35 * out + Vec3::Y * 0.15).normalize_or(out);
-            let leaf = aim * (0.13 + 0.05 * d.unit());
-            let [_, wide] = tangents(aim, d.unit() * TAU);
-            let tint = 0.55 + 0.45 * d.unit();
-            d.lit(
-                [from, from + 0.45 * leaf + 0.07 * wide, from + leaf],
-                out + Vec3::Y,
-                [0.8 * tint, tint, tint],
-            );
+            twig_leaf(d, [from, aim, out + Vec3::Y], [0.13, 0.05], [0.55, 0.45], 0.8);
         }
     }
 }
@@ -145,8 +123,7 @@ fn spire(d: &mut Drawing) {
         let side = Vec3::new(-out.z, 0.0, out.x) * (0.32 * long);
         let middle = root.lerp(tip, 0.45) + Vec3::Y * 0.05;
         let tint = 0.55 + 0.4 * d.unit();
-        d.lit([root, middle + side, tip], out + 0.7 * Vec3::Y, [0.1, 0.8 * tint, tint]);
-        d.lit([root, tip, middle - side], out + 0.7 * Vec3::Y, [0.1, tint, 0.8 * tint]);
+        d.diamond([root, middle, tip], side, out + 0.7 * Vec3::Y, [0.1, 0.8 * tint, tint]);
     };
     for whorl in 0..WHORLS {
         for k in 0..5 {
@@ -190,14 +167,8 @@ pub(super) fn log() -> PlantShape {
         .collect();
     for (ring, pair) in grid.windows(2).enumerate() {
         let axis = middle((ring as f32 + 0.5) / RINGS as f32);
-        for k in 0..AROUND as usize {
-            let next = (k + 1) % AROUND as usize;
-            let [a, b, c, e] = [pair[0][k], pair[0][next], pair[1][k], pair[1][next]];
-            let out = (a + b + c + e) * 0.25 - axis;
-            let tint = |p: Vec3| ((p.y - axis.y) * 3.0 + 0.2).clamp(0.0, 1.0);
-            d.lit([a, b, c], out, [a, b, c].map(tint));
-            d.lit([b, e, c], out, [b, e, c].map(tint));
-        }
+        let tint = |p: Vec3| ((p.y - axis.y) * 3.0 + 0.2).clamp(0.0, 1.0);
+        d.band(pair, |quad| (mean(quad) - axis, quad.map(tint)));
     }
     for (ring, out) in [(0, Vec3::NEG_X), (RINGS as usize, Vec3::X)] {
         let ends = &grid[ring];
@@ -234,14 +205,8 @@ pub(super) fn stump() -> PlantShape {
         ring(&mut d, 0.25, [0.14, 0.18], 0.1),
         ring(&mut d, 0.22, [0.42, 0.75], 0.0),
     ];
-    for (pair, tints) in rings.windows(2).zip([[0.35, 0.15], [0.15, 0.3]]) {
-        for k in 0..AROUND {
-            let next = (k + 1) % AROUND;
-            let [a, b, c, e] = [pair[0][k], pair[0][next], pair[1][k], pair[1][next]];
-            let out = ((a + b + c + e) * 0.25).with_y(0.0);
-            d.lit([a, b, c], out, [tints[0], tints[0], tints[1]]);
-            d.lit([b, e, c], out, [tints[0], tints[1], tints[1]]);
-        }
+    for (pair, [low, high]) in rings.windows(2).zip([[0.35, 0.15], [0.15, 0.3]]) {
+        d.band(pair, |quad| (mean(quad).with_y(0.0), [low, low, high, high]));
     }
     let heart = Vec3::Y * 0.40;
     for k in 0..AROUND {
@@ -249,6 +214,25 @@ pub(super) fn stump() -> PlantShape {
         d.lit([a, b, heart], Vec3::Y, [0.8, 0.8, 1.0]);
     }
     d.done()
+}
+
+/// A leaf that a twig bears: where, along which unit vector, and lit as if it faced along `normal`. Its length is at least
+/// the first of two numbers and at most their sum, and so is its tint, which `shade` lessens at its root.
+fn twig_leaf(
+    d: &mut Drawing,
+    [from, aim, normal]: [Vec3; 3],
+    [long, longer]: [f32; 2],
+    [tint, brighter]: [f32; 2],
+    shade: f32,
+) {
+    let leaf = aim * (long + longer * d.unit());
+    let [_, wide] = tangents(aim, d.unit() * TAU);
+    let tint = tint + brighter * d.unit();
+    d.lit([from, from + 0.45 * leaf + 0.07 * wide, from + leaf], normal, [shade * tint, tint, tint]);
+}
+
+fn mean([a, b, c, d]: [Vec3; 4]) -> Vec3 {
+    (a + b + c + d) * 0.25
 }
 
 /// Two unit vectors along the surface that faces `out`, turned around it.

@@ -5,14 +5,11 @@ use glam::Vec2;
 
 use crate::model::{Instance, Landform};
 
-/// Metres around each lookout in which no trunk stands.
-pub const CLEARING_M: f32 = 6.0;
-
 /// Removes the trees whose trunks reach into the clearing around a lookout.
 pub fn clear_around(land: &Landform, trees: &mut Vec<Instance>) {
     let places: Vec<Vec2> = Lookout::places_m(land.field.extent_m()).collect();
     trees.retain(|tree| {
         let [x, z, radius] = tree.trunk_cylinder_m;
-        places.iter().all(|place| place.distance(Vec2::new(x, z)) - radius >= CLEARING_M)
+        places.iter().all(|place| place.distance(Vec2::new(x, z)) - radius >= Lookout::CLEARING_M)
     });
 }

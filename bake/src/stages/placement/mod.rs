@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::model::{Instance, Landform, SnowMap, TreeFootprint};
 
-pub use clearing::{CLEARING_M, clear_around};
+pub use clearing::clear_around;
 pub use stage::{PlacementFiles, PlacementStage};
 
 /// The number of trees that a scene approaches but never exceeds.

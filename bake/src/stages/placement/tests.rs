@@ -9,7 +9,7 @@ use crate::noise::fbm2;
 use crate::stages::ground::{self, GroundParams};
 
 use super::site::{MAX_FLOW, Site, WATER_MARGIN_M};
-use super::{CLEARING_M, EDGE_MARGIN_M, MAX_TREES, PlacementParams, TreeFootprint, clear_around, place};
+use super::{EDGE_MARGIN_M, MAX_TREES, PlacementParams, TreeFootprint, clear_around, place};
 
 /// Rolling land 1024 m wide with one river from north to south, and a lake if `water` is above 0.
 fn land(seed: u32, relief_m: f32, water: f32, side: u32) -> Landform {
@@ -126,7 +126,7 @@ proptest! {
             let [x, z, radius] = instance.trunk_cylinder_m;
             let to = |place: Vec2| place.distance(Vec2::new(x, z)) - radius;
             let free = Lookout::places_m(land.field.extent_m()).map(to).fold(f32::MAX, f32::min);
-            prop_assert!(free >= CLEARING_M, "{free} m from a lookout");
+            prop_assert!(free >= Lookout::CLEARING_M, "{free} m from a lookout");
         }
     }
 

@@ -12,7 +12,7 @@ use crate::model::{Heightfield, Instance, Landform, SkyLight, StartView};
 use crate::random;
 use crate::stages::ground::snow_map;
 use crate::stages::land::landform;
-use crate::stages::placement::{CLEARING_M, PlacementParams, clear_around, place};
+use crate::stages::placement::{PlacementParams, clear_around, place};
 use crate::stages::sky::{self, SkyParams};
 
 const TREE: TreeFootprint =
@@ -143,7 +143,7 @@ fn a_grove_is_seen_from_outside_at_a_good_distance() {
     clear_around(&land, &mut trees);
     let look = look(&land, &trees, &light(40.0, 130.0));
     assert!(trees_ahead(&look.view, &trees, [10.0, 60.0]) >= 3, "{:?}", look.view);
-    assert_eq!(trees_ahead(&look.view, &trees, [0.0, CLEARING_M]), 0);
+    assert_eq!(trees_ahead(&look.view, &trees, [0.0, Lookout::CLEARING_M]), 0);
     assert!(look.appraisal.score() > 0.3);
 }
 
