@@ -68,20 +68,23 @@ pub fn appraise(space: &Space, genome: &Genome) -> Result<Appraisal, GenomeError
     Ok(any_good_look(&land, &trees, &[footprint], &light, BOUND))
 }
 
-/// The gene that says most about a tree's size.
+/// The genes that say most about a tree's size and where its crown is.
 #[derive(Serialize, Deserialize)]
 struct Stature {
     height_m: f32,
+    levels: u32,
+    clear_trunk: f32,
 }
 
 impl Stature {
     fn footprint(&self) -> TreeFootprint {
-        let Self { height_m } = *self;
+        let Self { height_m, levels, clear_trunk } = *self;
         TreeFootprint {
             height_m,
             trunk_radius_m: 0.02 * height_m,
             crown_radius_m: 0.25 * height_m,
             root_depth_m: 0.02 * height_m,
+            clear_trunk: TreeFootprint::clear_trunk(levels, clear_trunk),
         }
     }
 }

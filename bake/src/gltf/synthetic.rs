@@ -17,8 +17,13 @@ use crate::noise::{gradient2, hash01};
 use crate::stages::start::first_look;
 
 /// Of the two templates.
-const FOOTPRINTS: [TreeFootprint; 2] =
-    [TreeFootprint { height_m: 8.0, trunk_radius_m: 0.3, crown_radius_m: 3.0, root_depth_m: 0.2 }; 2];
+const FOOTPRINTS: [TreeFootprint; 2] = [TreeFootprint {
+    height_m: 8.0,
+    trunk_radius_m: 0.3,
+    crown_radius_m: 3.0,
+    root_depth_m: 0.2,
+    clear_trunk: 0.2,
+}; 2];
 
 /// Files by URI, as the cache would hold them.
 #[derive(Default)]

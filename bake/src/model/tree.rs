@@ -155,4 +155,14 @@ pub struct TreeFootprint {
     pub crown_radius_m: f32,
     /// How far the roots reach below the foot.
     pub root_depth_m: f32,
+    /// Part of the height at which the crown begins.
+    pub clear_trunk: f32,
+}
+
+impl TreeFootprint {
+    /// Where a crown begins by the genes of a tree: lower than its lowest branch, which hangs; what does not branch has its
+    /// leaves at the top.
+    pub fn clear_trunk(levels: u32, clear_trunk: f32) -> f32 {
+        if levels <= 1 { 0.7 } else { (0.7 * clear_trunk).max(0.05) }
+    }
 }

@@ -88,7 +88,7 @@ const GRAVEL: Rgb = [0.185, 0.176, 0.150];
 const HEATH: Rgb = [0.082, 0.060, 0.034];
 pub(super) const MOSS: Rgb = [0.040, 0.060, 0.014];
 /// Part of the light from a meadow in full bloom that comes from petals, most of which stand beyond where they are drawn.
-const IN_BLOOM: f32 = 0.035;
+const IN_BLOOM: f32 = 0.05;
 /// Kinds of rock: granite, limestone, basalt, sandstone, slate.
 const ROCKS: [Rgb; 5] = [
     [0.205, 0.195, 0.185],
@@ -222,8 +222,8 @@ impl Painter {
     #[inline]
     pub fn bloom(&self, t: &Traits, n: &Noise) -> f32 {
         let Palette { thirst, frost, .. } = self.palette;
-        let drift = step(-0.3, 0.6, in_patches(t, n));
-        drift * (1.0 - thirst) * (1.0 - 0.6 * frost) * (1.0 - step(0.1, 0.6, t.shade))
+        let drift = step(-0.5, 0.5, in_patches(t, n));
+        drift * (1.0 - 0.75 * thirst) * (1.0 - 0.35 * frost) * (1.0 - step(0.1, 0.6, t.shade))
     }
 
     /// Where heath grows, 0 to 1.

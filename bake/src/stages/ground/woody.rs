@@ -22,7 +22,7 @@ pub(super) enum Foliage {
 
 /// A bush of a metre: sprays in all directions, and leaves that stand out from their ends. Tint 0 is that of its inside.
 pub(super) fn bush() -> PlantShape {
-    const SPRAYS: u32 = 46;
+    const SPRAYS: u32 = 36;
     let mut d = Drawing::new(71);
     let sprays: Vec<(Vec3, Vec3)> = (0..SPRAYS)
         .map(|k| {
@@ -43,18 +43,16 @@ pub(super) fn bush() -> PlantShape {
         let [_, wide] = tangents(out, d.unit() * TAU);
         let middle = root.lerp(tip, 0.6) + 0.15 * wide * d.unit();
         let tint = 0.35 + 0.35 * d.unit();
-        for wide in [0.085 * wide, -0.085 * wide] {
-            d.lit([root, middle + wide, tip], out + 0.4 * Vec3::Y, [0.0, tint, tint + 0.25]);
-        }
+        d.diamond([root, middle, tip], 0.06 * wide, out + 0.4 * Vec3::Y, [0.0, tint, tint + 0.25]);
     }
     d.coarse();
     for &(root, tip) in &sprays {
-        for k in 0..4 {
+        for k in 0..6 {
             let out = (tip - root).normalize_or(Vec3::Y);
-            let from = root.lerp(tip, 0.55 + 0.14 * k as f32);
+            let from = root.lerp(tip, 0.5 + 0.1 * k as f32);
             let [aside, _] = tangents(out, d.unit() * TAU);
             let aim = (aside + (0.3 + 0.5 * d.unit()) * out).normalize_or(out);
-            twig_leaf(&mut d, [from, aim, out + 0.5 * aim], [0.15, 0.07], [0.45, 0.55], 0.7);
+            twig_leaf(&mut d, [from, aim, out + 0.5 * aim], [0.1, 0.05, 0.045], [0.45, 0.55], 0.7);
         }
     }
     d.done()
@@ -93,7 +91,7 @@ fn whip(d: &mut Drawing, has_leaves: bool) {
         let out = (tip - root).normalize_or(Vec3::Y);
         let [_, wide] = tangents(out, d.unit() * TAU);
         let middle = root.lerp(tip, 0.55);
-        let tint = 0.6 + 0.3 * d.unit();
+        let tint = 0.85 + 0.15 * d.unit();
         let along = [root.lerp(tip, 0.15), middle, tip + 0.02 * out];
         d.diamond(along, 0.04 * wide, out + Vec3::Y, [0.4, tint, tint]);
     }
@@ -106,7 +104,7 @@ fn whip(d: &mut Drawing, has_leaves: bool) {
             let out = (tip - root).normalize_or(Vec3::Y);
             let from = root.lerp(tip, 0.2 + 0.1 * k as f32);
             let aim = (heading(d.unit() * TAU) + 0.35 * out + Vec3::Y * 0.15).normalize_or(out);
-            twig_leaf(d, [from, aim, out + Vec3::Y], [0.13, 0.05], [0.55, 0.45], 0.8);
+            twig_leaf(d, [from, aim, out + Vec3::Y], [0.13, 0.05, 0.07], [0.85, 0.15], 0.8);
         }
     }
 }
@@ -217,18 +215,19 @@ pub(super) fn stump() -> PlantShape {
 }
 
 /// A leaf that a twig bears: where, along which unit vector, and lit as if it faced along `normal`. Its length is at least
-/// the first of two numbers and at most their sum, and so is its tint, which `shade` lessens at its root.
+/// the first of two numbers and at most their sum, and so is its tint, which `shade` lessens at its root; the third
+/// number is its width.
 fn twig_leaf(
     d: &mut Drawing,
     [from, aim, normal]: [Vec3; 3],
-    [long, longer]: [f32; 2],
+    [long, longer, width]: [f32; 3],
     [tint, brighter]: [f32; 2],
     shade: f32,
 ) {
     let leaf = aim * (long + longer * d.unit());
     let [_, wide] = tangents(aim, d.unit() * TAU);
     let tint = tint + brighter * d.unit();
-    d.lit([from, from + 0.45 * leaf + 0.07 * wide, from + leaf], normal, [shade * tint, tint, tint]);
+    d.lit([from, from + 0.45 * leaf + width * wide, from + leaf], normal, [shade * tint, tint, tint]);
 }
 
 fn mean([a, b, c, d]: [Vec3; 4]) -> Vec3 {

@@ -31,7 +31,7 @@ const SNOW_C: f32 = -2.0;
 /// Snow cover from which a place counts as under snow.
 const SNOWY: f32 = 0.3;
 /// Density far from water in a desert, as a part of that by a stream.
-const PARCHED: f32 = 0.06;
+const PARCHED: f32 = 0.05;
 /// Density of single trees in a clearing, as a part of that in a grove.
 const SOLITARY: f32 = 0.012;
 

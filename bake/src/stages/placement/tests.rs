@@ -50,7 +50,13 @@ fn params() -> impl Strategy<Value = PlacementParams> {
 
 fn trees() -> impl Strategy<Value = Vec<TreeFootprint>> {
     let tree = (3.0_f32..30.0, 0.008_f32..0.05, 0.05_f32..0.5, 0.0_f32..0.5).prop_map(|(h, r, c, d)| {
-        TreeFootprint { height_m: h, trunk_radius_m: h * r, crown_radius_m: h * c, root_depth_m: d }
+        TreeFootprint {
+            height_m: h,
+            trunk_radius_m: h * r,
+            crown_radius_m: h * c,
+            root_depth_m: d,
+            clear_trunk: 0.2,
+        }
     });
     prop::collection::vec(tree, 1..6)
 }
@@ -182,8 +188,13 @@ proptest! {
     }
 }
 
-const OAK: TreeFootprint =
-    TreeFootprint { height_m: 12.0, trunk_radius_m: 0.3, crown_radius_m: 4.0, root_depth_m: 0.2 };
+const OAK: TreeFootprint = TreeFootprint {
+    height_m: 12.0,
+    trunk_radius_m: 0.3,
+    crown_radius_m: 4.0,
+    root_depth_m: 0.2,
+    clear_trunk: 0.2,
+};
 
 fn usual() -> PlacementParams {
     PlacementParams {

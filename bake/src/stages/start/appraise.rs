@@ -117,9 +117,11 @@ impl Picture<'_> {
     fn trees(&self) -> f32 {
         let between = |low_m: f32, high_m: f32| self.share_between(low_m..high_m, |kind| kind == Kind::Tree);
         let (near, good, far) = (between(0.0, 10.0), between(10.0, 60.0), between(60.0, 1e4));
-        let some = 0.15 + 0.85 * ramp(0.0, 0.16, good + 0.3 * far);
         let none_near = 0.2 + 0.8 * ramp(0.2, 0.04, near);
         let not_all = 0.4 + 0.6 * ramp(0.7, 0.4, near + good + far);
+        // Those at the edge alone are half as good.
+        let good = 0.5 * (good + self.middle_share_between(10.0..60.0, |kind| kind == Kind::Tree));
+        let some = 0.08 + 0.92 * ramp(0.0, 0.2, good + 0.3 * far);
         some * none_near * not_all
     }
 

@@ -4,11 +4,13 @@
 use glam::{Vec2, Vec3};
 
 use super::appraise::ramp;
-use super::panorama::Surroundings;
+use super::panorama::{Surroundings, Tree};
 use crate::model::SkyLight;
 
 /// Distances at which the ground is asked whether the sun reaches it.
 const ASKED_M: [f32; 4] = [5.0, 15.0, 40.0, 100.0];
+/// Trees farther than this from the eye are not asked whether they shade what is before it.
+pub(super) const SHADES_M: f32 = 90.0;
 /// Cosines of the angles from the sun's azimuth: at the edge of the picture, well within it, and behind.
 const AT_EDGE: f32 = 0.75;
 const WITHIN: f32 = 0.93;
@@ -30,9 +32,10 @@ impl Sun {
         Self { towards: light.sun_direction, part: level / (level + sky).max(1e-6) }
     }
 
-    /// How good the light is in a look from a place along a unit vector.
-    pub fn suits(&self, scene: &Surroundings<'_>, place: Vec2, along: Vec2) -> f32 {
-        let lit = self.lit(scene, place, along);
+    /// How good the light is in a look from a place along a unit vector; `trees` are those that may stand before the sun, see
+    /// [`SHADES_M`].
+    pub fn suits(&self, scene: &Surroundings<'_>, trees: &[&Tree], place: Vec2, along: Vec2) -> f32 {
+        let lit = self.lit(scene, trees, place, along);
         let weight = ramp(0.05, 0.5, self.part);
         // A sun that is dim still blinds.
         let glare = 0.4 + 0.6 * weight;
@@ -40,8 +43,9 @@ impl Sun {
     }
 
     /// Part of the ground ahead that the sun reaches.
-    pub fn lit(&self, scene: &Surroundings<'_>, place: Vec2, along: Vec2) -> f32 {
-        let lit = ASKED_M.iter().filter(|&&distance_m| self.reaches(scene, place + along * distance_m));
+    pub fn lit(&self, scene: &Surroundings<'_>, trees: &[&Tree], place: Vec2, along: Vec2) -> f32 {
+        let lit =
+            ASKED_M.iter().filter(|&&distance_m| self.reaches(scene, trees, place + along * distance_m));
         lit.count() as f32 / ASKED_M.len() as f32
     }
 
@@ -57,9 +61,13 @@ impl Sun {
         if facing > AT_EDGE { edge - 0.6 * ramp(AT_EDGE, WITHIN, facing) } else { behind }
     }
 
-    /// Whether no hill stands between a place and the sun.
-    fn reaches(&self, scene: &Surroundings<'_>, place: Vec2) -> bool {
+    /// Whether neither hill nor tree stands between a place and the sun.
+    fn reaches(&self, scene: &Surroundings<'_>, trees: &[&Tree], place: Vec2) -> bool {
         let ground_m = scene.surface_m(place);
+        let ground = Vec3::new(place.x, ground_m, place.y);
+        if trees.iter().any(|tree| tree.hides(ground, self.towards)) {
+            return false;
+        }
         (1..14).all(|step| {
             let p = Vec3::new(place.x, ground_m + 0.5, place.y) + self.towards * (4.0 * (step * step) as f32);
             scene.ground_m(Vec2::new(p.x, p.z)) < p.y

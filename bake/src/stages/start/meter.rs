@@ -12,12 +12,14 @@ use crate::model::SkyLight;
 /// The log-average that needs no exposure, in the units of [`SkyLight`].
 const NEUTRAL: f32 = 0.25;
 /// Part of a difference from it, in stops, that the eye adapts to.
-const ADAPTED: f32 = 0.6;
+const ADAPTED: f32 = 0.7;
 /// What a photographer adds for snow, which a meter takes for grey; all of it where this part of the picture is snow.
 const SNOW_EV: f32 = 1.0;
 const MUCH_SNOW: f32 = 0.4;
 /// No picture is dimmed or lifted by more than these factors.
 const LIMITS: [f32; 2] = [0.25, 6.0];
+/// How much the sky counts beside as large a part of the land: who looks at a bright sky still wants to see the ground.
+const SKY_WEIGHT: f32 = 0.5;
 /// Black enough to be no measure, as a part of the neutral luminance.
 const DARK: f32 = 0.02;
 
@@ -39,12 +41,13 @@ pub(super) fn exposure(picture: &Picture<'_>, light: &SkyLight, lit: f32) -> f32
 /// Log-average luminance of the picture.
 fn log_average(picture: &Picture<'_>, light: &SkyLight, lit: f32) -> f32 {
     let scene = Scene::of(light, lit);
-    let (mut sum, mut count) = (0.0, 0.0);
+    let (mut sum, mut weights) = (0.0, 0.0);
     for (slope, seen) in picture.rays() {
-        sum += libm::logf(scene.luminance(slope, seen) + DARK * NEUTRAL);
-        count += 1.0;
+        let weight = if seen.kind == Kind::Sky { SKY_WEIGHT } else { 1.0 };
+        sum += weight * libm::logf(scene.luminance(slope, seen) + DARK * NEUTRAL);
+        weights += weight;
     }
-    libm::expf(sum / f32::max(count, 1.0))
+    libm::expf(sum / f32::max(weights, 1.0))
 }
 
 /// The light as numbers to meter with.

@@ -25,7 +25,7 @@ use crate::model::{Instance, Landform, SkyLight, StartView, TreeFootprint};
 pub use appraise::{Appraisal, Want};
 use appraise::{appraise, ramp};
 use genescape_schema::scene::{Lookout, Lookouts, Prospect};
-use light::Sun;
+use light::{SHADES_M, Sun};
 use panorama::{Panorama, Surroundings};
 use picture::Picture;
 pub use stage::{StartFiles, StartStage};
@@ -95,7 +95,9 @@ pub fn any_good_look(
 fn metered(scene: &Surroundings<'_>, sun: &Sun, light: &SkyLight, lookout: Lookout) -> f32 {
     let place = lookout.place_m(scene.land.field.extent_m());
     let panorama = Panorama::new(scene, place);
-    meter::exposure(&Picture::new(&panorama, lookout), light, sun.lit(scene, place, lookout.ahead()))
+    let trees = scene.trees_around(place, SHADES_M);
+    let lit = sun.lit(scene, &trees, place, lookout.ahead());
+    meter::exposure(&Picture::new(&panorama, lookout), light, lit)
 }
 
 /// All headings at one place.
@@ -107,8 +109,9 @@ fn at_place(scene: &Surroundings<'_>, sun: &Sun, lookouts: &[Lookout]) -> Vec<Ap
         return vec![Appraisal::default(); lookouts.len()];
     }
     let panorama = Panorama::new(scene, place);
+    let trees = scene.trees_around(place, SHADES_M);
     let look = |&lookout: &Lookout| {
-        appraise(&Picture::new(&panorama, lookout), footing, sun.suits(scene, place, lookout.ahead()))
+        appraise(&Picture::new(&panorama, lookout), footing, sun.suits(scene, &trees, place, lookout.ahead()))
     };
     lookouts.iter().map(look).collect()
 }

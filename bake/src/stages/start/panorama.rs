@@ -3,7 +3,7 @@
 
 use core::f32::consts::TAU;
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 use crate::model::TreeFootprint;
 use crate::model::{Instance, Landform, StartView};
@@ -23,8 +23,6 @@ const GROWTH: f32 = 1.09;
 const FAR_M: f32 = 3000.0;
 /// Farthest tree that can be told from the ground.
 const FAR_TREE_M: f32 = 250.0;
-/// Part of a tree's height at which its crown begins, for all kinds.
-const CLEAR_TRUNK: f32 = 0.12;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
@@ -62,7 +60,7 @@ pub(super) struct Surroundings<'a> {
 }
 
 /// A tree as an ellipsoid on a stem that is too thin to count.
-struct Tree {
+pub(super) struct Tree {
     foot: Vec2,
     radius_m: f32,
     bottom_m: f32,
@@ -77,15 +75,30 @@ impl Tree {
         Some(Self {
             foot: Vec2::new(rows[0][3], rows[2][3]),
             radius_m: footprint.crown_radius_m * libm::hypotf(rows[0][0], rows[2][0]),
-            bottom_m: foot_m + CLEAR_TRUNK * height_m,
+            bottom_m: foot_m + footprint.clear_trunk * height_m,
             top_m: foot_m + height_m,
         })
+    }
+
+    /// Whether it stands before a point on the way along a unit vector.
+    pub fn hides(&self, from: Vec3, towards: Vec3) -> bool {
+        let middle = Vec3::new(self.foot.x, 0.5 * (self.bottom_m + self.top_m), self.foot.y);
+        let radii = Vec3::new(self.radius_m, 0.5 * (self.top_m - self.bottom_m), self.radius_m);
+        // Where the ellipsoid is the unit sphere.
+        let (way, along) = ((middle - from) / radii, towards / radii);
+        let ahead = way.dot(along);
+        ahead > 0.0 && ahead * ahead > along.length_squared() * (way.length_squared() - 1.0)
     }
 }
 
 impl<'a> Surroundings<'a> {
     pub fn new(land: &'a Landform, trees: &[Instance], footprints: &[TreeFootprint]) -> Self {
         Self { land, trees: trees.iter().filter_map(|tree| Tree::of(tree, footprints)).collect() }
+    }
+
+    /// The trees whose feet are no farther from a place.
+    pub fn trees_around(&self, place: Vec2, within_m: f32) -> Vec<&Tree> {
+        self.trees.iter().filter(|tree| tree.foot.distance_squared(place) <= within_m * within_m).collect()
     }
 
     /// Height of the land, or of the water on it, near or at the horizon.

@@ -28,22 +28,35 @@ pub(super) struct Picture<'a> {
     /// Slope of the look.
     pub pitch: f32,
     /// Rays of each kind in each band of depths.
-    counts: [[u32; BANDS_M.len() + 1]; Kind::ALL.len()],
+    counts: Counts,
+    /// The same of the picture's middle half.
+    in_middle: Counts,
 }
+
+type Counts = [[u32; BANDS_M.len() + 1]; Kind::ALL.len()];
 
 impl<'a> Picture<'a> {
     pub fn new(panorama: &'a Panorama, lookout: Lookout) -> Self {
         let middle = lookout.heading() * COLUMNS / Lookout::HEADINGS;
         let columns = std::array::from_fn(|k| panorama.column(middle + k, HALF_COLUMNS));
-        let mut picture = Self { columns, skyline: 0.0, pitch: 0.0, counts: Default::default() };
+        let mut picture = Self {
+            columns,
+            skyline: 0.0,
+            pitch: 0.0,
+            counts: Counts::default(),
+            in_middle: Counts::default(),
+        };
         picture.skyline = picture.mean(|column| column.skyline);
         let pitch = picture.skyline - 2.0 * HALF_HEIGHT * (0.5 - SKYLINE_AT);
         picture.pitch = pitch.clamp(-MAX_PITCH, MAX_PITCH);
-        let mut counts = picture.counts;
-        for (_, seen) in picture.rays() {
-            counts[seen.kind as usize][band(seen.depth_m)] += 1;
+        let [mut counts, mut in_middle] = [Counts::default(); 2];
+        for (k, (_, seen)) in picture.rays().enumerate() {
+            let is_in_middle = (k % picture.columns.len()).abs_diff(HALF_COLUMNS) <= HALF_COLUMNS / 2;
+            let (kind, band) = (seen.kind as usize, band(seen.depth_m));
+            counts[kind][band] += 1;
+            in_middle[kind][band] += u32::from(is_in_middle);
         }
-        Self { counts, ..picture }
+        Self { counts, in_middle, ..picture }
     }
 
     /// Of all columns.
@@ -78,14 +91,23 @@ impl<'a> Picture<'a> {
 
     /// Part of the picture that shows some kinds between two depths in metres, each one of [`BANDS_M`], 0 or infinite.
     pub fn share_between(&self, depths_m: Range<f32>, wanted: impl Fn(Kind) -> bool) -> f32 {
-        let bands = match depths_m.end.is_finite() {
-            true => band(depths_m.start)..band(depths_m.end),
-            false => band(depths_m.start)..BANDS_M.len() + 1,
-        };
-        let met = Kind::ALL.into_iter().filter(|&kind| wanted(kind));
-        let met: u32 = met.flat_map(|kind| &self.counts[kind as usize][bands.clone()]).sum();
-        met as f32 / self.counts.as_flattened().iter().sum::<u32>().max(1) as f32
+        share_of(&self.counts, depths_m, wanted)
     }
+
+    /// The same part of the picture's middle half.
+    pub fn middle_share_between(&self, depths_m: Range<f32>, wanted: impl Fn(Kind) -> bool) -> f32 {
+        share_of(&self.in_middle, depths_m, wanted)
+    }
+}
+
+fn share_of(counts: &Counts, depths_m: Range<f32>, wanted: impl Fn(Kind) -> bool) -> f32 {
+    let bands = match depths_m.end.is_finite() {
+        true => band(depths_m.start)..band(depths_m.end),
+        false => band(depths_m.start)..BANDS_M.len() + 1,
+    };
+    let met = Kind::ALL.into_iter().filter(|&kind| wanted(kind));
+    let met: u32 = met.flat_map(|kind| &counts[kind as usize][bands.clone()]).sum();
+    met as f32 / counts.as_flattened().iter().sum::<u32>().max(1) as f32
 }
 
 /// Number of the band in which a depth lies.

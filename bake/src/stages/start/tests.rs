@@ -15,8 +15,13 @@ use crate::stages::land::landform;
 use crate::stages::placement::{PlacementParams, clear_around, place};
 use crate::stages::sky::{self, SkyParams};
 
-const TREE: TreeFootprint =
-    TreeFootprint { height_m: 12.0, trunk_radius_m: 0.25, crown_radius_m: 3.0, root_depth_m: 0.3 };
+const TREE: TreeFootprint = TreeFootprint {
+    height_m: 12.0,
+    trunk_radius_m: 0.25,
+    crown_radius_m: 3.0,
+    root_depth_m: 0.3,
+    clear_trunk: 0.12,
+};
 
 /// 1024 m of land of those heights, level beyond, with no snow.
 fn land(height_m: impl Fn(f32, f32) -> f32, water_level_m: Option<f32>) -> Landform {

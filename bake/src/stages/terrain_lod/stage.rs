@@ -31,7 +31,7 @@ pub struct TerrainFiles {
 
 impl Stage for TerrainStage {
     const NAME: &'static str = "terrain";
-    const VERSION: u32 = 5;
+    const VERSION: u32 = 6;
     type Output = TerrainFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<TerrainFiles, StageError> {

@@ -1,14 +1,14 @@
 //! Genes → tiling bark: 512² texels of colour in sRGB and 256² of tangent-space normals a repeat.
 //!
 //! Three barks blend by `bark_tone`: dark with deep furrows (oak), brown plates (pine), pale and smooth with dark
-//! lenticels (birch). u runs around the stem, v along it; noise wraps at the edges.
+//! lenticels (birch). What is too slender for bark is a cane: green, smooth, with nodes. u runs around the stem, v along it; noise wraps at the edges.
 
 use bytemuck::Zeroable;
 use glam::Vec3;
 
 use super::mips::Encoder;
 use super::params::TreeTextureParams;
-use crate::math::{hermite as smooth, lerp, linear_from_srgb, split};
+use crate::math::{hermite as smooth, lerp, linear_from_srgb, smoothstep, split};
 use crate::model::Image8;
 use crate::noise::{cellular2, gradient2, hash};
 use crate::raster::{square, square_image};
@@ -16,13 +16,18 @@ use crate::seed;
 
 /// Texels a side.
 const SIZE: usize = 512;
+/// Radius over length up to which a stem is a cane, and from which it has bark.
+const CANE: [f32; 2] = [0.009, 0.0105];
+/// Nodes of a cane in one repeat.
+const NODES: f32 = 3.0;
 /// Texels a side of the height that colours and normals are made from.
 const COARSE: usize = 256;
 
 /// Colour and normals.
 pub(super) fn paint(params: &TreeTextureParams) -> (Image8, Image8) {
     let seed = seed::noise_seed(u64::from(params.tree_seed), "bark", 0);
-    let bark = Bark { seed, tone: params.bark_tone.clamp(0.0, 1.0) };
+    let cane = 1.0 - smoothstep(CANE[0], CANE[1], params.radius_ratio);
+    let bark = Bark { seed, tone: params.bark_tone.clamp(0.0, 1.0), cane };
     let place = |i: usize| i as f32 / COARSE as f32;
     let coarse = square(COARSE, |x, y| bark.texel(place(x), place(y)));
     (colors(&coarse, seed.wrapping_add(40)), normals(&coarse))
@@ -50,11 +55,33 @@ struct Texel {
 struct Bark {
     seed: u32,
     tone: f32,
+    /// 1 for a cane, 0 for a trunk.
+    cane: f32,
 }
 
 impl Bark {
     /// What a place of the bark is like; (u, v) in 0..1.
     fn texel(&self, u: f32, v: f32) -> Texel {
+        match self.cane {
+            ..=0.0 => self.bark(u, v),
+            1.0.. => self.culm(u, v),
+            part => mix(self.bark(u, v), self.culm(u, v), part),
+        }
+    }
+
+    /// A green skin with rings where leaves sat, pale with wax below each.
+    fn culm(&self, u: f32, v: f32) -> Texel {
+        let along = v * NODES;
+        let below = along - along.floor();
+        let ring = smooth((1.0 - 14.0 * below.min(1.0 - below)).max(0.0));
+        let wax = smooth((1.0 - 5.0 * below).max(0.0)) * (1.0 - ring);
+        let wear = 0.5 + 0.5 * self.tiled(12, u, v, 7, 2);
+        let green = Vec3::new(0.075, 0.130, 0.030).lerp(Vec3::new(0.150, 0.165, 0.050), wear);
+        let color = green.lerp(Vec3::new(0.240, 0.270, 0.180), 0.6 * wax);
+        Texel { height: 1.0 + 2.0 * ring, color: color.lerp(Vec3::new(0.080, 0.075, 0.040), 0.7 * ring) }
+    }
+
+    fn bark(&self, u: f32, v: f32) -> Texel {
         let wear = gradient2(self.seed.wrapping_add(90), u * 4.0, v * 4.0, 4);
         let barks = [Self::furrows as fn(&Self, f32, f32, f32) -> Texel, Self::plates, Self::birch];
         let darker = usize::from(self.tone > 0.5);

@@ -53,6 +53,8 @@ pub struct TreeTextureParams {
     pub leaf_size_m: f32,
     pub leaf_aspect: f32,
     pub leaf_hue_deg: f32,
+    /// The most slender stems are canes and have no bark.
+    pub radius_ratio: f32,
     /// 0 paints no blossom (an image of one texel).
     pub blossom: f32,
     pub bark_tone: f32,

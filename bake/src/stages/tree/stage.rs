@@ -21,7 +21,7 @@ pub struct TreeTexturesStage {
 
 impl Stage for TreeTexturesStage {
     const NAME: &'static str = "tree textures";
-    const VERSION: u32 = 4;
+    const VERSION: u32 = 5;
     type Output = TreeTextures<File>;
 
     fn run(&self, context: &Context<'_>) -> Result<TreeTextures<File>, StageError> {
@@ -80,7 +80,7 @@ pub struct TreeFiles {
 
 impl Stage for TreeStage {
     const NAME: &'static str = "tree";
-    const VERSION: u32 = 10;
+    const VERSION: u32 = 11;
     type Output = TreeFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<TreeFiles, StageError> {
@@ -95,6 +95,7 @@ impl Stage for TreeStage {
             trunk_radius_m: template.trunk_radius_m,
             crown_radius_m: template.crown_radius_m,
             root_depth_m: -template.bounds.min.y,
+            clear_trunk: TreeFootprint::clear_trunk(self.params.levels, self.params.clear_trunk),
         };
         Ok(TreeFiles {
             glb: context.file("glb", glb),
