@@ -10,7 +10,7 @@ use genescape_schema::{Genome, GenomeError, Kind, Kinds, Population, Space};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::breed::{NoVotes, breed};
+use crate::breed::Breeder;
 use crate::events::{Event, Listener};
 use crate::model::TreeFootprint;
 use crate::random::{self, Drawn};
@@ -121,20 +121,9 @@ pub fn audition(space: &Space, draw: impl Fn(u32) -> Population) -> Auditioned {
     Auditioned { population, redrawn }
 }
 
-/// The next generation from the votes on `parents`, bred again where nobody would look at a child.
-///
-/// # Errors
-/// When votes are `None`.
-pub fn next_generation(
-    space: &Space,
-    kinds: &Kinds,
-    parents: &Population,
-    next: u32,
-) -> Result<Auditioned, NoVotes> {
-    let first = bred(space, kinds, parents, next, 0)?;
-    // Breeding fails for want of votes alone, and these are there.
-    let again = |attempt| bred(space, kinds, parents, next, attempt).unwrap_or_else(|_| first.clone());
-    Ok(audition(space, again))
+/// Generation `next`, bred again where nobody would look at a child.
+pub fn next_generation(breeder: &Breeder<'_>, next: u32) -> Auditioned {
+    audition(breeder.space(), |attempt| bred(breeder, next, attempt))
 }
 
 /// Which landscapes of a population that [`audition`] took from `draw` were drawn again, and why. Drawing is
@@ -176,19 +165,9 @@ pub fn drawn(
     Drawn { population: Population { seed, ..population }, notices }
 }
 
-/// The next generation from the votes on `parents`, as bred at first or again.
-///
-/// # Errors
-/// When votes are `None`.
-pub fn bred(
-    space: &Space,
-    kinds: &Kinds,
-    parents: &Population,
-    next: u32,
-    attempt: u32,
-) -> Result<Population, NoVotes> {
-    let parents_again = Population { seed: seed_of(parents.seed, attempt), ..parents.clone() };
-    Ok(Population { seed: parents.seed, ..breed(space, kinds, &parents_again, next)? })
+/// Generation `next`, as bred at first or again.
+pub fn bred(breeder: &Breeder<'_>, next: u32, attempt: u32) -> Population {
+    breeder.bred(next, seed_of(breeder.seed(), attempt))
 }
 
 /// Says which landscapes were drawn again.

@@ -10,6 +10,7 @@ use clap_complete::Shell;
 use genescape_schema::INDIVIDUALS;
 
 use crate::bad_input::BadInput;
+use crate::breed::Strategy;
 use crate::export::{Audience, Options};
 use crate::plan::Resolution;
 
@@ -179,6 +180,9 @@ pub enum Command {
         /// were answered before, it is another child.
         #[arg(long, value_name = "N")]
         from: Option<u32>,
+        /// How it is found.
+        #[arg(long, value_enum, default_value_t)]
+        strategy: Strategy,
     },
     /// Print the parameter space as a table: the world's own, if there is a world.
     Params {
@@ -233,6 +237,15 @@ pub enum Command {
         /// Times the whole is repeated.
         #[arg(long, default_value_t = 3)]
         runs: u32,
+        /// How near breeding brings simulated persons to what they want, instead.
+        #[arg(long)]
+        breeding: bool,
+        /// How many persons.
+        #[arg(long, value_name = "N", default_value_t = 200, requires = "breeding")]
+        persons: u64,
+        /// Only where the name has these words, as "real space".
+        #[arg(long, value_name = "WORDS", requires = "breeding")]
+        only: Option<String>,
     },
     /// Print what makes a shell complete this command line.
     #[command(after_help = COMPLETIONS_EXAMPLE)]
@@ -371,7 +384,10 @@ mod tests {
             [["--world", "here", "--threads", "2", "next"], ["next", "--world", "here", "--threads", "2"]]
         {
             let cli = Cli::try_parse_from([&["bake"], &words[..]].concat()).expect("valid");
-            assert!(matches!(cli.command, Some(Command::Next { from: None })), "{cli:?}");
+            assert!(
+                matches!(cli.command, Some(Command::Next { from: None, strategy: Strategy::Learned })),
+                "{cli:?}"
+            );
             assert_eq!((cli.run.world, cli.run.threads), ("here".into(), Some(2)));
         }
     }

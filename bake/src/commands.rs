@@ -14,10 +14,10 @@ use signal_hook::flag;
 
 use crate::audition::{self, Auditioned, Redrawn};
 use crate::bad_input::BadInput;
-use crate::breed::NoVotes;
+use crate::breed::{Breeder, NoVotes, Strategy};
 use crate::cache_commands::GaveUp;
 use crate::cli::{Cli, Command, Landscape, RunArgs, meant_command};
-use crate::events::{Event, Listener};
+use crate::events::{Event, Listener, Untold};
 use crate::export::InTheWay;
 use crate::progress::{JsonLines, ProgressBar};
 use crate::run::RunError;
@@ -80,13 +80,16 @@ fn dispatch(cli: &Cli) -> Result<()> {
     match command {
         Command::Random { seed, kinds, uniform } => random(*seed, kinds, *uniform, run),
         Command::Kinds { action } => kinds_command::run(action.as_ref(), run),
-        Command::Next { from } => next(*from, run),
+        Command::Next { from, strategy } => next(*from, *strategy, run),
         Command::Params { markdown } => params(&run.world, *markdown),
         Command::Explain { landscape } => explain(&run.world, *landscape),
         Command::Export { scene, out, options } => export_command::run(scene, out, *options, run),
         Command::Lod { input, out, crease_deg } => lod_command::convert(input, out, *crease_deg),
         Command::Cache { action } => cache_commands::look_after(&run.world, action, &stopped),
-        Command::Bench { runs } => bench::bench(*runs, &pool(run.threads)?, run.size),
+        Command::Bench { breeding: true, persons, only, .. } => {
+            bench::breeding::breeding(*persons, &pool(run.threads)?, only.as_deref())
+        }
+        Command::Bench { runs, .. } => bench::bench(*runs, &pool(run.threads)?, run.size),
         Command::Completions { shell } => manual::completions(*shell),
         Command::Man { folder } => manual::man(folder.as_deref()),
     }
@@ -234,7 +237,7 @@ fn drawn_seed() -> u64 {
     RandomState::new().hash_one(()) % 1_000_000
 }
 
-fn next(from: Option<u32>, args: &RunArgs) -> Result<()> {
+fn next(from: Option<u32>, strategy: Strategy, args: &RunArgs) -> Result<()> {
     // Nothing can be bred in a world that would have to be made.
     World::open(&args.world)?;
     let (session, console) = (open_session(args)?, Console::new(args));
@@ -245,7 +248,8 @@ fn next(from: Option<u32>, args: &RunArgs) -> Result<()> {
     };
     let parents = World::read_population(session.space(), &parents)?.population;
     let kinds = session.kinds(&*console.listener());
-    let path = session::breed_another(world, session.space(), &kinds, &parents, &*console.listener())?;
+    let path =
+        session::breed_another(world, session.space(), &kinds, strategy, &parents, &*console.listener())?;
     if args.json {
         let (parent, path) = (parents.generation, path.display().to_string());
         JsonLines.tell(&Event::Bred { parent, path });
@@ -271,7 +275,7 @@ fn explain(world: &Path, landscape: Option<Landscape>) -> Result<()> {
     // What was baked may be looked at still when its file is gone.
     let file = World::read_population(&space, &world.population_path(current.generation)).ok();
     if let Some(file) = &file {
-        tell_redrawn(&space, &file.population, &world);
+        tell_origin(&space, &file.population, &world);
     }
     for landscape in landscape.map_or_else(|| Landscape::all().collect(), |one| vec![one]) {
         say!("landscape {landscape} ({}) in the last bake:", current.scenes[landscape.index()]);
@@ -286,27 +290,29 @@ fn explain(world: &Path, landscape: Option<Landscape>) -> Result<()> {
     Ok(())
 }
 
-/// Says which landscapes were drawn again because nobody would have looked at the first draw.
-fn tell_redrawn(space: &Space, population: &Population, world: &World) {
-    redrawn_of(space, population, world).iter().for_each(|redrawn| say!("{redrawn}"));
-}
-
-/// As far as draws can be repeated: none where parents are no longer to be read, or only some kinds were asked for.
-fn redrawn_of(space: &Space, population: &Population, world: &World) -> Vec<Redrawn> {
+/// Says which landscapes were drawn again because nobody would have looked at the first draw, and what the votes have taught that
+/// they were bred from. As far as draws can be repeated: not where parents are no longer to be read, or only some kinds were
+/// asked for.
+fn tell_origin(space: &Space, population: &Population, world: &World) {
     let Population { seed, generation, parent, .. } = *population;
     let kinds = world.kinds(space).kinds;
+    let tell = |redrawn: &[Redrawn]| redrawn.iter().for_each(|redrawn| say!("{redrawn}"));
     let Some(parent) = parent else {
         let of = |kinds: &Kinds| {
             let draw = |attempt| audition::drawn(space, kinds, &[], seed, generation, attempt).population;
             audition::redrawn(space, draw, population)
         };
-        return [of(&kinds), of(&Kinds::default())].concat();
+        return tell(&[of(&kinds), of(&Kinds::default())].concat());
     };
     let parents = World::read_population(space, &world.population_path(parent.generation));
-    let Ok(parents) = parents else { return Vec::new() };
+    let Ok(parents) = parents else { return };
     let parents = Population { votes: Some(parent.votes), ..parents.population };
-    let again = |attempt| audition::bred(space, &kinds, &parents, generation, attempt);
-    audition::redrawn(space, |attempt| again(attempt).unwrap_or_else(|_| parents.clone()), population)
+    let past = session::votes_before(world, space, &parents, generation, &Untold);
+    let breeder = Breeder::new(space, &kinds, Strategy::default(), &past, &parents);
+    let Ok(breeder) = breeder else { return };
+    tell(&audition::redrawn(space, |attempt| audition::bred(&breeder, generation, attempt), population));
+    say!("what votes have taught, in likely kinds and genes:");
+    breeder.accounts().iter().for_each(|account| say!("  {account}"));
 }
 
 /// Says how good the best first look at a landscape is.

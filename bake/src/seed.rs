@@ -44,6 +44,12 @@ impl Dice {
         self.unit() + self.unit() - 1.0
     }
 
+    /// Of a normal distribution, mean 0 and standard deviation 1 (Box and Muller 1958).
+    pub fn normal(&mut self) -> f32 {
+        let (radius, turn) = (1.0 - self.unit(), std::f32::consts::TAU * self.unit());
+        (-2.0 * libm::logf(radius)).sqrt() * libm::cosf(turn)
+    }
+
     /// Evenly in 0 .. `count`.
     pub fn below(&mut self, count: u32) -> u32 {
         ((u64::from(self.0.next_u32()) * u64::from(count)) >> 32) as u32

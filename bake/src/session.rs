@@ -11,6 +11,7 @@ use genescape_schema::{Kinds, Population, Space};
 use genescape_world::{PopulationFile, World, WorldKinds, names};
 
 use crate::audition::{self, Auditioned};
+use crate::breed::{Breeder, Strategy};
 use crate::events::{Event, Listener};
 use crate::graph::Done;
 use crate::plan::{Plan, Resolution};
@@ -138,8 +139,9 @@ impl Session {
         let parents = World::read_population(&self.space, path)?.population;
         let kinds = self.kinds(listener);
         let next = self.world.next_generation()?;
-        let Auditioned { population, redrawn } =
-            audition::next_generation(&self.space, &kinds, &parents, next)?;
+        let past = votes_before(&self.world, &self.space, &parents, next, listener);
+        let breeder = Breeder::new(&self.space, &kinds, Strategy::default(), &past, &parents)?;
+        let Auditioned { population, redrawn } = audition::next_generation(&breeder, next);
         audition::tell(listener, &redrawn);
         Ok(self.world.create_population(&self.space, &population)?)
     }
@@ -195,6 +197,7 @@ pub fn breed_another(
     world: &World,
     space: &Space,
     kinds: &Kinds,
+    strategy: Strategy,
     parents: &Population,
     listener: &dyn Listener,
 ) -> Result<PathBuf> {
@@ -209,11 +212,33 @@ pub fn breed_another(
         let siblings = (0..generation).filter(is_sibling).count();
         let seed = parents.seed.wrapping_add(siblings as u64);
         let parents = Population { seed, ..parents.clone() };
-        let Auditioned { population, redrawn } =
-            audition::next_generation(space, kinds, &parents, generation)?;
+        let past = votes_before(world, space, &parents, generation, listener);
+        let breeder = Breeder::new(space, kinds, strategy, &past, &parents)?;
+        let Auditioned { population, redrawn } = audition::next_generation(&breeder, generation);
         audition::tell(listener, &redrawn);
         Ok(population)
     })
+}
+
+/// The populations with lower numbers than `next` that were voted on, but for the parents themselves. What cannot be read is told,
+/// and breeding does without.
+pub fn votes_before(
+    world: &World,
+    space: &Space,
+    parents: &Population,
+    next: u32,
+    listener: &dyn Listener,
+) -> Vec<Population> {
+    let read = |generation: u32| match world.population(space, generation) {
+        Ok(file) => file.population.votes.is_some().then_some(file.population),
+        Err(error) => {
+            let message = format!("its votes are not used: {error:#}");
+            listener.tell(&Event::Notice { message });
+            None
+        }
+    };
+    let others = world.generations().unwrap_or_default().into_iter();
+    others.filter(|other| *other < next && *other != parents.generation).filter_map(read).collect()
 }
 
 /// A name in the world as one in the cache's folder.

@@ -69,6 +69,11 @@ impl Space {
         self.parameters.iter().filter(move |parameter| parameter.category == category)
     }
 
+    /// The genes of one category but the seed, in order: what a kind can have.
+    pub fn traits(&self, category: Category) -> impl Iterator<Item = &Parameter> {
+        self.category(category).filter(|gene| !gene.is_seed())
+    }
+
     /// A gene by name.
     pub fn find(&self, name: &str) -> Option<&Parameter> {
         self.parameters.iter().find(|parameter| parameter.name == name)

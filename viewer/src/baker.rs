@@ -17,6 +17,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
+use genescape_bake::breed::Strategy;
 use genescape_bake::cli::threads;
 use genescape_bake::events::{Listener, Untold};
 use genescape_bake::plan::Resolution;
@@ -160,7 +161,7 @@ pub fn breed_another(world: &World, space: &Space, parent: &Parent) -> Result<Pa
     // The bake tells what is wrong with them.
     let kinds = world.kinds(space).kinds;
     let parents = Population { votes: Some(parent.votes), ..parents };
-    session::breed_another(world, space, &kinds, &parents, &Untold)
+    session::breed_another(world, space, &kinds, Strategy::default(), &parents, &Untold)
 }
 
 /// Sends the bake's events to the owner of the [`Baker`].

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use genescape_bake::breed::breed;
+use genescape_bake::breed::{Breeder, Strategy};
 use genescape_bake::kinds::{Company, Home};
 use genescape_bake::random;
 use genescape_bake::seed::Dice;
@@ -117,11 +117,15 @@ fn random_votes(seed: u64, generation: u32) -> Votes {
 fn ten_generations_on_every_part_is_still_of_a_kind() {
     let (space, kinds) = shipped();
     for seed in 0..4 {
+        let strategy = if seed % 2 == 0 { Strategy::Learned } else { Strategy::Classic };
         let drawn = random::population(&space, &kinds, &[], seed, 0).expect("kinds of all categories");
+        let mut past = Vec::new();
         let mut population = drawn.population;
         for generation in 0..10 {
             population.votes = Some(random_votes(seed, generation));
-            population = breed(&space, &kinds, &population, generation + 1).expect("votes");
+            let child = Breeder::new(&space, &kinds, strategy, &past, &population).expect("votes");
+            let child = child.bred(generation + 1, seed);
+            past.push(std::mem::replace(&mut population, child));
             for one in &population.individuals {
                 for (home, category) in homes(&space, &kinds, one).into_iter().zip(Category::ALL) {
                     let genes = one.genome.chromosome(category);

@@ -1,27 +1,16 @@
-//! What breeding promises: favourites live on, the rest is new, and what varies stays what it is.
+//! The genetic algorithm: favourites live on, the rest is new, and what varies stays what it is.
 
-use genescape_schema::{INDIVIDUALS, Votes};
+use genescape_schema::{Chromosome, Kind, Parent};
 use proptest::prelude::*;
 
 use super::*;
-use crate::kinds::testing::{drawn, kinds};
+use crate::breed::{Strategy, cross};
+use crate::kinds::testing::kinds;
 
-/// Four landscapes of which some are voted for.
-fn voted(space: &Space, kinds: &Kinds, seed: u64, generation: u32, votes: [Option<usize>; 3]) -> Population {
-    let [tree, terrain, sky] = votes;
-    let votes = Some(Votes { tree, terrain, sky });
-    Population { votes, ..drawn(space, kinds, seed, generation) }
-}
-
-/// The same of genes that belong to no kind.
-fn wild(space: &Space, seed: u64, generation: u32, votes: [Option<usize>; 3]) -> Population {
-    let [tree, terrain, sky] = votes;
-    let votes = Some(Votes { tree, terrain, sky });
-    Population { votes, ..Population::random(space, seed, generation) }
-}
-
-fn home<'a>(space: &Space, kinds: &'a Kinds, category: Category, one: &Individual) -> Home<'a> {
-    Home::of(space, kinds, category, one.genome.chromosome(category))
+/// As the thesis does.
+fn breed(space: &Space, kinds: &Kinds, parents: &Population, next: u32) -> Result<Population, NoVotes> {
+    let breeder = Breeder::new(space, kinds, Strategy::Classic, &[], parents)?;
+    Ok(breeder.bred(next, parents.seed))
 }
 
 #[test]
@@ -110,37 +99,14 @@ fn small_steps_are_likelier_than_leaps() {
     assert!(distances[0] > 120 && near > 3 * far && far > 0, "{distances:?}");
 }
 
-/// Votes as a person might cast them who likes now this, now that, and sometimes nothing.
-fn random_votes(seed: u64, generation: u32) -> Votes {
-    let mut dice = Dice::new(seed, "votes", u64::from(generation));
-    let mut vote = || Some(dice.below(5) as usize).filter(|vote| *vote < INDIVIDUALS);
-    Votes { tree: vote(), terrain: vote(), sky: vote() }
-}
-
-/// Chromosomes of a lineage that are in no kind and between no two that mix.
-fn strays(space: &Space, kinds: &Kinds, bred_by: &Kinds, seed: u64, generations: u32) -> usize {
-    let mut population = drawn(space, kinds, seed, 0);
-    let mut strays = 0;
-    for generation in 0..generations {
-        population.votes = Some(random_votes(seed, generation));
-        population = breed(space, bred_by, &population, generation + 1).expect("votes");
-        for (one, category) in population.individuals.iter().flat_map(|one| Category::ALL.map(|c| (one, c))) {
-            let genes = one.genome.chromosome(category);
-            let bounds = Home::of(space, kinds, category, genes).bounds();
-            strays += usize::from(!bounds.is_some_and(|bounds| bounds.contains(space, genes)));
-        }
-    }
-    strays
-}
-
 #[test]
 fn however_long_one_votes_every_child_is_of_a_kind_or_between_two_that_mix() {
     let space = Space::builtin();
     let kinds = kinds(&space);
     let (mut with, mut without) = (0, 0);
     for seed in 0..8 {
-        with += strays(&space, &kinds, &kinds, seed, 16);
-        without += strays(&space, &kinds, &Kinds::default(), seed, 16);
+        with += strays(Strategy::Classic, &space, (&kinds, &kinds), seed, 16);
+        without += strays(Strategy::Classic, &space, (&kinds, &Kinds::default()), seed, 16);
     }
     assert_eq!(with, 0);
     assert!(without > 500, "bred without kinds, {without} of 1536 stray");

@@ -1,5 +1,8 @@
 //! `bake bench`: times the parts of a bake on this machine.
 
+pub mod breeding;
+pub mod person;
+
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 

@@ -1,0 +1,95 @@
+//! What votes have taught, in words: for `bake explain`.
+
+use std::fmt;
+
+use genescape_schema::{Category, Kinds, Parameter, Scale, Space};
+
+use super::learned::Learned;
+use crate::kinds::{Home, name};
+use crate::seed::Dice;
+
+/// Kinds and genes that are told, at most.
+const KINDS: usize = 3;
+const GENES: usize = 5;
+/// What is told of a gene leaves out as many of the samples at either end.
+const TAIL: f32 = 0.1;
+/// Points that say how wide a gene lies before any vote.
+const DRAWS: usize = 256;
+/// The least part of what was open that votes have settled, for a gene to be told.
+const SETTLED: f32 = 0.25;
+
+/// Of one category.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Account {
+    pub category: Category,
+    /// How many votes it rests on.
+    pub votes: usize,
+    /// Names of likely kinds, with how likely each is; what is like none has no name.
+    pub kinds: Vec<(Option<String>, f32)>,
+    /// Of genes that votes have settled most, the values between which what is wanted lies in four of five cases.
+    pub genes: Vec<(String, String)>,
+}
+
+impl Account {
+    pub fn of(space: &Space, kinds: &Kinds, learned: &Learned<'_>, category: Category) -> Self {
+        let taste = learned.taste(category);
+        let mut shares: Vec<(Option<String>, f32)> = Vec::new();
+        for ideal in &taste.ideals {
+            let chromosome = learned.member(category, ideal);
+            let called = name::part(category, Home::of(space, kinds, category, &chromosome));
+            let part = 1.0 / taste.ideals.len() as f32;
+            match shares.iter_mut().find(|(name, _)| *name == called) {
+                Some((_, share)) => *share += part,
+                None => shares.push((called, part)),
+            }
+        }
+        shares.sort_by(|a, b| b.1.total_cmp(&a.1));
+        shares.truncate(KINDS);
+        let mut dice = Dice::new(0u32, "account", 0);
+        let before: Vec<usize> = (0..DRAWS).map(|_| taste.prior.any(&mut dice)).collect();
+        let mut genes: Vec<(f32, &Parameter, [f32; 2])> = space
+            .traits(category)
+            .enumerate()
+            .map(|(number, gene)| {
+                let open = before.iter().map(|one| taste.prior.draw(*one, number, &mut dice)).collect();
+                let [open, wanted] =
+                    [open, taste.ideals.iter().map(|one| one.at[number]).collect()].map(middle);
+                let settled = 1.0 - (wanted[1] - wanted[0]) / (open[1] - open[0]).max(1e-3);
+                (settled, gene, wanted)
+            })
+            .filter(|(settled, gene, _)| *settled > SETTLED && gene.scale != Scale::Choice)
+            .collect();
+        genes.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let told = |(_, gene, [low, high]): (f32, &Parameter, [f32; 2])| {
+            let [low, high] = [low, high].map(|x| gene.text((x * gene.last_code() as f32).round() as u32));
+            let range = if low == high { low } else { format!("{low} … {high}") };
+            (gene.name.clone(), [range, gene.unit.clone()].join(" ").trim_end().to_owned())
+        };
+        let genes = genes.into_iter().take(GENES).map(told).collect();
+        Self { category, votes: taste.votes, kinds: shares, genes }
+    }
+}
+
+/// The values between which all but both tails lie.
+fn middle(mut values: Vec<f32>) -> [f32; 2] {
+    values.sort_unstable_by(f32::total_cmp);
+    let last = values.len().saturating_sub(1) as f32;
+    [TAIL, 1.0 - TAIL].map(|part| values.get((part * last).round() as usize).copied().unwrap_or_default())
+}
+
+impl fmt::Display for Account {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { category, votes, kinds, genes } = self;
+        let s = if *votes == 1 { "" } else { "s" };
+        write!(f, "{:<9} {votes} vote{s}:", category.name())?;
+        for (number, (name, share)) in kinds.iter().enumerate() {
+            let (comma, name) =
+                (if number > 0 { "," } else { "" }, name.as_deref().unwrap_or("like no kind"));
+            write!(f, "{comma} {name} ({:.0} %)", 100.0 * share)?;
+        }
+        for (number, (name, range)) in genes.iter().enumerate() {
+            write!(f, "{} {name} {range}", if number > 0 { "," } else { "; surest:" })?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,274 @@
+//! Votes of all generations → the next one: a model of what the person wants says which four to show.
+//!
+//! The first landscape is the best guess at what is wanted, and the others differ so that the next choice tells most. Of what is like
+//! no kind, generations of odd number only ask: all four differ, for beside a good guess nothing else is chosen, and little
+//! is learned.
+
+use genescape_schema::{
+    Bounds, Category, Chromosome, Genome, INDIVIDUALS, Individual, Kind, Kinds, Parameter, Parent,
+    Population, Space, Votes,
+};
+use rayon::prelude::*;
+
+use super::descent::{self, Origin};
+use super::evidence::{Evidence, point};
+use super::prior::Prior;
+use super::spread::{Candidate, Spread};
+use super::taste::{Ideal, ideals};
+use crate::kinds::{Company, Home};
+use crate::seed::Dice;
+
+/// What is known of somebody who voted so.
+pub struct Learned<'a> {
+    space: &'a Space,
+    kinds: &'a Kinds,
+    parents: &'a Population,
+    votes: Votes,
+    tastes: Vec<Taste>,
+}
+
+/// Of one category.
+pub struct Taste {
+    pub prior: Prior,
+    pub ideals: Vec<Ideal>,
+    /// How many votes it rests on.
+    pub votes: usize,
+    /// What was chosen, the latest last.
+    chosen: Vec<Chromosome>,
+}
+
+impl<'a> Learned<'a> {
+    /// `past` holds the populations before `parents`, in the order of generations.
+    pub fn new(
+        space: &'a Space,
+        kinds: &'a Kinds,
+        past: &[Population],
+        parents: &'a Population,
+        votes: Votes,
+    ) -> Self {
+        let voted = Population { votes: Some(votes), ..parents.clone() };
+        let all: Vec<&Population> = past.iter().chain([&voted]).collect();
+        let of = |category: &Category| {
+            let evidence = Evidence::of(space, kinds, *category, &all);
+            let prior = Prior::of(space, kinds, *category, &evidence);
+            let Evidence { choices, chosen, .. } = evidence;
+            let item = u64::from(parents.generation) << 2 | *category as u64;
+            let ideals = plausible(&prior, ideals(&prior, &choices, parents.seed, item));
+            Taste { prior, ideals, votes: choices.len(), chosen }
+        };
+        let tastes = Category::ALL.par_iter().map(of).collect();
+        Self { space, kinds, parents, votes, tastes }
+    }
+
+    /// Generation `next`, where chance depends on `seed`.
+    pub fn bred(&self, next: u32, seed: u64) -> Population {
+        let mut parts: [Vec<Chromosome>; 3] = Category::ALL.map(|category| self.part(category, next, seed));
+        self.pair(&mut parts);
+        let individuals = std::array::from_fn(|child| {
+            let chromosomes = parts.each_ref().map(|part| part[child].clone());
+            self.individual(child, chromosomes)
+        });
+        let (generation, votes) = (self.parents.generation, self.votes);
+        let parent = Some(Parent { generation, votes });
+        let locked = self.parents.locked.clone();
+        Population { generation: next, seed: self.parents.seed, parent, individuals, votes: None, locked }
+    }
+
+    pub fn taste(&self, category: Category) -> &Taste {
+        &self.tastes[category as usize]
+    }
+
+    /// What a sample wants, as a chromosome of its kind; its seed is 0.
+    pub fn member(&self, category: Category, ideal: &Ideal) -> Chromosome {
+        let mut at = ideal.at.clone();
+        self.legalise(category, ideal.component, &mut at);
+        self.encoded(category, &at)
+    }
+
+    /// What the four have of one category. Seeds of what is no longer the favourite's kind are another individual's.
+    fn part(&self, category: Category, next: u32, seed: u64) -> Vec<Chromosome> {
+        let taste = &self.tastes[category as usize];
+        let item = u64::from(next) << 2 | category as u64;
+        let mut dice = Dice::new(seed, "spread", item);
+        let legal = |component: usize, at: &mut Vec<f32>| self.legalise(category, component, at);
+        let spread = Spread { prior: &taste.prior, ideals: &taste.ideals, legal: &legal };
+        let known: Vec<Candidate> = taste
+            .chosen
+            .iter()
+            .map(|one| Candidate { at: point(self.space, category, one), component: 0 })
+            .collect();
+        let kind =
+            |one: &Chromosome| Home::of(self.space, self.kinds, category, one).main().map(|kind| &kind.id);
+        let favourite = taste.chosen.last().map(kind);
+        let is_like = |at: &[f32]| Some(kind(&self.encoded(category, at))) == favourite;
+        let mut four = match self.asks(category, next) {
+            true => Vec::new(),
+            false => vec![spread.best(&known, &is_like)],
+        };
+        four.extend(spread.others(&four, &mut dice));
+        four.iter().map(|one| self.chromosome(category, &one.at, &mut dice)).collect()
+    }
+
+    /// Whether all four are for asking. Kinds say so much of what may be wanted that there a choice tells enough anyway.
+    fn asks(&self, category: Category, next: u32) -> bool {
+        next % 2 == 1 && self.tastes[category as usize].prior.is_wild()
+    }
+
+    /// Whole codes, of the component's kind.
+    fn legalise(&self, category: Category, component: usize, at: &mut [f32]) {
+        let bounds = self.tastes[category as usize].prior.component(component).bounds.as_ref();
+        let mut allowed = bounds.map(|bounds| bounds.genes(self.space).filter(|(gene, _)| !gene.is_seed()));
+        for (gene, x) in self.space.traits(category).zip(at) {
+            let code = code(gene, *x);
+            let near =
+                allowed.as_mut().and_then(Iterator::next).map_or(code, |(_, allowed)| allowed.nearest(code));
+            *x = near as f32 / gene.last_code() as f32;
+        }
+    }
+
+    /// What was chosen before where it is that; else with the favourite's seed, unless it is of another kind.
+    fn chromosome(&self, category: Category, at: &[f32], dice: &mut Dice) -> Chromosome {
+        let chosen = &self.tastes[category as usize].chosen;
+        let mut new = self.encoded(category, at);
+        let is_same =
+            |one: &&Chromosome| self.space.traits(category).all(|gene| one.code(gene) == new.code(gene));
+        if let Some(known) = chosen.iter().rev().find(is_same) {
+            return known.clone();
+        }
+        let kind =
+            |one: &Chromosome| Home::of(self.space, self.kinds, category, one).main().map(|kind| &kind.id);
+        let like = chosen.last().filter(|favourite| kind(favourite) == kind(&new));
+        if let Some(favourite) = like {
+            self.keep_what_was_meant(category, favourite, &mut new);
+        }
+        for gene in self.space.category(category).filter(|gene| gene.is_seed()) {
+            new.set_code(gene, like.map_or_else(|| dice.below(gene.last_code() + 1), |like| like.code(gene)));
+        }
+        new
+    }
+
+    fn encoded(&self, category: Category, at: &[f32]) -> Chromosome {
+        let mut chromosome = Chromosome::zero(self.space, category);
+        self.space.traits(category).zip(at).for_each(|(gene, x)| chromosome.set_code(gene, code(gene, *x)));
+        chromosome
+    }
+
+    /// Genes that the favourite has outside its kind: a person set them.
+    fn keep_what_was_meant(&self, category: Category, favourite: &Chromosome, new: &mut Chromosome) {
+        let Some(bounds) = Home::of(self.space, self.kinds, category, favourite).bounds() else { return };
+        for (gene, allowed) in bounds.genes(self.space) {
+            if !gene.is_seed() && !allowed.contains(favourite.code(gene)) {
+                new.set_code(gene, favourite.code(gene));
+            }
+        }
+    }
+
+    /// Of the ways to make landscapes of these parts that in which most go together. Of the first, the best guess, all parts stay
+    /// together.
+    fn pair(&self, parts: &mut [Vec<Chromosome>; 3]) {
+        const ORDERS: [[usize; 3]; 6] = [[1, 2, 3], [1, 3, 2], [2, 1, 3], [2, 3, 1], [3, 1, 2], [3, 2, 1]];
+        let discord = |trees: &[usize; 3], skies: &[usize; 3]| -> usize {
+            let of = |land: usize| {
+                self.discord([&parts[0][trees[land]], &parts[1][land + 1], &parts[2][skies[land]]])
+            };
+            (0..3).map(of).sum()
+        };
+        let all = ORDERS.iter().flat_map(|trees| ORDERS.iter().map(move |skies| (trees, skies)));
+        let Some((trees, skies)) = all.min_by_key(|(trees, skies)| discord(trees, skies)) else { return };
+        for (part, order) in [(0, trees), (2, skies)] {
+            let before = parts[part].clone();
+            for (at, from) in order.iter().enumerate() {
+                parts[part][at + 1] = before[*from].clone();
+            }
+        }
+    }
+
+    /// How many of a landscape's kinds do not go with its other parts.
+    fn discord(&self, parts: [&Chromosome; 3]) -> usize {
+        let homes = self.homes(parts);
+        let disagrees = |category: Category| {
+            let mut company = Company::new(self.space);
+            for other in Category::ALL.into_iter().filter(|other| *other != category) {
+                company.add(other, parts[other as usize].clone(), homes[other as usize]);
+            }
+            homes[category as usize].kinds().any(|kind| !company.suits(kind))
+        };
+        Category::ALL.into_iter().filter(|category| disagrees(*category)).count()
+    }
+
+    fn homes(&self, parts: [&Chromosome; 3]) -> [Home<'a>; 3] {
+        Category::ALL.map(|category| Home::of(self.space, self.kinds, category, parts[category as usize]))
+    }
+
+    fn individual(&self, child: usize, mut parts: [Chromosome; 3]) -> Individual {
+        // What somebody chose stays as it is, whatever goes with it.
+        if child > 0 {
+            self.reconcile(&mut parts);
+        }
+        for (category, part) in Category::ALL.into_iter().zip(&mut parts) {
+            self.keep_locked(category, child, part);
+        }
+        let homes = self.homes(parts.each_ref());
+        let origins = Category::ALL.map(|category| self.origin(category, &parts[category as usize], homes));
+        let name = descent::name(self.kinds, self.parents, origins, homes);
+        Individual { name, descent: descent::descent(origins), genome: Genome { chromosomes: parts } }
+    }
+
+    /// Moves genes to what the other parts go with, as far as their kinds may be that.
+    fn reconcile(&self, parts: &mut [Chromosome; 3]) {
+        for category in [Category::Terrain, Category::Tree, Category::Sky] {
+            let homes = self.homes(parts.each_ref());
+            let mut company = Company::new(self.space);
+            for other in Category::ALL.into_iter().filter(|other| *other != category) {
+                company.add(other, parts[other as usize].clone(), homes[other as usize]);
+            }
+            let mut bounds =
+                homes[category as usize].bounds().unwrap_or_else(|| Bounds::whole(self.space, category));
+            let free = bounds.clone();
+            company.demand(&mut bounds);
+            let part = &mut parts[category as usize];
+            for ((gene, demanded), (_, free)) in bounds.genes(self.space).zip(free.genes(self.space)) {
+                if demanded != free && !gene.is_seed() {
+                    part.set_code(gene, demanded.nearest(part.code(gene)));
+                }
+            }
+        }
+    }
+
+    /// Locked genes are those of the favourite or, without one, of the parent in the child's place.
+    fn keep_locked(&self, category: Category, child: usize, part: &mut Chromosome) {
+        let kept = self.votes.get(category).filter(|vote| *vote < INDIVIDUALS).unwrap_or(child);
+        let kept = self.parents.individuals[kept].genome.chromosome(category);
+        if self.parents.locked.contains(category.name()) {
+            part.clone_from(kept);
+        }
+        for gene in self.space.category(category).filter(|gene| self.parents.is_locked(gene)) {
+            part.set_code(gene, kept.code(gene));
+        }
+    }
+
+    fn origin(&self, category: Category, part: &Chromosome, homes: [Home<'_>; 3]) -> Origin {
+        let parent = |index: usize| self.parents.individuals[index].genome.chromosome(category);
+        if let Some(same) = (0..INDIVIDUALS).find(|index| parent(*index) == part) {
+            return Origin::Of(same);
+        }
+        let kind = |home: Home<'_>| home.main().map(|kind: &Kind| kind.id.clone());
+        let like = self.votes.get(category).filter(|vote| *vote < INDIVIDUALS).filter(|vote| {
+            kind(Home::of(self.space, self.kinds, category, parent(*vote))) == kind(homes[category as usize])
+        });
+        like.map_or(Origin::New, Origin::Like)
+    }
+}
+
+/// Without what is like no kind, unless most is.
+fn plausible(prior: &Prior, mut ideals: Vec<Ideal>) -> Vec<Ideal> {
+    let is_wild = |ideal: &Ideal| prior.component(ideal.component).bounds.is_none();
+    if 2 * ideals.iter().filter(|one| is_wild(one)).count() < ideals.len() {
+        ideals.retain(|one| !is_wild(one));
+    }
+    ideals
+}
+
+fn code(gene: &Parameter, x: f32) -> u32 {
+    (x * gene.last_code() as f32).round() as u32
+}

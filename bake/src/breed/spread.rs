@@ -1,0 +1,225 @@
+//! What a person may want → four to choose from: one that is the best guess, and others among which a choice tells most.
+//!
+//! How much a choice tells is the mutual information between it and what is wanted (Lindley, "On a Measure of the
+//! Information Provided by an Experiment", 1956; Houlsby and others, "Bayesian Active Learning for Classification and Preference
+//! Learning", 2011), summed over the samples. The three begin as what samples want (Thompson 1933), the best set of these is
+//! taken one by one, and then each is changed as long as a choice would tell more.
+
+use genescape_schema::INDIVIDUALS;
+
+use super::prior::Prior;
+use super::taste::Ideal;
+use crate::seed::Dice;
+
+/// Points that sets are made of at first, and changes that are tried on a set.
+const POOL: usize = 150;
+const CHANGES: u32 = 500;
+/// How far towards the mean of its kind a sampled point is taken.
+const PULLS: [f32; 3] = [0.3, 0.6, 1.0];
+/// What must be missed in another, as a part of what is missed in the favourite, for it to take that one's place.
+const CLEARLY: f32 = 0.92;
+/// The least part of the samples that a kind must have for its mean to be a guess.
+const MIN_SHARE: f32 = 0.08;
+
+/// A point that somebody may be shown.
+#[derive(Clone, Debug)]
+pub struct Candidate {
+    pub at: Vec<f32>,
+    /// The component of the prior that it is a member of.
+    pub component: usize,
+}
+
+/// What candidates are made from.
+pub struct Spread<'a> {
+    pub prior: &'a Prior,
+    pub ideals: &'a [Ideal],
+    /// Makes a point of a component what may be shown: of its kind, suiting the rest, on whole codes.
+    pub legal: &'a dyn Fn(usize, &mut Vec<f32>),
+}
+
+impl Spread<'_> {
+    /// The best guess: the favourite, which is the last of what was chosen, unless clearly less is missed in another of these or in the
+    /// mean of a likely kind. Only what `is_like` the favourite takes its place: who chose a birch must not meet a palm instead.
+    pub fn best(&self, chosen: &[Candidate], is_like: &dyn Fn(&[f32]) -> bool) -> Candidate {
+        let means = self.means().into_iter().map(|(mut at, component)| {
+            (self.legal)(component, &mut at);
+            Candidate { at, component }
+        });
+        let favourite = chosen.last();
+        let all = chosen.iter().cloned().chain(means);
+        let all =
+            all.filter(|one| favourite.is_none() || is_like(&one.at)).map(|one| (self.cost(&one.at), one));
+        let best = all.reduce(|best, one| if one.0 < best.0 { one } else { best });
+        match (best, favourite) {
+            (Some((cost, best)), Some(favourite)) if cost <= CLEARLY * self.cost(&favourite.at) => best,
+            (_, Some(favourite)) => favourite.clone(),
+            (Some((_, best)), None) => best,
+            (None, None) => unreachable!("there are samples, and so a mean"),
+        }
+    }
+
+    /// Others than `shown`, as many as it takes to make four.
+    pub fn others(&self, shown: &[Candidate], dice: &mut Dice) -> Vec<Candidate> {
+        let pool = self.pool(dice);
+        let missed: Vec<Vec<f32>> = pool.iter().map(|one| self.missed(&one.at)).collect();
+        let mut set: Vec<Candidate> = shown.to_vec();
+        let mut rows: Vec<Vec<f32>> = shown.iter().map(|one| self.missed(&one.at)).collect();
+        while set.len() < INDIVIDUALS {
+            let told = |row: &Vec<f32>| {
+                let with: Vec<&[f32]> = rows.iter().chain([row]).map(Vec::as_slice).collect();
+                // Of one alone nothing is told: the first is any.
+                information(&with)
+            };
+            let best = (0..pool.len()).max_by(|a, b| told(&missed[*a]).total_cmp(&told(&missed[*b])));
+            let best = best.unwrap_or_default();
+            set.push(pool[best].clone());
+            rows.push(missed[best].clone());
+        }
+        let mut told = information(&slices(&rows));
+        for _ in 0..CHANGES {
+            let at = shown.len() + dice.below((INDIVIDUALS - shown.len()) as u32) as usize;
+            let Some(other) = self.changed(&set[at], dice) else { continue };
+            let row = std::mem::replace(&mut rows[at], self.missed(&other.at));
+            let now = information(&slices(&rows));
+            if now > told {
+                told = now;
+                set[at] = other;
+            } else {
+                rows[at] = row;
+            }
+        }
+        set.split_off(shown.len())
+    }
+
+    /// What each sample misses in a point.
+    fn missed(&self, point: &[f32]) -> Vec<f32> {
+        self.ideals.iter().map(|ideal| ideal.missed(self.prior, point)).collect()
+    }
+
+    fn cost(&self, point: &[f32]) -> f32 {
+        self.missed(point).iter().sum()
+    }
+
+    /// Of each likely component, where its samples lie on average, each gene by how much it matters to them.
+    fn means(&self) -> Vec<(Vec<f32>, usize)> {
+        let mut components: Vec<usize> = self.ideals.iter().map(|ideal| ideal.component).collect();
+        components.sort_unstable();
+        components.dedup();
+        let count = |component| self.ideals.iter().filter(|one| one.component == component).count();
+        let most = components.iter().map(|component| count(*component)).max().unwrap_or_default();
+        let least = ((MIN_SHARE * self.ideals.len() as f32) as usize).min(most);
+        components.retain(|component| count(*component) >= least);
+        components.into_iter().map(|component| (self.mean(component), component)).collect()
+    }
+
+    fn mean(&self, component: usize) -> Vec<f32> {
+        let members: Vec<(&Ideal, f32)> = self
+            .ideals
+            .iter()
+            .filter(|ideal| ideal.component == component)
+            .map(|ideal| (ideal, 1.0 / ideal.weights.iter().sum::<f32>()))
+            .collect();
+        let of = |gene: usize| {
+            let weighted = || members.iter().map(|(one, unit)| (one.at[gene], unit * one.weights[gene]));
+            if self.prior.is_choice(gene) {
+                let votes = |at: f32| weighted().filter(|one| one.0 == at).map(|one| one.1).sum::<f32>();
+                let best = weighted().map(|one| (votes(one.0), one.0));
+                return best
+                    .reduce(|best, one| if one.0 > best.0 { one } else { best })
+                    .map_or(0.0, |one| one.1);
+            }
+            let (sum, weight) =
+                weighted().fold((0.0, 1e-12), |(sum, all), (at, weight)| (sum + weight * at, all + weight));
+            sum / weight
+        };
+        (0..self.prior.genes()).map(of).collect()
+    }
+
+    /// What samples want, and what lies between that and the mean of their kind.
+    fn pool(&self, dice: &mut Dice) -> Vec<Candidate> {
+        let means = self.means();
+        let one = |number: usize| {
+            let ideal = &self.ideals[dice.below(self.ideals.len() as u32) as usize];
+            let (mut at, component) = (ideal.at.clone(), ideal.component);
+            if let Some((mean, _)) = means.iter().find(|(_, of)| *of == component) {
+                self.pull(&mut at, mean, PULLS[number % PULLS.len()]);
+            }
+            (self.legal)(component, &mut at);
+            Candidate { at, component }
+        };
+        (0..POOL).map(one).collect()
+    }
+
+    fn pull(&self, at: &mut [f32], mean: &[f32], part: f32) {
+        for (gene, (x, mean)) in at.iter_mut().zip(mean).enumerate() {
+            if !self.prior.is_choice(gene) {
+                *x = (mean + part * (*x - mean)).clamp(0.0, 1.0);
+            }
+        }
+    }
+
+    /// A candidate nearer to or farther from the mean of its kind, with a few genes of chance, or with some of a relative's.
+    fn changed(&self, from: &Candidate, dice: &mut Dice) -> Option<Candidate> {
+        let (mut at, component) = (from.at.clone(), from.component);
+        match dice.below(3) {
+            0 => {
+                let (mean, part) = (self.mean(component), 0.5 + 1.2 * dice.unit());
+                if self.ideals.iter().all(|ideal| ideal.component != component) {
+                    return None;
+                }
+                self.pull(&mut at, &mean, part);
+            }
+            1 => {
+                for _ in 0..=dice.below(3) {
+                    let gene = dice.below(self.prior.genes() as u32) as usize;
+                    at[gene] = self.prior.draw(component, gene, dice);
+                }
+            }
+            _ => {
+                let other = &self.ideals[dice.below(self.ideals.len() as u32) as usize];
+                if other.component != component {
+                    return None;
+                }
+                for (x, other) in at.iter_mut().zip(&other.at) {
+                    if dice.chance(0.25) {
+                        *x = *other;
+                    }
+                }
+            }
+        }
+        (self.legal)(component, &mut at);
+        Some(Candidate { at, component })
+    }
+}
+
+fn slices(rows: &[Vec<f32>]) -> Vec<&[f32]> {
+    rows.iter().map(Vec::as_slice).collect()
+}
+
+/// How much a choice between points tells of which sample is right, in nats. `missed` has a row for each point: what each sample
+/// misses in it.
+fn information(missed: &[&[f32]]) -> f32 {
+    let samples = missed.first().map_or(0, |row| row.len());
+    let mut mean = [0.0f32; INDIVIDUALS];
+    let mut conditional = 0.0;
+    for sample in 0..samples {
+        let least = missed.iter().map(|row| row[sample]).fold(f32::INFINITY, f32::min);
+        let mut chances = [0.0f32; INDIVIDUALS];
+        let mut sum = 0.0;
+        for (chance, row) in chances.iter_mut().zip(missed) {
+            *chance = libm::expf(least - row[sample]);
+            sum += *chance;
+        }
+        for (mean, chance) in mean.iter_mut().zip(chances) {
+            *mean += chance / sum;
+            conditional += entropy(chance / sum);
+        }
+    }
+    let samples = samples.max(1) as f32;
+    mean.iter().map(|chance| entropy(chance / samples)).sum::<f32>() - conditional / samples
+}
+
+/// One outcome's part of it.
+fn entropy(chance: f32) -> f32 {
+    if chance > 1e-7 { -chance * libm::logf(chance) } else { 0.0 }
+}
