@@ -52,8 +52,7 @@ impl<'a> Learned<'a> {
             let evidence = Evidence::of(space, kinds, *category, &all);
             let prior = Prior::of(space, kinds, *category, &evidence);
             let Evidence { choices, chosen, .. } = evidence;
-            let item = u64::from(parents.generation) << 2 | *category as u64;
-            let ideals = plausible(&prior, ideals(&prior, &choices, parents.seed, item));
+            let ideals = plausible(&prior, ideals(&prior, &choices));
             Taste { prior, ideals, votes: choices.len(), chosen }
         };
         let tastes = Category::ALL.par_iter().map(of).collect();

@@ -10,8 +10,8 @@ const BINS: usize = 64;
 /// How much of the prior lies between kinds, and how far from the first of the two.
 const BLENDS: f32 = 0.25;
 const BLEND_PART: f32 = 0.33;
-/// What is like no kind, where everything shown so far is of some kind.
-const WILD: f32 = 0.02;
+/// What is like no kind is at most so much of it, where there are kinds.
+const MAX_WILD: f32 = 0.98;
 /// How much less likely a kind is of which nothing was ever chosen and something passed over when none of four pleased.
 const REJECTED: f32 = 0.1;
 /// Of a kind's density: what is typical, what is allowed, and what is neither.
@@ -108,7 +108,7 @@ impl Prior {
             all.map(|(gene, allowed)| Density::of(gene, allowed)).collect()
         };
         let all: Vec<_> = kinds.of(category).collect();
-        let wild = if all.is_empty() { 1.0 } else { WILD + (1.0 - 2.0 * WILD) * evidence.wild };
+        let wild = if all.is_empty() { 1.0 } else { evidence.wild.min(MAX_WILD) };
         let rejected = |kind: &Kind| if evidence.rejected.contains(&kind.id) { REJECTED } else { 1.0 };
         let sum: f32 = all.iter().map(|kind| rejected(kind)).sum();
         let mut components = vec![Component {

@@ -57,12 +57,12 @@ fn squared(is_choice: bool, x: f32, t: f32) -> f32 {
     }
 }
 
-/// Samples of what a person wants who chose so.
-pub fn ideals(prior: &Prior, choices: &[Choice], seed: u64, item: u64) -> Vec<Ideal> {
+/// Samples of what a person wants who chose so: the same for the same choices.
+pub fn ideals(prior: &Prior, choices: &[Choice]) -> Vec<Ideal> {
     let genes = prior.genes();
     let votes = Votes::new(genes, choices);
     let chains = (0..CHAINS).into_par_iter().map(|chain| {
-        let dice = Dice::new(seed, "taste", item << 8 | chain as u64);
+        let dice = Dice::new(0u32, "taste", chain as u64);
         Chain::start(prior, &votes, dice).run()
     });
     chains.collect::<Vec<_>>().concat()

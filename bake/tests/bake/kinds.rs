@@ -116,7 +116,7 @@ fn random_votes(seed: u64, generation: u32) -> Votes {
 #[test]
 fn ten_generations_on_every_part_is_still_of_a_kind() {
     let (space, kinds) = shipped();
-    for seed in 0..4 {
+    for seed in 0..12 {
         let strategy = if seed % 2 == 0 { Strategy::Learned } else { Strategy::Classic };
         let drawn = random::population(&space, &kinds, &[], seed, 0).expect("kinds of all categories");
         let mut past = Vec::new();
