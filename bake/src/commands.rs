@@ -290,9 +290,9 @@ fn explain(world: &Path, landscape: Option<Landscape>) -> Result<()> {
     Ok(())
 }
 
-/// Says which landscapes were drawn again because nobody would have looked at the first draw, and what the votes have taught that
-/// they were bred from. As far as draws can be repeated: not where parents are no longer to be read, or only some kinds were
-/// asked for.
+/// Says which landscapes were drawn again because nobody would have looked at the first draw, and what the votes have
+/// taught that they were bred from. As far as draws can be repeated: not where parents are no longer to be read, or
+/// only some kinds were asked for.
 fn tell_origin(space: &Space, population: &Population, world: &World) {
     let Population { seed, generation, parent, .. } = *population;
     let kinds = world.kinds(space).kinds;

@@ -20,7 +20,8 @@ pub struct Drawn {
     pub notices: Vec<String>,
 }
 
-/// The same for the same seed, generation, space and kinds. Of a category of which `wanted` names kinds, only these are drawn.
+/// The same for the same seed, generation, space and kinds. Of a category of which `wanted` names kinds, only these
+/// are drawn.
 /// `None` unless there is a kind of each category.
 pub fn population(
     space: &Space,

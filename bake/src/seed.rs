@@ -59,6 +59,16 @@ impl Dice {
         self.unit() < chance
     }
 
+    /// The index of one of these weights, each as likely as it is heavy; 0 if none weighs anything.
+    pub fn weighted(&mut self, weights: &[f32]) -> usize {
+        let mut left = self.unit() * weights.iter().sum::<f32>();
+        let chosen = weights.iter().position(|weight| {
+            left -= weight;
+            left < 0.0
+        });
+        chosen.unwrap_or(0)
+    }
+
     /// One of them, all alike; `None` of nothing.
     pub fn one<'a, T>(&mut self, of: &'a [T]) -> Option<&'a T> {
         let count = u32::try_from(of.len()).unwrap_or(u32::MAX);

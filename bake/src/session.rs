@@ -220,8 +220,8 @@ pub fn breed_another(
     })
 }
 
-/// The populations with lower numbers than `next` that were voted on, but for the parents themselves. What cannot be read is told,
-/// and breeding does without.
+/// The populations with lower numbers than `next` that were voted on, but for the parents themselves. What cannot be
+/// read is told, and breeding does without.
 pub fn votes_before(
     world: &World,
     space: &Space,

@@ -109,6 +109,16 @@ impl Parameter {
         (1 << self.bits) - 1
     }
 
+    /// Where a code lies between the first, 0, and the last, 1.
+    pub fn part(&self, code: u32) -> f32 {
+        code as f32 / self.last_code() as f32
+    }
+
+    /// The code nearest to a part; parts out of 0 … 1 give the end.
+    pub fn code_at(&self, part: f32) -> u32 {
+        ((part * self.last_code() as f32).round() as u32).min(self.last_code())
+    }
+
     /// The physical value of a code, in `unit`: a function of the code alone, the same bits on every machine.
     /// Codes beyond the last are the last.
     pub fn value(&self, code: u32) -> f64 {

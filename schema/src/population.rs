@@ -37,6 +37,12 @@ impl Votes {
         [self.tree, self.terrain, self.sky][category as usize]
     }
 
+    /// Who has the best of one category. A vote for an individual that is not there (the loader lets none pass)
+    /// counts as none.
+    pub fn favourite(&self, category: Category) -> Option<usize> {
+        self.get(category).filter(|vote| *vote < INDIVIDUALS)
+    }
+
     /// Changes the vote on one category.
     pub fn set(&mut self, category: Category, vote: Option<usize>) {
         *[&mut self.tree, &mut self.terrain, &mut self.sky][category as usize] = vote;

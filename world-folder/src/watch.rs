@@ -38,9 +38,9 @@ enum Hint {
 }
 
 impl Watch {
-    /// Watches a world, whose folder is made if it is not there, or files. What is there already is not reported. `wake` is called
-    /// when there is something new in [`Watch::changes`]. With `poll`, or where the system has no watches left, folders
-    /// are looked at several times a second.
+    /// Watches a world, whose folder is made if it is not there, or files. What is there already is not reported.
+    /// `wake` is called when there is something new in [`Watch::changes`]. With `poll`, or where the system has no
+    /// watches left, folders are looked at several times a second.
     ///
     /// # Errors
     /// If the folder can be neither found nor made, or the system gives no thread.

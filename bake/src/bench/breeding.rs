@@ -35,11 +35,10 @@ impl Place {
         };
         let space = Space::builtin();
         let (kinds, _) = Kinds::shipped(&space);
-        let uniform = Space::builtin();
         Ok(vec![
             flat("16 genes", 16, 30)?,
             flat("48 genes", 48, 60)?,
-            Self { name: "real space, uniform", space: uniform, kinds: Kinds::default(), rounds: 30 },
+            Self { name: "real space, uniform", space: space.clone(), kinds: Kinds::default(), rounds: 30 },
             Self { name: "real space, kinds", space, kinds, rounds: 60 },
         ])
     }
@@ -101,7 +100,7 @@ impl Way {
         let mut dice = Dice::new(parents.seed, "bit flips", u64::from(next));
         if self != Self::NoVotes {
             for category in Category::ALL {
-                let favourite = votes.get(category).unwrap_or_default();
+                let favourite = votes.favourite(category).unwrap_or_default();
                 let favourite = parents.individuals[favourite].genome.chromosome(category);
                 let kept = if self == Self::BitFlips { INDIVIDUALS } else { 1 };
                 for (child, one) in children.individuals.iter_mut().take(kept).enumerate() {
@@ -136,7 +135,7 @@ fn course(place: &Place, way: Way, taste: Taste, temperature: f32, seed: u64) ->
         let votes = person.vote(&history[now]);
         let four = &history[now].individuals;
         let of = |category: Category| {
-            let chosen = votes.get(category).unwrap_or_default();
+            let chosen = votes.favourite(category).unwrap_or_default();
             person.distances(&four[chosen].genome)[category as usize]
         };
         course.chosen.push(Category::ALL.into_iter().map(of).sum::<f32>() / 3.0);
@@ -156,7 +155,7 @@ fn apart(space: &Space, population: &Population) -> f32 {
     for (number, a) in population.individuals.iter().enumerate() {
         for b in &population.individuals[..number] {
             let squares = traits.iter().map(|gene| {
-                let gap = (a.genome.code(gene) as f32 - b.genome.code(gene) as f32) / gene.last_code() as f32;
+                let gap = gene.part(a.genome.code(gene)) - gene.part(b.genome.code(gene));
                 gap * gap
             });
             sum += (squares.sum::<f32>() / traits.len() as f32).sqrt();

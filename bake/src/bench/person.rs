@@ -1,4 +1,5 @@
-//! A simulated person: somebody who wants certain genes, more of some than of others, and chooses the nearest of four, mostly.
+//! A simulated person: somebody who wants certain genes, more of some than of others, and chooses the nearest of
+//! four, mostly.
 
 use genescape_schema::{Category, Genome, INDIVIDUALS, Parameter, Population, Space, Votes};
 
@@ -60,14 +61,10 @@ impl<'a> Person<'a> {
     /// How far a genome is from what is wanted, of each category: root mean square by weight, of genes 0 … 1.
     pub fn distances(&self, genome: &Genome) -> [f32; 3] {
         Category::ALL.map(|category| {
-            let part = |genome: &Genome, gene: &Parameter| genome.code(gene) as f32 / gene.last_code() as f32;
-            let genes = self.space.traits(category);
-            let gaps: Vec<f32> = genes.map(|gene| part(genome, gene) - part(self.wants, gene)).collect();
-            let middles: Vec<f32> = self
-                .space
-                .traits(category)
-                .map(|gene| 0.5 * (part(genome, gene) + part(self.wants, gene)))
-                .collect();
+            let pair = |gene: &Parameter| [genome, self.wants].map(|one| gene.part(one.code(gene)));
+            let pairs = || self.space.traits(category).map(pair);
+            let gaps: Vec<f32> = pairs().map(|[shown, wanted]| shown - wanted).collect();
+            let middles: Vec<f32> = pairs().map(|[shown, wanted]| 0.5 * (shown + wanted)).collect();
             self.judges[category as usize].distance(self.taste, &gaps, &middles)
         })
     }
@@ -90,13 +87,7 @@ impl<'a> Person<'a> {
             true => libm::expf((least - distance) / self.temperature),
             false => f32::from(distance == least),
         };
-        let weights = distances.map(weigh);
-        let mut left = self.dice.unit() * weights.iter().sum::<f32>();
-        let chosen = weights.iter().position(|weight| {
-            left -= weight;
-            left < 0.0
-        });
-        chosen.unwrap_or(0)
+        self.dice.weighted(&distances.map(weigh))
     }
 }
 

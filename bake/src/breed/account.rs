@@ -61,7 +61,7 @@ impl Account {
             .collect();
         genes.sort_by(|a, b| b.0.total_cmp(&a.0));
         let told = |(_, gene, [low, high]): (f32, &Parameter, [f32; 2])| {
-            let [low, high] = [low, high].map(|x| gene.text((x * gene.last_code() as f32).round() as u32));
+            let [low, high] = [low, high].map(|x| gene.text(gene.code_at(x)));
             let range = if low == high { low } else { format!("{low} … {high}") };
             (gene.name.clone(), [range, gene.unit.clone()].join(" ").trim_end().to_owned())
         };

@@ -12,7 +12,7 @@ use genescape_schema::{
 };
 
 use super::descent::{self, Origin};
-use super::{cross, step};
+use super::{cross, locked, step};
 use crate::kinds::pick::Picker;
 use crate::kinds::{Company, Home};
 use crate::seed::Dice;
@@ -59,17 +59,12 @@ impl<'a> Family<'a> {
         Self { space, kinds, parents, votes, homes }
     }
 
-    /// The favourite of a category. A vote for an individual that is not there (the loader lets none pass) counts as none.
-    fn favourite(&self, category: Category) -> Option<usize> {
-        self.votes.get(category).filter(|&vote| vote < INDIVIDUALS)
-    }
-
     /// The favourite itself for child 0 and for the child that keeps this category; of the other two, the first is a
     /// variation and the second a crossover with another parent.
     fn role(&self, child: usize, category: Category) -> Role {
         let keeper = category as usize + 1;
         let first = if keeper == 1 { 2 } else { 1 };
-        match self.favourite(category) {
+        match self.votes.favourite(category) {
             _ if self.parents.locked.contains(category.name()) => Role::Kept,
             None => Role::New,
             Some(_) if child == 0 || child == keeper => Role::Kept,
@@ -119,16 +114,15 @@ const TRIES: u32 = 8;
 
 impl<'a> Birth<'a, '_> {
     fn give(mut self, newcomers: &mut Vec<&'a Kind>) -> (Chromosome, Origin) {
-        let favourite = self.family.favourite(self.category);
-        // Locked genes are those of the favourite or, without one, of the parent in the child's place.
-        let kept = favourite.unwrap_or(self.child);
-        let (chromosome, origin) = match self.family.role(self.child, self.category) {
+        let kept = locked::source(self.family.votes, self.category, self.child);
+        let (mut chromosome, origin) = match self.family.role(self.child, self.category) {
             Role::Kept => (self.family.parent(self.category, kept).0.clone(), Origin::Of(kept)),
             Role::Varied => self.varied(kept),
             Role::Crossed => self.crossed(kept),
             Role::New => (self.newcomer(newcomers), Origin::New),
         };
-        (self.with_locked(chromosome, kept), origin)
+        locked::keep(self.family.space, self.family.parents, self.category, kept, &mut chromosome);
+        (chromosome, origin)
     }
 
     /// As the favourite, with some steps within what its kind may be; it stays the same individual. Where there is nothing
@@ -226,15 +220,6 @@ impl<'a> Birth<'a, '_> {
         for seed in self.family.space.category(self.category).filter(|gene| gene.is_seed()) {
             let code = (from.code(seed) + 1 + self.dice.below(seed.last_code())) % (seed.last_code() + 1);
             chromosome.set_code(seed, code);
-        }
-        chromosome
-    }
-
-    fn with_locked(&self, mut chromosome: Chromosome, from: usize) -> Chromosome {
-        let (kept, _) = self.family.parent(self.category, from);
-        let genes = self.family.space.category(self.category);
-        for gene in genes.filter(|gene| self.family.parents.is_locked(gene)) {
-            chromosome.set_code(gene, kept.code(gene));
         }
         chromosome
     }

@@ -1,5 +1,6 @@
-//! Crossover: a child of two chromosomes. Groups of genes that belong together come whole from one or the other: form,
-//! foliage and placement of trees; shape, water and climate of a land; sun, clouds and air of a sky (`group` in `space.ron`).
+//! Crossover: a child of two chromosomes. Groups of genes that belong together come whole from one or the other:
+//! form, foliage and placement of trees; shape, water and climate of a land; sun, clouds and air of a sky (`group` in
+//! `space.ron`).
 
 use genescape_schema::{Bounds, Category, Chromosome, Space};
 

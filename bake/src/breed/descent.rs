@@ -52,9 +52,9 @@ pub fn descent(origins: [Origin; 3]) -> String {
     parts.collect::<Vec<_>>().join(SEPARATOR)
 }
 
-/// What kind of place a child is: "Birches on karst, mackerel sky". One that has two or three parts of a parent that a person
-/// gave a name keeps that, and says only what differs: "Grandmother's valley · mackerel sky". Parts of no kind are called by
-/// their descent.
+/// What kind of place a child is: "Birches on karst, mackerel sky". One that has two or three parts of a parent that
+/// a person gave a name keeps that, and says only what differs: "Grandmother's valley · mackerel sky". Parts of no
+/// kind are called by their descent.
 pub fn name(kinds: &Kinds, parents: &Population, origins: [Origin; 3], homes: [Home<'_>; 3]) -> String {
     let descends = |parent: usize| origins.iter().filter(|origin| origin.favourite() == Some(parent)).count();
     let main = (0..INDIVIDUALS).find(|parent| descends(*parent) >= 2);

@@ -11,6 +11,7 @@ const REMEMBERED: usize = 60;
 
 /// Alternatives of a choice at most: the four, and an older favourite that was better than all of them.
 pub const SLOTS: usize = 5;
+
 /// What was to choose from, and what was chosen. Genes are 0 … 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choice {
@@ -44,17 +45,18 @@ impl Evidence {
             let four: [&Chromosome; INDIVIDUALS] =
                 population.individuals.each_ref().map(|one| one.genome.chromosome(category));
             shown += INDIVIDUALS;
-            wild += four.iter().filter(|one| home(one) == Home::Wild).count();
+            let homes = four.map(home);
+            wild += homes.iter().filter(|home| **home == Home::Wild).count();
             let mut points: Vec<Vec<f32>> = four.iter().map(|one| point(space, category, one)).collect();
-            match votes.get(category).filter(|vote| *vote < INDIVIDUALS) {
+            match votes.favourite(category) {
                 Some(vote) => {
                     evidence.choices.push(Choice { points, chosen: vote });
                     evidence.chosen.retain(|one| one != four[vote]);
                     evidence.chosen.push(four[vote].clone());
                 }
                 None => {
-                    let shown = four.iter().filter_map(|one| home(one).main());
-                    evidence.rejected.extend(shown.map(|kind| kind.id.clone()));
+                    let kinds = homes.into_iter().filter_map(Home::main);
+                    evidence.rejected.extend(kinds.map(|kind| kind.id.clone()));
                     let Some(better) = evidence.chosen.last() else { continue };
                     points.push(point(space, category, better));
                     evidence.choices.push(Choice { points, chosen: INDIVIDUALS });
@@ -73,6 +75,5 @@ impl Evidence {
 
 /// A chromosome's genes but its seed, each 0 … 1.
 pub fn point(space: &Space, category: Category, chromosome: &Chromosome) -> Vec<f32> {
-    let part = |gene| chromosome.code(gene) as f32 / gene.last_code() as f32;
-    space.traits(category).map(part).collect()
+    space.traits(category).map(|gene| gene.part(chromosome.code(gene))).collect()
 }

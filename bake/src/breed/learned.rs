@@ -1,19 +1,19 @@
 //! Votes of all generations → the next one: a model of what the person wants says which four to show.
 //!
-//! The first landscape is the best guess at what is wanted, and the others differ so that the next choice tells most. Of what is like
-//! no kind, generations of odd number only ask: all four differ, for beside a good guess nothing else is chosen, and little
-//! is learned.
+//! The first landscape is the best guess at what is wanted, and the others differ so that the next choice tells most. Of
+//! what is like no kind, generations of odd number only ask: all four differ, for beside a good guess nothing else is
+//! chosen, and little is learned.
 
 use genescape_schema::{
-    Bounds, Category, Chromosome, Genome, INDIVIDUALS, Individual, Kind, Kinds, Parameter, Parent,
-    Population, Space, Votes,
+    Bounds, Category, Chromosome, Genome, INDIVIDUALS, Individual, Kinds, Parent, Population, Space, Votes,
 };
 use rayon::prelude::*;
 
 use super::descent::{self, Origin};
 use super::evidence::{Evidence, point};
+use super::locked;
 use super::prior::Prior;
-use super::spread::{Candidate, Spread};
+use super::spread::{Mean, Spread};
 use super::taste::{Ideal, ideals};
 use crate::kinds::{Company, Home};
 use crate::seed::Dice;
@@ -31,6 +31,7 @@ pub struct Learned<'a> {
 pub struct Taste {
     pub prior: Prior,
     pub ideals: Vec<Ideal>,
+    means: Vec<Mean>,
     /// How many votes it rests on.
     pub votes: usize,
     /// What was chosen, the latest last.
@@ -53,7 +54,8 @@ impl<'a> Learned<'a> {
             let prior = Prior::of(space, kinds, *category, &evidence);
             let Evidence { choices, chosen, .. } = evidence;
             let ideals = plausible(&prior, ideals(&prior, &choices));
-            Taste { prior, ideals, votes: choices.len(), chosen }
+            let means = Mean::all(&prior, &ideals);
+            Taste { prior, ideals, means, votes: choices.len(), chosen }
         };
         let tastes = Category::ALL.par_iter().map(of).collect();
         Self { space, kinds, parents, votes, tastes }
@@ -90,22 +92,17 @@ impl<'a> Learned<'a> {
         let item = u64::from(next) << 2 | category as u64;
         let mut dice = Dice::new(seed, "spread", item);
         let legal = |component: usize, at: &mut Vec<f32>| self.legalise(category, component, at);
-        let spread = Spread { prior: &taste.prior, ideals: &taste.ideals, legal: &legal };
-        let known: Vec<Candidate> = taste
-            .chosen
-            .iter()
-            .map(|one| Candidate { at: point(self.space, category, one), component: 0 })
-            .collect();
-        let kind =
-            |one: &Chromosome| Home::of(self.space, self.kinds, category, one).main().map(|kind| &kind.id);
-        let favourite = taste.chosen.last().map(kind);
-        let is_like = |at: &[f32]| Some(kind(&self.encoded(category, at))) == favourite;
+        let spread =
+            Spread { prior: &taste.prior, ideals: &taste.ideals, means: &taste.means, legal: &legal };
+        let known: Vec<Vec<f32>> = taste.chosen.iter().map(|one| point(self.space, category, one)).collect();
+        let favourite = taste.chosen.last().map(|one| self.kind(category, one));
+        let is_like = |at: &[f32]| Some(self.kind(category, &self.encoded(category, at))) == favourite;
         let mut four = match self.asks(category, next) {
             true => Vec::new(),
             false => vec![spread.best(&known, &is_like)],
         };
         four.extend(spread.others(&four, &mut dice));
-        four.iter().map(|one| self.chromosome(category, &one.at, &mut dice)).collect()
+        four.iter().map(|one| self.chromosome(category, one, &mut dice)).collect()
     }
 
     /// Whether all four are for asking. Kinds say so much of what may be wanted that there a choice tells enough anyway.
@@ -118,10 +115,10 @@ impl<'a> Learned<'a> {
         let bounds = self.tastes[category as usize].prior.component(component).bounds.as_ref();
         let mut allowed = bounds.map(|bounds| bounds.genes(self.space).filter(|(gene, _)| !gene.is_seed()));
         for (gene, x) in self.space.traits(category).zip(at) {
-            let code = code(gene, *x);
+            let code = gene.code_at(*x);
             let near =
                 allowed.as_mut().and_then(Iterator::next).map_or(code, |(_, allowed)| allowed.nearest(code));
-            *x = near as f32 / gene.last_code() as f32;
+            *x = gene.part(near);
         }
     }
 
@@ -134,9 +131,8 @@ impl<'a> Learned<'a> {
         if let Some(known) = chosen.iter().rev().find(is_same) {
             return known.clone();
         }
-        let kind =
-            |one: &Chromosome| Home::of(self.space, self.kinds, category, one).main().map(|kind| &kind.id);
-        let like = chosen.last().filter(|favourite| kind(favourite) == kind(&new));
+        let kind = self.kind(category, &new);
+        let like = chosen.last().filter(|favourite| self.kind(category, favourite) == kind);
         if let Some(favourite) = like {
             self.keep_what_was_meant(category, favourite, &mut new);
         }
@@ -148,8 +144,13 @@ impl<'a> Learned<'a> {
 
     fn encoded(&self, category: Category, at: &[f32]) -> Chromosome {
         let mut chromosome = Chromosome::zero(self.space, category);
-        self.space.traits(category).zip(at).for_each(|(gene, x)| chromosome.set_code(gene, code(gene, *x)));
+        self.space.traits(category).zip(at).for_each(|(gene, x)| chromosome.set_code(gene, gene.code_at(*x)));
         chromosome
+    }
+
+    /// What a chromosome is like most.
+    fn kind(&self, category: Category, chromosome: &Chromosome) -> Option<&'a str> {
+        Home::of(self.space, self.kinds, category, chromosome).main().map(|kind| kind.id.as_str())
     }
 
     /// Genes that the favourite has outside its kind: a person set them.
@@ -162,8 +163,8 @@ impl<'a> Learned<'a> {
         }
     }
 
-    /// Of the ways to make landscapes of these parts that in which most go together. Of the first, the best guess, all parts stay
-    /// together.
+    /// Of the ways to make landscapes of these parts that in which most go together. Of the first, the best guess, all
+    /// parts stay together.
     fn pair(&self, parts: &mut [Vec<Chromosome>; 3]) {
         const ORDERS: [[usize; 3]; 6] = [[1, 2, 3], [1, 3, 2], [2, 1, 3], [2, 3, 1], [3, 1, 2], [3, 2, 1]];
         let discord = |trees: &[usize; 3], skies: &[usize; 3]| -> usize {
@@ -186,10 +187,7 @@ impl<'a> Learned<'a> {
     fn discord(&self, parts: [&Chromosome; 3]) -> usize {
         let homes = self.homes(parts);
         let disagrees = |category: Category| {
-            let mut company = Company::new(self.space);
-            for other in Category::ALL.into_iter().filter(|other| *other != category) {
-                company.add(other, parts[other as usize].clone(), homes[other as usize]);
-            }
+            let company = Company::beside(self.space, category, parts, homes);
             homes[category as usize].kinds().any(|kind| !company.suits(kind))
         };
         Category::ALL.into_iter().filter(|category| disagrees(*category)).count()
@@ -205,7 +203,8 @@ impl<'a> Learned<'a> {
             self.reconcile(&mut parts);
         }
         for (category, part) in Category::ALL.into_iter().zip(&mut parts) {
-            self.keep_locked(category, child, part);
+            let from = locked::source(self.votes, category, child);
+            locked::keep(self.space, self.parents, category, from, part);
         }
         let homes = self.homes(parts.each_ref());
         let origins = Category::ALL.map(|category| self.origin(category, &parts[category as usize], homes));
@@ -217,10 +216,7 @@ impl<'a> Learned<'a> {
     fn reconcile(&self, parts: &mut [Chromosome; 3]) {
         for category in [Category::Terrain, Category::Tree, Category::Sky] {
             let homes = self.homes(parts.each_ref());
-            let mut company = Company::new(self.space);
-            for other in Category::ALL.into_iter().filter(|other| *other != category) {
-                company.add(other, parts[other as usize].clone(), homes[other as usize]);
-            }
+            let company = Company::beside(self.space, category, parts.each_ref(), homes);
             let mut bounds =
                 homes[category as usize].bounds().unwrap_or_else(|| Bounds::whole(self.space, category));
             let free = bounds.clone();
@@ -234,27 +230,14 @@ impl<'a> Learned<'a> {
         }
     }
 
-    /// Locked genes are those of the favourite or, without one, of the parent in the child's place.
-    fn keep_locked(&self, category: Category, child: usize, part: &mut Chromosome) {
-        let kept = self.votes.get(category).filter(|vote| *vote < INDIVIDUALS).unwrap_or(child);
-        let kept = self.parents.individuals[kept].genome.chromosome(category);
-        if self.parents.locked.contains(category.name()) {
-            part.clone_from(kept);
-        }
-        for gene in self.space.category(category).filter(|gene| self.parents.is_locked(gene)) {
-            part.set_code(gene, kept.code(gene));
-        }
-    }
-
     fn origin(&self, category: Category, part: &Chromosome, homes: [Home<'_>; 3]) -> Origin {
         let parent = |index: usize| self.parents.individuals[index].genome.chromosome(category);
         if let Some(same) = (0..INDIVIDUALS).find(|index| parent(*index) == part) {
             return Origin::Of(same);
         }
-        let kind = |home: Home<'_>| home.main().map(|kind: &Kind| kind.id.clone());
-        let like = self.votes.get(category).filter(|vote| *vote < INDIVIDUALS).filter(|vote| {
-            kind(Home::of(self.space, self.kinds, category, parent(*vote))) == kind(homes[category as usize])
-        });
+        let kind = homes[category as usize].main().map(|kind| kind.id.as_str());
+        let favourite = self.votes.favourite(category);
+        let like = favourite.filter(|vote| self.kind(category, parent(*vote)) == kind);
         like.map_or(Origin::New, Origin::Like)
     }
 }
@@ -266,8 +249,4 @@ fn plausible(prior: &Prior, mut ideals: Vec<Ideal>) -> Vec<Ideal> {
         ideals.retain(|one| !is_wild(one));
     }
     ideals
-}
-
-fn code(gene: &Parameter, x: f32) -> u32 {
-    (x * gene.last_code() as f32).round() as u32
 }

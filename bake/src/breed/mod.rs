@@ -1,5 +1,5 @@
-//! Votes → the next generation. The person says which landscape has the best trees, the best terrain, the best sky (thesis,
-//! section 1), and each category is bred for itself.
+//! Votes → the next generation. The person says which landscape has the best trees, the best terrain, the best sky
+//! (thesis, section 1), and each category is bred for itself.
 
 mod account;
 mod classic;
@@ -7,6 +7,7 @@ mod cross;
 mod descent;
 mod evidence;
 mod learned;
+mod locked;
 mod prior;
 mod spread;
 mod step;
@@ -85,7 +86,8 @@ impl<'a> Breeder<'a> {
         self.parents.seed
     }
 
-    /// Generation `next`: the same genes for the same seed, generation, genes, votes and kinds. Its own seed is the parents'.
+    /// Generation `next`: the same genes for the same seed, generation, genes, votes and kinds. Its own seed is the
+    /// parents'.
     pub fn bred(&self, next: u32, seed: u64) -> Population {
         let population = match &self.learned {
             Some(learned) => learned.bred(next, seed),

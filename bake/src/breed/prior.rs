@@ -99,8 +99,8 @@ impl Density {
 }
 
 impl Prior {
-    /// Kinds and their blends, alike but for those that were shown when none of the four pleased. As much is wild as of what was shown
-    /// so far.
+    /// Kinds and their blends, alike but for those that were shown when none of the four pleased. As much is wild as
+    /// of what was shown so far.
     pub fn of(space: &Space, kinds: &Kinds, category: Category, evidence: &Evidence) -> Self {
         let genes: Vec<&Parameter> = space.traits(category).collect();
         let of = |bounds: &Bounds| -> Vec<Density> {
@@ -191,13 +191,8 @@ impl Prior {
             })
             .collect();
         let best = logs.iter().copied().fold(f32::MIN, f32::max);
-        let sum: f32 = logs.iter().map(|log| libm::expf(log - best)).sum();
-        let mut left = dice.unit() * sum;
-        let found = logs.iter().position(|log| {
-            left -= libm::expf(log - best);
-            left < 0.0
-        });
-        found.unwrap_or(0)
+        let weights: Vec<f32> = logs.iter().map(|log| libm::expf(log - best)).collect();
+        dice.weighted(&weights)
     }
 }
 

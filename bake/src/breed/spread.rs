@@ -1,9 +1,11 @@
 //! What a person may want → four to choose from: one that is the best guess, and others among which a choice tells most.
 //!
 //! How much a choice tells is the mutual information between it and what is wanted (Lindley, "On a Measure of the
-//! Information Provided by an Experiment", 1956; Houlsby and others, "Bayesian Active Learning for Classification and Preference
-//! Learning", 2011), summed over the samples. The three begin as what samples want (Thompson 1933), the best set of these is
-//! taken one by one, and then each is changed as long as a choice would tell more.
+//! Information Provided by an Experiment", 1956; Houlsby and others, "Bayesian Active Learning for Classification and
+//! Preference Learning", 2011), summed over the samples. The three begin as what samples want (Thompson 1933), the
+//! best set of these is taken one by one, and then each is changed as long as a choice would tell more.
+
+use std::collections::BTreeSet;
 
 use genescape_schema::INDIVIDUALS;
 
@@ -23,35 +25,60 @@ const MIN_SHARE: f32 = 0.08;
 
 /// A point that somebody may be shown.
 #[derive(Clone, Debug)]
-pub struct Candidate {
-    pub at: Vec<f32>,
+struct Candidate {
+    at: Vec<f32>,
     /// The component of the prior that it is a member of.
-    pub component: usize,
+    component: usize,
+}
+
+/// Where the samples of one component lie on average, each gene by how much it matters to them.
+pub struct Mean {
+    component: usize,
+    at: Vec<f32>,
+    /// The part of all samples.
+    share: f32,
+}
+
+impl Mean {
+    /// Of each component that has samples.
+    pub fn all(prior: &Prior, ideals: &[Ideal]) -> Vec<Self> {
+        let components: BTreeSet<usize> = ideals.iter().map(|ideal| ideal.component).collect();
+        let of = |component| {
+            let members: Vec<&Ideal> = ideals.iter().filter(|one| one.component == component).collect();
+            let share = members.len() as f32 / ideals.len() as f32;
+            Self { component, at: mean(prior, &members), share }
+        };
+        components.into_iter().map(of).collect()
+    }
 }
 
 /// What candidates are made from.
 pub struct Spread<'a> {
     pub prior: &'a Prior,
     pub ideals: &'a [Ideal],
+    pub means: &'a [Mean],
     /// Makes a point of a component what may be shown: of its kind, suiting the rest, on whole codes.
     pub legal: &'a dyn Fn(usize, &mut Vec<f32>),
 }
 
 impl Spread<'_> {
-    /// The best guess: the favourite, which is the last of what was chosen, unless clearly less is missed in another of these or in the
-    /// mean of a likely kind. Only what `is_like` the favourite takes its place: who chose a birch must not meet a palm instead.
-    pub fn best(&self, chosen: &[Candidate], is_like: &dyn Fn(&[f32]) -> bool) -> Candidate {
-        let means = self.means().into_iter().map(|(mut at, component)| {
-            (self.legal)(component, &mut at);
-            Candidate { at, component }
+    /// The best guess: the favourite, which is the last of what was chosen, unless clearly less is missed in another of
+    /// these or in the mean of a likely kind. Only what `is_like` the favourite takes its place: who chose a birch must not
+    /// meet a palm instead.
+    pub fn best(&self, chosen: &[Vec<f32>], is_like: &dyn Fn(&[f32]) -> bool) -> Vec<f32> {
+        let greatest = self.means.iter().map(|mean| mean.share).fold(0.0, f32::max);
+        let likely = self.means.iter().filter(|mean| mean.share >= MIN_SHARE.min(greatest));
+        let means = likely.map(|mean| {
+            let mut at = mean.at.clone();
+            (self.legal)(mean.component, &mut at);
+            at
         });
         let favourite = chosen.last();
         let all = chosen.iter().cloned().chain(means);
-        let all =
-            all.filter(|one| favourite.is_none() || is_like(&one.at)).map(|one| (self.cost(&one.at), one));
+        let all = all.filter(|one| favourite.is_none() || is_like(one)).map(|one| (self.cost(&one), one));
         let best = all.reduce(|best, one| if one.0 < best.0 { one } else { best });
         match (best, favourite) {
-            (Some((cost, best)), Some(favourite)) if cost <= CLEARLY * self.cost(&favourite.at) => best,
+            (Some((cost, best)), Some(favourite)) if cost <= CLEARLY * self.cost(favourite) => best,
             (_, Some(favourite)) => favourite.clone(),
             (Some((_, best)), None) => best,
             (None, None) => unreachable!("there are samples, and so a mean"),
@@ -59,12 +86,12 @@ impl Spread<'_> {
     }
 
     /// Others than `shown`, as many as it takes to make four.
-    pub fn others(&self, shown: &[Candidate], dice: &mut Dice) -> Vec<Candidate> {
+    pub fn others(&self, shown: &[Vec<f32>], dice: &mut Dice) -> Vec<Vec<f32>> {
         let pool = self.pool(dice);
         let missed: Vec<Vec<f32>> = pool.iter().map(|one| self.missed(&one.at)).collect();
-        let mut set: Vec<Candidate> = shown.to_vec();
-        let mut rows: Vec<Vec<f32>> = shown.iter().map(|one| self.missed(&one.at)).collect();
-        while set.len() < INDIVIDUALS {
+        let mut set: Vec<Candidate> = Vec::new();
+        let mut rows: Vec<Vec<f32>> = shown.iter().map(|one| self.missed(one)).collect();
+        while rows.len() < INDIVIDUALS {
             let told = |row: &Vec<f32>| {
                 let with: Vec<&[f32]> = rows.iter().chain([row]).map(Vec::as_slice).collect();
                 // Of one alone nothing is told: the first is any.
@@ -77,18 +104,18 @@ impl Spread<'_> {
         }
         let mut told = information(&slices(&rows));
         for _ in 0..CHANGES {
-            let at = shown.len() + dice.below((INDIVIDUALS - shown.len()) as u32) as usize;
+            let at = dice.below(set.len() as u32) as usize;
             let Some(other) = self.changed(&set[at], dice) else { continue };
-            let row = std::mem::replace(&mut rows[at], self.missed(&other.at));
+            let row = std::mem::replace(&mut rows[shown.len() + at], self.missed(&other.at));
             let now = information(&slices(&rows));
             if now > told {
                 told = now;
                 set[at] = other;
             } else {
-                rows[at] = row;
+                rows[shown.len() + at] = row;
             }
         }
-        set.split_off(shown.len())
+        set.into_iter().map(|one| one.at).collect()
     }
 
     /// What each sample misses in a point.
@@ -100,48 +127,16 @@ impl Spread<'_> {
         self.missed(point).iter().sum()
     }
 
-    /// Of each likely component, where its samples lie on average, each gene by how much it matters to them.
-    fn means(&self) -> Vec<(Vec<f32>, usize)> {
-        let mut components: Vec<usize> = self.ideals.iter().map(|ideal| ideal.component).collect();
-        components.sort_unstable();
-        components.dedup();
-        let count = |component| self.ideals.iter().filter(|one| one.component == component).count();
-        let most = components.iter().map(|component| count(*component)).max().unwrap_or_default();
-        let least = ((MIN_SHARE * self.ideals.len() as f32) as usize).min(most);
-        components.retain(|component| count(*component) >= least);
-        components.into_iter().map(|component| (self.mean(component), component)).collect()
-    }
-
-    fn mean(&self, component: usize) -> Vec<f32> {
-        let members: Vec<(&Ideal, f32)> = self
-            .ideals
-            .iter()
-            .filter(|ideal| ideal.component == component)
-            .map(|ideal| (ideal, 1.0 / ideal.weights.iter().sum::<f32>()))
-            .collect();
-        let of = |gene: usize| {
-            let weighted = || members.iter().map(|(one, unit)| (one.at[gene], unit * one.weights[gene]));
-            if self.prior.is_choice(gene) {
-                let votes = |at: f32| weighted().filter(|one| one.0 == at).map(|one| one.1).sum::<f32>();
-                let best = weighted().map(|one| (votes(one.0), one.0));
-                return best
-                    .reduce(|best, one| if one.0 > best.0 { one } else { best })
-                    .map_or(0.0, |one| one.1);
-            }
-            let (sum, weight) =
-                weighted().fold((0.0, 1e-12), |(sum, all), (at, weight)| (sum + weight * at, all + weight));
-            sum / weight
-        };
-        (0..self.prior.genes()).map(of).collect()
+    fn mean(&self, component: usize) -> Option<&[f32]> {
+        self.means.iter().find(|mean| mean.component == component).map(|mean| mean.at.as_slice())
     }
 
     /// What samples want, and what lies between that and the mean of their kind.
     fn pool(&self, dice: &mut Dice) -> Vec<Candidate> {
-        let means = self.means();
         let one = |number: usize| {
             let ideal = &self.ideals[dice.below(self.ideals.len() as u32) as usize];
             let (mut at, component) = (ideal.at.clone(), ideal.component);
-            if let Some((mean, _)) = means.iter().find(|(_, of)| *of == component) {
+            if let Some(mean) = self.mean(component) {
                 self.pull(&mut at, mean, PULLS[number % PULLS.len()]);
             }
             (self.legal)(component, &mut at);
@@ -163,11 +158,8 @@ impl Spread<'_> {
         let (mut at, component) = (from.at.clone(), from.component);
         match dice.below(3) {
             0 => {
-                let (mean, part) = (self.mean(component), 0.5 + 1.2 * dice.unit());
-                if self.ideals.iter().all(|ideal| ideal.component != component) {
-                    return None;
-                }
-                self.pull(&mut at, &mean, part);
+                let part = 0.5 + 1.2 * dice.unit();
+                self.pull(&mut at, self.mean(component)?, part);
             }
             1 => {
                 for _ in 0..=dice.below(3) {
@@ -192,12 +184,31 @@ impl Spread<'_> {
     }
 }
 
+/// Of genes whose values are names, the one that matters most.
+fn mean(prior: &Prior, members: &[&Ideal]) -> Vec<f32> {
+    let units: Vec<f32> = members.iter().map(|ideal| 1.0 / ideal.weights.iter().sum::<f32>()).collect();
+    let of = |gene: usize| {
+        let weighted =
+            || members.iter().zip(&units).map(|(one, unit)| (one.at[gene], unit * one.weights[gene]));
+        if prior.is_choice(gene) {
+            let votes = |at: f32| weighted().filter(|one| one.0 == at).map(|one| one.1).sum::<f32>();
+            let best = weighted().map(|one| (votes(one.0), one.0));
+            let best = best.reduce(|best, one| if one.0 > best.0 { one } else { best });
+            return best.map_or(0.0, |one| one.1);
+        }
+        let add = |(sum, all), (at, weight)| (sum + weight * at, all + weight);
+        let (sum, weight) = weighted().fold((0.0, 1e-12), add);
+        sum / weight
+    };
+    (0..prior.genes()).map(of).collect()
+}
+
 fn slices(rows: &[Vec<f32>]) -> Vec<&[f32]> {
     rows.iter().map(Vec::as_slice).collect()
 }
 
-/// How much a choice between points tells of which sample is right, in nats. `missed` has a row for each point: what each sample
-/// misses in it.
+/// How much a choice between points tells of which sample is right, in nats. `missed` has a row for each point: what
+/// each sample misses in it.
 fn information(missed: &[&[f32]]) -> f32 {
     let samples = missed.first().map_or(0, |row| row.len());
     let mut mean = [0.0f32; INDIVIDUALS];

@@ -30,8 +30,8 @@ impl Pace {
 /// Chance that a changed gene gets any allowed value instead of one nearby, and that a choice changes.
 const LEAP: f32 = 0.12;
 
-/// A chromosome with some genes changed. Seeds never are: they say which individual it is, and it is still the same one. Nor is
-/// what a person set to a value that is not allowed: it is meant.
+/// A chromosome with some genes changed. Seeds never are: they say which individual it is, and it is still the same
+/// one. Nor is what a person set to a value that is not allowed: it is meant.
 pub fn stepped(space: &Space, from: &Chromosome, bounds: &Bounds, pace: Pace, dice: &mut Dice) -> Chromosome {
     let may_change = |(gene, allowed): &(&Parameter, &Allowed)| {
         !gene.is_seed() && !allowed.is_fixed() && allowed.contains(from.code(gene))

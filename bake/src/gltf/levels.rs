@@ -1,6 +1,6 @@
 //! A levelled mesh → one self-contained .glb: scene 0 is D_0, with the others as its MSFT_lod, scene 1 every
-//! distinguished mesh side by side, each D_i with a core morph target that is its geomorph to D_{i+1}, and everything in `GSC_progressive_mesh` besides.
-//! Of a tree, pictures from four sides come last.
+//! distinguished mesh side by side, each D_i with a core morph target that is its geomorph to D_{i+1}, and everything
+//! in `GSC_progressive_mesh` besides. Of a tree, pictures from four sides come last.
 
 use genescape_schema::scene::{GSC_PROGRESSIVE_MESH, ProgressiveLevel, ProgressiveMeshExtension};
 use serde_json::json;

@@ -17,6 +17,20 @@ impl<'a> Company<'a> {
         Self { space, parts: Vec::new() }
     }
 
+    /// All parts of a landscape but that of one category.
+    pub fn beside(
+        space: &'a Space,
+        category: Category,
+        parts: [&Chromosome; 3],
+        homes: [Home<'a>; 3],
+    ) -> Self {
+        let mut company = Self::new(space);
+        for other in Category::ALL.into_iter().filter(|other| *other != category) {
+            company.add(other, parts[other as usize].clone(), homes[other as usize]);
+        }
+        company
+    }
+
     pub fn add(&mut self, category: Category, chromosome: Chromosome, home: Home<'a>) {
         self.parts.push((category, chromosome, home));
     }

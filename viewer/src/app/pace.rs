@@ -207,8 +207,8 @@ impl Pace {
         let mut judged = self.moving_frames.split_off(WARM_UP);
         judged.sort();
         let median = judged[JUDGED / 2].as_secs_f32();
-        // As if all of a frame's cost came from its pixels: too dear towards finer, too cheap towards coarser, which the next
-        // judgement mends.
+        // As if all of a frame's cost came from its pixels: too dear towards finer, too cheap towards coarser, which
+        // the next judgement mends.
         let area = |part: f32| part * part;
         let cost = |part: f32| median * area(part) / area(PARTS[self.part]);
         let target = MOVING_FRAME.as_secs_f32();

@@ -1,4 +1,5 @@
-//! The user interface's triangles → draws with a shader of our own: texts, surfaces, and the landscapes' pictures among them.
+//! The user interface's triangles → draws with a shader of our own: texts, surfaces, and the landscapes' pictures
+//! among them.
 //!
 //! egui's own shader asks for each pixel how to filter and whether to dither. Where the processor draws, both answers of
 //! each question are computed, and painting a window took longer than walking through its four landscapes.

@@ -63,8 +63,8 @@ impl ViewUniform {
         }
     }
 
-    /// The numbers of one view of a landscape: `camera` draws, `lod_eye` is the camera for which levels of detail are chosen, and
-    /// `detail` says how detailed the land is where.
+    /// The numbers of one view of a landscape: `camera` draws, `lod_eye` is the camera for which levels of detail are
+    /// chosen, and `detail` says how detailed the land is where.
     pub fn new(
         scene: &SceneBuffers,
         camera: &Camera,

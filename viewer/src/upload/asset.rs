@@ -1,5 +1,5 @@
-//! Anyone's file on the device: one vertex buffer and one index buffer for all shapes, where copies stand, materials, and the
-//! light of the room that it is shown in.
+//! Anyone's file on the device: one vertex buffer and one index buffer for all shapes, where copies stand, materials,
+//! and the light of the room that it is shown in.
 
 use std::collections::HashMap;
 use std::sync::Arc;

@@ -1,4 +1,5 @@
-//! Nothing → the shapes of herbs, dwarf shrubs and stones, and what all shapes are drawn with: a few triangles each, coarse ones first. Metres.
+//! Nothing → the shapes of herbs, dwarf shrubs and stones, and what all shapes are drawn with: a few triangles each,
+//! coarse ones first. Metres.
 
 use glam::Vec3;
 

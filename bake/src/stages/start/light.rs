@@ -32,8 +32,8 @@ impl Sun {
         Self { towards: light.sun_direction, part: level / (level + sky).max(1e-6) }
     }
 
-    /// How good the light is in a look from a place along a unit vector; `trees` are those that may stand before the sun, see
-    /// [`SHADES_M`].
+    /// How good the light is in a look from a place along a unit vector; `trees` are those that may stand before the
+    /// sun, see [`SHADES_M`].
     pub fn suits(&self, scene: &Surroundings<'_>, trees: &[&Tree], place: Vec2, along: Vec2) -> f32 {
         let lit = self.lit(scene, trees, place, along);
         let weight = ramp(0.05, 0.5, self.part);

@@ -1,7 +1,8 @@
 //! Genes → tiling bark: 512² texels of colour in sRGB and 256² of tangent-space normals a repeat.
 //!
 //! Three barks blend by `bark_tone`: dark with deep furrows (oak), brown plates (pine), pale and smooth with dark
-//! lenticels (birch). What is too slender for bark is a cane: green, smooth, with nodes. u runs around the stem, v along it; noise wraps at the edges.
+//! lenticels (birch). What is too slender for bark is a cane: green, smooth, with nodes. u runs around the stem, v
+//! along it; noise wraps at the edges.
 
 use bytemuck::Zeroable;
 use glam::Vec3;
