@@ -19,6 +19,13 @@ pub struct Round {
     changes: BTreeSet<Change>,
 }
 
+/// Bakes small landscapes, and ahead at most so many bytes.
+fn start_baker(files: &World, ahead: u64) -> Baker {
+    let heightfield = Resolution::of_side(65).expect("a side");
+    let options = BakerOptions { threads: None, heightfield, poll: false, ahead };
+    Baker::start(files.root(), options, || {}).expect("a thread")
+}
+
 impl Round {
     /// A world whose baker has begun.
     pub fn new() -> Self {
@@ -26,12 +33,7 @@ impl Round {
         let files = World::new(folder.path());
         let watch =
             Watch::start(Scope { scenes: true, ..Scope::of(files.clone()) }, false, || {}).expect("watched");
-        let options = BakerOptions {
-            threads: None,
-            heightfield: Resolution::of_side(65).expect("a side"),
-            poll: false,
-        };
-        let baker = Baker::start(files.root(), options, || {}).expect("a thread");
+        let baker = start_baker(&files, 0);
         Self { _folder: folder, files, baker, watch, edited: Vec::new(), changes: BTreeSet::new() }
     }
 
@@ -112,13 +114,30 @@ fn a_bake_ends_soon_after_its_baker_and_another_goes_on() {
     round.until(|event| matches!(event, Event::Started { .. }));
     let Round { _folder, files, baker, .. } = round;
     drop(baker);
-    let options =
-        BakerOptions { threads: None, heightfield: Resolution::of_side(65).expect("a side"), poll: false };
-    let baker = Baker::start(files.root(), options, || {}).expect("a thread");
+    let baker = start_baker(&files, 0);
     let (mut done, start) = (false, Instant::now());
     while !done && start.elapsed() < Duration::from_secs(120) {
         done = baker.events().any(|event| matches!(event, Event::Done { .. }));
         std::thread::sleep(Duration::from_millis(5));
     }
     assert!(done && (0..4).all(|scene| files.scene_path(0, scene).is_file()));
+}
+
+#[test]
+fn while_somebody_looks_what_may_be_voted_for_is_baked() {
+    let Round { _folder, files, baker: first, .. } = Round::new();
+    drop(first);
+    let round = Round { baker: start_baker(&files, u64::MAX), ..Round::new() };
+    let actions = || std::fs::read_dir(files.baked().join("actions")).map_or(0, Iterator::count);
+    round.until(|event| matches!(event, Event::Done { .. }));
+    let (asked_for, start) = (actions(), Instant::now());
+    while actions() < asked_for + 20 {
+        assert!(start.elapsed() < Duration::from_secs(120), "{} actions", actions());
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    assert_eq!(files.generations().expect("readable"), [0], "nobody sees what is only likely");
+    let votes = Votes { tree: Some(0), terrain: Some(0), sky: Some(0) };
+    Edited::make(&files, &Space::builtin(), 0, &Edit::Votes(Some(votes))).expect("written");
+    round.until(|event| matches!(event, Event::Bred { .. }));
+    round.until(|event| matches!(event, Event::Done { .. }));
 }

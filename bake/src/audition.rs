@@ -90,7 +90,7 @@ impl Stature {
 }
 
 /// A population of landscapes that somebody would look at, and which of them had to be drawn again for it.
-#[derive(Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Auditioned {
     pub population: Population,
     pub redrawn: Vec<Redrawn>,

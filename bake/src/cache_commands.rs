@@ -33,7 +33,7 @@ pub fn look_after(world: &Path, action: &CacheCommand, stopped: &dyn Fn() -> boo
     match action {
         CacheCommand::Stats => stats(&cache),
         CacheCommand::Verify => verify(&cache),
-        CacheCommand::Gc { max_size } => gc(&world, &cache, max_size.0, stopped),
+        CacheCommand::Gc { max_size } => gc(&world, &cache, *max_size, stopped),
     }
 }
 

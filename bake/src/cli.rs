@@ -341,8 +341,8 @@ pub enum CacheCommand {
     /// loses parts goes with them; baking its population brings it back.
     Gc {
         /// Size to shrink to, for example 500MB or 2GiB.
-        #[arg(long, value_name = "SIZE")]
-        max_size: ByteSize,
+        #[arg(long, value_name = "SIZE", value_parser = bytes)]
+        max_size: u64,
     },
 }
 
@@ -351,6 +351,11 @@ pub fn threads(text: &str) -> Result<usize, String> {
     const MAX_THREADS: usize = 1024;
     let threads = text.parse().ok().filter(|threads| (1..=MAX_THREADS).contains(threads));
     threads.ok_or_else(|| format!("a whole number from 1 to {MAX_THREADS}"))
+}
+
+/// A size in bytes, with or without a unit.
+pub fn bytes(text: &str) -> Result<u64, String> {
+    text.parse().map(|ByteSize(bytes)| bytes)
 }
 
 /// The command that a word which is no population file was meant to be, if one is near.
@@ -439,11 +444,10 @@ mod tests {
 
     #[test]
     fn sizes() {
-        let size = |text: &str| text.parse().map(|ByteSize(bytes)| bytes);
-        assert_eq!(size("500MB"), Ok(500_000_000));
-        assert_eq!(size("1.5 GiB"), Ok(3 << 29));
-        assert_eq!(size("12"), Ok(12));
-        assert!(size("12 parsecs").is_err());
-        assert!(size("-1MB").is_err());
+        assert_eq!(bytes("500MB"), Ok(500_000_000));
+        assert_eq!(bytes("1.5 GiB"), Ok(3 << 29));
+        assert_eq!(bytes("12"), Ok(12));
+        assert!(bytes("12 parsecs").is_err());
+        assert!(bytes("-1MB").is_err());
     }
 }

@@ -160,7 +160,7 @@ impl Host for Console {
 }
 
 fn summary(baked: &Baked) {
-    let Baked { file, scenes, built, reused, ms, publish } = baked;
+    let Baked { file, scenes, built, reused, ms, publish, .. } = baked;
     if *publish == Publish::Aside {
         // What is to be looked at and edited has been told already.
         say!("{} in {:.2} s: {built} stages built, {reused} reused", file.path.display(), ms / 1e3);

@@ -2,6 +2,7 @@
 
 pub mod say;
 
+pub mod ahead;
 pub mod audition;
 mod bad_input;
 pub mod bench;
@@ -22,6 +23,7 @@ mod manual;
 mod math;
 pub mod model;
 pub mod noise;
+pub mod pedigree;
 pub mod plan;
 mod progress;
 pub mod random;

@@ -26,6 +26,8 @@ pub struct Runner<'a> {
     pub listener: &'a dyn Listener,
     /// Whether to stop; asked before each stage.
     pub cancelled: &'a (dyn Fn() -> bool + Sync),
+    /// Called with each result.
+    pub finished: &'a (dyn Fn(&Done) + Sync),
     /// Called for each scene, as soon as all of it is complete; `false` if the scene's blob turns out to be lost.
     pub scene_ready: &'a (dyn Fn(usize, &BlobRef) -> anyhow::Result<bool> + Sync),
 }
@@ -127,6 +129,7 @@ impl Runner<'_> {
         let done = context
             .perform(node, self.pool, started)
             .map_err(|source| RunError::Stage { label: stage(), source })?;
+        (self.finished)(&done);
         let reused = done.how == How::Reused;
         let ms = if reused { 0.0 } else { start.elapsed().as_secs_f64() * 1e3 };
         self.listener.tell(&Event::Finished { stage: stage(), scenes: scenes(), reused, ms });
@@ -279,6 +282,7 @@ mod tests {
             pool: &pool,
             listener: &Clumsy::default(),
             cancelled: &|| false,
+            finished: &|_| (),
             scene_ready: &|_, _| Ok(true),
         };
         let panic = catch_unwind(AssertUnwindSafe(|| runner.run(&plan))).expect_err("it panics");

@@ -1,12 +1,13 @@
 //! Bakes of one world, for the command line, a watch, or the viewer's thread. Population file → scene files in place,
 //! `current.ron`, and a note for `bake explain` of what became of each stage.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::Result;
-use genescape_cache::{BlobRef, Cache, How};
+use genescape_cache::{BlobRef, Cache, Digest, How};
 use genescape_schema::{Kinds, Population, Space};
 use genescape_world::{PopulationFile, World, WorldKinds, names};
 
@@ -14,6 +15,7 @@ use crate::audition::{self, Auditioned};
 use crate::breed::{Breeder, Strategy};
 use crate::events::{Event, Listener};
 use crate::graph::Done;
+use crate::pedigree::Pedigree;
 use crate::plan::{Plan, Resolution};
 use crate::run::{self, RunError, Runner};
 
@@ -50,6 +52,8 @@ pub struct Baked {
     /// Milliseconds of wall-clock time.
     pub ms: f64,
     pub publish: Publish,
+    /// What it was made by.
+    pub actions: BTreeSet<Digest>,
 }
 
 impl Session {
@@ -69,6 +73,10 @@ impl Session {
 
     pub fn space(&self) -> &Space {
         &self.space
+    }
+
+    pub fn resolution(&self) -> Resolution {
+        self.resolution
     }
 
     /// Reads `space.ron` again.
@@ -118,7 +126,8 @@ impl Session {
         let (reused, ms) = (done.len() - built, start.elapsed().as_secs_f64() * 1e3);
         listener.tell(&Event::Done { built, reused, ms });
         let scenes = (0..plan.scenes.len()).map(|scene| self.world.scene_path(generation, scene)).collect();
-        Ok(Baked { file, scenes, built, reused, ms, publish })
+        let actions = done.iter().map(|done| done.key.digest()).collect();
+        Ok(Baked { file, scenes, built, reused, ms, publish, actions })
     }
 
     /// The kinds that landscapes are drawn and bred from. What is wrong with a file of a kind is told, and it is left out.
@@ -130,18 +139,33 @@ impl Session {
         kinds
     }
 
+    /// A population with all that its next children depend on.
+    ///
+    /// # Errors
+    /// A folder that cannot be read.
+    pub fn pedigree(&self, parents: Population, listener: &dyn Listener) -> Result<Pedigree> {
+        let next = self.world.next_generation()?;
+        let past = votes_before(&self.world, &self.space, &parents, next, listener);
+        Ok(Pedigree { space: self.space.clone(), kinds: self.kinds(listener), past, parents, next })
+    }
+
     /// Breeds from the votes in a population file, and writes the child as a new file with the next free number.
+    /// `known` may have bred it already.
     ///
     /// # Errors
     /// Faults of the file, [`crate::breed::NoVotes`], a number that somebody else has taken meanwhile, a file that cannot be
     /// written.
-    pub fn breed_file(&self, path: &Path, listener: &dyn Listener) -> Result<PathBuf> {
+    pub fn breed_file(
+        &self,
+        path: &Path,
+        listener: &dyn Listener,
+        known: impl FnOnce(&Pedigree) -> Option<Auditioned>,
+    ) -> Result<PathBuf> {
         let parents = World::read_population(&self.space, path)?.population;
-        let kinds = self.kinds(listener);
-        let next = self.world.next_generation()?;
-        let past = votes_before(&self.world, &self.space, &parents, next, listener);
-        let breeder = Breeder::new(&self.space, &kinds, Strategy::default(), &past, &parents)?;
-        let Auditioned { population, redrawn } = audition::next_generation(&breeder, next);
+        let votes = parents.votes;
+        let pedigree = self.pedigree(parents, listener)?;
+        let children = known(&pedigree).map_or_else(|| pedigree.children(votes), Ok)?;
+        let Auditioned { population, redrawn } = children;
         audition::tell(listener, &redrawn);
         Ok(self.world.create_population(&self.space, &population)?)
     }
@@ -164,7 +188,7 @@ impl Session {
             Ok(is_there)
         };
         let (cache, pool) = (&self.cache, &self.pool);
-        Runner { cache, pool, listener, cancelled, scene_ready: &scene_ready }.run(plan)
+        Runner { cache, pool, listener, cancelled, finished: &|_| (), scene_ready: &scene_ready }.run(plan)
     }
 
     /// Notes for `explain` what became of each stage of each scene.

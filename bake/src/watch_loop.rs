@@ -19,7 +19,9 @@ use anyhow::{Context, Result, anyhow};
 use genescape_schema::{Lineage, Parent, unanswered};
 use genescape_world::{Change, Scope, Snapshot, Watch};
 
+use crate::ahead::{self, Ahead};
 use crate::events::{Event, Listener};
+use crate::pedigree::Pedigree;
 use crate::run::RunError;
 use crate::session::{Baked, Publish, Session};
 
@@ -48,6 +50,10 @@ pub trait Host: Sync {
     fn failed(&self, error: &anyhow::Error);
     /// There is nothing to do until something is saved.
     fn waiting(&self) {}
+    /// Whether, and how, to bake what may be voted for while there is nothing else to do.
+    fn ahead(&self) -> Option<ahead::Options> {
+        None
+    }
 }
 
 /// Bakes the newest population, then what is saved, until `host` says stop.
@@ -67,8 +73,9 @@ pub fn run(session: &mut Session, options: &Options, host: &dyn Host) -> Result<
     let watch = Watch::start(scope.clone(), options.poll, wake)
         .with_context(|| format!("cannot watch {}", session.world().root().display()))?;
     // The session has read the space.
-    let mut state =
-        State { session, host, scope, known: None, space_is_good: true, due: BTreeSet::new(), shown: None };
+    let ahead = host.ahead().map(Ahead::new);
+    let (due, shown) = (BTreeSet::new(), None);
+    let mut state = State { session, host, scope, known: None, space_is_good: true, due, shown, ahead };
     loop {
         // Read before the look, so that no save after it is missed; the snapshot says what changed.
         let seen = signals.load(Ordering::SeqCst);
@@ -86,6 +93,7 @@ pub fn run(session: &mut Session, options: &Options, host: &dyn Host) -> Result<
             Err(error) => host.failed(&error),
         }
         host.waiting();
+        state.look_ahead();
         while signals.load(Ordering::SeqCst) == seen {
             if host.stopped() {
                 return Ok(());
@@ -106,6 +114,7 @@ struct State<'a> {
     due: BTreeSet<PathBuf>,
     /// What this loop made current.
     shown: Option<PathBuf>,
+    ahead: Option<Ahead>,
 }
 
 impl State<'_> {
@@ -125,6 +134,8 @@ impl State<'_> {
         if !first && now == known {
             return Ok(());
         }
+        // What is asked for comes before what may be.
+        self.ahead.iter_mut().for_each(Ahead::stop);
         if !first && now.changes_since(&known).contains(&Change::Space) {
             self.due.extend(self.shown.clone());
             let reloaded = self.session.reload_space();
@@ -170,7 +181,9 @@ impl State<'_> {
         loop {
             let path = known.lineages().find(|(_, lineage)| lineage.wanted() == Some(parent));
             let (path, _) = path.ok_or_else(|| anyhow!("generation {} vanished", parent.generation))?;
-            match self.session.breed_file(path, &*self.host.listener()) {
+            let guessed =
+                |pedigree: &Pedigree| self.ahead.as_ref().and_then(|ahead| ahead.children(pedigree));
+            match self.session.breed_file(path, &*self.host.listener(), guessed) {
                 Ok(child) => return Ok(Some(child)),
                 // Two may breed at the same time; the number is then taken, and by a sibling if not by the child itself.
                 Err(_) if !wanted(&Snapshot::take(&self.scope, known)).contains(&parent) => return Ok(None),
@@ -216,8 +229,19 @@ impl State<'_> {
                 if is_newest {
                     self.shown = Some(path);
                 }
-                result.map(|baked| host.baked(&baked))
+                let baked = result?;
+                self.ahead.iter().for_each(|ahead| ahead.keep(&baked.actions));
+                host.baked(&baked);
+                Ok(())
             }
+        }
+    }
+
+    /// Guesses what will be voted for, in the background.
+    fn look_ahead(&mut self) {
+        let (Some(ahead), Some(shown)) = (&mut self.ahead, &self.shown) else { return };
+        if let Err(error) = ahead.begin(self.session, shown) {
+            self.host.failed(&error);
         }
     }
 }

@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 
-use crate::action::is_record;
+use crate::action::{is_record, record_path};
 use crate::store::{Entry, is_staged};
 use crate::{ActionRecord, BlobRef, Cache, Digest, Result};
 
@@ -59,6 +59,22 @@ impl Gc<'_> {
         blobs.iter().try_for_each(|name| sweep.remove_blob_if_free(name))?;
         sweep.oldest_actions(max_bytes)?;
         sweep.abandoned_files()?;
+        Ok(sweep.report)
+    }
+
+    /// Removes actions whose results nobody wants, with the blobs that no other action gave. Those that are gone
+    /// already are no error.
+    ///
+    /// # Errors
+    /// If the folder cannot be listed or a file cannot be removed.
+    pub fn discard(&self, actions: &BTreeSet<Digest>) -> Result<GcReport> {
+        let _nothing_is_published = self.cache.locks.removing()?;
+        let mut sweep = Sweep::begin(self.cache, &BTreeSet::new())?;
+        let names: BTreeSet<String> = actions.iter().map(|action| record_path(*action)).collect();
+        let records = std::mem::take(&mut sweep.records).into_iter();
+        records
+            .filter(|record| names.contains(&record.entry.name))
+            .try_for_each(|record| sweep.remove_action(&record))?;
         Ok(sweep.report)
     }
 }
@@ -116,23 +132,27 @@ impl<'a> Sweep<'a> {
     }
 
     fn oldest_actions(&mut self, max_bytes: u64) -> Result<()> {
-        for Record { entry, record, in_use } in std::mem::take(&mut self.records) {
+        for record in std::mem::take(&mut self.records) {
             if self.report.bytes_left <= max_bytes {
                 break;
             }
-            if in_use {
-                continue;
+            if !record.in_use {
+                self.remove_action(&record)?;
             }
-            // The record first: if this process is killed now, its blobs are merely unnamed.
-            self.cache.store.remove(&entry.name)?;
-            self.report.actions_removed += 1;
-            self.report.bytes_left -= entry.bytes;
-            for (_, blob) in &record.outputs {
-                let path = blob.path();
-                if let Some(blob) = self.blobs.get_mut(&path) {
-                    blob.named -= 1;
-                    self.remove_blob_if_free(&path)?;
-                }
+        }
+        Ok(())
+    }
+
+    fn remove_action(&mut self, Record { entry, record, .. }: &Record) -> Result<()> {
+        // The record first: if this process is killed now, its blobs are merely unnamed.
+        self.cache.store.remove(&entry.name)?;
+        self.report.actions_removed += 1;
+        self.report.bytes_left -= entry.bytes;
+        for (_, blob) in &record.outputs {
+            let path = blob.path();
+            if let Some(blob) = self.blobs.get_mut(&path) {
+                blob.named -= 1;
+                self.remove_blob_if_free(&path)?;
             }
         }
         Ok(())

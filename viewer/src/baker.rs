@@ -17,8 +17,9 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
+use genescape_bake::ahead;
 use genescape_bake::breed::Strategy;
-use genescape_bake::cli::threads;
+use genescape_bake::cli::{bytes, threads};
 use genescape_bake::events::{Listener, Untold};
 use genescape_bake::plan::Resolution;
 use genescape_bake::session::{self, Session};
@@ -32,6 +33,8 @@ pub use genescape_bake::events::Event;
 /// Priority of threads that bake, from 0 to 99: half way down. At the very bottom a bake would never get on where the
 /// pictures are drawn by the processor, too.
 const BAKING: u8 = 25;
+/// Of threads that bake what nobody has asked for yet.
+const AHEAD: u8 = 15;
 /// What was baked is read before more is baked: somebody waits for it.
 const READING: u8 = 40;
 /// Until the first new attempt after a failure; each further pause is twice as long.
@@ -52,6 +55,10 @@ pub struct BakerOptions {
     /// Samples a side of the heightfields that are baked, as in `bake --size`: 65, 129, 257, 513, 1025 or 2049
     #[arg(long, value_name = "N", default_value_t)]
     pub heightfield: Resolution,
+
+    /// Bake what may be voted for while somebody looks, up to this size; 0 bakes nothing ahead
+    #[arg(long, value_name = "SIZE", default_value = "1GB", value_parser = bytes)]
+    pub ahead: u64,
 
     /// Look several times a second instead of waiting for events, for network folders that send none
     #[arg(long)]
@@ -80,7 +87,12 @@ impl Baker {
         let (sender, events) = channel();
         let (alive, ended) = channel();
         let stop = Arc::new(AtomicBool::new(false));
-        let reporter = Reporter { sender, wake: Box::new(wake), stop: Arc::clone(&stop) };
+        let ahead = ahead::Options {
+            max_bytes: options.ahead,
+            threads: cores_or(options.threads),
+            thread_started: || lower_priority_to(AHEAD),
+        };
+        let reporter = Reporter { sender, wake: Box::new(wake), stop: Arc::clone(&stop), ahead };
         let root = root.to_owned();
         thread::Builder::new().name("baker".into()).spawn(move || {
             let _alive: Sender<()> = alive;
@@ -116,15 +128,18 @@ fn bake(root: &Path, options: &BakerOptions, reporter: &Reporter) -> Result<()> 
 }
 
 fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
-    // None is left to what draws: where that is the processor, it rests meanwhile.
-    let cores = || thread::available_parallelism().map_or(1, |cores| cores.get());
-    let threads = threads.unwrap_or_else(cores).max(1);
     rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
+        .num_threads(cores_or(threads))
         .thread_name(|index| format!("baker {index}"))
         .start_handler(|_| lower_priority_to(BAKING))
         .build()
         .context("cannot start threads")
+}
+
+/// None is left to what draws: where that is the processor, it rests meanwhile.
+fn cores_or(threads: Option<usize>) -> usize {
+    let cores = || thread::available_parallelism().map_or(1, |cores| cores.get());
+    threads.unwrap_or_else(cores).max(1)
 }
 
 /// Threads to read what was baked: behind the one that draws and before those that bake.
@@ -169,6 +184,7 @@ struct Reporter {
     sender: Sender<Event>,
     wake: Box<dyn Fn() + Send + Sync>,
     stop: Arc<AtomicBool>,
+    ahead: ahead::Options,
 }
 
 impl Listener for &Reporter {
@@ -187,6 +203,10 @@ impl Host for Reporter {
 
     fn stopped(&self) -> bool {
         self.stop.load(Ordering::SeqCst)
+    }
+
+    fn ahead(&self) -> Option<ahead::Options> {
+        (self.ahead.max_bytes > 0).then_some(self.ahead)
     }
 
     fn failed(&self, error: &anyhow::Error) {
@@ -298,6 +318,7 @@ mod tests {
             threads: Some(1),
             heightfield: Resolution::of_side(65).expect("a side"),
             poll: false,
+            ahead: 0,
         };
         let baker = Baker::start(folder.path(), options, || {}).expect("a thread");
         let failed = wait_for(&baker, |event| matches!(event, Event::Failed { .. }));

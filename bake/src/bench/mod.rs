@@ -7,11 +7,12 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use anyhow::Result;
-use genescape_cache::{Cache, How};
+use genescape_cache::{BlobRef, Cache, How};
 use genescape_schema::{Category, Population, Space};
 
 use crate::events::{Event, Listener};
 use crate::gltf::{self, Picture};
+use crate::graph::Done;
 use crate::model::{Image8, TreeTextures};
 use crate::plan::{Plan, Resolution, TEMPLATES};
 use crate::run::Runner;
@@ -75,7 +76,8 @@ fn bake(
 ) -> Result<(f64, usize)> {
     let start = Instant::now();
     let plan = Plan::new(space, population, resolution)?;
-    let runner = Runner { cache, pool, listener, cancelled: &|| false, scene_ready: &|_, _| Ok(true) };
+    let (finished, scene_ready) = (&|_: &Done| (), &|_: usize, _: &BlobRef| Ok(true));
+    let runner = Runner { cache, pool, listener, cancelled: &|| false, finished, scene_ready };
     let done = runner.run(&plan)?;
     let built = done.iter().filter(|d| d.how == How::Built).count();
     Ok((start.elapsed().as_secs_f64() * 1e3, built))

@@ -38,6 +38,18 @@ pub struct Taste {
     chosen: Vec<Chromosome>,
 }
 
+impl Taste {
+    /// What votes on these populations say, which are in the order of generations.
+    pub fn of(space: &Space, kinds: &Kinds, category: Category, populations: &[&Population]) -> Self {
+        let evidence = Evidence::of(space, kinds, category, populations);
+        let prior = Prior::of(space, kinds, category, &evidence);
+        let Evidence { choices, chosen, .. } = evidence;
+        let ideals = plausible(&prior, ideals(&prior, &choices));
+        let means = Mean::all(&prior, &ideals);
+        Self { prior, ideals, means, votes: choices.len(), chosen }
+    }
+}
+
 impl<'a> Learned<'a> {
     /// `past` holds the populations before `parents`, in the order of generations.
     pub fn new(
@@ -49,14 +61,7 @@ impl<'a> Learned<'a> {
     ) -> Self {
         let voted = Population { votes: Some(votes), ..parents.clone() };
         let all: Vec<&Population> = past.iter().chain([&voted]).collect();
-        let of = |category: &Category| {
-            let evidence = Evidence::of(space, kinds, *category, &all);
-            let prior = Prior::of(space, kinds, *category, &evidence);
-            let Evidence { choices, chosen, .. } = evidence;
-            let ideals = plausible(&prior, ideals(&prior, &choices));
-            let means = Mean::all(&prior, &ideals);
-            Taste { prior, ideals, means, votes: choices.len(), chosen }
-        };
+        let of = |category: &Category| Taste::of(space, kinds, *category, &all);
         let tastes = Category::ALL.par_iter().map(of).collect();
         Self { space, kinds, parents, votes, tastes }
     }

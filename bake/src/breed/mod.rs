@@ -2,6 +2,7 @@
 //! (thesis, section 1), and each category is bred for itself.
 
 mod account;
+mod chances;
 mod classic;
 mod cross;
 mod descent;
@@ -19,6 +20,7 @@ use clap::ValueEnum;
 use genescape_schema::{Category, Kinds, Population, Space};
 
 pub use account::Account;
+pub use chances::likely_votes;
 use learned::Learned;
 
 /// How the next generation is found.

@@ -41,6 +41,7 @@ pub fn run(population: &Population, baked: &Path, threads: usize) -> Result<Vec<
         pool: &rayon::ThreadPoolBuilder::new().num_threads(threads).build()?,
         listener: &Silent,
         cancelled: &|| false,
+        finished: &|_| (),
         scene_ready: &|_, _| {
             scenes.fetch_add(1, Ordering::SeqCst);
             Ok(true)

@@ -79,6 +79,30 @@ fn the_least_recently_used_goes_first() {
 }
 
 #[test]
+fn what_is_discarded_goes_with_what_it_alone_gave() {
+    let world = tempfile::tempdir().expect("a temporary folder");
+    let cache = Cache::open(world.path()).expect("opens");
+    let same = |n: u32| {
+        let outputs = || {
+            Ok::<_, Error>(
+                ["same".to_owned(), n.to_string()]
+                    .map(|text| Output::new(text.clone(), "bin", text.into_bytes()))
+                    .to_vec(),
+            )
+        };
+        cache.get_or_build(&key(n), outputs).expect("builds").record
+    };
+    let [kept, gone] = [same(0), same(1)];
+    let unnamed = put(&cache, b"named by nobody", "bin").expect("stored");
+    let gc = cache.begin_gc(|| true).expect("locked").expect("it waits");
+    let report = gc.discard(&BTreeSet::from([key(1).digest(), key(2).digest()])).expect("discards");
+    assert_eq!((report.actions_removed, report.blobs_removed), (1, 1));
+    let exists = |blob: &BlobRef| world.path().join(blob.path()).exists();
+    assert!(kept.outputs.iter().all(|(_, blob)| exists(blob)) && exists(&unnamed));
+    assert!(!exists(&gone.outputs[1].1));
+}
+
+#[test]
 fn a_root_whose_record_is_lost_stays() {
     let world = tempfile::tempdir().expect("a temporary folder");
     let cache = Cache::open(world.path()).expect("opens");
