@@ -184,6 +184,16 @@ pub enum Command {
         #[arg(long, value_enum, default_value_t)]
         strategy: Strategy,
     },
+    /// Write the world's family tree as a page to look at in any browser, and to show others.
+    ///
+    /// It is one file with everything in it: every generation with its four landscapes, who was chosen, and what came of it.
+    /// An earlier page is replaced; any other file in the way is left alone.
+    #[command(after_help = "Examples:\n  bake lineage\n  bake lineage family.html")]
+    Lineage {
+        /// The file to write [default: lineage.html in the world's folder].
+        #[arg(value_name = "OUT.html")]
+        out: Option<PathBuf>,
+    },
     /// Print the parameter space as a table: the world's own, if there is a world.
     Params {
         /// Markdown instead of aligned text.
@@ -263,10 +273,13 @@ pub enum Command {
 }
 
 impl Command {
-    /// Whether `--json` has something to print: events, or the list of kinds.
+    /// Whether `--json` has something to print: events, the list of kinds, or generations.
     pub fn has_json(&self) -> bool {
         let lists_kinds = matches!(self, Self::Kinds { action: None });
-        lists_kinds || matches!(self, Self::Random { .. } | Self::Next { .. } | Self::Export { .. })
+        let is_lineage = matches!(self, Self::Lineage { out: None });
+        lists_kinds
+            || is_lineage
+            || matches!(self, Self::Random { .. } | Self::Next { .. } | Self::Export { .. })
     }
 }
 

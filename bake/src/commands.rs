@@ -24,7 +24,7 @@ use crate::run::RunError;
 use crate::say;
 use crate::session::{self, Baked, Publish, Session};
 use crate::watch_loop::{self, Host};
-use crate::{bench, cache_commands, export_command, kinds_command, lod_command, manual};
+use crate::{bench, cache_commands, export_command, kinds_command, lineage_command, lod_command, manual};
 
 /// Set by Ctrl-C.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
@@ -73,14 +73,15 @@ fn dispatch(cli: &Cli) -> Result<()> {
         return Err(BadInput(text.into()).into());
     }
     if run.json && !command.has_json() {
-        let text =
-            "--json prints the events of bakes and exports, and kinds; this command has none and prints text";
+        let text = "--json prints the events of bakes and exports, kinds, and a lineage instead of its page; here there is \
+             nothing to print so";
         return Err(BadInput(text.into()).into());
     }
     match command {
         Command::Random { seed, kinds, uniform } => random(*seed, kinds, *uniform, run),
         Command::Kinds { action } => kinds_command::run(action.as_ref(), run),
         Command::Next { from, strategy } => next(*from, *strategy, run),
+        Command::Lineage { out } => lineage_command::run(out.as_deref(), run),
         Command::Params { markdown } => params(&run.world, *markdown),
         Command::Explain { landscape } => explain(&run.world, *landscape),
         Command::Export { scene, out, options } => export_command::run(scene, out, *options, run),

@@ -17,6 +17,8 @@ pub mod graph;
 pub mod import;
 pub mod kinds;
 mod kinds_command;
+pub mod lineage;
+mod lineage_command;
 pub mod lod_command;
 mod manual;
 mod math;

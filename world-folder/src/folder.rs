@@ -14,6 +14,9 @@ use crate::{WorldError, atomic_write, names, regular_file};
 /// What a file of a world may hold that people write, in bytes; ours have some 12,000.
 pub const MAX_TEXT_BYTES: u64 = 4 << 20;
 
+/// What a thumbnail may hold, in bytes; ours have some 8,000.
+const MAX_THUMBNAIL_BYTES: u64 = 1 << 20;
+
 /// The landscapes that new worlds begin with.
 pub const STARTER_RON: &str = include_str!("../../configs/starter.ron");
 
@@ -256,6 +259,14 @@ impl World {
         let generation = file.population.generation;
         let scenes = std::array::from_fn(|scene| names::scene(generation, scene));
         Current { generation, population: file.digest.to_string(), scenes }
+    }
+
+    /// The thumbnail of a landscape, a JPEG file, if somebody has looked at it.
+    pub fn thumbnail(&self, generation: u32, scene: usize) -> Option<Vec<u8>> {
+        const BEGINNING: [u8; 3] = [0xff, 0xd8, 0xff];
+        let bytes =
+            regular_file::read(&self.root.join(names::thumbnail(generation, scene)), MAX_THUMBNAIL_BYTES);
+        bytes.ok().filter(|bytes| bytes.starts_with(&BEGINNING))
     }
 
     /// Removes what programs that were killed while they wrote left among the person's files; how many files.

@@ -52,6 +52,16 @@ pub fn descent(origins: [Origin; 3]) -> String {
     parts.collect::<Vec<_>>().join(SEPARATOR)
 }
 
+/// Of which of the four parents, counted from 1, a landscape of this descent has trees, land and sky.
+pub fn parents(descent: &str) -> [Vec<usize>; 3] {
+    let of = |part: &str| {
+        let words = part.split([' ', ',']).filter_map(|word| word.parse().ok());
+        words.filter(|parent| (1..=INDIVIDUALS).contains(parent)).collect()
+    };
+    let mut parts = descent.split(SEPARATOR).map(of);
+    std::array::from_fn(|_| parts.next().unwrap_or_default())
+}
+
 /// What kind of place a child is: "Birches on karst, mackerel sky". One that has two or three parts of a parent that
 /// a person gave a name keeps that, and says only what differs: "Grandmother's valley · mackerel sky". Parts of no
 /// kind are called by their descent.
@@ -87,4 +97,23 @@ fn is_of_kinds(kinds: &Kinds, name: &str) -> bool {
         && kinds.of(Category::Sky).any(|sky| ends(&sky.name));
     let is_part = |kind| name::part(Category::Tree, Home::Of(kind)).is_some_and(|part| part == name);
     is_whole || kinds.iter().any(|kind| kind.name == name || is_part(kind))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parents_are_read_from_a_descent() {
+        for (origins, expected) in [
+            ([Origin::Of(1), Origin::Like(2), Origin::New], [vec![2], vec![3], vec![]]),
+            ([Origin::Crossed(0, 3), Origin::Another(3), Origin::Widened(2)], [vec![1, 4], vec![4], vec![3]]),
+        ] {
+            assert_eq!(parents(&descent(origins)), expected);
+        }
+        let nothing = [const { Vec::<usize>::new() }; 3];
+        for other in ["", "by hand", "trees of 9 · land like 0", "as 1234 · 2.5"] {
+            assert_eq!(parents(other), nothing, "{other}");
+        }
+    }
 }

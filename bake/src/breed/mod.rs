@@ -19,6 +19,7 @@ use clap::ValueEnum;
 use genescape_schema::{Category, Kinds, Population, Space};
 
 pub use account::Account;
+pub use descent::parents;
 use learned::Learned;
 
 /// How the next generation is found.

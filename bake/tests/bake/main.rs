@@ -8,6 +8,7 @@ mod faults;
 mod healing;
 mod kinds;
 mod library;
+mod lineage;
 mod manual;
 mod random_genomes;
 mod stage_digests;
