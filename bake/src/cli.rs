@@ -1,17 +1,15 @@
 //! The command line: words → one [`Command`] for each thing that can be asked for.
 
-use std::fmt;
 use std::path::PathBuf;
-use std::str::FromStr;
 
 use bytesize::ByteSize;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
-use genescape_schema::INDIVIDUALS;
 
 use crate::bad_input::BadInput;
 use crate::breed::Strategy;
 use crate::export::{Audience, Options};
+use crate::landscape::{Landscape, Reference, SceneArg};
 use crate::plan::Resolution;
 
 const EXAMPLES: &str = "\
@@ -54,58 +52,6 @@ const MAN_EXAMPLES: &str = "\
 Examples:
   bake man | man -l -
   bake man ~/.local/share/man/man1  from then on: man bake-export";
-
-/// One of the four landscapes, which people count from 1; files and arrays count from 0.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Landscape(usize);
-
-impl Landscape {
-    /// All four, in order.
-    pub fn all() -> impl Iterator<Item = Self> {
-        (0..INDIVIDUALS).map(Self)
-    }
-
-    /// From 0.
-    pub fn index(self) -> usize {
-        self.0
-    }
-}
-
-impl fmt::Display for Landscape {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.0 + 1)
-    }
-}
-
-impl FromStr for Landscape {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let number = text.parse::<usize>().ok().filter(|number| (1..=INDIVIDUALS).contains(number));
-        number
-            .map(|number| Self(number - 1))
-            .ok_or_else(|| format!("there are landscapes 1 to {INDIVIDUALS}"))
-    }
-}
-
-/// A landscape of the current generation, or any baked one by its file.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum SceneArg {
-    Current(Landscape),
-    File(PathBuf),
-}
-
-impl FromStr for SceneArg {
-    type Err = String;
-
-    /// Whatever looks like a number is meant as one.
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text.parse::<i64>() {
-            Ok(_) => text.parse().map(Self::Current),
-            Err(_) => Ok(Self::File(text.into())),
-        }
-    }
-}
 
 /// Bakes landscapes from genomes: glTF, PNG and EXR files that open in Blender and in any glTF viewer.
 #[derive(Debug, Parser)]
@@ -194,6 +140,20 @@ pub enum Command {
         #[arg(value_name = "OUT.html")]
         out: Option<PathBuf>,
     },
+    /// Say how different two landscapes look: their trees, their land, their sky, and in what most.
+    ///
+    /// What is compared is not genes but what is seen: heights, shapes, colours, light, as they would be baked.
+    #[command(
+        after_help = "Examples:\n  bake distance 1 2\n  bake distance 1 0.3\n  bake distance 2.4 old.ron:1"
+    )]
+    Distance {
+        /// A landscape of the current generation, as 3, of another one, as 2.3, or of a population file, as old.ron:3.
+        #[arg(value_name = "LANDSCAPE", allow_negative_numbers = true)]
+        one: Reference,
+        /// Likewise.
+        #[arg(value_name = "LANDSCAPE", allow_negative_numbers = true)]
+        other: Reference,
+    },
     /// Print the parameter space as a table: the world's own, if there is a world.
     Params {
         /// Markdown instead of aligned text.
@@ -273,12 +233,13 @@ pub enum Command {
 }
 
 impl Command {
-    /// Whether `--json` has something to print: events, the list of kinds, or generations.
+    /// Whether `--json` has something to print: events, or what the command would say in words.
     pub fn has_json(&self) -> bool {
         let lists_kinds = matches!(self, Self::Kinds { action: None });
         let is_lineage = matches!(self, Self::Lineage { out: None });
         lists_kinds
             || is_lineage
+            || matches!(self, Self::Distance { .. })
             || matches!(self, Self::Random { .. } | Self::Next { .. } | Self::Export { .. })
     }
 }
@@ -403,18 +364,6 @@ mod tests {
             );
             assert_eq!((cli.run.world, cli.run.threads), ("here".into(), Some(2)));
         }
-    }
-
-    #[test]
-    fn landscapes_are_counted_from_one() {
-        assert_eq!("1".parse().map(Landscape::index), Ok(0));
-        assert!(Landscape::all().all(|landscape| landscape.to_string().parse() == Ok(landscape)));
-        for wrong in ["0", "5", "-1", "99999999999999999999", "one", ""] {
-            assert_eq!(wrong.parse::<Landscape>(), Err("there are landscapes 1 to 4".into()), "{wrong}");
-        }
-        assert_eq!("4".parse(), Ok(SceneArg::Current(Landscape(3))));
-        assert_eq!("0".parse::<SceneArg>(), Err("there are landscapes 1 to 4".into()));
-        assert_eq!("a/scene.gltf".parse(), Ok(SceneArg::File("a/scene.gltf".into())));
     }
 
     #[test]

@@ -16,15 +16,19 @@ use crate::audition::{self, Auditioned, Redrawn};
 use crate::bad_input::BadInput;
 use crate::breed::{Breeder, NoVotes, Strategy};
 use crate::cache_commands::GaveUp;
-use crate::cli::{Cli, Command, Landscape, RunArgs, meant_command};
+use crate::cli::{Cli, Command, RunArgs, meant_command};
 use crate::events::{Event, Listener, Untold};
 use crate::export::InTheWay;
+use crate::landscape::Landscape;
 use crate::progress::{JsonLines, ProgressBar};
 use crate::run::RunError;
 use crate::say;
 use crate::session::{self, Baked, Publish, Session};
 use crate::watch_loop::{self, Host};
-use crate::{bench, cache_commands, export_command, kinds_command, lineage_command, lod_command, manual};
+use crate::{
+    bench, cache_commands, distance_command, export_command, kinds_command, lineage_command, lod_command,
+    manual,
+};
 
 /// Set by Ctrl-C.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
@@ -73,14 +77,15 @@ fn dispatch(cli: &Cli) -> Result<()> {
         return Err(BadInput(text.into()).into());
     }
     if run.json && !command.has_json() {
-        let text = "--json prints the events of bakes and exports, kinds, and a lineage instead of its page; here there is \
-             nothing to print so";
+        let text = "--json prints the events of bakes and exports, kinds, distances, and a lineage instead of its page; \
+             this command has none and prints text";
         return Err(BadInput(text.into()).into());
     }
     match command {
         Command::Random { seed, kinds, uniform } => random(*seed, kinds, *uniform, run),
         Command::Kinds { action } => kinds_command::run(action.as_ref(), run),
         Command::Next { from, strategy } => next(*from, *strategy, run),
+        Command::Distance { one, other } => distance_command::run([one, other], run),
         Command::Lineage { out } => lineage_command::run(out.as_deref(), run),
         Command::Params { markdown } => params(&run.world, *markdown),
         Command::Explain { landscape } => explain(&run.world, *landscape),
