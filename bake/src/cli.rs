@@ -5,9 +5,11 @@ use std::path::PathBuf;
 use bytesize::ByteSize;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
+use genescape_schema::Variety;
 
 use crate::bad_input::BadInput;
 use crate::breed::Strategy;
+use crate::chosen_parents::ChosenParents;
 use crate::export::{Audience, Options};
 use crate::landscape::{Landscape, Reference, SceneArg};
 use crate::plan::Resolution;
@@ -129,7 +131,20 @@ pub enum Command {
         /// How it is found.
         #[arg(long, value_enum, default_value_t)]
         strategy: Strategy,
+        /// How different the others are from the best guess: 0 close variations, 1 anything [default: what the generation's
+        /// file says, else 0.5].
+        #[arg(long, value_name = "0..1", allow_negative_numbers = true)]
+        variety: Option<Variety>,
     },
+    /// Breed from parents of your choice instead of votes, and bake the children.
+    ///
+    /// A parent is a landscape of the current generation, as 3, of another one, as 2.3, or of a population file, as
+    /// old.ron:3; or a kind, as oak, of which a member is drawn. What is not named comes from the current generation: its
+    /// favourite or, without votes, landscape 1. The first child has these very parts.
+    #[command(
+        after_help = "Examples:\n  bake breed --tree 2.3 --sky 4\n  bake breed --terrain fjord --variety 0.2\n  bake breed --tree old.ron:1"
+    )]
+    Breed(ChosenParents),
     /// Write the world's family tree as a page to look at in any browser, and to show others.
     ///
     /// It is one file with everything in it: every generation with its four landscapes, who was chosen, and what came of it.
@@ -239,7 +254,7 @@ impl Command {
         let is_lineage = matches!(self, Self::Lineage { out: None });
         lists_kinds
             || is_lineage
-            || matches!(self, Self::Distance { .. })
+            || matches!(self, Self::Distance { .. } | Self::Breed(_))
             || matches!(self, Self::Random { .. } | Self::Next { .. } | Self::Export { .. })
     }
 }
@@ -359,7 +374,10 @@ mod tests {
         {
             let cli = Cli::try_parse_from([&["bake"], &words[..]].concat()).expect("valid");
             assert!(
-                matches!(cli.command, Some(Command::Next { from: None, strategy: Strategy::Learned })),
+                matches!(
+                    cli.command,
+                    Some(Command::Next { from: None, strategy: Strategy::Learned, variety: None })
+                ),
                 "{cli:?}"
             );
             assert_eq!((cli.run.world, cli.run.threads), ("here".into(), Some(2)));

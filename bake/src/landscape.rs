@@ -90,8 +90,31 @@ impl Reference {
     }
 }
 
+/// A parent that a person names: a landscape, or a kind of which a member is drawn.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ParentArg {
+    Landscape(Reference),
+    Kind(String),
+}
+
+impl FromStr for ParentArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let is_word = text.starts_with(|c: char| c.is_alphabetic()) && !text.contains(['.', ':', '/', '\\']);
+        match text.parse() {
+            Ok(reference) => Ok(Self::Landscape(reference)),
+            Err(_) if is_word => Ok(Self::Kind(text.to_owned())),
+            Err(error) => Err(format!("{error}; or it is a kind, as oak")),
+        }
+    }
+}
+
 /// The generation that was baked last or, where that is gone or nothing was baked, the newest.
-fn current(world: &World) -> Result<u32, WorldError> {
+///
+/// # Errors
+/// A folder that cannot be read, a world without landscapes.
+pub fn current(world: &World) -> Result<u32, WorldError> {
     let generations = world.generations()?;
     let current = world.current()?.map(|current| current.generation);
     let known = current.filter(|current| generations.contains(current));
@@ -156,6 +179,15 @@ mod tests {
         #[test]
         fn no_text_upsets_it(text in any::<String>()) {
             let _ = text.parse::<Reference>();
+        }
+    }
+
+    #[test]
+    fn a_word_is_a_kind() {
+        assert_eq!("fjord".parse(), Ok(ParentArg::Kind("fjord".into())));
+        assert_eq!("2.3".parse(), "2.3".parse().map(ParentArg::Landscape));
+        for wrong in ["7", "a.b", "old.ron", "c:\\old.ron", "", "-x"] {
+            assert!(wrong.parse::<ParentArg>().is_err(), "{wrong}");
         }
     }
 

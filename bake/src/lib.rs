@@ -7,6 +7,7 @@ mod bad_input;
 pub mod bench;
 pub mod breed;
 mod cache_commands;
+pub mod chosen_parents;
 pub mod cli;
 pub mod commands;
 mod distance_command;

@@ -240,7 +240,8 @@ impl World {
     /// # Errors
     /// A folder that cannot be read.
     pub fn child_of(&self, parent: &Parent) -> Result<Option<u32>, WorldError> {
-        let is_child = |generation: &u32| self.parent_of(*generation).as_ref() == Some(parent);
+        let is_child =
+            |generation: &u32| self.parent_of(*generation).is_some_and(|of| parent.is_answered_by(&of));
         Ok(self.generations()?.into_iter().find(is_child))
     }
 
@@ -457,7 +458,7 @@ mod tests {
     fn a_child_is_found_by_its_parents_and_their_votes() {
         let (_folder, world) = world();
         let votes = Votes { tree: Some(1), ..Votes::default() };
-        let parent = Parent { generation: 2, votes };
+        let parent = Parent { generation: 2, votes, variety: None };
         for (generation, parent) in [(10, None), (2, None), (4, Some(parent))] {
             put(&world, generation, parent);
         }

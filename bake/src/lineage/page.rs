@@ -210,7 +210,7 @@ mod tests {
 
     fn generation(number: u32, parent: Option<u32>, name: &str, descent: &str) -> Generation {
         let votes = Votes { tree: Some(2), terrain: None, sky: Some(2) };
-        let parent = parent.map(|generation| Parent { generation, votes });
+        let parent = parent.map(|generation| Parent { generation, votes, variety: None });
         let mut population =
             Population { parent, votes: Some(votes), ..Population::random(&Space::builtin(), 7, number) };
         for one in &mut population.individuals {

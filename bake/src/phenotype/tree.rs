@@ -8,7 +8,7 @@ use crate::stages::placement::{PlacementParams, place};
 use crate::stages::tree::{TreeMeasures, TreeParams, measure};
 
 /// What [`traits`] gives, in this order.
-pub const TRAITS: [Trait; 12] = [
+pub const TRAITS: [Trait; 13] = [
     Trait { name: "height", spread: 0.93 },
     Trait { name: "crown width", spread: 0.93 },
     Trait { name: "crown base", spread: 0.25 },
@@ -19,8 +19,9 @@ pub const TRAITS: [Trait; 12] = [
     Trait { name: "kind of leaves", spread: 1.03 },
     Trait { name: "droop", spread: 0.50 },
     Trait { name: "trunk", spread: 0.47 },
-    Trait { name: "number", spread: 0.92 },
-    Trait { name: "groves", spread: 0.10 },
+    Trait { name: "number", spread: 0.71 },
+    Trait { name: "groves", spread: 0.12 },
+    Trait { name: "where they grow", spread: 0.155 },
 ];
 
 /// Dark, brown and pale bark, linear.
@@ -49,6 +50,7 @@ pub fn traits(tree: &TreeParams, placement: &PlacementParams) -> Vec<Vec<f32>> {
         vec![0.5 * libm::log2f(trunk_radius_m / height_m), trunk[0], trunk[1], trunk[2]],
         vec![libm::log2f(1.0 + standing.len() as f32)],
         vec![evenness(&standing), placement.height_variation],
+        vec![placement.altitude_limit, 0.01 * placement.steepest_slope_deg, 0.01 * placement.hardiness_c],
     ]
 }
 
@@ -60,8 +62,14 @@ fn bark(tone: f32) -> [f32; 3] {
 
 /// The trees on a level meadow where it is warm: so it depends on no land.
 fn standing(placement: &PlacementParams, measures: &TreeMeasures) -> Vec<Instance> {
-    let params =
-        PlacementParams { terrain_seed: 0, temperature_c: 18.0, rain_mm: 1200.0, ..placement.clone() };
+    let params = PlacementParams {
+        terrain_seed: 0,
+        temperature_c: 25.0,
+        rain_mm: 1800.0,
+        // Level land has no height at which trees could end.
+        altitude_limit: 1.0,
+        ..placement.clone()
+    };
     let level = |side: u32, spacing_m: f32| Heightfield {
         side,
         spacing_m,

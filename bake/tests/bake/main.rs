@@ -1,6 +1,7 @@
 //! Whole bakes, by the program as a person runs it and by the library that it is made of.
 
 mod bad_input;
+mod breed;
 mod eviction;
 mod exit_codes;
 mod export;
