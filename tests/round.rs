@@ -69,7 +69,11 @@ impl Round {
         self.edited.push(edited.expect("written").expect("other votes"));
         self.until(|event| matches!(event, Event::Bred { parent, .. } if *parent == generation));
         self.until(|event| matches!(event, Event::Done { .. }));
-        let child = self.files.child_of(&Parent { generation, votes }).expect("readable").expect("a child");
+        let child = self
+            .files
+            .child_of(&Parent { generation, votes, variety: None })
+            .expect("readable")
+            .expect("a child");
         for change in (0..4).map(|index| Change::Scene { generation: child, index }) {
             self.told(change);
         }

@@ -1,17 +1,17 @@
 //! The command line: words → one [`Command`] for each thing that can be asked for.
 
-use std::fmt;
 use std::path::PathBuf;
-use std::str::FromStr;
 
 use bytesize::ByteSize;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
-use genescape_schema::INDIVIDUALS;
+use genescape_schema::Variety;
 
 use crate::bad_input::BadInput;
 use crate::breed::Strategy;
+use crate::chosen_parents::ChosenParents;
 use crate::export::{Audience, Options};
+use crate::landscape::{Landscape, Reference, SceneArg};
 use crate::plan::Resolution;
 
 const EXAMPLES: &str = "\
@@ -54,58 +54,6 @@ const MAN_EXAMPLES: &str = "\
 Examples:
   bake man | man -l -
   bake man ~/.local/share/man/man1  from then on: man bake-export";
-
-/// One of the four landscapes, which people count from 1; files and arrays count from 0.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Landscape(usize);
-
-impl Landscape {
-    /// All four, in order.
-    pub fn all() -> impl Iterator<Item = Self> {
-        (0..INDIVIDUALS).map(Self)
-    }
-
-    /// From 0.
-    pub fn index(self) -> usize {
-        self.0
-    }
-}
-
-impl fmt::Display for Landscape {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.0 + 1)
-    }
-}
-
-impl FromStr for Landscape {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let number = text.parse::<usize>().ok().filter(|number| (1..=INDIVIDUALS).contains(number));
-        number
-            .map(|number| Self(number - 1))
-            .ok_or_else(|| format!("there are landscapes 1 to {INDIVIDUALS}"))
-    }
-}
-
-/// A landscape of the current generation, or any baked one by its file.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum SceneArg {
-    Current(Landscape),
-    File(PathBuf),
-}
-
-impl FromStr for SceneArg {
-    type Err = String;
-
-    /// Whatever looks like a number is meant as one.
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text.parse::<i64>() {
-            Ok(_) => text.parse().map(Self::Current),
-            Err(_) => Ok(Self::File(text.into())),
-        }
-    }
-}
 
 /// Bakes landscapes from genomes: glTF, PNG and EXR files that open in Blender and in any glTF viewer.
 #[derive(Debug, Parser)]
@@ -183,6 +131,43 @@ pub enum Command {
         /// How it is found.
         #[arg(long, value_enum, default_value_t)]
         strategy: Strategy,
+        /// How different the others are from the best guess: 0 close variations, 1 anything [default: what the generation's
+        /// file says, else 0.5].
+        #[arg(long, value_name = "0..1", allow_negative_numbers = true)]
+        variety: Option<Variety>,
+    },
+    /// Breed from parents of your choice instead of votes, and bake the children.
+    ///
+    /// A parent is a landscape of the current generation, as 3, of another one, as 2.3, or of a population file, as
+    /// old.ron:3; or a kind, as oak, of which a member is drawn. What is not named comes from the current generation: its
+    /// favourite or, without votes, landscape 1. The first child has these very parts.
+    #[command(
+        after_help = "Examples:\n  bake breed --tree 2.3 --sky 4\n  bake breed --terrain fjord --variety 0.2\n  bake breed --tree old.ron:1"
+    )]
+    Breed(ChosenParents),
+    /// Write the world's family tree as a page to look at in any browser, and to show others.
+    ///
+    /// It is one file with everything in it: every generation with its four landscapes, who was chosen, and what came of it.
+    /// An earlier page is replaced; any other file in the way is left alone.
+    #[command(after_help = "Examples:\n  bake lineage\n  bake lineage family.html")]
+    Lineage {
+        /// The file to write [default: lineage.html in the world's folder].
+        #[arg(value_name = "OUT.html")]
+        out: Option<PathBuf>,
+    },
+    /// Say how different two landscapes look: their trees, their land, their sky, and in what most.
+    ///
+    /// What is compared is not genes but what is seen: heights, shapes, colours, light, as they would be baked.
+    #[command(
+        after_help = "Examples:\n  bake distance 1 2\n  bake distance 1 0.3\n  bake distance 2.4 old.ron:1"
+    )]
+    Distance {
+        /// A landscape of the current generation, as 3, of another one, as 2.3, or of a population file, as old.ron:3.
+        #[arg(value_name = "LANDSCAPE", allow_negative_numbers = true)]
+        one: Reference,
+        /// Likewise.
+        #[arg(value_name = "LANDSCAPE", allow_negative_numbers = true)]
+        other: Reference,
     },
     /// Print the parameter space as a table: the world's own, if there is a world.
     Params {
@@ -263,10 +248,14 @@ pub enum Command {
 }
 
 impl Command {
-    /// Whether `--json` has something to print: events, or the list of kinds.
+    /// Whether `--json` has something to print: events, or what the command would say in words.
     pub fn has_json(&self) -> bool {
         let lists_kinds = matches!(self, Self::Kinds { action: None });
-        lists_kinds || matches!(self, Self::Random { .. } | Self::Next { .. } | Self::Export { .. })
+        let is_lineage = matches!(self, Self::Lineage { out: None });
+        lists_kinds
+            || is_lineage
+            || matches!(self, Self::Distance { .. } | Self::Breed(_))
+            || matches!(self, Self::Random { .. } | Self::Next { .. } | Self::Export { .. })
     }
 }
 
@@ -390,23 +379,14 @@ mod tests {
         {
             let cli = Cli::try_parse_from([&["bake"], &words[..]].concat()).expect("valid");
             assert!(
-                matches!(cli.command, Some(Command::Next { from: None, strategy: Strategy::Learned })),
+                matches!(
+                    cli.command,
+                    Some(Command::Next { from: None, strategy: Strategy::Learned, variety: None })
+                ),
                 "{cli:?}"
             );
             assert_eq!((cli.run.world, cli.run.threads), ("here".into(), Some(2)));
         }
-    }
-
-    #[test]
-    fn landscapes_are_counted_from_one() {
-        assert_eq!("1".parse().map(Landscape::index), Ok(0));
-        assert!(Landscape::all().all(|landscape| landscape.to_string().parse() == Ok(landscape)));
-        for wrong in ["0", "5", "-1", "99999999999999999999", "one", ""] {
-            assert_eq!(wrong.parse::<Landscape>(), Err("there are landscapes 1 to 4".into()), "{wrong}");
-        }
-        assert_eq!("4".parse(), Ok(SceneArg::Current(Landscape(3))));
-        assert_eq!("0".parse::<SceneArg>(), Err("there are landscapes 1 to 4".into()));
-        assert_eq!("a/scene.gltf".parse(), Ok(SceneArg::File("a/scene.gltf".into())));
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result};
 use genescape_cache::{Change, Explanation};
-use genescape_schema::{Genome, Kinds, Population, Space};
+use genescape_schema::{Genome, Kinds, Population, Space, Variety};
 use genescape_world::output::BadOutput;
 use genescape_world::{World, WorldError, file_limit, names};
 use signal_hook::consts::SIGINT;
@@ -16,15 +16,20 @@ use crate::audition::{self, Auditioned, Redrawn};
 use crate::bad_input::BadInput;
 use crate::breed::{Breeder, NoVotes, Strategy};
 use crate::cache_commands::GaveUp;
-use crate::cli::{Cli, Command, Landscape, RunArgs, meant_command};
+use crate::chosen_parents::ChosenParents;
+use crate::cli::{Cli, Command, RunArgs, meant_command};
 use crate::events::{Event, Listener, Untold};
 use crate::export::InTheWay;
+use crate::landscape::{self, Landscape};
 use crate::progress::{JsonLines, ProgressBar};
 use crate::run::RunError;
 use crate::say;
 use crate::session::{self, Baked, Publish, Session};
 use crate::watch_loop::{self, Host};
-use crate::{bench, cache_commands, export_command, kinds_command, lod_command, manual};
+use crate::{
+    bench, cache_commands, distance_command, export_command, kinds_command, lineage_command, lod_command,
+    manual,
+};
 
 /// Set by Ctrl-C.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
@@ -73,14 +78,17 @@ fn dispatch(cli: &Cli) -> Result<()> {
         return Err(BadInput(text.into()).into());
     }
     if run.json && !command.has_json() {
-        let text =
-            "--json prints the events of bakes and exports, and kinds; this command has none and prints text";
+        let text = "--json prints the events of bakes and exports, kinds, distances, and a lineage instead of its page; \
+             this command has none and prints text";
         return Err(BadInput(text.into()).into());
     }
     match command {
         Command::Random { seed, kinds, uniform } => random(*seed, kinds, *uniform, run),
         Command::Kinds { action } => kinds_command::run(action.as_ref(), run),
-        Command::Next { from, strategy } => next(*from, *strategy, run),
+        Command::Next { from, strategy, variety } => next(*from, *strategy, *variety, run),
+        Command::Breed(parents) => breed(parents, run),
+        Command::Distance { one, other } => distance_command::run([one, other], run),
+        Command::Lineage { out } => lineage_command::run(out.as_deref(), run),
         Command::Params { markdown } => params(&run.world, *markdown),
         Command::Explain { landscape } => explain(&run.world, *landscape),
         Command::Export { scene, out, options } => export_command::run(scene, out, *options, run),
@@ -121,6 +129,15 @@ impl Console {
             say!("made {}", path.display());
         }
         self.bake(session, path)
+    }
+
+    /// Bakes a population file that was just bred.
+    fn bake_bred(&self, session: &Session, parent: u32, path: &Path) -> Result<()> {
+        if self.json {
+            let path = path.display().to_string();
+            JsonLines.tell(&Event::Bred { parent, path });
+        }
+        self.bake_new(session, path)
     }
 
     /// Bakes one population file and reports the outcome.
@@ -237,7 +254,7 @@ fn drawn_seed() -> u64 {
     RandomState::new().hash_one(()) % 1_000_000
 }
 
-fn next(from: Option<u32>, strategy: Strategy, args: &RunArgs) -> Result<()> {
+fn next(from: Option<u32>, strategy: Strategy, variety: Option<Variety>, args: &RunArgs) -> Result<()> {
     // Nothing can be bred in a world that would have to be made.
     World::open(&args.world)?;
     let (session, console) = (open_session(args)?, Console::new(args));
@@ -247,14 +264,22 @@ fn next(from: Option<u32>, strategy: Strategy, args: &RunArgs) -> Result<()> {
         None => world.newest_population()?,
     };
     let parents = World::read_population(session.space(), &parents)?.population;
+    let parents = Population { variety: variety.or(parents.variety), ..parents };
     let kinds = session.kinds(&*console.listener());
     let path =
         session::breed_another(world, session.space(), &kinds, strategy, &parents, &*console.listener())?;
-    if args.json {
-        let (parent, path) = (parents.generation, path.display().to_string());
-        JsonLines.tell(&Event::Bred { parent, path });
-    }
-    console.bake_new(&session, &path)
+    console.bake_bred(&session, parents.generation, &path)
+}
+
+fn breed(parents: &ChosenParents, args: &RunArgs) -> Result<()> {
+    World::open(&args.world)?;
+    let (session, console) = (open_session(args)?, Console::new(args));
+    let (space, listener) = (session.space(), console.listener());
+    let kinds = session.kinds(&*listener);
+    let parent = landscape::current(session.world())?;
+    let path = parents.breed(session.world(), space, &kinds, parent, &*listener)?;
+    listener.end();
+    console.bake_bred(&session, parent, &path)
 }
 
 fn params(world: &Path, markdown: bool) -> Result<()> {
@@ -297,6 +322,9 @@ fn tell_origin(space: &Space, population: &Population, world: &World) {
     let Population { seed, generation, parent, .. } = *population;
     let kinds = world.kinds(space).kinds;
     let tell = |redrawn: &[Redrawn]| redrawn.iter().for_each(|redrawn| say!("{redrawn}"));
+    if let Some([tree, terrain, sky]) = &population.bred_from {
+        return say!("bred from chosen parents: trees of {tree}, land of {terrain}, sky of {sky}");
+    }
     let Some(parent) = parent else {
         let of = |kinds: &Kinds| {
             let draw = |attempt| audition::drawn(space, kinds, &[], seed, generation, attempt).population;
@@ -306,8 +334,8 @@ fn tell_origin(space: &Space, population: &Population, world: &World) {
     };
     let parents = World::read_population(space, &world.population_path(parent.generation));
     let Ok(parents) = parents else { return };
-    let parents = Population { votes: Some(parent.votes), ..parents.population };
-    let past = session::votes_before(world, space, &parents, generation, &Untold);
+    let parents = Population { votes: Some(parent.votes), variety: parent.variety, ..parents.population };
+    let past = session::votes_before(world, space, Some(parents.generation), generation, &Untold);
     let breeder = Breeder::new(space, &kinds, Strategy::default(), &past, &parents);
     let Ok(breeder) = breeder else { return };
     tell(&audition::redrawn(space, |attempt| audition::bred(&breeder, generation, attempt), population));

@@ -7,9 +7,10 @@ use genescape_schema::Current;
 use genescape_world::World;
 
 use crate::cache_commands;
-use crate::cli::{ExportArgs, RunArgs, SceneArg};
+use crate::cli::{ExportArgs, RunArgs};
 use crate::events::Listener;
 use crate::export::{self, Audience, Exported};
+use crate::landscape::SceneArg;
 use crate::progress::{JsonLines, ProgressBar};
 use crate::say;
 

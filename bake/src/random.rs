@@ -1,7 +1,5 @@
 //! Four landscapes by chance, each a land of some kind with trees and a sky that go with it, and no two of a kind.
 
-use std::collections::BTreeSet;
-
 use genescape_schema::{Category, Genome, INDIVIDUALS, Individual, Kind, Kinds, Population, Space};
 
 use crate::kinds::pick::Picker;
@@ -48,8 +46,7 @@ pub fn population(
         individuals.push(landscape.individual);
     }
     let individuals = individuals.try_into().ok()?;
-    let locked = BTreeSet::new();
-    let population = Population { generation, seed, parent: None, individuals, votes: None, locked };
+    let population = Population::new(generation, seed, individuals);
     Some(Drawn { population, notices })
 }
 
@@ -99,6 +96,8 @@ fn draw<'a>(picker: &Picker<'a>, seen: &[&Kind], dice: &mut Dice) -> Option<Land
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use super::*;
     use crate::kinds::testing::{drawn, kinds};
 

@@ -145,7 +145,7 @@ impl Session {
     /// A folder that cannot be read.
     pub fn pedigree(&self, parents: Population, listener: &dyn Listener) -> Result<Pedigree> {
         let next = self.world.next_generation()?;
-        let past = votes_before(&self.world, &self.space, &parents, next, listener);
+        let past = votes_before(&self.world, &self.space, Some(parents.generation), next, listener);
         Ok(Pedigree { space: self.space.clone(), kinds: self.kinds(listener), past, parents, next })
     }
 
@@ -236,7 +236,7 @@ pub fn breed_another(
         let siblings = (0..generation).filter(is_sibling).count();
         let seed = parents.seed.wrapping_add(siblings as u64);
         let parents = Population { seed, ..parents.clone() };
-        let past = votes_before(world, space, &parents, generation, listener);
+        let past = votes_before(world, space, Some(parents.generation), generation, listener);
         let breeder = Breeder::new(space, kinds, strategy, &past, &parents)?;
         let Auditioned { population, redrawn } = audition::next_generation(&breeder, generation);
         audition::tell(listener, &redrawn);
@@ -244,12 +244,12 @@ pub fn breed_another(
     })
 }
 
-/// The populations with lower numbers than `next` that were voted on, but for the parents themselves. What cannot be
-/// read is told, and breeding does without.
+/// The populations with lower numbers than `next` that were voted on, but for the parents themselves, if they are `parents`.
+/// What cannot be read is told, and breeding does without.
 pub fn votes_before(
     world: &World,
     space: &Space,
-    parents: &Population,
+    parents: Option<u32>,
     next: u32,
     listener: &dyn Listener,
 ) -> Vec<Population> {
@@ -262,7 +262,7 @@ pub fn votes_before(
         }
     };
     let others = world.generations().unwrap_or_default().into_iter();
-    others.filter(|other| *other < next && *other != parents.generation).filter_map(read).collect()
+    others.filter(|other| *other < next && Some(*other) != parents).filter_map(read).collect()
 }
 
 /// A name in the world as one in the cache's folder.

@@ -9,6 +9,7 @@ use crate::population::Votes;
 use crate::report::Report;
 use crate::ron_tree::{Field, Node, Value, prepare};
 use crate::space::Space;
+use crate::variety::Variety;
 use crate::write::{locked_text, vote_text, votes_text};
 
 /// A change that cannot be made.
@@ -42,6 +43,22 @@ pub fn set_votes(file: &str, text: &str, votes: Option<Votes>) -> Result<String,
         match find(fields, "votes") {
             Ok(node) => Ok(vote_changes(node, votes)),
             Err(_) => add_field(text, fields, &format!("votes: {}", votes_text(votes.as_ref()))),
+        }
+    })
+}
+
+/// The text of a population file whose children are to be so different from the best guess.
+///
+/// # Errors
+/// Text that is no population.
+pub fn set_variety(file: &str, text: &str, variety: Option<Variety>) -> Result<String, EditError> {
+    let written = variety.map_or("None".to_owned(), |variety| variety.to_string());
+    edit(file, text, |root| {
+        let fields = struct_fields(root, "Population")?;
+        match find(fields, "variety") {
+            Ok(node) => Ok(vec![(node.span(), written)]),
+            Err(_) if variety.is_none() => Ok(Vec::new()),
+            Err(_) => add_field(text, fields, &format!("variety: {written}")),
         }
     })
 }

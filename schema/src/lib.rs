@@ -20,6 +20,7 @@ mod ron_tree;
 pub mod scene;
 mod space;
 mod table;
+mod variety;
 mod write;
 
 pub use current::Current;
@@ -32,3 +33,4 @@ pub use population::{INDIVIDUALS, Individual, Loaded, LoadedPreset, Parent, Popu
 pub use printable::printable;
 pub use report::{Diagnostic, Report};
 pub use space::Space;
+pub use variety::Variety;

@@ -1,14 +1,16 @@
 //! Lineage: the fields of a population file that say which generation it comes from, readable even when its genes are
 //! not, and the generations that votes ask for.
 
-use crate::check::{Checker, given, optional, read};
+use crate::check::{Checker, MAX_NAME, given, optional, read};
 use crate::parameter::Category;
 use crate::population::{INDIVIDUALS, Parent, Votes};
 use crate::report::Report;
 use crate::ron_tree::{Field, Node, Value};
+use crate::variety::Variety;
 
 /// Fields that a population file may have.
-const FIELDS: [&str; 6] = ["generation", "seed", "parent", "votes", "locked", "individuals"];
+const FIELDS: [&str; 8] =
+    ["generation", "seed", "parent", "bred_from", "votes", "variety", "locked", "individuals"];
 
 /// A population file without its genes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +20,8 @@ pub struct Lineage {
     pub parent: Option<Parent>,
     /// The votes on it.
     pub votes: Option<Votes>,
+    /// How different its children are to be, if anybody said.
+    pub variety: Option<Variety>,
 }
 
 impl Lineage {
@@ -32,15 +36,17 @@ impl Lineage {
 
     /// The record that a child bred now would carry; `None` while there are no votes.
     pub fn wanted(&self) -> Option<Parent> {
-        self.votes.map(|votes| Parent { generation: self.generation, votes })
+        let Self { generation, variety, .. } = *self;
+        self.votes.map(|votes| Parent { generation, votes, variety })
     }
 }
 
 /// The children that are wanted and not there: one for each population with votes that no population says it was
-/// bred from. In the order of generations.
+/// bred from, see [`Parent::is_answered_by`]. In the order of generations.
 pub fn unanswered(lineages: &[Lineage]) -> Vec<Parent> {
     let mut wanted: Vec<Parent> = lineages.iter().filter_map(Lineage::wanted).collect();
-    wanted.retain(|wanted| !lineages.iter().any(|child| child.parent.as_ref() == Some(wanted)));
+    let parents: Vec<Parent> = lineages.iter().filter_map(|child| child.parent).collect();
+    wanted.retain(|wanted| !parents.iter().any(|parent| wanted.is_answered_by(parent)));
     wanted.sort_by_key(|parent| parent.generation);
     wanted.dedup();
     wanted
@@ -57,19 +63,43 @@ pub(crate) fn read_lineage<'n, 't>(
     // A file without these lines is one that was not bred, one without votes.
     let parent = optional(&fields, "parent").and_then(|node| read_parent(checker, node));
     let votes = optional(&fields, "votes").and_then(|node| read_votes(checker, node));
-    let lineage = generation.map(|generation| Lineage { generation, parent, votes });
+    let variety = optional(&fields, "variety").and_then(|node| read_variety(checker, node));
+    let lineage = generation.map(|generation| Lineage { generation, parent, votes, variety });
     Some((fields, lineage))
 }
 
 /// `Some((generation: 3, votes: (…)))`, with or without the `Some`, or `None`.
 fn read_parent(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<Parent> {
     let node = unwrapped(node)?;
-    let fields = checker.record(node, "parent", &["generation", "votes"])?;
+    let fields = checker.record(node, "parent", &["generation", "votes", "variety"])?;
     let generation = checker.need(&fields, node, "parent", "generation");
     let generation = generation.and_then(|node| checker.whole(node, "parent: generation", u32::MAX));
     let votes = checker.need(&fields, node, "parent", "votes");
     let votes = votes.and_then(|node| read_votes(checker, node)).unwrap_or_default();
-    Some(Parent { generation: generation?, votes })
+    let variety = optional(&fields, "variety").and_then(|node| read_variety(checker, node));
+    Some(Parent { generation: generation?, votes, variety })
+}
+
+/// `0.3`, with or without a `Some`, or `None`.
+fn read_variety(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<Variety> {
+    let node = unwrapped(node)?;
+    let number = checker.number(node, "variety")?;
+    Variety::of(number).or_else(|| {
+        let text = format!("variety: {} is outside 0, close variations, … 1, anything", given(node));
+        checker.refuse(node.span(), text)
+    })
+}
+
+/// `(tree: "3.2", terrain: "fjord", sky: "old.ron:1")`, with or without a `Some`, or `None`.
+pub(crate) fn read_bred_from(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<[String; 3]> {
+    let node = unwrapped(node)?;
+    let names = Category::ALL.map(Category::name);
+    let fields = checker.record(node, "bred_from", &names)?;
+    let [tree, terrain, sky] = names.map(|name| {
+        let parent = checker.need(&fields, node, "bred_from", name)?;
+        Some(checker.line(parent, &format!("bred_from: {name}"), MAX_NAME)?.to_owned())
+    });
+    Some([tree?, terrain?, sky?])
 }
 
 /// `Some((tree: Some(0), …))`, with or without each `Some`, or `None`.
@@ -116,7 +146,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn lineage(generation: u32, parent: Option<Parent>, votes: Option<Votes>) -> Lineage {
-        Lineage { generation, parent, votes }
+        Lineage { generation, parent, votes, variety: None }
     }
 
     fn votes() -> impl Strategy<Value = Votes> {
@@ -141,9 +171,22 @@ mod tests {
 
         #[test]
         fn other_votes_on_an_old_generation_want_another_child(old in votes(), new in votes()) {
-            let child = lineage(1, Some(Parent { generation: 0, votes: old }), None);
+            let child = lineage(1, Some(Parent { generation: 0, votes: old, variety: None }), None);
             let wanted = unanswered(&[lineage(0, None, Some(new)), child]);
             prop_assert_eq!(wanted.is_empty(), old == new);
+        }
+    }
+
+    #[test]
+    fn where_variety_is_asked_for_only_such_children_answer() {
+        let votes = Votes { tree: Some(1), terrain: None, sky: Some(3) };
+        let [none, low, high] = [None, Some(Variety::MIN), Some(Variety::MAX)];
+        for (asked, bred, answers) in
+            [(none, none, true), (none, low, true), (low, low, true), (low, high, false), (low, none, false)]
+        {
+            let child = lineage(1, Some(Parent { generation: 0, votes, variety: bred }), None);
+            let parents = Lineage { variety: asked, ..lineage(0, None, Some(votes)) };
+            assert_eq!(unanswered(&[parents, child]).is_empty(), answers, "{asked:?}, {bred:?}");
         }
     }
 
@@ -152,7 +195,7 @@ mod tests {
         let text = "Population(generation: 4, seed: 1, individuals: [(tree: (height: 1))],
             parent: Some((generation: 2, votes: (tree: Some(1), sky: 3))), votes: None)";
         let votes = Votes { tree: Some(1), terrain: None, sky: Some(3) };
-        let expected = lineage(4, Some(Parent { generation: 2, votes }), None);
+        let expected = lineage(4, Some(Parent { generation: 2, votes, variety: None }), None);
         assert_eq!(Lineage::read("p.ron", text), Ok(expected));
         let error =
             Lineage::read("p.ron", "(generation: 4, parent: (generaton: 3))").expect_err("a typing error");

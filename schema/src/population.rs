@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use crate::genome::{Chromosome, Genome};
 use crate::parameter::{Category, Parameter};
 use crate::space::Space;
+use crate::variety::Variety;
 
 /// Landscapes in a population: what the four panes of the viewer show.
 pub const INDIVIDUALS: usize = 4;
@@ -55,6 +56,17 @@ pub struct Parent {
     pub generation: u32,
     /// The votes on it at that time. They may be changed later; then another child is wanted.
     pub votes: Votes,
+    /// How different the children were to be; `None` where nobody said.
+    pub variety: Option<Variety>,
+}
+
+impl Parent {
+    /// Whether a generation that was bred from `child` is what is wanted here: where nobody says how different the
+    /// children are to be, any are.
+    pub fn is_answered_by(&self, child: &Self) -> bool {
+        let is_as_varied = self.variety.is_none() || self.variety == child.variety;
+        (self.generation, self.votes) == (child.generation, child.votes) && is_as_varied
+    }
 }
 
 /// One generation.
@@ -66,10 +78,15 @@ pub struct Population {
     pub seed: u64,
     /// What it was bred from; `None` for one that was made otherwise.
     pub parent: Option<Parent>,
+    /// Where a person chose parents from anywhere, those of trees, land and sky: "3.2" of a generation, "fjord", a kind, or
+    /// "old.ron:1". If all are of one generation, `parent` says so as well.
+    pub bred_from: Option<[String; 3]>,
     /// Four landscapes.
     pub individuals: [Individual; INDIVIDUALS],
     /// `None` until they are cast.
     pub votes: Option<Votes>,
+    /// How different the next landscapes are to be from the best guess; `None` is as usual.
+    pub variety: Option<Variety>,
     /// Names of genes and of whole categories that breeding leaves as they are: every child has those of the
     /// favourite or, where there is no favourite, of the individual in its place.
     pub locked: BTreeSet<String>,
@@ -86,7 +103,13 @@ impl Population {
             }
             Individual { name: format!("Random {seed}.{}", index + 1), descent: String::new(), genome }
         });
-        Self { generation, seed, parent: None, individuals, votes: None, locked: BTreeSet::new() }
+        Self::new(generation, seed, individuals)
+    }
+
+    /// Four landscapes that nobody has voted on, and that come from none.
+    pub fn new(generation: u32, seed: u64, individuals: [Individual; INDIVIDUALS]) -> Self {
+        let (parent, bred_from, votes, variety, locked) = (None, None, None, None, BTreeSet::new());
+        Self { generation, seed, parent, bred_from, individuals, votes, variety, locked }
     }
 
     /// Whether breeding leaves a gene as it is: by itself or with its category.

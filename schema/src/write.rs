@@ -12,8 +12,19 @@ impl Population {
     /// The file's text. Reading it gives this population again; writing that gives this text again.
     pub fn to_ron(&self, space: &Space) -> String {
         let Self { generation, seed, .. } = self;
-        let parent = self.parent.map_or(String::new(), |Parent { generation, votes }| {
-            format!("    parent: Some((generation: {generation}, votes: {})),\n", cast_text(&votes))
+        let parent = self.parent.map_or(String::new(), |Parent { generation, votes, variety }| {
+            let variety = variety.map_or(String::new(), |variety| format!(", variety: {variety}"));
+            format!("    parent: Some((generation: {generation}, votes: {}{variety})),\n", cast_text(&votes))
+        });
+        let bred_from = self.bred_from.as_ref().map_or(String::new(), |from| {
+            let from =
+                Category::ALL.map(|category| format!("{category}: {}", quoted(&from[category as usize])));
+            format!("    // The parents that a person chose.\n    bred_from: ({}),\n", from.join(", "))
+        });
+        let variety = self.variety.map_or(String::new(), |variety| {
+            let help =
+                "How different the next are to be from the best guess: 0 close variations, 1 anything.";
+            format!("    // {help}\n    variety: {variety},\n")
         });
         let votes = votes_text(self.votes.as_ref());
         let locked = match self.locked.is_empty() {
@@ -40,10 +51,10 @@ impl Population {
         format!(
             "// Four landscapes. Edit any value within its range; the nearest value that its gene has is used.\n\
              // `bake params` says what each gene does.\n\
-             Population(\n    generation: {generation},\n    seed: {seed},\n{parent}    \
+             Population(\n    generation: {generation},\n    seed: {seed},\n{parent}{bred_from}    \
              // The best of each, as Some((tree: Some(0), terrain: Some(2), sky: None)): Some(0) is landscape 1, Some(3)\n    \
              // landscape 4, None no favourite.\n    \
-             votes: {votes},\n{locked}    individuals: [\n{individuals}    ],\n)\n"
+             votes: {votes},\n{variety}{locked}    individuals: [\n{individuals}    ],\n)\n"
         )
     }
 }

@@ -14,6 +14,9 @@ use crate::{WorldError, atomic_write, names, regular_file};
 /// What a file of a world may hold that people write, in bytes; ours have some 12,000.
 pub const MAX_TEXT_BYTES: u64 = 4 << 20;
 
+/// What a thumbnail may hold, in bytes; ours have some 8,000.
+const MAX_THUMBNAIL_BYTES: u64 = 1 << 20;
+
 /// The landscapes that new worlds begin with.
 pub const STARTER_RON: &str = include_str!("../../configs/starter.ron");
 
@@ -237,7 +240,8 @@ impl World {
     /// # Errors
     /// A folder that cannot be read.
     pub fn child_of(&self, parent: &Parent) -> Result<Option<u32>, WorldError> {
-        let is_child = |generation: &u32| self.parent_of(*generation).as_ref() == Some(parent);
+        let is_child =
+            |generation: &u32| self.parent_of(*generation).is_some_and(|of| parent.is_answered_by(&of));
         Ok(self.generations()?.into_iter().find(is_child))
     }
 
@@ -256,6 +260,14 @@ impl World {
         let generation = file.population.generation;
         let scenes = std::array::from_fn(|scene| names::scene(generation, scene));
         Current { generation, population: file.digest.to_string(), scenes }
+    }
+
+    /// The thumbnail of a landscape, a JPEG file, if somebody has looked at it.
+    pub fn thumbnail(&self, generation: u32, scene: usize) -> Option<Vec<u8>> {
+        const BEGINNING: [u8; 3] = [0xff, 0xd8, 0xff];
+        let bytes =
+            regular_file::read(&self.root.join(names::thumbnail(generation, scene)), MAX_THUMBNAIL_BYTES);
+        bytes.ok().filter(|bytes| bytes.starts_with(&BEGINNING))
     }
 
     /// Removes what programs that were killed while they wrote left among the person's files; how many files.
@@ -446,7 +458,7 @@ mod tests {
     fn a_child_is_found_by_its_parents_and_their_votes() {
         let (_folder, world) = world();
         let votes = Votes { tree: Some(1), ..Votes::default() };
-        let parent = Parent { generation: 2, votes };
+        let parent = Parent { generation: 2, votes, variety: None };
         for (generation, parent) in [(10, None), (2, None), (4, Some(parent))] {
             put(&world, generation, parent);
         }

@@ -52,6 +52,11 @@ pub fn scene(generation: u32, scene: usize) -> String {
     format!("{BAKED}/{}/scene.gltf", scene_id(generation, scene).replacen('-', "/", 1))
 }
 
+/// The picture of a generation's landscape, small, as it is first seen: `baked/g0003/scene-0/thumbnail.jpg`.
+pub fn thumbnail(generation: u32, scene: usize) -> String {
+    format!("{BAKED}/{}/thumbnail.jpg", scene_id(generation, scene).replacen('-', "/", 1))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

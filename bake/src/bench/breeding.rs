@@ -114,7 +114,7 @@ impl Way {
                 }
             }
         }
-        let parent = Some(Parent { generation: parents.generation, votes });
+        let parent = Some(Parent { generation: parents.generation, votes, variety: None });
         Population { seed: parents.seed, parent, ..children }
     }
 }

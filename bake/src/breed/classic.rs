@@ -8,7 +8,7 @@
 
 use genescape_schema::{
     Bounds, Category, Chromosome, Genome, INDIVIDUALS, Individual, Kind, Kinds, Parent, Population, Space,
-    Votes,
+    Variety, Votes,
 };
 
 use super::descent::{self, Origin};
@@ -24,9 +24,9 @@ pub fn bred(space: &Space, kinds: &Kinds, parents: &Population, next: u32) -> Po
     let family = Family::new(space, kinds, parents, votes);
     let mut newcomers = Vec::new();
     let individuals = std::array::from_fn(|child| family.child(child, &mut newcomers));
-    let parent = Some(Parent { generation, votes });
-    let locked = parents.locked.clone();
-    Population { generation: next, seed: parents.seed, parent, individuals, votes: None, locked }
+    let (variety, locked) = (parents.variety, parents.locked.clone());
+    let parent = Some(Parent { generation, votes, variety });
+    Population { parent, variety, locked, ..Population::new(next, parents.seed, individuals) }
 }
 
 /// The parents, and what is known of them.
@@ -37,7 +37,12 @@ struct Family<'a> {
     votes: Votes,
     /// By category and parent.
     homes: [[Home<'a>; INDIVIDUALS]; 3],
+    /// 1 is the usual.
+    variety: f32,
 }
+
+/// The least part of the usual pace.
+const MIN_PACE: f32 = 0.2;
 
 /// How a child comes by a chromosome, in the order in which they are made: what is free must suit what is not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -56,7 +61,8 @@ impl<'a> Family<'a> {
                 .each_ref()
                 .map(|one| Home::of(space, kinds, category, one.genome.chromosome(category)))
         });
-        Self { space, kinds, parents, votes, homes }
+        let variety = parents.variety.unwrap_or(Variety::USUAL).part() / Variety::USUAL.part();
+        Self { space, kinds, parents, votes, homes, variety }
     }
 
     /// The favourite itself for child 0 and for the child that keeps this category; of the other two, the first is a
@@ -69,8 +75,18 @@ impl<'a> Family<'a> {
             None => Role::New,
             Some(_) if child == 0 || child == keeper => Role::Kept,
             Some(_) if child == first => Role::Varied,
+            // The less variety, the fewer strangers.
+            Some(_) if self.variety < 0.5 => Role::Varied,
+            Some(_) if self.variety > 1.5 => Role::New,
             Some(_) => Role::Crossed,
         }
+    }
+
+    /// How much changes at once.
+    fn pace(&self, home: Home<'_>) -> step::Pace {
+        let step::Pace { chance, reach } = step::Pace::of(home);
+        let scale = self.variety.max(MIN_PACE);
+        step::Pace { chance: (chance * scale).min(1.0), reach: (reach * scale).min(1.0) }
     }
 
     /// A child; `newcomers` are the kinds that those before it have shown, and now those of this one.
@@ -90,8 +106,9 @@ impl<'a> Family<'a> {
             *genome.chromosome_mut(category) = chromosome;
             (origins[category as usize], homes[category as usize]) = (origin, home);
         }
-        let name = descent::name(self.kinds, self.parents, origins, homes);
-        Individual { name, descent: descent::descent(origins), genome }
+        let parents = descent::Parents { population: self.parents, chosen: None };
+        let name = descent::name(self.kinds, parents, origins, homes);
+        Individual { name, descent: descent::descent(parents, origins), genome }
     }
 
     fn parent(&self, category: Category, index: usize) -> (&'a Chromosome, Home<'a>) {
@@ -131,7 +148,7 @@ impl<'a> Birth<'a, '_> {
         let (best, home) = self.family.parent(self.category, favourite);
         let mut bounds = home.bounds().unwrap_or_else(|| Bounds::whole(self.family.space, self.category));
         self.company.demand(&mut bounds);
-        match self.fresh(|birth| birth.stepped(best, &bounds, step::Pace::of(home))) {
+        match self.fresh(|birth| birth.stepped(best, &bounds, birth.family.pace(home))) {
             Some(varied) => (varied, Origin::Like(favourite)),
             None => (self.another(best), Origin::Another(favourite)),
         }
@@ -173,7 +190,7 @@ impl<'a> Birth<'a, '_> {
         let space = self.family.space;
         let (child, mut bounds) = cross::crossed(space, self.category, (best, home), other, &mut self.dice);
         self.company.demand(&mut bounds);
-        let pace = step::Pace::of(home);
+        let pace = self.family.pace(home);
         let child = self.stepped(&child, &bounds, step::Pace { chance: 0.5 * pace.chance, ..pace });
         self.another(&child)
     }

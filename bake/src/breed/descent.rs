@@ -19,6 +19,25 @@ pub enum Origin {
     New,
 }
 
+/// What parents are called.
+#[derive(Clone, Copy)]
+pub struct Parents<'a> {
+    pub population: &'a Population,
+    /// Where landscape 1 has trees, land and sky from, if a person chose these.
+    pub chosen: Option<&'a [String; 3]>,
+}
+
+impl Parents<'_> {
+    /// The number that a landscape has under its picture, from 1, or where it comes from.
+    fn name(self, category: Category, parent: usize) -> String {
+        match self.chosen {
+            None => (parent + 1).to_string(),
+            Some(chosen) if parent == 0 => chosen[category as usize].clone(),
+            Some(_) => format!("{}.{}", self.population.generation, parent + 1),
+        }
+    }
+}
+
 impl Origin {
     fn favourite(self) -> Option<usize> {
         match self {
@@ -28,14 +47,14 @@ impl Origin {
         }
     }
 
-    /// With the numbers that landscapes have under their pictures, from 1.
-    fn phrase(self, part: &str) -> String {
+    fn phrase(self, parents: Parents<'_>, category: Category) -> String {
+        let (part, name) = (PARTS[category as usize], |one| parents.name(category, one));
         match self {
-            Self::Of(one) => format!("{part} of {}", one + 1),
-            Self::Like(one) => format!("{part} like {}", one + 1),
-            Self::Another(one) => format!("{part} as {}, drawn anew", one + 1),
-            Self::Crossed(one, other) => format!("{part} of {} × {}", one + 1, other + 1),
-            Self::Widened(one) => format!("{part} of {} × new", one + 1),
+            Self::Of(one) => format!("{part} of {}", name(one)),
+            Self::Like(one) => format!("{part} like {}", name(one)),
+            Self::Another(one) => format!("{part} as {}, drawn anew", name(one)),
+            Self::Crossed(one, other) => format!("{part} of {} × {}", name(one), name(other)),
+            Self::Widened(one) => format!("{part} of {} × new", name(one)),
             Self::New => format!("new {part}"),
         }
     }
@@ -47,25 +66,35 @@ const PARTS: [&str; 3] = ["trees", "land", "sky"];
 const SEPARATOR: &str = " · ";
 
 /// "trees of 2 · land like 3 · new sky": where each part comes from.
-pub fn descent(origins: [Origin; 3]) -> String {
-    let parts = PARTS.into_iter().zip(origins).map(|(part, origin)| origin.phrase(part));
-    parts.collect::<Vec<_>>().join(SEPARATOR)
+pub fn descent(parents: Parents<'_>, origins: [Origin; 3]) -> String {
+    Category::ALL.map(|category| origins[category as usize].phrase(parents, category)).join(SEPARATOR)
+}
+
+/// Of which of the four parents, counted from 1, a landscape of this descent has trees, land and sky.
+pub fn parents(descent: &str) -> [Vec<usize>; 3] {
+    let of = |part: &str| {
+        let words = part.split([' ', ',']).filter_map(|word| word.parse().ok());
+        words.filter(|parent| (1..=INDIVIDUALS).contains(parent)).collect()
+    };
+    let mut parts = descent.split(SEPARATOR).map(of);
+    std::array::from_fn(|_| parts.next().unwrap_or_default())
 }
 
 /// What kind of place a child is: "Birches on karst, mackerel sky". One that has two or three parts of a parent that
 /// a person gave a name keeps that, and says only what differs: "Grandmother's valley · mackerel sky". Parts of no
 /// kind are called by their descent.
-pub fn name(kinds: &Kinds, parents: &Population, origins: [Origin; 3], homes: [Home<'_>; 3]) -> String {
+pub fn name(kinds: &Kinds, parents: Parents<'_>, origins: [Origin; 3], homes: [Home<'_>; 3]) -> String {
     let descends = |parent: usize| origins.iter().filter(|origin| origin.favourite() == Some(parent)).count();
     let main = (0..INDIVIDUALS).find(|parent| descends(*parent) >= 2);
-    let given = main.and_then(|main| given_name(kinds, &parents.individuals[main].name));
+    let given = main.and_then(|main| given_name(kinds, &parents.population.individuals[main].name));
     if let (None, Some(name)) = (given, name::landscape(homes)) {
         return name;
     }
     let is_said = |origin: Origin| given.is_some() && origin.favourite() == main;
     let differ = (0..3).filter(|&part| !is_said(origins[part]));
     let called = |part: usize| {
-        name::part(Category::ALL[part], homes[part]).unwrap_or_else(|| origins[part].phrase(PARTS[part]))
+        let category = Category::ALL[part];
+        name::part(category, homes[part]).unwrap_or_else(|| origins[part].phrase(parents, category))
     };
     given.map(str::to_owned).into_iter().chain(differ.map(called)).collect::<Vec<_>>().join(SEPARATOR)
 }
@@ -87,4 +116,30 @@ fn is_of_kinds(kinds: &Kinds, name: &str) -> bool {
         && kinds.of(Category::Sky).any(|sky| ends(&sky.name));
     let is_part = |kind| name::part(Category::Tree, Home::Of(kind)).is_some_and(|part| part == name);
     is_whole || kinds.iter().any(|kind| kind.name == name || is_part(kind))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use genescape_schema::Space;
+
+    #[test]
+    fn parents_are_read_from_a_descent() {
+        let population = Population::random(&Space::builtin(), 1, 7);
+        let chosen = ["3.2", "fjord", "old.ron:1"].map(str::to_owned);
+        let numbered = Parents { population: &population, chosen: None };
+        for (origins, expected) in [
+            ([Origin::Of(1), Origin::Like(2), Origin::New], [vec![2], vec![3], vec![]]),
+            ([Origin::Crossed(0, 3), Origin::Another(3), Origin::Widened(2)], [vec![1, 4], vec![4], vec![3]]),
+        ] {
+            assert_eq!(parents(&descent(numbered, origins)), expected);
+        }
+        let origins = [Origin::Of(0), Origin::Like(0), Origin::Crossed(0, 2)];
+        let descent = descent(Parents { chosen: Some(&chosen), ..numbered }, origins);
+        assert_eq!(descent, "trees of 3.2 · land like fjord · sky of old.ron:1 × 7.3");
+        let nothing = [const { Vec::<usize>::new() }; 3];
+        for other in [descent.as_str(), "", "by hand", "trees of 9 · land like 0", "as 1234 · 2.5"] {
+            assert_eq!(parents(other), nothing, "{other}");
+        }
+    }
 }

@@ -5,16 +5,19 @@
 //! chosen, and little is learned.
 
 use genescape_schema::{
-    Bounds, Category, Chromosome, Genome, INDIVIDUALS, Individual, Kinds, Parent, Population, Space, Votes,
+    Bounds, Category, Chromosome, Genome, INDIVIDUALS, Individual, Kinds, Parent, Population, Space, Variety,
+    Votes,
 };
 use rayon::prelude::*;
 
+use super::Chosen;
 use super::descent::{self, Origin};
 use super::evidence::{Evidence, point};
 use super::locked;
 use super::prior::Prior;
 use super::spread::{Mean, Spread};
 use super::taste::{Ideal, ideals};
+use super::variety::Varied;
 use crate::kinds::{Company, Home};
 use crate::seed::Dice;
 
@@ -24,6 +27,8 @@ pub struct Learned<'a> {
     kinds: &'a Kinds,
     parents: &'a Population,
     votes: Votes,
+    /// Whether a person chose the parents: then they are the best guess.
+    chosen: Option<&'a Chosen>,
     tastes: Vec<Taste>,
 }
 
@@ -58,12 +63,13 @@ impl<'a> Learned<'a> {
         past: &[Population],
         parents: &'a Population,
         votes: Votes,
+        chosen: Option<&'a Chosen>,
     ) -> Self {
         let voted = Population { votes: Some(votes), ..parents.clone() };
         let all: Vec<&Population> = past.iter().chain([&voted]).collect();
         let of = |category: &Category| Taste::of(space, kinds, *category, &all);
         let tastes = Category::ALL.par_iter().map(of).collect();
-        Self { space, kinds, parents, votes, tastes }
+        Self { space, kinds, parents, votes, chosen, tastes }
     }
 
     /// Generation `next`, where chance depends on `seed`.
@@ -74,10 +80,9 @@ impl<'a> Learned<'a> {
             let chromosomes = parts.each_ref().map(|part| part[child].clone());
             self.individual(child, chromosomes)
         });
-        let (generation, votes) = (self.parents.generation, self.votes);
-        let parent = Some(Parent { generation, votes });
-        let locked = self.parents.locked.clone();
-        Population { generation: next, seed: self.parents.seed, parent, individuals, votes: None, locked }
+        let Population { generation, seed, variety, ref locked, .. } = *self.parents;
+        let parent = Some(Parent { generation, votes: self.votes, variety });
+        Population { parent, variety, locked: locked.clone(), ..Population::new(next, seed, individuals) }
     }
 
     pub fn taste(&self, category: Category) -> &Taste {
@@ -100,19 +105,24 @@ impl<'a> Learned<'a> {
         let spread =
             Spread { prior: &taste.prior, ideals: &taste.ideals, means: &taste.means, legal: &legal };
         let known: Vec<Vec<f32>> = taste.chosen.iter().map(|one| point(self.space, category, one)).collect();
-        let favourite = taste.chosen.last().map(|one| self.kind(category, one));
-        let is_like = |at: &[f32]| Some(self.kind(category, &self.encoded(category, at))) == favourite;
-        let mut four = match self.asks(category, next) {
-            true => Vec::new(),
-            false => vec![spread.best(&known, &is_like)],
+        let kind = |at: &[f32]| self.kind(category, &self.encoded(category, at));
+        let favourite = known.last().map(|one| kind(one));
+        let is_like = |at: &[f32]| Some(kind(at)) == favourite;
+        let mut four = match (self.chosen, known.last()) {
+            (Some(_), Some(chosen)) => vec![chosen.clone()],
+            _ if self.asks(category, next) => Vec::new(),
+            _ => vec![spread.best(&known, &is_like)],
         };
-        four.extend(spread.others(&four, &mut dice));
+        let others = spread.others(&four, &mut dice);
+        let variety = self.parents.variety.unwrap_or(Variety::USUAL);
+        four.extend(Varied { spread: &spread, kind: &kind }.others(variety, &four, others, &mut dice));
         four.iter().map(|one| self.chromosome(category, one, &mut dice)).collect()
     }
 
-    /// Whether all four are for asking. Kinds say so much of what may be wanted that there a choice tells enough anyway.
+    /// Whether all four are for asking: not where close variations are wanted. Kinds say so much of what may be wanted that there a choice tells enough anyway.
     fn asks(&self, category: Category, next: u32) -> bool {
-        next % 2 == 1 && self.tastes[category as usize].prior.is_wild()
+        let is_usual = self.parents.variety.is_none_or(|variety| variety >= Variety::USUAL);
+        is_usual && next % 2 == 1 && self.tastes[category as usize].prior.is_wild()
     }
 
     /// Whole codes, of the component's kind.
@@ -213,8 +223,14 @@ impl<'a> Learned<'a> {
         }
         let homes = self.homes(parts.each_ref());
         let origins = Category::ALL.map(|category| self.origin(category, &parts[category as usize], homes));
-        let name = descent::name(self.kinds, self.parents, origins, homes);
-        Individual { name, descent: descent::descent(origins), genome: Genome { chromosomes: parts } }
+        let chosen = self.chosen.map(|chosen| &chosen.names);
+        let parents = descent::Parents { population: self.parents, chosen };
+        let name = descent::name(self.kinds, parents, origins, homes);
+        Individual {
+            name,
+            descent: descent::descent(parents, origins),
+            genome: Genome { chromosomes: parts },
+        }
     }
 
     /// Moves genes to what the other parts go with, as far as their kinds may be that.

@@ -15,12 +15,14 @@ mod step;
 mod taste;
 #[cfg(test)]
 mod tests;
+mod variety;
 
 use clap::ValueEnum;
-use genescape_schema::{Category, Kinds, Population, Space};
+use genescape_schema::{Category, Kinds, Parent, Population, Space, Votes};
 
 pub use account::Account;
 pub use chances::likely_votes;
+pub use descent::parents;
 use learned::Learned;
 
 /// How the next generation is found.
@@ -43,11 +45,21 @@ pub struct NoVotes {
     pub generation: u32,
 }
 
+/// Parents that a person has chosen from anywhere: they are landscape 1 of a population, whose others only stand beside it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Chosen {
+    /// Where trees, land and sky come from, as population files say: "3.2", "fjord", "old.ron:1".
+    pub names: [String; 3],
+    /// The generation that all of them are of, if they are of one.
+    pub parent: Option<Parent>,
+}
+
 /// Breeds from one population: what takes time is done once, for however many children.
 pub struct Breeder<'a> {
     space: &'a Space,
     kinds: &'a Kinds,
     parents: &'a Population,
+    chosen: Option<&'a Chosen>,
     learned: Option<Learned<'a>>,
 }
 
@@ -65,10 +77,23 @@ impl<'a> Breeder<'a> {
     ) -> Result<Self, NoVotes> {
         let votes = parents.votes.ok_or(NoVotes { generation: parents.generation })?;
         let learned = match strategy {
-            Strategy::Learned => Some(Learned::new(space, kinds, past, parents, votes)),
+            Strategy::Learned => Some(Learned::new(space, kinds, past, parents, votes, None)),
             Strategy::Classic => None,
         };
-        Ok(Self { space, kinds, parents, learned })
+        Ok(Self { space, kinds, parents, chosen: None, learned })
+    }
+
+    /// Breeds from landscape 1 of `parents`, whatever their votes say: it is the best guess, and stays as it is.
+    pub fn from_chosen(
+        space: &'a Space,
+        kinds: &'a Kinds,
+        past: &[Population],
+        parents: &'a Population,
+        chosen: &'a Chosen,
+    ) -> Self {
+        let votes = Votes { tree: Some(0), terrain: Some(0), sky: Some(0) };
+        let learned = Learned::new(space, kinds, past, parents, votes, Some(chosen));
+        Self { space, kinds, parents, chosen: Some(chosen), learned: Some(learned) }
     }
 
     /// What votes have taught of each category; nothing where nothing is learned.
@@ -95,6 +120,12 @@ impl<'a> Breeder<'a> {
             Some(learned) => learned.bred(next, seed),
             None => classic::bred(self.space, self.kinds, &Population { seed, ..self.parents.clone() }, next),
         };
-        Population { seed: self.parents.seed, ..population }
+        let population = Population { seed: self.parents.seed, ..population };
+        match self.chosen {
+            Some(Chosen { names, parent }) => {
+                Population { parent: *parent, bred_from: Some(names.clone()), ..population }
+            }
+            None => population,
+        }
     }
 }

@@ -1,8 +1,8 @@
 //! Files as people write them: nothing is lost, every fault is told with its place, nothing panics.
 
-use genescape_schema::edit::{set_gene, set_locked, set_votes};
+use genescape_schema::edit::{set_gene, set_locked, set_variety, set_votes};
 use genescape_schema::{
-    Category, Current, Individual, Lineage, Parent, Population, Report, Space, TreePreset, Votes,
+    Category, Current, Individual, Lineage, Parent, Population, Report, Space, TreePreset, Variety, Votes,
 };
 use proptest::prelude::*;
 
@@ -109,6 +109,9 @@ fn wrong_genes_say_what_would_be_right() {
         ),
         (with("votes: None", "votes: Some((sun: Some(1)))"), "votes has no sun"),
         (with("Population(", "Populatoin("), "expected Population(…), found Populatoin"),
+        (with("votes: None", "variety: 1.2"), "variety: 1.2 is outside 0, close variations, … 1, anything"),
+        (with("votes: None", "variety: \"much\""), "variety: expected a number, found a text"),
+        (with("votes: None", "bred_from: (tree: \"oak\", sky: \"fog\")"), "bred_from lacks terrain"),
         (with("generation: 0", "generation: 0, generation: 0"), "generation is given twice; first in line"),
     ];
     for (text, message) in cases {
@@ -272,10 +275,13 @@ fn current_survives_its_file() {
 fn population() -> impl Strategy<Value = Population> {
     let votes = (prop::option::of(0..4usize), prop::option::of(0..4usize), prop::option::of(0..4usize))
         .prop_map(|(tree, terrain, sky)| Votes { tree, terrain, sky });
-    let parent = prop::option::of((any::<u32>(), votes.clone()));
+    let variety = || prop::option::of((0.0..=1.0f64).prop_map(|part| Variety::of(part).expect("0 to 1")));
+    let parent = prop::option::of((any::<u32>(), votes.clone(), variety()));
+    let bred_from = prop::option::of(prop::array::uniform3("\\PC{0,40}"));
     let names = prop::array::uniform4("\\PC{0,40}");
-    (any::<u64>(), any::<u32>(), names, parent, prop::option::of(votes)).prop_map(
-        |(seed, generation, names, parent, votes)| {
+    let votes = (prop::option::of(votes), variety(), bred_from);
+    (any::<u64>(), any::<u32>(), names, parent, votes).prop_map(
+        |(seed, generation, names, parent, (votes, variety, bred_from))| {
             let random = Population::random(&Space::builtin(), seed, generation);
             let mut named = names.into_iter().zip(random.individuals);
             let individuals = std::array::from_fn(|_| {
@@ -283,10 +289,10 @@ fn population() -> impl Strategy<Value = Population> {
                 let descent = if seed % 2 == 0 { String::new() } else { format!("trees of 2 · {name}") };
                 Individual { name, descent, ..individual }
             });
-            let parent = parent.map(|(generation, votes)| Parent { generation, votes });
+            let parent = parent.map(|(generation, votes, variety)| Parent { generation, votes, variety });
             let locked = ["height_m", "sky", "terrain_seed", "tree"];
             let locked = locked.into_iter().take((seed % 5) as usize).map(str::to_owned).collect();
-            Population { parent, individuals, votes, locked, ..random }
+            Population { parent, bred_from, individuals, votes, variety, locked, ..random }
         },
     )
 }
@@ -379,8 +385,8 @@ proptest! {
         prop_assert!(loaded.notices.is_empty());
         prop_assert_eq!(&loaded.population, &population);
         prop_assert_eq!(loaded.population.to_ron(&space), &text[..]);
-        let Population { generation, parent, votes, .. } = population;
-        prop_assert_eq!(Lineage::read("p.ron", &text), Ok(Lineage { generation, parent, votes }));
+        let Population { generation, parent, votes, variety, .. } = population;
+        prop_assert_eq!(Lineage::read("p.ron", &text), Ok(Lineage { generation, parent, votes, variety }));
     }
 
     #[test]
@@ -396,6 +402,17 @@ proptest! {
         let loaded = Population::load(&space, "p.ron", &voted).expect("valid");
         prop_assert_eq!(loaded.population, Population { votes, ..population });
         prop_assert_eq!(set_votes("p.ron", &voted, votes).expect("a population"), voted);
+    }
+
+    #[test]
+    fn variety_changes_nothing_else(population in population(), part in prop::option::of(0.0..=1.0f64)) {
+        let space = Space::builtin();
+        let variety = part.and_then(Variety::of);
+        let text = population.to_ron(&space);
+        let edited = set_variety("p.ron", &text, variety).expect("a population");
+        let loaded = Population::load(&space, "p.ron", &edited).expect("valid").population;
+        prop_assert_eq!(&loaded, &Population { variety, ..population });
+        prop_assert_eq!(set_variety("p.ron", &edited, variety).expect("a population"), edited);
     }
 
     #[test]

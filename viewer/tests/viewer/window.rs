@@ -214,7 +214,7 @@ fn a_person_votes_and_breeds(stage: &Stage, viewer: &mut Viewer) {
     let votes = Votes { tree: Some(0), terrain: Some(1), sky: None };
     let (parents, children) = (stage.population(0), stage.population(1));
     assert_eq!(parents.votes, Some(votes));
-    assert_eq!(children.parent, Some(Parent { generation: 0, votes }));
+    assert_eq!(children.parent, Some(Parent { generation: 0, votes, variety: None }));
     assert_eq!(cast(viewer), [json!(null), json!(null), json!(null)]);
     viewer.frames(2);
     stage.look("4-children.png");

@@ -281,7 +281,7 @@ proptest! {
         let children = breed(&space, &kinds, &parents, next).expect("votes");
         prop_assert_eq!(&breed(&space, &kinds, &parents, next).expect("votes"), &children);
         prop_assert_eq!((children.generation, children.votes, children.seed), (next, None, seed));
-        prop_assert_eq!(children.parent, parents.votes.map(|votes| Parent { generation, votes }));
+        prop_assert_eq!(children.parent, parents.votes.map(|votes| Parent { generation, votes, variety: None }));
         for (category, vote) in Category::ALL.into_iter().zip([Some(tree), terrain, Some(sky)]) {
             let kept: Vec<bool> = children.individuals.iter().map(|child| {
                 let genes = child.genome.chromosome(category);

@@ -194,7 +194,7 @@ proptest! {
         let children = breed(&space, &kinds, &[], &parents, next);
         prop_assert_eq!(&breed(&space, &kinds, &[], &parents, next), &children);
         prop_assert_eq!((children.generation, children.votes, children.seed), (next, None, seed));
-        prop_assert_eq!(children.parent, parents.votes.map(|votes| Parent { generation, votes }));
+        prop_assert_eq!(children.parent, parents.votes.map(|votes| Parent { generation, votes, variety: None }));
         prop_assert_eq!(&children.locked, &parents.locked);
         let height = space.find("height_m").expect("a gene");
         for (place, child) in children.individuals.iter().enumerate() {

@@ -2,6 +2,7 @@
 
 mod classic;
 mod learned;
+mod variety;
 
 use genescape_schema::{Category, INDIVIDUALS, Individual, Kinds, Population, Space, Votes};
 

@@ -8,6 +8,7 @@
 
 mod cover;
 mod foreground;
+mod glimpse;
 mod grain;
 mod grass;
 mod palette;
@@ -34,6 +35,7 @@ use crate::model::{GroundMaps, Image8, Landform};
 use crate::raster::square;
 use cover::{Noise, Painter};
 pub use foreground::{Ground, foreground};
+pub use glimpse::{Glimpse, glimpse};
 use grain::Grain;
 pub use grass::BLADE_WHITE;
 pub use patch::BLOCK_M;

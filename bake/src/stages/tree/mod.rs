@@ -15,6 +15,7 @@ mod foliage;
 mod impostor;
 mod leaf_outline;
 mod leaf_texture;
+mod measure;
 mod mips;
 mod params;
 mod shade;
@@ -32,6 +33,7 @@ pub use stage::{TreeFiles, TreeStage, TreeTexturesStage, drawn_from_afar, lod_op
 
 pub use crease::crease_normals;
 pub use impostor::impostor;
+pub use measure::{TreeMeasures, measure};
 pub use params::{TreeParams, TreeTextureParams};
 
 /// Texels of leaf and blossom cards with less alpha than this are not drawn.

@@ -109,7 +109,7 @@ fn restarted(editor: &Editor) -> Editor {
 /// What the bake does with votes.
 fn bear(editor: &mut Editor, root: &Path) {
     let population = World::new(root).population(&Space::builtin(), 0).expect("valid").population;
-    let parent = population.votes.map(|votes| Parent { generation: 0, votes });
+    let parent = population.votes.map(|votes| Parent { generation: 0, votes, variety: None });
     let child = Population { generation: 1, parent, votes: None, ..population };
     editor.world.create_population(&Space::builtin(), &child).expect("saved");
     editor.changed(Change::Population(1));
@@ -254,7 +254,7 @@ fn breeding_again_gives_other_children_of_the_same_votes() {
     Category::ALL.into_iter().for_each(|category| editor.vote(category, Ballot::For(1)));
     editor.breed();
     let votes = editor.world.population(&editor.space, 0).expect("valid").population.votes.expect("written");
-    let parent = Parent { generation: 0, votes };
+    let parent = Parent { generation: 0, votes, variety: None };
     // As the bake does when it sees the votes.
     crate::baker::breed_another(&editor.world, &editor.space, &parent).expect("bred");
     editor.changed(Change::Population(1));

@@ -125,7 +125,7 @@ pub fn model() -> Model {
 
 /// Bred from that generation.
 pub fn parent(generation: u32) -> Parent {
-    Parent { generation, votes: Votes { tree: Some(0), terrain: Some(2), sky: None } }
+    Parent { generation, votes: Votes { tree: Some(0), terrain: Some(2), sky: None }, variety: None }
 }
 
 /// Two faults of a population file, as the schema reports them.
