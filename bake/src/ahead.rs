@@ -12,7 +12,7 @@ use std::thread;
 
 use anyhow::Result;
 use genescape_cache::{Cache, Digest, How};
-use genescape_schema::{Population, Votes};
+use genescape_schema::{Category, Population, Votes};
 use genescape_world::World;
 
 use crate::audition::Auditioned;
@@ -21,12 +21,17 @@ use crate::events::Untold;
 use crate::graph::Done;
 use crate::pedigree::Pedigree;
 use crate::plan::{Plan, Resolution};
-use crate::run::Runner;
+use crate::run::{RunError, Runner};
 use crate::session::Session;
 
+/// What somebody has voted so far, by category; `None` where it is open.
+pub type Cast = [Option<Option<usize>>; 3];
+
 /// How much may be baked ahead, and by what.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Options {
+    /// Guesses are of votes that agree with these, once there are any.
+    pub cast: Arc<Mutex<Cast>>,
     /// Of files that nobody has asked for.
     pub max_bytes: u64,
     pub threads: usize,
@@ -119,7 +124,7 @@ impl Ahead {
             basis,
             cache: Cache::open(session.world().baked())?,
             resolution: session.resolution(),
-            options: self.options,
+            options: self.options.clone(),
             made: Arc::clone(&self.made),
             stop,
         })
@@ -196,14 +201,33 @@ struct Guesser {
 impl Guesser {
     fn run(&self) -> Result<()> {
         let pool = self.pool()?;
-        for votes in pool.install(|| self.guesses()) {
-            if self.is_to_stop() {
-                break;
+        let (guesses, mut done) = (pool.install(|| self.guesses()), Vec::new());
+        while let Some(votes) = self.next(&guesses, &done).filter(|_| !self.is_to_stop()) {
+            let plan = self.plan(&pool.install(|| self.bred(votes))?)?;
+            let is_off = || self.next(&guesses, &done) != Some(votes);
+            match self.bake(&plan, &pool, &is_off) {
+                // Somebody has voted otherwise; what is left of it may still be guessed later.
+                Err(RunError::Cancelled) if !self.is_to_stop() => {}
+                result => {
+                    result?;
+                    done.push(votes);
+                }
             }
-            let population = pool.install(|| self.bred(votes))?;
-            self.bake(&population, &pool)?;
         }
         Ok(())
+    }
+
+    /// The first guess that is not done, as far as it is not decided yet what is voted for; if all of these are, any.
+    fn next(&self, guesses: &[Votes], done: &[Votes]) -> Option<Votes> {
+        let cast = *self.options.cast.lock().unwrap_or_else(PoisonError::into_inner);
+        let agreeing = guesses.iter().map(|guess| {
+            let mut votes = *guess;
+            for (category, cast) in Category::ALL.into_iter().zip(cast) {
+                votes.set(category, cast.unwrap_or_else(|| guess.get(category)));
+            }
+            votes
+        });
+        agreeing.chain(guesses.iter().copied()).find(|votes| !done.contains(votes))
     }
 
     fn pool(&self) -> Result<rayon::ThreadPool> {
@@ -232,17 +256,26 @@ impl Guesser {
         Ok(children.population)
     }
 
-    fn bake(&self, population: &Population, pool: &rayon::ThreadPool) -> Result<()> {
-        let plan = Plan::new(&self.basis.pedigree.space, population, self.resolution)?;
+    fn plan(&self, population: &Population) -> Result<Plan> {
+        Ok(Plan::new(&self.basis.pedigree.space, population, self.resolution)?)
+    }
+
+    /// Until somebody says that it `is_off`.
+    fn bake(
+        &self,
+        plan: &Plan,
+        pool: &rayon::ThreadPool,
+        is_off: &(dyn Fn() -> bool + Sync),
+    ) -> Result<(), RunError> {
         let runner = Runner {
             cache: &self.cache,
             pool,
             listener: &Untold,
-            cancelled: &|| self.is_to_stop(),
+            cancelled: &|| self.is_to_stop() || is_off(),
             finished: &|done| self.made.note(done),
             scene_ready: &|_, _| Ok(true),
         };
-        runner.run(&plan)?;
+        runner.run(plan)?;
         Ok(())
     }
 }
@@ -252,7 +285,11 @@ mod tests {
     use super::*;
     use crate::session::Publish;
 
-    const OPTIONS: Options = Options { max_bytes: u64::MAX, threads: 2, thread_started: || () };
+    const THREADS: usize = 2;
+
+    fn options(max_bytes: u64) -> Options {
+        Options { max_bytes, threads: THREADS, thread_started: || (), cast: Arc::default() }
+    }
 
     struct Setting {
         _folder: tempfile::TempDir,
@@ -307,13 +344,14 @@ mod tests {
         let setting = setting();
         let session = &setting.session;
         bake(session, &setting.path);
-        let mut ahead = Ahead::new(OPTIONS);
+        let mut ahead = Ahead::new(options(u64::MAX));
         let guesser = guesser(&mut ahead, &setting);
         let guesses = guesser.guesses();
         let pool = guesser.pool().expect("threads");
         for votes in &guesses[..2] {
             let population = guesser.bred(*votes).expect("voted");
-            guesser.bake(&population, &pool).expect("baked");
+            let plan = guesser.plan(&population).expect("a plan");
+            guesser.bake(&plan, &pool, &|| false).expect("baked");
         }
         assert_eq!(session.world().generations().expect("listed"), [0], "nobody sees a guess");
         let baked = answered(&ahead, &setting, guesses[1]);
@@ -338,10 +376,31 @@ mod tests {
     fn no_more_is_baked_ahead_than_is_allowed() {
         let setting = setting();
         bake(&setting.session, &setting.path);
-        let mut ahead = Ahead::new(Options { max_bytes: 1, ..OPTIONS });
+        let mut ahead = Ahead::new(options(1));
         guesser(&mut ahead, &setting).run().expect_err("told to stop in the midst of a guess");
         let made = ahead.made.lock().len();
         // Each executor may be at a stage when the limit is reached.
-        assert!((1..=OPTIONS.threads + 1).contains(&made), "{made}");
+        assert!((1..=THREADS + 1).contains(&made), "{made}");
+    }
+
+    #[test]
+    fn guesses_agree_with_what_is_voted_so_far() {
+        let setting = setting();
+        let mut ahead = Ahead::new(options(u64::MAX));
+        let guesser = guesser(&mut ahead, &setting);
+        let guesses = guesser.guesses();
+        let likeliest = guesses[0];
+        assert_eq!(guesser.next(&guesses, &[]), Some(likeliest));
+        *guesser.options.cast.lock().expect("no panic") = [Some(Some(3)), None, Some(None)];
+        let mut done = Vec::new();
+        while let Some(votes) = guesser.next(&guesses, &done).filter(|votes| votes.sky.is_none()) {
+            assert_eq!(votes.tree, Some(3));
+            done.push(votes);
+        }
+        let mut lands: Vec<_> = done.iter().map(|votes| votes.terrain).collect();
+        assert_eq!(lands[0], likeliest.terrain);
+        lands.sort_unstable();
+        assert_eq!(lands, [Some(0), Some(1), Some(2), Some(3)]);
+        assert_eq!(guesser.next(&guesses, &done), Some(likeliest), "then what is likely otherwise");
     }
 }

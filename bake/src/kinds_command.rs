@@ -51,7 +51,8 @@ fn meant<'a>(kinds: &'a Kinds, word: &str) -> Vec<&'a Kind> {
 }
 
 fn near(kinds: &Kinds, word: &str) -> String {
-    let near = kinds.iter().map(|kind| (strsim::osa_distance(word, &kind.id), &kind.id)).min();
+    let names = kinds.iter().flat_map(|kind| std::iter::once(kind.id.as_str()).chain(kind.id.split('_')));
+    let near = names.map(|name| (strsim::osa_distance(word, name), name)).min();
     near.filter(|(distance, _)| *distance <= 2.max(word.len() / 3))
         .map_or("; `bake kinds` lists all".to_owned(), |(_, id)| format!("; did you mean {id}?"))
 }

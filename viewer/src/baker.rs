@@ -10,9 +10,9 @@ pub mod export;
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryIter, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -24,9 +24,11 @@ use genescape_bake::events::{Listener, Untold};
 use genescape_bake::plan::Resolution;
 use genescape_bake::session::{self, Session};
 use genescape_bake::watch_loop::{self, Host};
-use genescape_schema::{Parent, Population, Space};
+use genescape_schema::{Category, Parent, Population, Space};
 use genescape_world::World;
 use thread_priority::{ThreadPriority, set_current_thread_priority};
+
+use crate::ballots::Ballots;
 
 pub use genescape_bake::events::Event;
 
@@ -71,6 +73,7 @@ pub struct Baker {
     stop: Arc<AtomicBool>,
     /// Nothing ever comes; it closes when the thread ends.
     ended: Receiver<()>,
+    cast: Arc<Mutex<ahead::Cast>>,
 }
 
 impl Baker {
@@ -87,7 +90,9 @@ impl Baker {
         let (sender, events) = channel();
         let (alive, ended) = channel();
         let stop = Arc::new(AtomicBool::new(false));
+        let cast = Arc::default();
         let ahead = ahead::Options {
+            cast: Arc::clone(&cast),
             max_bytes: options.ahead,
             threads: cores_or(options.threads),
             thread_started: || lower_priority_to(AHEAD),
@@ -102,12 +107,18 @@ impl Baker {
                 reporter.stopped()
             });
         })?;
-        Ok(Self { events, stop, ended })
+        Ok(Self { events, stop, ended, cast })
     }
 
     /// What happened since the last call. Never waits.
     pub fn events(&self) -> TryIter<'_, Event> {
         self.events.try_iter()
+    }
+
+    /// Says what is voted so far, so that what is baked ahead agrees with it.
+    pub fn cast(&self, ballots: Ballots) {
+        let cast = Category::ALL.map(|category| ballots.get(category).cast());
+        *self.cast.lock().unwrap_or_else(PoisonError::into_inner) = cast;
     }
 }
 
@@ -206,7 +217,7 @@ impl Host for Reporter {
     }
 
     fn ahead(&self) -> Option<ahead::Options> {
-        (self.ahead.max_bytes > 0).then_some(self.ahead)
+        (self.ahead.max_bytes > 0).then(|| self.ahead.clone())
     }
 
     fn failed(&self, error: &anyhow::Error) {

@@ -230,6 +230,7 @@ impl App {
         self.focus = Focus { typing: output.typing, on_picture: output.views.free };
         self.drag(&output.views);
         output.events.into_iter().for_each(|event| self.dispatch(event, events));
+        self.background.baker.iter().for_each(|baker| baker.cast(self.editor.ballots));
         if self.last_save.elapsed() > SAVE_EVERY {
             self.save_settings();
         }
