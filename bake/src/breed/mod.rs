@@ -20,7 +20,6 @@ use clap::ValueEnum;
 use genescape_schema::{Category, Kinds, Parent, Population, Space, Votes};
 
 pub use account::Account;
-pub use descent::parents;
 use learned::Learned;
 
 /// How the next generation is found.
