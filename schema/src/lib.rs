@@ -8,8 +8,10 @@ mod check;
 mod current;
 mod decode;
 pub mod edit;
+mod favourites;
 mod genome;
 mod kind;
+pub mod lanes;
 mod lineage;
 mod load;
 mod parameter;
@@ -25,6 +27,7 @@ mod write;
 
 pub use current::Current;
 pub use decode::decode;
+pub use favourites::Favourites;
 pub use genome::{Chromosome, Genome, GenomeError};
 pub use kind::{Allowed, Bounds, Demand, Kind, Kinds, SHIPPED, ShippedKind};
 pub use lineage::{Lineage, unanswered};

@@ -21,6 +21,21 @@ pub struct Individual {
     pub genome: Genome,
 }
 
+impl Individual {
+    /// Between the parts of a descent.
+    pub const SEPARATOR: &str = " · ";
+
+    /// Of which of the four parents, counted from 1, it has trees, land and sky, as far as its descent says so.
+    pub fn parents(&self) -> [Vec<usize>; 3] {
+        let of = |part: &str| {
+            let words = part.split([' ', ',']).filter_map(|word| word.parse().ok());
+            words.filter(|parent| (1..=INDIVIDUALS).contains(parent)).collect()
+        };
+        let mut parts = self.descent.split(Self::SEPARATOR).map(of);
+        std::array::from_fn(|_| parts.next().unwrap_or_default())
+    }
+}
+
 /// The best individual (0 … 3) of each category; `None` where none of them pleased.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Votes {

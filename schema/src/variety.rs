@@ -10,6 +10,8 @@ pub struct Variety(u8);
 impl Variety {
     /// Close variations.
     pub const MIN: Self = Self(0);
+    /// Variations of one landscape that can be told apart.
+    pub const CLOSE: Self = Self(15);
     /// What breeding does where nobody says otherwise.
     pub const USUAL: Self = Self(50);
     /// Anything that there is.

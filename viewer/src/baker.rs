@@ -19,8 +19,10 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result};
 use genescape_bake::ahead;
 use genescape_bake::breed::Strategy;
+use genescape_bake::chosen_parents::ChosenParents;
 use genescape_bake::cli::{bytes, threads};
 use genescape_bake::events::{Listener, Untold};
+use genescape_bake::landscape::{Landscape, ParentArg, Reference};
 use genescape_bake::plan::Resolution;
 use genescape_bake::session::{self, Session};
 use genescape_bake::watch_loop::{self, Host};
@@ -188,6 +190,25 @@ pub fn breed_another(world: &World, space: &Space, parent: &Parent) -> Result<Pa
     let kinds = world.kinds(space).kinds;
     let parents = Population { votes: Some(parent.votes), ..parents };
     session::breed_another(world, space, &kinds, Strategy::default(), &parents, &Untold)
+}
+
+/// Breeds beside a generation, with one category of a landscape of any generation as a parent: the new file's path. The bake
+/// finds it by itself.
+///
+/// # Errors
+/// Parents that cannot be read, a file that cannot be written.
+pub fn breed_with(
+    world: &World,
+    space: &Space,
+    beside: u32,
+    (generation, landscape): (u32, usize),
+    category: Category,
+) -> Result<PathBuf> {
+    let landscape = Landscape::all().nth(landscape).context("there are four landscapes")?;
+    let parent = Some(ParentArg::Landscape(Reference::Of(generation, landscape)));
+    let mut chosen = ChosenParents::default();
+    *[&mut chosen.tree, &mut chosen.terrain, &mut chosen.sky][category as usize] = parent;
+    chosen.breed(world, space, &world.kinds(space).kinds, beside, &Untold)
 }
 
 /// Sends the bake's events to the owner of the [`Baker`].

@@ -5,8 +5,8 @@
 use std::collections::BTreeSet;
 
 use genescape_cache::Digest;
-use genescape_schema::edit::{EditError, set_gene, set_locked, set_votes};
-use genescape_schema::{Category, Space, Votes};
+use genescape_schema::edit::{EditError, set_gene, set_locked, set_variety, set_votes};
+use genescape_schema::{Category, Space, Variety, Votes};
 use genescape_world::{World, WorldError, names};
 use serde::{Deserialize, Serialize};
 
@@ -22,6 +22,8 @@ pub enum Edit {
     Votes(Option<Votes>),
     /// Breeding leaves these genes and categories as they are, and no others.
     Locked(BTreeSet<String>),
+    /// The next landscapes are to be so different from the best guess.
+    Variety(Variety),
     /// Genes of one landscape get other values, in their units.
     Genes { individual: usize, values: Vec<(String, f64)> },
 }
@@ -33,6 +35,7 @@ impl Edit {
             Self::Votes(Some(_)) => "votes".into(),
             Self::Votes(None) => "removal of votes".into(),
             Self::Locked(_) => "locks".into(),
+            Self::Variety(_) => "variety".into(),
             Self::Genes { values, individual } => match &values[..] {
                 [(name, _)] => format!("{name} of landscape {}", individual + 1),
                 several => format!("{} genes of landscape {}", several.len(), individual + 1),
@@ -48,6 +51,7 @@ impl Edit {
         match self {
             Self::Votes(votes) => set_votes(file, text, *votes),
             Self::Locked(locked) => set_locked(space, file, text, locked),
+            Self::Variety(variety) => set_variety(file, text, Some(*variety)),
             Self::Genes { individual, values } => {
                 values.iter().try_fold(text.to_owned(), |text, (name, value)| {
                     set_gene(space, file, &text, *individual, name, *value)
@@ -259,6 +263,7 @@ mod tests {
                 sky
             }))),
             Just(Edit::Votes(None)),
+            (0.0..=1.0f64).prop_map(|part| Edit::Variety(Variety::of(part).expect("0 to 1"))),
             (4f64..29.0).prop_map(gene),
         ]
     }

@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use genescape_schema::Category;
+use genescape_schema::{Category, Variety};
 use serde::{Deserialize, Serialize};
 
 use crate::ballots::Ballot;
@@ -20,6 +20,14 @@ pub enum Event {
     Vote { category: Category, ballot: Ballot },
     /// Show an earlier generation again, or a later one that exists already.
     GoToGeneration(u32),
+    /// The next landscapes are to be so different from the best guess.
+    Variety(Variety),
+    /// Vote for all of that landscape, and breed close variations of it.
+    MoreLike(usize),
+    /// A landscape of a generation gets a star, or loses it.
+    Star { generation: u32, landscape: usize, starred: bool },
+    /// Breed with one category of that landscape as a parent, whatever was voted on it.
+    BreedFrom { generation: u32, landscape: usize, category: Category },
     /// The landscapes share the window in another way.
     Arrange(Arrangement),
     /// The landscape that the genome panel is about: 0 to 3.
@@ -91,4 +99,6 @@ pub enum Panel {
     Settings,
     /// Landscapes as files for other programs.
     Export,
+    /// All generations, and which came from which.
+    Family,
 }

@@ -6,7 +6,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use genescape_schema::{Current, INDIVIDUALS, Lineage, Parent, Population, Space, decode};
+use genescape_schema::{Current, Favourites, INDIVIDUALS, Lineage, Parent, Population, Space, decode};
 
 use crate::near_name::near_world;
 use crate::{WorldError, atomic_write, names, regular_file};
@@ -255,6 +255,34 @@ impl World {
         Ok(Some(Current::load(&path.display().to_string(), &text)?))
     }
 
+    /// The landscapes that a person has marked; none while there is no such file.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is wrong.
+    pub fn favourites(&self) -> Result<Favourites, WorldError> {
+        let path = self.root.join(names::FAVOURITES);
+        let Some(text) = read_if_there(&path)? else { return Ok(Favourites::default()) };
+        Ok(Favourites::load(&path.display().to_string(), &text)?)
+    }
+
+    /// Marks a landscape, or takes its mark away; returns all that are marked now.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is wrong, and then is left as it is; one that cannot be written.
+    pub fn mark(&self, generation: u32, landscape: usize, is_marked: bool) -> Result<Favourites, WorldError> {
+        let mut favourites = self.favourites()?;
+        let changed = match is_marked {
+            true => favourites.0.insert((generation, landscape)),
+            false => favourites.0.remove(&(generation, landscape)),
+        };
+        if changed {
+            let path = self.root.join(names::FAVOURITES);
+            let written = atomic_write::replace(&path, favourites.to_ron());
+            written.map_err(|error| WorldError::Write { path, error })?;
+        }
+        Ok(favourites)
+    }
+
     /// What `current.ron` is to say when all scenes of a population are ready.
     pub fn current_after(file: &PopulationFile) -> Current {
         let generation = file.population.generation;
@@ -268,6 +296,15 @@ impl World {
         let bytes =
             regular_file::read(&self.root.join(names::thumbnail(generation, scene)), MAX_THUMBNAIL_BYTES);
         bytes.ok().filter(|bytes| bytes.starts_with(&BEGINNING))
+    }
+
+    /// Keeps a JPEG file as the thumbnail of a landscape.
+    ///
+    /// # Errors
+    /// A folder that cannot be written to.
+    pub fn keep_thumbnail(&self, generation: u32, scene: usize, jpeg: &[u8]) -> Result<(), WorldError> {
+        let path = self.root.join(names::thumbnail(generation, scene));
+        atomic_write::replace(&path, jpeg).map_err(|error| WorldError::Write { path, error })
     }
 
     /// Removes what programs that were killed while they wrote left among the person's files; how many files.
@@ -363,6 +400,20 @@ mod tests {
         let error = world.population(&Space::builtin(), 3).expect_err("no such file");
         assert!(error.to_string().contains("g0003.ron"), "{error}");
         assert!(matches!(World::open(world.root()), Err(WorldError::NoWorld(_))));
+    }
+
+    #[test]
+    fn marks_are_kept_and_a_wrong_file_of_them_is_left_alone() {
+        let (_folder, world) = world();
+        assert_eq!(world.favourites().expect("none"), Favourites::default());
+        world.mark(3, 1, true).expect("marked");
+        world.mark(0, 2, true).expect("marked");
+        assert_eq!(world.mark(3, 1, false).expect("unmarked").0, [(0, 2)].into());
+        assert_eq!(world.favourites().expect("one").0, [(0, 2)].into());
+        let path = world.root().join(names::FAVOURITES);
+        atomic_write::replace(&path, "Favourites(mine").expect("edited");
+        world.mark(1, 1, true).expect_err("it would be lost");
+        assert_eq!(fs::read_to_string(&path).expect("there"), "Favourites(mine");
     }
 
     #[test]

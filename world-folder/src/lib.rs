@@ -4,6 +4,7 @@
 //! ```text
 //! world/space.ron                              the parameter space, free to edit
 //! world/population/g0000.ron …                 what the person made: only created, or edited in place
+//! world/favourites.ron                         landscapes that a person has marked
 //! world/kinds/tree/oak.ron …                  kinds of trees, lands and skies of a person's own, if there are any
 //! world/baked/g0000/scene-0/scene.gltf …       what can be made again
 //! world/baked/current.ron                      which scenes are ready

@@ -12,6 +12,8 @@ pub const POPULATIONS: &str = "population";
 pub const BAKED: &str = "baked";
 /// Folder of a person's own kinds.
 pub const KINDS: &str = "kinds";
+/// Landscapes that the person marked with a star.
+pub const FAVOURITES: &str = "favourites.ron";
 /// Which scenes are ready.
 pub const CURRENT: &str = "baked/current.ron";
 

@@ -1,6 +1,6 @@
 //! What children are called, and where their parts come from.
 
-use genescape_schema::{Category, INDIVIDUALS, Kinds, Population};
+use genescape_schema::{Category, INDIVIDUALS, Individual, Kinds, Population};
 
 use crate::kinds::{Home, name};
 
@@ -63,21 +63,11 @@ impl Origin {
 /// What parts of a landscape are called, as in [`Category::ALL`].
 const PARTS: [&str; 3] = ["trees", "land", "sky"];
 /// Between the parts of a descent or a name.
-const SEPARATOR: &str = " · ";
+const SEPARATOR: &str = Individual::SEPARATOR;
 
 /// "trees of 2 · land like 3 · new sky": where each part comes from.
 pub fn descent(parents: Parents<'_>, origins: [Origin; 3]) -> String {
     Category::ALL.map(|category| origins[category as usize].phrase(parents, category)).join(SEPARATOR)
-}
-
-/// Of which of the four parents, counted from 1, a landscape of this descent has trees, land and sky.
-pub fn parents(descent: &str) -> [Vec<usize>; 3] {
-    let of = |part: &str| {
-        let words = part.split([' ', ',']).filter_map(|word| word.parse().ok());
-        words.filter(|parent| (1..=INDIVIDUALS).contains(parent)).collect()
-    };
-    let mut parts = descent.split(SEPARATOR).map(of);
-    std::array::from_fn(|_| parts.next().unwrap_or_default())
 }
 
 /// What kind of place a child is: "Birches on karst, mackerel sky". One that has two or three parts of a parent that
@@ -125,6 +115,11 @@ mod tests {
 
     #[test]
     fn parents_are_read_from_a_descent() {
+        let parents = |descent: &str| {
+            let random = Population::random(&Space::builtin(), 1, 7);
+            let [one, ..] = random.individuals;
+            Individual { descent: descent.to_owned(), ..one }.parents()
+        };
         let population = Population::random(&Space::builtin(), 1, 7);
         let chosen = ["3.2", "fjord", "old.ron:1"].map(str::to_owned);
         let numbered = Parents { population: &population, chosen: None };

@@ -22,7 +22,6 @@ use genescape_schema::{Category, Kinds, Parent, Population, Space, Votes};
 
 pub use account::Account;
 pub use chances::likely_votes;
-pub use descent::parents;
 use learned::Learned;
 
 /// How the next generation is found.

@@ -2,14 +2,11 @@
 //! people ([`page`]) or as JSON for programs.
 
 mod html;
-mod lanes;
 pub mod page;
 
 use genescape_schema::{Category, INDIVIDUALS, Individual, Population, Space, Votes};
 use genescape_world::{World, WorldError, names};
 use serde_json::{Value, json};
-
-use crate::breed;
 
 /// All generations of a world.
 pub struct Family {
@@ -53,9 +50,9 @@ impl Family {
 impl Generation {
     /// As JSON: landscapes count from 1, as people do.
     pub fn to_json(&self) -> Value {
-        let Population { generation, seed, parent, individuals, votes, .. } = &self.population;
+        let Population { generation, seed, parent, bred_from, individuals, votes, .. } = &self.population;
         let landscape = |one: &Individual| {
-            let from = breed::parents(&one.descent);
+            let from = one.parents();
             let from = Category::ALL.map(|category| (category.name(), from[category as usize].clone()));
             let from: serde_json::Map<String, Value> =
                 from.into_iter().map(|(name, parents)| (name.to_owned(), json!(parents))).collect();
@@ -67,6 +64,7 @@ impl Generation {
             "parent": parent.map(|parent| json!({
                 "generation": parent.generation, "votes": votes_json(&parent.votes),
             })),
+            "bred_from": bred_from,
             "votes": votes.as_ref().map(votes_json),
             "landscapes": individuals.iter().map(landscape).collect::<Vec<_>>(),
         })

@@ -3,12 +3,11 @@
 
 use std::fmt::{self, Display, Write};
 
+use genescape_schema::lanes::{self, Line};
 use genescape_schema::{Category, INDIVIDUALS, Individual, Population, Votes};
 
 use super::html::{Escaped, base64};
-use super::lanes::{self, Line};
 use super::{Family, Generation};
-use crate::breed;
 
 /// What a page begins with that this program made, and may replace.
 pub const BEGINNING: &str = "<!doctype html>\n<!-- made by bake lineage -->\n";
@@ -88,6 +87,11 @@ struct Origin<'a> {
 impl Display for Origin<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Population { seed, parent, votes, .. } = &self.one.population;
+        let chosen = self.one.population.bred_from.as_ref().filter(|_| parent.is_none());
+        if let Some([tree, terrain, sky]) = chosen {
+            let [tree, terrain, sky] = [tree, terrain, sky].map(|name| Escaped(name));
+            write!(f, "bred from chosen parents: trees of {tree}, land of {terrain}, sky of {sky}, ")?;
+        }
         match parent.map(|parent| parent.generation) {
             Some(parent) if self.family.generations.iter().any(|one| one.population.generation == parent) => {
                 write!(f, "bred from <a href=\"#g{parent}\">generation {parent}</a>, ")?;
@@ -151,7 +155,7 @@ fn write_descent(out: &mut String, population: &Population, above: Option<u32>) 
         if is_joined { " joined" } else { "" }
     )?;
     for (child, one) in population.individuals.iter().enumerate() {
-        for (category, parents) in Category::ALL.into_iter().zip(breed::parents(&one.descent)) {
+        for (category, parents) in Category::ALL.into_iter().zip(one.parents()) {
             for parent in parents {
                 // Three lines side by side arrive at each landscape.
                 let at = |column: usize| COLUMN * column + COLUMN / 2 - 8 + 8 * category as usize;

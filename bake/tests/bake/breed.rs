@@ -43,7 +43,7 @@ fn parents_that_are_not_there_are_told_and_nothing_is_made() {
     let world = World::starters();
     for (words, told) in [
         (["--tree", "fjord"], "fjord is a kind of terrain, not of tree"),
-        (["--sky", "fogg"], "did you mean fog"),
+        (["--sky", "afterglo"], "did you mean afterglow?"),
         (["--tree", "7.1"], "g0007.ron"),
         (["--tree", "0.5"], "1 to 4"),
         (["--terrain", "nowhere.ron:1"], "nowhere.ron"),

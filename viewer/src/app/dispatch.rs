@@ -27,6 +27,14 @@ impl App {
             Event::Command(_) => {}
             Event::Vote { category, ballot } => self.vote(category, ballot),
             Event::GoToGeneration(generation) => self.editor.visit(generation),
+            Event::Variety(variety) => self.editor.set_variety(variety),
+            Event::MoreLike(view) => self.editor.breed_more_like(view),
+            Event::Star { generation, landscape, starred } => {
+                self.editor.star(generation, landscape, starred);
+            }
+            Event::BreedFrom { generation, landscape, category } => {
+                self.editor.breed_with(generation, landscape, category);
+            }
             Event::Arrange(arrangement) => self.layout.arrange(arrangement),
             Event::Choose(individual) => self.layout.chosen = individual,
             Event::Genes { individual, values } => self.editor.set_genes(individual, values),
@@ -96,6 +104,7 @@ impl App {
                 self.tell(Tone::Info, "Only landscapes are exported: this is a file already");
             }
             Command::Export => self.layout.toggle(Panel::Export),
+            Command::Family => self.layout.toggle(Panel::Family),
             Command::Quit => events.exit(),
             Command::NextTreeLod => {
                 let (chosen, whose) = match of_file {

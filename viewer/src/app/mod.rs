@@ -15,6 +15,7 @@ mod model;
 mod pace;
 mod screen;
 mod sharpness;
+mod thumbnails;
 mod ui_painter;
 mod viewport;
 mod viewports;
@@ -25,13 +26,13 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use genescape_schema::{INDIVIDUALS, printable};
-use genescape_world::{Change, Source, Watch};
+use genescape_world::{Change, Source, Watch, World};
 use serde_json::json;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 
 use crate::baker::Baker;
 use crate::cli::Cli;
-use crate::event::Event;
+use crate::event::{Arrangement, Event};
 use crate::gpu::Gpu;
 use crate::input::Bindings;
 use crate::loader::{Loader, Request};
@@ -50,6 +51,7 @@ use log::{Log, Moment};
 use pace::{Next, Pace, Shown};
 use screen::Screen;
 use sharpness::Sharpness;
+use thumbnails::Thumbnails;
 use viewports::{Viewports, Wish};
 
 /// Between two looks at whether settings have to be saved.
@@ -112,6 +114,7 @@ struct App {
     focus: Focus,
     background: Background,
     exports: Exports,
+    thumbnails: Thumbnails,
     pace: Pace,
     /// When settings were saved last, if they had changed.
     last_save: Instant,
@@ -157,6 +160,7 @@ impl App {
             focus: Focus::default(),
             background: Background::default(),
             exports: Exports::default(),
+            thumbnails: Thumbnails::default(),
             pace: Pace::new(now),
             last_save: now,
             screenshot: false,
@@ -206,6 +210,7 @@ impl App {
         let kept = self.file.settings.world(&source);
         self.editor = Editor::open(source.clone(), &kept);
         self.layout = Layout::of(self.editor.count(), self.layout.panels);
+        self.thumbnails = Thumbnails::default();
         self.source = source;
         let comfort = &self.file.settings.comfort.value;
         self.camera.return_to(place_to_return_to(&self.editor, &kept, comfort), &kept);
@@ -224,6 +229,7 @@ impl App {
         self.step_camera(passed, events);
         let model = self.model();
         let Some((output, shown)) = self.draw(&model) else { return };
+        self.keep_thumbnails(&model, &shown);
         if std::mem::take(&mut self.screenshot) {
             self.save_screenshot();
         }
@@ -235,6 +241,26 @@ impl App {
             self.save_settings();
         }
         self.wait(events, shown);
+    }
+
+    /// Takes small pictures of a generation when all of it is shown, and reads those that the family tree shows.
+    fn keep_thumbnails(&mut self, model: &Model, shown: &Shown) {
+        let (Some(live), Some(root)) = (&self.live, self.editor.world()) else { return };
+        let world = World::new(root);
+        let is_ready =
+            model.views.iter().all(|view| view.state == ViewState::Ready && view.picture.is_some());
+        let is_whole = is_ready && !shown.blurred && !self.editor.is_busy();
+        if is_whole
+            && model.arrangement == Arrangement::Grid
+            && self.thumbnails.wants(&world, model.generation)
+            && let Ok(pictures) = live.viewports.pixels(&self.layout.shown())
+            && pictures.len() == INDIVIDUALS
+        {
+            self.thumbnails.keep(&live.screen.ctx, &world, model.generation, pictures);
+        }
+        if model.panels.family && self.thumbnails.read(&live.screen.ctx, &world, &model.generations) {
+            live.screen.ctx.request_repaint();
+        }
     }
 
     /// Takes in what other threads have brought.

@@ -75,6 +75,9 @@ pub enum Command {
     /// breed once more from the same votes
     #[strum(props(keys = "Shift+N"))]
     BreedAgain,
+    /// family tree, favourites
+    #[strum(props(keys = "T"))]
+    Family,
     /// undo
     #[strum(props(keys = "Ctrl+Z"))]
     Undo,
@@ -269,7 +272,7 @@ mod tests {
             fixed("forward back left right up down run walk_fly_orbit release_mouse start"),
             fixed("maximise_1 maximise_2 maximise_3 maximise_4 show_all compare"),
             ["tree", "terrain", "sky"].into_iter().flat_map(votes).collect(),
-            fixed("next_generation breed_again undo redo older_generation newer_generation"),
+            fixed("next_generation breed_again family undo redo older_generation newer_generation"),
             marks("set").chain(marks("go")).collect(),
             fixed("help genome stats settings fullscreen screenshot export quit"),
             fixed("tree_scheme terrain_scheme wireframe tint overhead"),

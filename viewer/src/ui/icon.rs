@@ -29,6 +29,9 @@ pub enum Icon {
     Warning,
     Copy,
     Export,
+    Family,
+    Star,
+    More,
 }
 
 impl From<Category> for Icon {

@@ -6,6 +6,7 @@ pub mod arrange;
 mod bake_log;
 mod empty;
 mod export;
+mod family;
 mod gene_row;
 mod genome;
 mod help;
@@ -34,18 +35,24 @@ use model::Model;
 use notices::Notices;
 use widgets::{Asks, ask, asked};
 
+/// Genes and the family tree stand side by side in windows that are at least so wide, in points.
+const BOTH_PANELS_FROM: f32 = 1100.0;
+
 /// What the panels remember between frames.
 pub struct State {
     /// Where the splitter is, as a part of the pictures' width.
     pub split: f32,
     /// Search field and what is being dragged.
     pub genome: genome::State,
+    /// Search field of the family tree.
+    pub family: family::State,
     notices: Notices,
 }
 
 impl Default for State {
     fn default() -> Self {
-        Self { split: 0.5, genome: genome::State::default(), notices: Notices::default() }
+        let (genome, family, notices) = Default::default();
+        Self { split: 0.5, genome, family, notices }
     }
 }
 
@@ -74,13 +81,19 @@ pub fn show(ui: &mut Ui, model: &Model, state: &mut State) -> Output {
     keep_keyboard(ui.ctx());
     theme::keep_pace(ui.ctx());
     top_bar::show(ui, model);
+    let family = model.panels.family && model.votable;
+    // In a small window the family tree takes the place of the genes: both would leave no pictures.
+    let crowded = family && ui.available_width() < BOTH_PANELS_FROM;
     match &model.file {
-        _ if !model.panels.genome => {}
+        _ if !model.panels.genome || crowded => {}
         Some(file) => about::show(ui, model, file),
         None => genome::show(ui, model, &mut state.genome),
     }
     let counted = if model.file.is_some() { "copies" } else { "trees" };
     let docked = model.panels.stats && stats::show_docked(ui, &model.stats, counted);
+    if family {
+        family::show(ui, model, &mut state.family);
+    }
     let area = ui.available_rect_before_wrap();
     if !empty::show(ui, model) {
         output.views = views::show(ui, model, &mut state.split);

@@ -5,7 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use egui::TextureId;
-use genescape_schema::{Genome, INDIVIDUALS, Parameter, Parent, Space};
+use genescape_schema::{
+    Genome, INDIVIDUALS, Individual, Parameter, Parent, Population, Space, Variety, Votes,
+};
 
 use crate::ballots::Ballots;
 use crate::event::{Arrangement, Panel};
@@ -58,6 +60,14 @@ pub struct Model {
     pub parents: BTreeMap<u32, Parent>,
     /// Names of the landscapes that those on show were bred from.
     pub ancestors: Option<[String; INDIVIDUALS]>,
+    /// How different the next landscapes are to be from the best guess.
+    pub variety: Variety,
+    /// All generations that can be read, rising.
+    pub family: Arc<Vec<Kin>>,
+    /// Landscapes with a star: generation, and 0 to 3.
+    pub favourites: BTreeSet<(u32, usize)>,
+    /// Small pictures of landscapes that were looked at.
+    pub thumbnails: BTreeMap<(u32, usize), TextureId>,
     /// Nobody has walked or voted yet.
     pub greets: bool,
     /// What is drawn, and how.
@@ -78,6 +88,34 @@ impl Model {
         match self.bindings.chords(command).next() {
             Some(chord) => format!("{text} ({chord})"),
             None => text.to_owned(),
+        }
+    }
+}
+
+/// One generation of the family tree.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Kin {
+    pub generation: u32,
+    pub parent: Option<Parent>,
+    pub votes: Option<Votes>,
+    /// What its landscapes are called, and what they have of whom.
+    pub names: [String; INDIVIDUALS],
+    pub descents: [String; INDIVIDUALS],
+    /// Of which parents, counted from 1, they have trees, land and sky.
+    pub parents: [[Vec<usize>; 3]; INDIVIDUALS],
+}
+
+impl Kin {
+    pub fn of(population: &Population) -> Self {
+        let of =
+            |text: fn(&Individual) -> &String| population.individuals.each_ref().map(|one| text(one).clone());
+        Self {
+            generation: population.generation,
+            parent: population.parent,
+            votes: population.votes,
+            names: of(|one| &one.name),
+            descents: of(|one| &one.descent),
+            parents: population.individuals.each_ref().map(Individual::parents),
         }
     }
 }
@@ -274,6 +312,8 @@ pub struct Panels {
     pub settings: bool,
     /// Landscapes as files.
     pub export: bool,
+    /// The family tree.
+    pub family: bool,
 }
 
 impl Panels {
@@ -284,6 +324,7 @@ impl Panels {
             Panel::Help => &mut self.help,
             Panel::Settings => &mut self.settings,
             Panel::Export => &mut self.export,
+            Panel::Family => &mut self.family,
         }
     }
 

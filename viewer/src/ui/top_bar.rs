@@ -3,7 +3,7 @@
 
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Align, Frame, Id, Layout, Margin, Rect, Response, Sense, Stroke, TextStyle, Ui, vec2};
-use genescape_schema::{Category, Parent};
+use genescape_schema::{Category, Parent, Variety};
 
 use super::icon::Icon;
 use super::model::{Baking, Model};
@@ -17,6 +17,8 @@ use crate::input::Command;
 
 /// Height of the bar, in points.
 const HEIGHT: f32 = 40.0;
+/// Width of the slider for variety, in points.
+const VARIETY: f32 = 84.0;
 /// A window narrower than this gets no words in the bar, in points.
 const WORDS_FROM: f32 = 940.0;
 
@@ -51,7 +53,9 @@ fn panels(ui: &mut Ui, model: &Model) {
         (Panel::Settings, Icon::Settings, "Settings", Command::Settings),
         (Panel::Stats, Icon::Stats, "Frame times", Command::Stats),
         (Panel::Genome, Icon::Genome, known, Command::Genome),
+        (Panel::Family, Icon::Family, "Family tree", Command::Family),
     ];
+    let all = all.into_iter().filter(|(panel, ..)| *panel != Panel::Family || model.votable);
     for (panel, icon, label, command) in all {
         let open = model.panels.is_open(panel);
         let response = bar_button(ui, icon, label, open, &model.with_key(label, command));
@@ -99,9 +103,12 @@ fn generations(ui: &mut Ui, model: &Model, words: bool) {
         step(ui, model, Icon::Redo, "Redo", model.redo.as_deref(), Command::Redo);
     }
     divider(ui);
-    let way_on = if words { 330.0 } else { 36.0 };
+    let way_on = if words { 330.0 + VARIETY } else { 36.0 };
     strip(ui, model, (ui.available_width() - way_on).max(40.0));
     next(ui, model, words);
+    if words {
+        variety(ui, model);
+    }
     if words && let Some(baking) = &model.baking {
         ui.add_space(6.0);
         let (Baking { generation, done, total }, part) = (baking, baking.part());
@@ -211,4 +218,26 @@ fn next(ui: &mut Ui, model: &Model, words: bool) {
             response.on_hover_text(model.with_key(text, Command::NextGeneration))
         }
     };
+}
+
+/// How different the next landscapes are to be. What is dragged is asked for when it is let go.
+fn variety(ui: &mut Ui, model: &Model) {
+    let id = Id::unique("variety that is dragged");
+    let dragged = ui.data(|data| data.get_temp::<f32>(id));
+    let mut part = dragged.unwrap_or(model.variety.part());
+    ui.add_space(4.0);
+    ui.spacing_mut().slider_width = VARIETY - 16.0;
+    let slider = egui::Slider::new(&mut part, 0.0..=1.0).show_value(false).step_by(0.05);
+    let response = ui.add(slider).accessible_name("Variety");
+    if response.dragged() {
+        ui.data_mut(|data| data.insert_temp(id, part));
+    } else {
+        ui.data_mut(|data| data.remove::<f32>(id));
+        let wanted = Variety::of(part.into()).filter(|wanted| *wanted != model.variety);
+        if let Some(variety) = wanted.filter(|_| response.drag_stopped() || response.changed()) {
+            ask(ui, Event::Variety(variety));
+        }
+    }
+    let text = "Variety of the next landscapes: close variations at the left, anything at the right";
+    response.on_hover_text(format!("{text}\nNow {}", model.variety));
 }

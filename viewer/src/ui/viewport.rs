@@ -17,6 +17,9 @@ const BUTTON: f32 = 26.0;
 /// A part of a picture narrower than this, beside a splitter, has no handle to export it by, in points.
 const NARROW: f32 = 140.0;
 
+/// A picture narrower than this has no buttons to breed by, in points.
+const BREEDS_FROM: f32 = 300.0;
+
 /// Draws name, buttons and state over the picture in `rect`; `lively` when the pointer is over it. Where the name ends.
 pub fn show(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool) -> Pos2 {
     if view >= model.count {
@@ -36,7 +39,8 @@ pub fn show(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool) -
     };
     // Where they would be, so that the name stays as it is when they come.
     let exports = rect.width() >= NARROW && model.file.is_none();
-    let buttons = (tools.len() + usize::from(exports)) as f32 * (BUTTON + 4.0);
+    let breeds = model.votable && rect.width() >= BREEDS_FROM;
+    let buttons = (tools.len() + usize::from(exports) + 2 * usize::from(breeds)) as f32 * (BUTTON + 4.0);
     let below = name_tag(ui, model, view, rect, rect.width() - 20.0 - buttons);
     match &model.views[view].state {
         ViewState::Ready => {}
@@ -57,6 +61,14 @@ pub fn show(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool) -
     }
     if lively && exports && matches!(model.views[view].state, ViewState::Ready) {
         export_handle(ui, model, view, Rect::from_min_size(corner, vec2(BUTTON, BUTTON)));
+        corner.x -= BUTTON + 4.0;
+    }
+    if breeds && lively && matches!(model.views[view].state, ViewState::Ready) {
+        more_like(ui, view, Rect::from_min_size(corner, vec2(BUTTON, BUTTON)));
+    }
+    let at = rect.right_top() + vec2(-10.0 - buttons + 4.0, 10.0);
+    if breeds && (lively || is_starred(model, view)) {
+        star(ui, model, view, Rect::from_min_size(at, vec2(BUTTON, BUTTON)));
     }
     below
 }
@@ -75,6 +87,33 @@ fn export_handle(ui: &mut Ui, model: &Model, view: usize, rect: Rect) {
     }
     let text = model.with_key("Export as files", Command::Export);
     response.on_hover_text(format!("{text}, or drag it to another program"));
+}
+
+fn more_like(ui: &mut Ui, view: usize, rect: Rect) {
+    let name = format!("More like this: {}", view + 1);
+    let (response, lit) = painted_button(ui, rect, ("more", view), &name, false);
+    ui.painter().rect_filled(rect, 13, scrim(lit));
+    Icon::More.paint(ui.painter(), rect.shrink(6.0), theme::ON_SCRIM);
+    response.asks(Event::MoreLike(view));
+    response.on_hover_text("More like this: vote for all of it, and breed close variations");
+}
+
+fn is_starred(model: &Model, view: usize) -> bool {
+    model.favourites.contains(&(model.generation, view))
+}
+
+/// Seen as long as it shines, else under the pointer.
+fn star(ui: &mut Ui, model: &Model, view: usize, rect: Rect) {
+    let starred = is_starred(model, view);
+    let name = format!("Star: {}", view + 1);
+    let (response, lit) = painted_button(ui, rect, ("star", view), &name, starred);
+    ui.painter().rect_filled(rect, 13, scrim(lit));
+    let color = if starred { theme::DARK.accent } else { theme::ON_SCRIM_WEAK };
+    Icon::Star.paint(ui.painter(), rect.shrink(6.0), color);
+    response.asks(Event::Star { generation: model.generation, landscape: view, starred: !starred });
+    let text =
+        if starred { "Take the star away" } else { "Mark with a star: it is kept among the favourites" };
+    response.on_hover_text(model.with_key(text, Command::Family));
 }
 
 /// The ground of a button on a picture.

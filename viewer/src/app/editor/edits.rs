@@ -1,5 +1,7 @@
 //! Changes of genes and locks in the population's file, and the way back through these and the votes.
 
+use genescape_schema::Variety;
+
 use super::Editor;
 use crate::ballots::Ballots;
 use crate::edit_history::{Change, Edit, Step, UndoError};
@@ -12,6 +14,13 @@ impl Editor {
         values.retain(|(name, _)| self.space.find(name).is_some_and(|gene| !population.is_locked(gene)));
         if !values.is_empty() {
             self.edit(&Edit::Genes { individual, values });
+        }
+    }
+
+    /// How different the landscapes that are bred from here are to be from the best guess.
+    pub fn set_variety(&mut self, variety: Variety) {
+        if self.population.is_some() && self.variety() != variety {
+            self.edit(&Edit::Variety(variety));
         }
     }
 

@@ -3,6 +3,7 @@
 
 mod bake_progress;
 mod edits;
+mod family;
 mod model;
 #[cfg(test)]
 mod tests;
@@ -21,7 +22,7 @@ use crate::edit_history::Steps;
 use crate::event::Event;
 use crate::settings::WorldSettings;
 use crate::ui::Tone;
-use crate::ui::model::FileError;
+use crate::ui::model::{FileError, Kin};
 use bake_progress::BakeProgress;
 
 /// What went wrong where; one of each kind at a time.
@@ -61,6 +62,10 @@ pub struct Editor {
     /// Names of the landscapes that those on show were bred from.
     ancestors: Option<[String; INDIVIDUALS]>,
     population: Option<Population>,
+    /// All generations that can be read.
+    family: Arc<Vec<Kin>>,
+    /// Landscapes with a star.
+    favourites: BTreeSet<(u32, usize)>,
     /// Genes as they were when the generation was first shown.
     bred: Option<[Genome; INDIVIDUALS]>,
     pub(super) ballots: Ballots,
@@ -92,6 +97,8 @@ impl Editor {
             generations: Vec::new(),
             parents: BTreeMap::new(),
             ancestors: None,
+            family: Arc::default(),
+            favourites: BTreeSet::new(),
             population: None,
             bred: None,
             ballots: Ballots::default(),
@@ -115,6 +122,7 @@ impl Editor {
         }
         self.read_space();
         self.read_generations();
+        self.read_favourites();
         let current = self.world.current().ok().flatten().map(|current| current.generation);
         let newest = self.generations.last().copied();
         if let Some(generation) = current.filter(|g| self.generations.contains(g)).or(newest) {
@@ -182,6 +190,7 @@ impl Editor {
                     self.parents.extend(parent.map(|parent| (*generation, parent)));
                 }
                 self.generations = generations;
+                self.read_family(None);
                 self.faults.remove(&Fault::Folder);
             }
             Err(error) => self.fault(Fault::Folder, "the world cannot be read", error.to_string()),
@@ -270,6 +279,7 @@ impl Editor {
             Change::Population(generation) => {
                 let before = self.generations.last().copied();
                 self.read_generations();
+                self.read_family(Some(generation));
                 let newest = self.generations.last().copied();
                 if self.population.is_none() && before.is_none() {
                     self.go_to(generation);

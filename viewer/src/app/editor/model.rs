@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use genescape_schema::{Category, INDIVIDUALS, Parent};
+use genescape_schema::{Category, INDIVIDUALS, Parent, Variety};
 use genescape_world::Source;
 
 use super::{Editor, Fault};
@@ -22,6 +22,11 @@ impl Editor {
     /// Names of the landscapes that those on show were bred from.
     pub fn ancestors(&self) -> Option<&[String; INDIVIDUALS]> {
         self.ancestors.as_ref()
+    }
+
+    /// How different the next landscapes are to be from the best guess.
+    pub fn variety(&self) -> Variety {
+        self.population.as_ref().and_then(|population| population.variety).unwrap_or(Variety::USUAL)
     }
 
     /// How many landscapes there are, or are to come.

@@ -4,7 +4,7 @@ use super::*;
 use crate::ballots::Ballot;
 use crate::input::Command;
 use crate::ui::model::ViewState;
-use genescape_schema::{Category, Parent};
+use genescape_schema::{Category, Genome, Parent, Variety, Votes};
 
 /// A world with the starter landscapes in `root`, an editor of it, and its population file.
 fn starter(root: &Path) -> (Editor, PathBuf) {
@@ -113,6 +113,64 @@ fn bear(editor: &mut Editor, root: &Path) {
     let child = Population { generation: 1, parent, votes: None, ..population };
     editor.world.create_population(&Space::builtin(), &child).expect("saved");
     editor.changed(Change::Population(1));
+}
+
+#[test]
+fn more_like_this_votes_for_all_of_one_and_asks_for_close_variations() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (mut editor, path) = starter(folder.path());
+    let good = std::fs::read_to_string(&path).expect("there");
+    editor.breed_more_like(2);
+    let population = World::read_population(&editor.space, &path).expect("valid").population;
+    assert_eq!(population.votes, Some(Votes { tree: Some(2), terrain: Some(2), sky: Some(2) }));
+    assert_eq!((population.variety, editor.variety()), (Some(Variety::CLOSE), Variety::CLOSE));
+    // Votes that were answered with another variety are not answered.
+    let parent = Parent { generation: 0, votes: population.votes.expect("votes"), variety: None };
+    let other = Population { generation: 1, parent: Some(parent), votes: None, ..population };
+    editor.world.create_population(&Space::builtin(), &other).expect("saved");
+    editor.breed();
+    assert_eq!(editor.generations().0, 0, "no generation is bred of them yet");
+    for _ in 0..8 {
+        editor.undo();
+    }
+    let undone = std::fs::read_to_string(&path).expect("there");
+    assert_eq!(undone, good);
+}
+
+#[test]
+fn stars_are_kept_and_the_family_is_what_the_files_say() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (mut editor, _) = starter(folder.path());
+    editor.star(0, 3, true);
+    assert_eq!(restarted(&editor).favourites(), &[(0, 3)].into());
+    editor.star(0, 3, false);
+    assert!(restarted(&editor).favourites().is_empty());
+    let sky = Ballot::For(1);
+    vote(&mut editor, Category::Sky, sky);
+    bear(&mut editor, folder.path());
+    let family = editor.family();
+    assert_eq!(family.iter().map(|kin| kin.generation).collect::<Vec<_>>(), [0, 1]);
+    let path = editor.world.population_path(1);
+    let text = std::fs::read_to_string(&path).expect("there");
+    let name = &family[1].names[0];
+    std::fs::write(&path, text.replacen(name.as_str(), "Grandmother's valley", 1)).expect("written");
+    editor.changed(Change::Population(1));
+    assert_eq!(editor.family()[1].names[0], "Grandmother's valley");
+}
+
+#[test]
+fn a_part_of_any_landscape_is_bred_with() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (mut editor, _) = starter(folder.path());
+    editor.breed_with(0, 3, Category::Tree);
+    editor.changed(Change::Population(1));
+    let population =
+        |generation| editor.world.population(&Space::builtin(), generation).expect("valid").population;
+    let of = |generation, landscape: usize| population(generation).individuals[landscape].genome.clone();
+    let tree = |genome: &Genome| genome.chromosome(Category::Tree).clone();
+    assert_eq!(tree(&of(1, 0)), tree(&of(0, 3)));
+    assert_eq!(of(1, 0).chromosome(Category::Sky), of(0, 0).chromosome(Category::Sky));
+    assert_eq!(editor.generations().0, 1, "it comes on show");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Votes: cast, and written into the population's file.
 
 use anyhow::Error;
-use genescape_schema::{Category, Parent};
+use genescape_schema::{Category, Lineage, Parent, Variety};
 use genescape_world::WorldError;
 
 use super::{Editor, Task};
@@ -46,7 +46,11 @@ impl Editor {
     /// it was bred from itself.
     pub fn breed_again(&mut self) {
         let generation = self.generation;
-        let here = self.ballots.votes().map(|votes| Parent { generation, votes });
+        let here = self.ballots.votes().map(|votes| Parent {
+            generation,
+            votes,
+            variety: self.asked_variety(generation),
+        });
         let parent = here.or_else(|| self.parents.get(&generation).copied());
         let Some(parent) = parent.filter(|_| self.world().is_some()) else {
             return self
@@ -62,10 +66,27 @@ impl Editor {
         }
     }
 
+    /// Votes for all of one landscape, and breeds close variations of it.
+    pub fn breed_more_like(&mut self, view: usize) {
+        if self.world().is_none() {
+            return self.tell(Tone::Warning, "Scenes alone cannot breed: open a world to go on from here");
+        }
+        self.set_variety(Variety::CLOSE);
+        Category::ALL.into_iter().for_each(|category| self.vote(category, Ballot::For(view)));
+        self.breed();
+    }
+
+    /// What a generation's file says of the variety of its children.
+    fn asked_variety(&self, generation: u32) -> Option<Variety> {
+        let text = self.world.population_text(generation).ok()?;
+        Lineage::read("", &text).ok()?.variety
+    }
+
     /// Shows the generation bred from another by these ballots, all of which are cast, or asks for it.
     pub(super) fn breed_from(&mut self, from: u32, ballots: Ballots) -> Result<Step, WorldError> {
         let votes = ballots.votes().unwrap_or_default();
-        let child = self.world.child_of(&Parent { generation: from, votes })?;
+        let variety = self.asked_variety(from);
+        let child = self.world.child_of(&Parent { generation: from, votes, variety })?;
         let change = Change::make(&self.world, &self.space, from, &Edit::Votes(Some(votes)))?;
         match child {
             Some(child) => {

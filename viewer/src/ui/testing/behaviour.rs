@@ -94,6 +94,7 @@ fn the_bar_leads_back_in_time_and_undoes() {
         ("Frame times", Panel::Stats),
         ("Settings", Panel::Settings),
         ("Help and keys", Panel::Help),
+        ("Family tree", Panel::Family),
     ];
     for (label, panel) in panels {
         assert_eq!(press(&mut harness, label), [Event::Panel { panel, open: true }]);
@@ -113,6 +114,11 @@ fn pictures_are_chosen_maximised_and_compared() {
     let output = &harness.state().output;
     assert_eq!((output.views.pointed, output.views.free), (Some(1), true));
     assert_eq!(press(&mut harness, "Show this one alone: 2"), [Event::Arrange(Arrangement::One(1))]);
+    let star = |starred| Event::Star { generation: 3, landscape: 1, starred };
+    assert_eq!(press(&mut harness, "Star: 2"), [star(true)]);
+    harness.state_mut().model.favourites.insert((3, 1));
+    assert_eq!(press(&mut harness, "Star: 2"), [star(false)]);
+    assert_eq!(press(&mut harness, "More like this: 2"), [Event::MoreLike(1)]);
     let compare = Arrangement::Compare { left: 1, right: 2 };
     assert_eq!(press(&mut harness, "Compare with another: 2"), [Event::Arrange(compare)]);
     harness.state_mut().model.arrangement = compare;
@@ -126,6 +132,64 @@ fn pictures_are_chosen_maximised_and_compared() {
         [Event::Arrange(Arrangement::Compare { left: 1, right: 0 })]
     );
     assert_eq!(press(&mut harness, "All four"), [Event::Arrange(Arrangement::Grid)]);
+}
+
+#[test]
+fn variety_is_asked_for_when_the_slider_is_let_go() {
+    let mut harness = bench(model(), WINDOW, 1.0);
+    let rect = harness.get_by_label("Variety").rect();
+    harness.drag_at(rect.center());
+    harness.run();
+    harness.hover_at(rect.left_center() - vec2(30.0, 0.0));
+    harness.run();
+    assert!(taken(&mut harness).is_empty(), "it is still being dragged");
+    harness.drop_at(rect.left_center() - vec2(30.0, 0.0));
+    harness.run();
+    assert_eq!(taken(&mut harness), [Event::Variety(Variety::MIN)]);
+}
+
+fn with_family() -> Model {
+    let mut model = model();
+    model.panels.family = true;
+    model
+}
+
+#[test]
+fn the_family_tree_leads_to_a_generation_and_finds_names() {
+    let mut model = with_family();
+    let mut family = model.family.to_vec();
+    family[0].names[2] = "The Old Oak".to_owned();
+    model.family = Arc::new(family);
+    let mut harness = bench(model, [1280.0, 900.0], 1.0);
+    let name =
+        |generation: u32, landscape: u32| format!("Landscape {generation}.{landscape}: Random 7.{landscape}");
+    assert_eq!(press(&mut harness, &name(1, 2)), [Event::Choose(1), Event::GoToGeneration(1)]);
+    assert_eq!(press(&mut harness, &name(3, 4)), [Event::Choose(3)], "it is shown already");
+    harness.get_by_label("Search names").focus();
+    harness.run();
+    harness.get_by_label("Search names").type_text("oak old");
+    harness.run();
+    assert!(harness.query_by_label(&name(1, 2)).is_none(), "no name of generation 1 matches");
+    let events = press(&mut harness, "Landscape 0.3: The Old Oak");
+    assert_eq!(events, [Event::Choose(2), Event::GoToGeneration(0)]);
+    let closed = Event::Panel { panel: Panel::Family, open: false };
+    assert_eq!(press(&mut harness, "Close the family tree"), [closed]);
+}
+
+#[test]
+fn a_favourite_is_gone_to_unmarked_and_bred_with() {
+    let mut harness = bench(with_family(), WINDOW, 1.0);
+    let (generation, landscape) = (1, 2);
+    assert_eq!(press(&mut harness, "1.3  Random 7.3"), [Event::GoToGeneration(1)]);
+    let star = Event::Star { generation, landscape, starred: false };
+    assert_eq!(press(&mut harness, "Take the star from 1.3"), [star]);
+    for category in Category::ALL {
+        let label = format!("Breed with the {} of 1.3", title(category).to_lowercase());
+        assert_eq!(press(&mut harness, &label), [Event::BreedFrom { generation, landscape, category }]);
+    }
+    harness.state_mut().model.baking = baking();
+    harness.run();
+    assert!(press(&mut harness, "Breed with the sky of 1.3").is_empty(), "something is on its way");
 }
 
 #[test]

@@ -38,6 +38,14 @@ fn worlds() -> Vec<(&'static str, Model)> {
                 model.panels.settings = true;
             }),
         ),
+        ("family", change(|model| model.panels.family = true)),
+        (
+            "family, genome",
+            change(|model| {
+                model.panels = Panels { family: true, genome: true, ..Panels::default() };
+                model.favourites = (0..9).map(|one| (one % 4, (one / 4) as usize)).collect();
+            }),
+        ),
         ("export", change(|model| model.panels.export = true)),
         ("help", change(|model| model.panels.help = true)),
         (

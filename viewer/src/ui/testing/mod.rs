@@ -6,15 +6,15 @@ mod layout;
 mod pictures;
 mod shown;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use egui::{Color32, ColorImage, TextureHandle, TextureOptions, Vec2};
 use egui_kittest::{Harness, HarnessBuilder};
-use genescape_schema::{Parent, Population, Space, Votes};
+use genescape_schema::{Parent, Population, Space, Variety, Votes};
 
 use super::model::{
-    Baking, ExportModel, FileError, Genes, Model, Panels, PassTime, Situation, StageEntry, Stats,
+    Baking, ExportModel, FileError, Genes, Kin, Model, Panels, PassTime, Situation, StageEntry, Stats,
 };
 use super::model::{ViewModel, ViewState};
 use super::{Output, State, theme};
@@ -114,6 +114,10 @@ pub fn model() -> Model {
         file: None,
         parents: (1..=3).map(|generation| (generation, parent(generation - 1))).collect(),
         ancestors: Some(["Old oaks", "Wet birches", "A ridge", "Pines"].map(str::to_owned)),
+        variety: Variety::USUAL,
+        family: Arc::new((0..=3).map(kin).collect()),
+        favourites: [(1, 2)].into(),
+        thumbnails: BTreeMap::new(),
         greets: false,
         options: Options::default(),
         comfort: Comfort::default(),
@@ -121,6 +125,17 @@ pub fn model() -> Model {
         panels: Panels::default(),
         captured: false,
     }
+}
+
+/// A generation, bred from the one before it.
+fn kin(generation: u32) -> Kin {
+    let mut population = Population::random(&Space::builtin(), 7, generation);
+    population.parent = generation.checked_sub(1).map(parent);
+    population.votes = parent(generation).votes.into();
+    for one in population.individuals.iter_mut().filter(|_| generation > 0) {
+        one.descent = "trees of 1 · land like 3 · new sky".to_owned();
+    }
+    Kin::of(&population)
 }
 
 /// Bred from that generation.

@@ -113,7 +113,7 @@ fn edited(model: &mut Model) {
 type Scene = (&'static str, [f32; 2], f32, egui::Theme, Prepare, Act);
 
 /// Name, window in points, scale, theme, how the world differs from the usual one, and what is done to it.
-const SCENES: [Scene; 20] = [
+const SCENES: [Scene; 21] = [
     (
         "grid",
         [1280.0, 800.0],
@@ -125,6 +125,17 @@ const SCENES: [Scene; 20] = [
     ("grid-light", [1280.0, 800.0], 1.0, egui::Theme::Light, voted, |harness| {
         harness.hover_at(egui::pos2(400.0, 400.0))
     }),
+    (
+        "family",
+        [1280.0, 800.0],
+        1.0,
+        egui::Theme::Dark,
+        |model| {
+            voted(model);
+            model.panels.family = true;
+        },
+        |harness| harness.hover_at(egui::pos2(700.0, 250.0)),
+    ),
     ("voted", [1920.0, 1080.0], 1.0, egui::Theme::Dark, voted, nothing),
     (
         "small",
