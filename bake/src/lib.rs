@@ -12,6 +12,7 @@ pub mod cli;
 pub mod commands;
 mod distance_command;
 pub mod events;
+mod explain_command;
 pub mod export;
 pub mod export_command;
 pub mod gltf;

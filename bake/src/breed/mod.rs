@@ -19,7 +19,7 @@ mod variety;
 use clap::ValueEnum;
 use genescape_schema::{Category, Kinds, Parent, Population, Space, Votes};
 
-pub use account::Account;
+pub use account::{Account, Settled};
 use learned::Learned;
 
 /// How the next generation is found.
