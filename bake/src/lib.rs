@@ -28,6 +28,7 @@ mod manual;
 mod math;
 pub mod model;
 pub mod noise;
+pub mod origin;
 pub mod phenotype;
 pub mod plan;
 mod progress;

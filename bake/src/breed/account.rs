@@ -84,7 +84,12 @@ impl Account {
             let [low, high] = codes.map(|code| gene.text(code));
             let text = if low == high { low } else { format!("{low} … {high}") };
             let text = [text, gene.unit.clone()].join(" ").trim_end().to_owned();
-            Settled { gene: gene.name.clone(), range: codes.map(|code| gene.value(code)), text, part }
+            Settled {
+                gene: gene.name.clone(),
+                range: codes.map(|code| gene.text(code).parse().unwrap_or(gene.value(code))),
+                text,
+                part,
+            }
         };
         let genes = genes.into_iter().map(told).collect();
         Self { category, votes: taste.votes, kinds: shares, genes }
