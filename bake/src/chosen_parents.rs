@@ -15,8 +15,7 @@ use crate::bad_input::BadInput;
 use crate::breed::{Breeder, Chosen};
 use crate::events::Listener;
 use crate::kinds::pick::Picker;
-use crate::kinds::{Company, Home};
-use crate::kinds_command;
+use crate::kinds::{Company, Home, called};
 use crate::landscape::{Landscape, ParentArg, Reference};
 use crate::seed::Dice;
 use crate::session;
@@ -148,7 +147,7 @@ fn landscape_part(world: &World, space: &Space, reference: &Reference, category:
 
 /// The kinds of a category that a word means.
 fn kinds_of<'a>(kinds: &'a Kinds, category: Category, word: &str) -> Result<Vec<&'a Kind>, BadInput> {
-    let called = kinds_command::called(kinds, &[word.to_owned()])?;
+    let called = called(kinds, &[word.to_owned()])?;
     let own: Vec<&Kind> = called.iter().copied().filter(|kind| kind.category == category).collect();
     match (called.first(), own.is_empty()) {
         (Some(other), true) => {

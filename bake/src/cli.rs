@@ -254,7 +254,7 @@ impl Command {
         let is_lineage = matches!(self, Self::Lineage { out: None });
         lists_kinds
             || is_lineage
-            || matches!(self, Self::Distance { .. } | Self::Breed(_))
+            || matches!(self, Self::Distance { .. } | Self::Breed(_) | Self::Explain { .. })
             || matches!(self, Self::Random { .. } | Self::Next { .. } | Self::Export { .. })
     }
 }

@@ -5,21 +5,21 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result};
-use genescape_cache::{Change, Explanation};
-use genescape_schema::{Genome, Kinds, Population, Space, Variety};
+use genescape_schema::{Kinds, Population, Space, Variety};
 use genescape_world::output::BadOutput;
-use genescape_world::{World, WorldError, file_limit, names};
+use genescape_world::{World, WorldError, file_limit};
 use signal_hook::consts::SIGINT;
 use signal_hook::flag;
 
-use crate::audition::{self, Auditioned, Redrawn};
+use crate::audition::{self, Auditioned};
 use crate::bad_input::BadInput;
-use crate::breed::{Breeder, NoVotes, Strategy};
+use crate::breed::{NoVotes, Strategy};
 use crate::cache_commands::GaveUp;
 use crate::chosen_parents::ChosenParents;
 use crate::cli::{Cli, Command, RunArgs, meant_command};
-use crate::events::{Event, Listener, Untold};
+use crate::events::{Event, Listener};
 use crate::export::InTheWay;
+use crate::kinds;
 use crate::landscape::{self, Landscape};
 use crate::progress::{JsonLines, ProgressBar};
 use crate::run::RunError;
@@ -27,8 +27,8 @@ use crate::say;
 use crate::session::{self, Baked, Publish, Session};
 use crate::watch_loop::{self, Host};
 use crate::{
-    bench, cache_commands, distance_command, export_command, kinds_command, lineage_command, lod_command,
-    manual,
+    bench, cache_commands, distance_command, explain_command, export_command, kinds_command, lineage_command,
+    lod_command, manual,
 };
 
 /// Set by Ctrl-C.
@@ -78,8 +78,8 @@ fn dispatch(cli: &Cli) -> Result<()> {
         return Err(BadInput(text.into()).into());
     }
     if run.json && !command.has_json() {
-        let text = "--json prints the events of bakes and exports, kinds, distances, and a lineage instead of its page; \
-             this command has none and prints text";
+        let text = "--json prints the events of bakes and exports, kinds, distances, explanations, and a lineage instead of its \
+             page; this command has none and prints text";
         return Err(BadInput(text.into()).into());
     }
     match command {
@@ -90,7 +90,7 @@ fn dispatch(cli: &Cli) -> Result<()> {
         Command::Distance { one, other } => distance_command::run([one, other], run),
         Command::Lineage { out } => lineage_command::run(out.as_deref(), run),
         Command::Params { markdown } => params(&run.world, *markdown),
-        Command::Explain { landscape } => explain(&run.world, *landscape),
+        Command::Explain { landscape } => explain_command::run(*landscape, run),
         Command::Export { scene, out, options } => export_command::run(scene, out, *options, run),
         Command::Lod { input, out, crease_deg } => lod_command::convert(input, out, *crease_deg),
         Command::Cache { action } => cache_commands::look_after(&run.world, action, &stopped),
@@ -228,7 +228,7 @@ fn random(seed: Option<u64>, wanted: &[String], uniform: bool, args: &RunArgs) -
     let (session, console) = (open_session(args)?, Console::new(args));
     let (space, listener) = (session.space(), console.listener());
     let kinds = if uniform { Kinds::default() } else { session.kinds(&*listener) };
-    let wanted = kinds_command::called(&kinds, wanted)?;
+    let wanted = kinds::called(&kinds, wanted)?;
     let make = |generation| {
         // The thesis's flat space stays as flat as it is.
         if uniform {
@@ -291,77 +291,4 @@ fn params(world: &Path, markdown: bool) -> Result<()> {
     notices.iter().for_each(|notice| say::warn(format_args!("note: {notice}")));
     say!("{}", if markdown { space.to_markdown() } else { space.to_table() }.trim_end());
     Ok(())
-}
-
-fn explain(world: &Path, landscape: Option<Landscape>) -> Result<()> {
-    let (world, cache) = cache_commands::open(world)?;
-    let current = export_command::current(&world)?;
-    let (space, _) = world.space()?;
-    // What was baked may be looked at still when its file is gone.
-    let file = World::read_population(&space, &world.population_path(current.generation)).ok();
-    if let Some(file) = &file {
-        tell_origin(&space, &file.population, &world);
-    }
-    for landscape in landscape.map_or_else(|| Landscape::all().collect(), |one| vec![one]) {
-        say!("landscape {landscape} ({}) in the last bake:", current.scenes[landscape.index()]);
-        if let Some(file) = &file {
-            tell_first_look(&space, &file.population.individuals[landscape.index()].genome);
-        }
-        let history = cache.history(&names::scene_id(current.generation, landscape.index()))?;
-        for (stage, explanation) in history.last() {
-            say!("  {stage:<16} {}", as_in_files(&space, explanation));
-        }
-    }
-    Ok(())
-}
-
-/// Says which landscapes were drawn again because nobody would have looked at the first draw, and what the votes have
-/// taught that they were bred from. As far as draws can be repeated: not where parents are no longer to be read, or
-/// only some kinds were asked for.
-fn tell_origin(space: &Space, population: &Population, world: &World) {
-    let Population { seed, generation, parent, .. } = *population;
-    let kinds = world.kinds(space).kinds;
-    let tell = |redrawn: &[Redrawn]| redrawn.iter().for_each(|redrawn| say!("{redrawn}"));
-    if let Some([tree, terrain, sky]) = &population.bred_from {
-        return say!("bred from chosen parents: trees of {tree}, land of {terrain}, sky of {sky}");
-    }
-    let Some(parent) = parent else {
-        let of = |kinds: &Kinds| {
-            let draw = |attempt| audition::drawn(space, kinds, &[], seed, generation, attempt).population;
-            audition::redrawn(space, draw, population)
-        };
-        return tell(&[of(&kinds), of(&Kinds::default())].concat());
-    };
-    let parents = World::read_population(space, &world.population_path(parent.generation));
-    let Ok(parents) = parents else { return };
-    let parents = Population { votes: Some(parent.votes), variety: parent.variety, ..parents.population };
-    let past = session::votes_before(world, space, Some(parents.generation), generation, &Untold);
-    let breeder = Breeder::new(space, &kinds, Strategy::default(), &past, &parents);
-    let Ok(breeder) = breeder else { return };
-    tell(&audition::redrawn(space, |attempt| audition::bred(&breeder, generation, attempt), population));
-    say!("what votes have taught, in likely kinds and genes:");
-    breeder.accounts().iter().for_each(|account| say!("  {account}"));
-}
-
-/// Says how good the best first look at a landscape is.
-fn tell_first_look(space: &Space, genome: &Genome) {
-    if let Ok(first_look) = audition::appraise(space, genome) {
-        let (score, lacks) = (100.0 * first_look.score(), first_look.weakest().lack());
-        say!("  {:<16} {score:.0} of 100 for the best view; its weakest side: {lacks}", "first look");
-    }
-}
-
-/// An explanation with genes' values as population files say them: 12.86, where a stage reads 12.857142448425293.
-fn as_in_files(space: &Space, explanation: &Explanation) -> Explanation {
-    let mut explanation = explanation.clone();
-    for change in &mut explanation.changes {
-        let Change::Parameter { name, from, to } = change else { continue };
-        let Some(gene) = space.find(name) else { continue };
-        for value in [from, to].into_iter().flatten() {
-            if let Ok(number) = value.parse() {
-                *value = gene.text(gene.snap(number));
-            }
-        }
-    }
-    explanation
 }

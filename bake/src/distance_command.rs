@@ -43,15 +43,16 @@ pub fn run(references: [&Reference; 2], args: &RunArgs) -> Result<()> {
 }
 
 fn object(a: &Phenotype, b: &Phenotype) -> Value {
-    let rounded = |distance: f32| json!((f64::from(distance) * 1e4).round() / 1e4);
     let of = |category: Category| {
-        let traits =
-            a.differences(b, category).into_iter().map(|(name, one)| (name.to_owned(), rounded(one)));
+        let traits = a
+            .differences(b, category)
+            .into_iter()
+            .map(|(name, one)| (name.to_owned(), json!(say::rounded(one))));
         let traits: Map<String, Value> = traits.collect();
-        json!({ "distance": rounded(a.distance_in(b, category)), "traits": traits })
+        json!({ "distance": say::rounded(a.distance_in(b, category)), "traits": traits })
     };
     let mut object: Map<String, Value> =
         Category::ALL.into_iter().map(|category| (category.name().to_owned(), of(category))).collect();
-    object.insert("overall".to_owned(), rounded(a.distance(b)));
+    object.insert("overall".to_owned(), json!(say::rounded(a.distance(b))));
     Value::Object(object)
 }

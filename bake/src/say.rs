@@ -23,6 +23,11 @@ pub fn warn(words: Arguments<'_>) {
     let _ = writeln!(std::io::stderr().lock(), "{}", printable(&words.to_string()));
 }
 
+/// A number for programs, to four digits behind the point.
+pub fn rounded(number: f32) -> f64 {
+    (f64::from(number) * 1e4).round() / 1e4
+}
+
 /// "12.3 MB".
 pub fn size(bytes: u64) -> bytesize::Display {
     ByteSize(bytes).display().si()

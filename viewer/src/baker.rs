@@ -8,6 +8,7 @@
 pub mod export;
 
 use std::any::Any;
+use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,11 +19,12 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use genescape_bake::ahead;
-use genescape_bake::breed::Strategy;
+use genescape_bake::breed::{Settled, Strategy};
 use genescape_bake::chosen_parents::ChosenParents;
 use genescape_bake::cli::{bytes, threads};
 use genescape_bake::events::{Listener, Untold};
 use genescape_bake::landscape::{Landscape, ParentArg, Reference};
+use genescape_bake::origin;
 use genescape_bake::plan::Resolution;
 use genescape_bake::session::{self, Session};
 use genescape_bake::watch_loop::{self, Host};
@@ -209,6 +211,43 @@ pub fn breed_with(
     let mut chosen = ChosenParents::default();
     *[&mut chosen.tree, &mut chosen.terrain, &mut chosen.sky][category as usize] = parent;
     chosen.breed(world, space, &world.kinds(space).kinds, beside, &Untold)
+}
+
+/// Finds out, on a thread of its own, what the votes that a generation was bred from say of each gene, in words. `wake` is
+/// called from there when it is known.
+///
+/// # Errors
+/// If the system gives no thread.
+pub fn taught(
+    world: World,
+    space: Arc<Space>,
+    generation: u32,
+    wake: impl FnOnce() + Send + 'static,
+) -> std::io::Result<Receiver<BTreeMap<String, String>>> {
+    let (sender, told) = channel();
+    thread::Builder::new().name("votes".into()).spawn(move || {
+        lower_priority();
+        let population = world.population(&space, generation).ok();
+        let accounts = population.map(|file| origin::taught(&space, &file.population, &world));
+        let genes = accounts.into_iter().flatten().flat_map(|account| account.genes);
+        let all = genes.filter(Settled::is_told).map(|gene| {
+            let words = in_words(&gene);
+            (gene.gene, words)
+        });
+        // Who has asked may be gone.
+        let _ = sender.send(all.collect());
+        wake();
+    })?;
+    Ok(told)
+}
+
+fn in_words(Settled { text, part, .. }: &Settled) -> String {
+    let sure = match part {
+        0.75.. => "quite sure",
+        0.5.. => "fairly sure",
+        _ => "a first hint",
+    };
+    format!("Votes want {text}: {sure}")
 }
 
 /// Sends the bake's events to the owner of the [`Baker`].

@@ -26,8 +26,27 @@ pub struct Account {
     pub votes: usize,
     /// Names of likely kinds, with how likely each is; what is like none has no name.
     pub kinds: Vec<(Option<String>, f32)>,
-    /// Of genes that votes have settled most, the values between which what is wanted lies in four of five cases.
-    pub genes: Vec<(String, String)>,
+    /// All genes whose values are no names; what votes have settled most comes first.
+    pub genes: Vec<Settled>,
+}
+
+/// What votes have taught of a gene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settled {
+    pub gene: String,
+    /// In the gene's unit: in four of five cases what is wanted lies between these.
+    pub range: [f64; 2],
+    /// The range in words: "12 … 14 m".
+    pub text: String,
+    /// The part of what was open before any vote that votes have closed: up to 1, and 0 or less where they say nothing.
+    pub part: f32,
+}
+
+impl Settled {
+    /// Whether votes say enough to be told.
+    pub fn is_told(&self) -> bool {
+        self.part > SETTLED
+    }
 }
 
 impl Account {
@@ -57,15 +76,22 @@ impl Account {
                 let settled = 1.0 - (wanted[1] - wanted[0]) / (open[1] - open[0]).max(1e-3);
                 (settled, gene, wanted)
             })
-            .filter(|(settled, gene, _)| *settled > SETTLED && gene.scale != Scale::Choice)
+            .filter(|(_, gene, _)| gene.scale != Scale::Choice)
             .collect();
         genes.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let told = |(_, gene, [low, high]): (f32, &Parameter, [f32; 2])| {
-            let [low, high] = [low, high].map(|x| gene.text(gene.code_at(x)));
-            let range = if low == high { low } else { format!("{low} … {high}") };
-            (gene.name.clone(), [range, gene.unit.clone()].join(" ").trim_end().to_owned())
+        let told = |(part, gene, ends): (f32, &Parameter, [f32; 2])| {
+            let codes = ends.map(|x| gene.code_at(x));
+            let [low, high] = codes.map(|code| gene.text(code));
+            let text = if low == high { low } else { format!("{low} … {high}") };
+            let text = [text, gene.unit.clone()].join(" ").trim_end().to_owned();
+            Settled {
+                gene: gene.name.clone(),
+                range: codes.map(|code| gene.text(code).parse().unwrap_or(gene.value(code))),
+                text,
+                part,
+            }
         };
-        let genes = genes.into_iter().take(GENES).map(told).collect();
+        let genes = genes.into_iter().map(told).collect();
         Self { category, votes: taste.votes, kinds: shares, genes }
     }
 }
@@ -87,8 +113,9 @@ impl fmt::Display for Account {
                 (if number > 0 { "," } else { "" }, name.as_deref().unwrap_or("like no kind"));
             write!(f, "{comma} {name} ({:.0} %)", 100.0 * share)?;
         }
-        for (number, (name, range)) in genes.iter().enumerate() {
-            write!(f, "{} {name} {range}", if number > 0 { "," } else { "; surest:" })?;
+        let told = genes.iter().filter(|gene| gene.is_told()).take(GENES);
+        for (number, Settled { gene, text, .. }) in told.enumerate() {
+            write!(f, "{} {gene} {text}", if number > 0 { "," } else { "; surest:" })?;
         }
         Ok(())
     }

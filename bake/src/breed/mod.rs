@@ -20,7 +20,7 @@ mod variety;
 use clap::ValueEnum;
 use genescape_schema::{Category, Kinds, Parent, Population, Space, Votes};
 
-pub use account::Account;
+pub use account::{Account, Settled};
 pub use chances::likely_votes;
 use learned::Learned;
 

@@ -1,6 +1,7 @@
 //! Chromosomes as members of kinds: which one a chromosome belongs to, what goes together in a landscape, how a member is
 //! drawn, and what the whole is called. No kind is named here: `configs/kinds` and people's own files say all.
 
+mod called;
 pub mod company;
 pub mod draw;
 pub mod home;
@@ -9,5 +10,6 @@ pub mod pick;
 #[cfg(test)]
 pub mod testing;
 
+pub use called::called;
 pub use company::Company;
 pub use home::Home;

@@ -15,6 +15,7 @@ mod model;
 mod pace;
 mod screen;
 mod sharpness;
+mod taught;
 mod thumbnails;
 mod ui_painter;
 mod viewport;
@@ -51,6 +52,7 @@ use log::{Log, Moment};
 use pace::{Next, Pace, Shown};
 use screen::Screen;
 use sharpness::Sharpness;
+use taught::Taught;
 use thumbnails::Thumbnails;
 use viewports::{Viewports, Wish};
 
@@ -115,6 +117,7 @@ struct App {
     background: Background,
     exports: Exports,
     thumbnails: Thumbnails,
+    taught: Taught,
     pace: Pace,
     /// When settings were saved last, if they had changed.
     last_save: Instant,
@@ -161,6 +164,7 @@ impl App {
             background: Background::default(),
             exports: Exports::default(),
             thumbnails: Thumbnails::default(),
+            taught: Taught::default(),
             pace: Pace::new(now),
             last_save: now,
             screenshot: false,
@@ -210,7 +214,7 @@ impl App {
         let kept = self.file.settings.world(&source);
         self.editor = Editor::open(source.clone(), &kept);
         self.layout = Layout::of(self.editor.count(), self.layout.panels);
-        self.thumbnails = Thumbnails::default();
+        (self.thumbnails, self.taught) = Default::default();
         self.source = source;
         let comfort = &self.file.settings.comfort.value;
         self.camera.return_to(place_to_return_to(&self.editor, &kept, comfort), &kept);
@@ -276,6 +280,7 @@ impl App {
         }
         self.show_loaded();
         self.hear_exports();
+        self.hear_votes();
         if self.live.is_some() {
             self.editor.take_tasks().into_iter().for_each(|task| self.carry_out(task));
         }

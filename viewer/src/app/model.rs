@@ -3,7 +3,7 @@
 use std::array;
 
 use super::App;
-use crate::ui::model::{FileShown, Model, Situation, Stats, ViewModel, ViewState};
+use crate::ui::model::{FileShown, Genes, Model, Situation, Stats, ViewModel, ViewState};
 use crate::upload::AssetBuffers;
 
 impl App {
@@ -36,7 +36,7 @@ impl App {
             ballots: editor.ballots,
             arrangement: self.layout.arrangement,
             chosen: self.layout.chosen,
-            genes: editor.genes(),
+            genes: editor.genes().map(|genes| Genes { taught: self.taught.of(generation), ..genes }),
             bake_log: editor.bake.log.clone(),
             errors: editor.errors(),
             stats: viewports.map_or_else(Stats::default, |viewports| viewports.stats().clone()),

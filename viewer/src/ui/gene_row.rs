@@ -83,6 +83,9 @@ impl Row<'_> {
             let scale = parameter.scale.name();
             let text = format!("{} · {} · {scale}", parameter.name, parameter.range_text());
             small(ui, text);
+            if let Some(taught) = self.genes.taught.get(&parameter.name) {
+                ui.label(taught);
+            }
         });
     }
 

@@ -210,6 +210,8 @@ pub struct Genes {
     pub bred: [Genome; INDIVIDUALS],
     /// Names of genes that are kept.
     pub locked: BTreeSet<String>,
+    /// What the votes that these were bred from say of a gene, by its name.
+    pub taught: Arc<BTreeMap<String, String>>,
     /// Categories that are kept as a whole, as in [`genescape_schema::Category::ALL`].
     pub locked_categories: [bool; 3],
 }

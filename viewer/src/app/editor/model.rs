@@ -1,8 +1,9 @@
 //! What the user interface shows of the editor.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use genescape_schema::{Category, INDIVIDUALS, Parent, Variety};
+use genescape_schema::{Category, INDIVIDUALS, Parent, Space, Variety};
 use genescape_world::Source;
 
 use super::{Editor, Fault};
@@ -12,6 +13,11 @@ impl Editor {
     /// The generation that is shown, and all that exist.
     pub fn generations(&self) -> (u32, &[u32]) {
         (self.generation, &self.generations)
+    }
+
+    /// Which genes there are.
+    pub fn space(&self) -> Arc<Space> {
+        self.space.clone()
     }
 
     /// What generations were bred from, if from any.
@@ -102,6 +108,7 @@ impl Editor {
             space: self.space.clone(),
             bred: self.bred.clone().unwrap_or_else(|| now.clone()),
             now,
+            taught: Arc::default(),
             locked: population.locked.clone(),
             locked_categories: Category::ALL.map(|category| population.locked.contains(category.name())),
         })

@@ -353,6 +353,16 @@ fn a_typed_value_is_snapped_and_nonsense_changes_nothing() {
 }
 
 #[test]
+fn the_help_of_a_gene_says_what_votes_have_taught() {
+    let mut harness = bench(with_genome(|_| {}), [1280.0, 1600.0], 1.0);
+    assert!(harness.query_by_label_contains("Votes want").is_none());
+    let name = harness.get_by_label("Height").rect().center();
+    harness.hover_at(name);
+    harness.run_steps(60);
+    assert!(harness.query_by_label("Votes want 12 … 14 m: quite sure").is_some());
+}
+
+#[test]
 fn what_is_locked_does_not_move() {
     let by_itself = with_genome(|genes| {
         genes.locked.insert("height_m".to_owned());

@@ -102,6 +102,7 @@ pub fn model() -> Model {
             space,
             bred: now.clone(),
             now,
+            taught: Arc::new([("height_m".to_owned(), "Votes want 12 … 14 m: quite sure".to_owned())].into()),
             locked: BTreeSet::new(),
             locked_categories: [false; 3],
         }),
