@@ -66,21 +66,43 @@ fn flat_space(genes: usize) -> String {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
     Learned,
+    /// Four of what the votes leave possible, by chance.
+    Samples,
     Classic,
     /// Three bits of the favourite changed.
     BitFlips,
     /// The favourite, and three by chance.
     RandomWithFavourite,
+    /// See [`super::cma_es`].
+    #[cfg(feature = "cmaes")]
+    CmaEs,
     /// Four by chance.
     NoVotes,
 }
 
 impl Way {
-    const ALL: [Self; 5] =
-        [Self::Learned, Self::Classic, Self::BitFlips, Self::RandomWithFavourite, Self::NoVotes];
+    const ALL: &[Self] = &[
+        Self::Learned,
+        Self::Samples,
+        Self::Classic,
+        Self::BitFlips,
+        Self::RandomWithFavourite,
+        #[cfg(feature = "cmaes")]
+        Self::CmaEs,
+        Self::NoVotes,
+    ];
 
     fn name(self) -> &'static str {
-        ["learned", "classic", "bit flips", "random with favourite", "no votes"][self as usize]
+        match self {
+            Self::Learned => "learned",
+            Self::Samples => "samples of the model",
+            Self::Classic => "classic",
+            Self::BitFlips => "bit flips",
+            Self::RandomWithFavourite => "random with favourite",
+            #[cfg(feature = "cmaes")]
+            Self::CmaEs => "CMA-ES",
+            Self::NoVotes => "no votes",
+        }
     }
 
     fn next(self, place: &Place, history: &[Population]) -> Result<Population> {
@@ -89,6 +111,7 @@ impl Way {
         let breeder = |strategy| Breeder::new(&place.space, &place.kinds, strategy, past, parents);
         match self {
             Self::Learned => Ok(breeder(Strategy::Learned)?.bred(next, parents.seed)),
+            Self::Samples => breeder(Strategy::Learned)?.sampled(next).context("it learns"),
             Self::Classic => Ok(breeder(Strategy::Classic)?.bred(next, parents.seed)),
             _ => Ok(self.by_chance(place, parents, next)),
         }
@@ -128,6 +151,11 @@ struct Course {
 fn course(place: &Place, way: Way, taste: Taste, temperature: f32, seed: u64) -> Result<Course> {
     let target = place.random(seed + 500_000, 0).individuals[0].genome.clone();
     let mut person = Person::new(&place.space, &target, taste, temperature, seed);
+    #[cfg(feature = "cmaes")]
+    if way == Way::CmaEs {
+        let chosen = super::cma_es::distances(&place.space, &person, temperature, seed, place.rounds)?;
+        return Ok(Course { chosen, apart: Vec::new() });
+    }
     let mut history = vec![place.random(seed, 0)];
     let mut course = Course { chosen: Vec::new(), apart: Vec::new() };
     loop {
@@ -177,7 +205,7 @@ pub fn breeding(persons: u64, pool: &rayon::ThreadPool, only: Option<&str>) -> R
         say!("{:<12}{:>5}  {:<24}{head}   apart   s a vote", "taste", "T", "votes");
         for taste in Taste::ALL {
             for temperature in TEMPERATURES {
-                for way in Way::ALL {
+                for &way in Way::ALL {
                     let start = Instant::now();
                     let courses: Result<Vec<Course>> = pool.install(|| {
                         let seeds = (0..persons).into_par_iter().map(|seed| FIRST_SEED + seed);
@@ -188,7 +216,12 @@ pub fn breeding(persons: u64, pool: &rayon::ThreadPool, only: Option<&str>) -> R
                         |round: usize| median(courses.iter().map(|course| course.chosen[round]).collect());
                     let distances: String =
                         told.iter().map(|round| format!("{:>8.3}", at(*round as usize))).collect();
-                    let apart = median(courses.iter().map(|one| one.apart[one.apart.len() / 2]).collect());
+                    let apart = median(
+                        courses
+                            .iter()
+                            .filter_map(|one| one.apart.get(one.apart.len() / 2).copied())
+                            .collect(),
+                    );
                     let seconds = start.elapsed().as_secs_f64() / (persons as f64 * f64::from(place.rounds));
                     let taste = taste.name();
                     say!(

@@ -1,6 +1,8 @@
 //! `bake bench`: times the parts of a bake on this machine.
 
 pub mod breeding;
+#[cfg(feature = "cmaes")]
+mod cma_es;
 pub mod person;
 
 use std::sync::{Mutex, PoisonError};

@@ -1,7 +1,7 @@
 //! A simulated person: somebody who wants certain genes, more of some than of others, and chooses the nearest of
 //! four, mostly.
 
-use genescape_schema::{Category, Genome, INDIVIDUALS, Parameter, Population, Space, Votes};
+use genescape_schema::{Category, Genome, INDIVIDUALS, Population, Space, Votes};
 
 use crate::seed::Dice;
 
@@ -61,12 +61,19 @@ impl<'a> Person<'a> {
     /// How far a genome is from what is wanted, of each category: root mean square by weight, of genes 0 … 1.
     pub fn distances(&self, genome: &Genome) -> [f32; 3] {
         Category::ALL.map(|category| {
-            let pair = |gene: &Parameter| [genome, self.wants].map(|one| gene.part(one.code(gene)));
-            let pairs = || self.space.traits(category).map(pair);
-            let gaps: Vec<f32> = pairs().map(|[shown, wanted]| shown - wanted).collect();
-            let middles: Vec<f32> = pairs().map(|[shown, wanted]| 0.5 * (shown + wanted)).collect();
-            self.judges[category as usize].distance(self.taste, &gaps, &middles)
+            let genes = self.space.traits(category);
+            let point: Vec<f32> = genes.map(|gene| gene.part(genome.code(gene))).collect();
+            self.distance(category, &point)
         })
+    }
+
+    /// How far a point of one category is: genes 0 … 1.
+    pub fn distance(&self, category: Category, point: &[f32]) -> f32 {
+        let wanted = || self.space.traits(category).map(|gene| gene.part(self.wants.code(gene)));
+        let pairs = || point.iter().zip(wanted());
+        let gaps: Vec<f32> = pairs().map(|(shown, wanted)| shown - wanted).collect();
+        let middles: Vec<f32> = pairs().map(|(shown, wanted)| 0.5 * (shown + wanted)).collect();
+        self.judges[category as usize].distance(self.taste, &gaps, &middles)
     }
 
     /// Chooses of each category one of the four.

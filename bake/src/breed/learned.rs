@@ -85,6 +85,24 @@ impl<'a> Learned<'a> {
         Population { parent, variety, locked: locked.clone(), ..Population::new(next, seed, individuals) }
     }
 
+    /// Four of what votes leave possible, by chance.
+    pub fn sampled(&self, next: u32, seed: u64) -> Population {
+        let mut dice = Dice::new(seed, "samples", next.into());
+        let mut any = |category: Category| {
+            let taste = &self.tastes[category as usize];
+            dice.one(&taste.ideals).map(|ideal| self.member(category, ideal))
+        };
+        let mut individuals = self.parents.individuals.clone();
+        for one in &mut individuals {
+            for category in Category::ALL {
+                if let Some(chromosome) = any(category) {
+                    *one.genome.chromosome_mut(category) = chromosome;
+                }
+            }
+        }
+        Population::new(next, seed, individuals)
+    }
+
     pub fn taste(&self, category: Category) -> &Taste {
         &self.tastes[category as usize]
     }

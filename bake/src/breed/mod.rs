@@ -95,6 +95,11 @@ impl<'a> Breeder<'a> {
         Self { space, kinds, parents, chosen: Some(chosen), learned: Some(learned) }
     }
 
+    /// Generation `next` as four of what votes leave possible, by chance: for benchmarks. `None` where nothing is learned.
+    pub fn sampled(&self, next: u32) -> Option<Population> {
+        self.learned.as_ref().map(|learned| learned.sampled(next, self.seed()))
+    }
+
     /// What votes have taught of each category; nothing where nothing is learned.
     pub fn accounts(&self) -> Vec<Account> {
         let learned = self.learned.iter();
