@@ -30,6 +30,10 @@ fn a_landscape_a_kind_and_a_file_become_parents() {
     assert!(first.descent.starts_with("trees of 0.3 · land of fjord"), "{}", first.descent);
     let told = world.run(&["explain", "1"]);
     assert!(String::from_utf8_lossy(&told.stdout).contains("land of fjord"));
+    let told = world.run(&["explain", "1", "--json"]).stdout;
+    let told: serde_json::Value = serde_json::from_slice(&told).expect("JSON");
+    assert_eq!((&told["generation"], &told["origin"]["bred_from"][1]), (&1.into(), &"fjord".into()));
+    assert!(told["landscapes"][0]["stages"].as_array().is_some_and(|stages| stages.len() > 10));
     // The same again, by the same seed; what is not named is the favourite's.
     let again = ["breed", "--tree", "1", "--seed", "4"];
     world.bake(&again).ok();
