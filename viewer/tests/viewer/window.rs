@@ -39,7 +39,8 @@ impl Stage {
     }
 
     fn viewer(&self, more: &[&str]) -> Viewer {
-        let usual = ["--world", "world", "--settings", "settings.ron", "--heightfield", "65"];
+        // What is baked ahead would take the processor from what is looked at here.
+        let usual = ["--world", "world", "--settings", "settings.ron", "--heightfield", "65", "--ahead", "0"];
         Viewer::start(&self.display, self.folder.path(), &[&usual, more].concat())
     }
 
