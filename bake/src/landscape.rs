@@ -83,9 +83,7 @@ impl Reference {
         };
         let PopulationFile { population, .. } = file;
         let is_of_world = !matches!(self, Self::File(..));
-        let [a, b, c, d] = population.individuals;
-        let individual = [a, b, c, d].into_iter().nth(landscape.index());
-        let individual = individual.unwrap_or_else(|| unreachable!("a landscape is one of the four"));
+        let individual = population.individuals[landscape.index()].clone();
         Ok((is_of_world.then_some(population.generation), individual))
     }
 }
