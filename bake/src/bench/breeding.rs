@@ -216,16 +216,14 @@ pub fn breeding(persons: u64, pool: &rayon::ThreadPool, only: Option<&str>) -> R
                         |round: usize| median(courses.iter().map(|course| course.chosen[round]).collect());
                     let distances: String =
                         told.iter().map(|round| format!("{:>8.3}", at(*round as usize))).collect();
-                    let apart = median(
-                        courses
-                            .iter()
-                            .filter_map(|one| one.apart.get(one.apart.len() / 2).copied())
-                            .collect(),
-                    );
+                    let apart = courses.iter().filter_map(|one| one.apart.get(one.apart.len() / 2).copied());
+                    let apart: Vec<f32> = apart.collect();
+                    let apart =
+                        if apart.is_empty() { "-".to_owned() } else { format!("{:.3}", median(apart)) };
                     let seconds = start.elapsed().as_secs_f64() / (persons as f64 * f64::from(place.rounds));
                     let taste = taste.name();
                     say!(
-                        "{taste:<12}{temperature:>5}  {:<24}{distances}{apart:>8.3}{seconds:>9.3}",
+                        "{taste:<12}{temperature:>5}  {:<24}{distances}{apart:>8}{seconds:>9.3}",
                         way.name()
                     );
                 }
