@@ -74,7 +74,8 @@ impl Calibration {
         calibration
     }
 
-    /// First each aggregate covers what it did, then the surfaces make up for the rest.
+    /// First each aggregate covers what it did; then the surfaces make up for the rest as far as they may, then all
+    /// elements.
     pub fn sizes(&mut self, state: &State, aggregates: &[Aggregate]) -> Sizes {
         let mut sizes = self.last.clone();
         let elements = self.elements(state, aggregates);
@@ -95,9 +96,35 @@ impl Calibration {
             let guess = sizes.offset_m + 0.1 * self.max_offset_m;
             sizes.offset_m =
                 matching(self.full, range, guess, |offset_m| covered_with(state, &canvas, offset_m));
+            self.make_up_with_elements(state, aggregates, &elements, &mut sizes);
         }
         self.last = sizes.clone();
         sizes
+    }
+
+    /// Where branches that went were seen between the leaves and those that stay may not grow by enough, all elements
+    /// grow until the whole covers what it did.
+    fn make_up_with_elements(
+        &self,
+        state: &State,
+        aggregates: &[Aggregate],
+        elements: &[Elements],
+        sizes: &mut Sizes,
+    ) {
+        let mut surfaces = Canvas::empty(&self.camera);
+        surfaces.draw_surfaces(state, sizes.offset_m);
+        let covered = |growth: f32| {
+            let mut canvas = surfaces.clone();
+            let parts = elements.iter().zip(&sizes.scales);
+            parts.for_each(|(part, scale)| part.draw(growth * scale, &mut canvas));
+            canvas.covered()
+        };
+        let room = |(aggregate, &scale): (&Aggregate, &f32)| aggregate.max_scale(scale) / scale;
+        let most = aggregates.iter().zip(&sizes.scales).map(room).fold(1.0, f32::max);
+        let growth = matching(self.full, 1.0..most, 1.0, covered);
+        for (aggregate, scale) in aggregates.iter().zip(&mut sizes.scales) {
+            *scale = (growth * *scale).min(aggregate.max_scale(*scale));
+        }
     }
 
     fn elements(&self, state: &State, aggregates: &[Aggregate]) -> Vec<Elements> {

@@ -236,6 +236,20 @@ fn leaves_keep_covering_the_sky() {
 }
 
 #[test]
+fn trees_of_few_leaves_keep_covering_the_sky() {
+    let mesh = tree(30, 10, 300);
+    let levels = levels(&mesh, &LodOptions { thickens: true, ..LodOptions::default() }).levels;
+    let opaque = AlphaMask::default();
+    let sum = |mesh: &Mesh| {
+        AZIMUTHS.iter().map(|&azimuth| covered(mesh, &[0, 1], azimuth, &opaque, None)).sum::<usize>() as f32
+    };
+    for level in &levels[1..=4] {
+        let (ratio, count) = (sum(&level.mesh) / sum(&mesh), level.mesh.positions.len());
+        assert!((0.97..1.03).contains(&ratio), "{ratio} at {count} vertices");
+    }
+}
+
+#[test]
 fn bare_branches_keep_covering_the_sky() {
     let mut mesh = tree(30, 10, 0);
     mesh.parts.truncate(1);
