@@ -54,9 +54,12 @@ pub enum TreeLodMode {
 )]
 #[repr(u32)]
 pub enum TerrainLodMode {
-    /// Blocks of a quadtree that morph in the vertex shader
+    /// Blocks of a quadtree that morph with distance, later where the land is rough
     #[default]
     Morph,
+    /// The same by distance alone
+    // As in the thesis, 3.2: to compare with.
+    Distance,
     /// Triangles split on the CPU where the land is rough, drawn as one strip
     // A bintree, split by wedgies.
     #[strum(to_string = "ROAM")]
@@ -81,6 +84,13 @@ pub trait LodMode: Copy + PartialEq + EnumMessage + Into<&'static str> + Variant
     fn next(self) -> Self {
         let after = Self::VARIANTS.iter().skip_while(|&&mode| mode != self).nth(1);
         *after.unwrap_or(&Self::VARIANTS[0])
+    }
+}
+
+impl TerrainLodMode {
+    /// Whether vertices slide in the vertex shader.
+    pub fn morphs(self) -> bool {
+        matches!(self, Self::Morph | Self::Distance)
     }
 }
 

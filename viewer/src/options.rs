@@ -128,7 +128,7 @@ impl Default for Options {
             terrain_lod: TerrainLodMode::default(),
             tree_error_px: 1.5,
             mesh_error_px: MESH_ERROR_PX,
-            terrain_error_px: 2.0,
+            terrain_error_px: 6.0,
             wireframe: false,
             tint_levels: false,
             overhead: false,

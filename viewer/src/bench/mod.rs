@@ -2,7 +2,8 @@
 //! clock, and of processor time over all threads of the process, those of a device in software included.
 //!
 //! What is measured: the processor's work to record a picture with few and with many trees ([`record`]); pictures with
-//! levels of detail against pictures without, and how far apart they are ([`detail`]; thesis section 7); four views
+//! levels of detail against pictures without, and how far apart they are ([`detail`]; thesis section 7); the land's triangles and their
+//! greatest error ([`land`]); four views
 //! against four single ones ([`views`]); a walk's frames and what they are made of ([`walk`]); those around the
 //! swap of a landscape ([`swap`]); memory after many frames ([`memory`]); and, where there is a graphics card, the slowest
 //! frames of four large forests ([`card`]). [`serve`] lets another program measure beside its own pictures.
@@ -11,6 +12,7 @@ mod card;
 mod cost;
 mod detail;
 mod forest;
+mod land;
 mod memory;
 mod record;
 mod report;
@@ -79,6 +81,8 @@ pub enum Measure {
     Record,
     /// Pictures with levels of detail against pictures without, at 1,500 trees
     Detail,
+    /// Triangles of the land and their greatest error, from 200 cameras
+    Land,
     /// Four views against four single ones
     Views,
     /// Frames of a walk, and what each thing in the picture takes of them
@@ -113,6 +117,7 @@ pub fn run(args: &BenchArgs) -> Result<()> {
         match measure {
             Measure::Record => record::measure(&mut bench)?,
             Measure::Detail => detail::measure(&mut bench)?,
+            Measure::Land => land::measure(&mut bench)?,
             Measure::Views => views::measure(&mut bench)?,
             Measure::Walk => walk::measure(&mut bench)?,
             Measure::Swap => swap::measure(&mut bench)?,

@@ -1,15 +1,15 @@
 //! The meshes that both algorithms draw, taken apart: closed, unfolded, near the land, and calm.
 
 use std::collections::HashMap;
-use std::sync::Arc;
 
 use genescape_bake::stages::terrain_lod;
-use genescape_schema::scene::bintree::{Sample, first_parent, level, parents};
+use genescape_schema::scene::bintree::parents;
 use glam::{Vec2, Vec3};
 use proptest::prelude::*;
 
-use super::morph::{Detail, GAP, sample_m};
-use super::quadtree::{self, Block, Errors, block_cells, block_indices};
+use super::morph::{Detail, sample_m};
+use super::quadtree::{self, Block, block_cells, block_indices};
+use super::reach::{Reach, Roughness};
 use super::roam::triangulate;
 use crate::camera::{Camera, Frustum};
 use crate::scene::{Heightfield, TerrainLod};
@@ -33,35 +33,10 @@ fn hash(i: u32, j: u32, seed: u32) -> f32 {
     ((mixed ^ mixed >> 13).wrapping_mul(0x27d4_eb2f) >> 8) as f32 / (1 << 24) as f32
 }
 
-/// λ at (x, z), as the shader has it.
-fn lambda(detail: &Detail, at_m: Vec2) -> f32 {
-    let distance_m = detail.distance_squared_m2(at_m).sqrt();
-    libm::log2f(distance_m / detail.unit_m).clamp(0.0, detail.top)
-}
-
-/// The way a vertex has gone to its parent, 0 to 1, as the shader has it.
-fn slide(detail: &Detail, field: &Heightfield, sample: Sample) -> f32 {
-    let [x, z] = sample.map(|line| field.place_m(line));
-    ((lambda(detail, Vec2::new(x, z)) - level(sample) as f32) * (1.0 / (1.0 - GAP))).clamp(0.0, 1.0)
-}
-
-/// Where a vertex is drawn, as the shader has it. Two steps suffice in a block of level i: λ ≤ i+2, and vertices have
-/// levels ≥ i.
-fn drawn_m(detail: &Detail, field: &Heightfield, sample: Sample) -> Vec3 {
-    let mut vertex = sample;
-    for _ in 0..2 {
-        if slide(detail, field, vertex) >= 1.0 {
-            vertex = first_parent(vertex);
-        }
-    }
-    let (from, part) = (sample_m(field, vertex), slide(detail, field, vertex));
-    if part <= 0.0 { from } else { from + (sample_m(field, first_parent(vertex)) - from) * part }
-}
-
 type Triangle = [Vec3; 3];
 
 /// What the GPU draws of some blocks.
-fn drawn(field: &Heightfield, detail: &Detail, blocks: &[Block]) -> Vec<Triangle> {
+fn drawn(field: &Heightfield, reach: &Reach, detail: &Detail, blocks: &[Block]) -> Vec<Triangle> {
     let cells = block_cells(field);
     let indices = block_indices(cells);
     let mut triangles = Vec::new();
@@ -69,7 +44,7 @@ fn drawn(field: &Heightfield, detail: &Detail, blocks: &[Block]) -> Vec<Triangle
         let vertex = |number: u32| {
             let step = 1 << block.level;
             let (column, row) = (number % (cells + 1), number / (cells + 1));
-            drawn_m(detail, field, [block.i + column * step, block.j + row * step])
+            detail.drawn_m(reach, field, block.level, [block.i + column * step, block.j + row * step])
         };
         let vertices: Vec<Vec3> = (0..(cells + 1) * (cells + 1)).map(vertex).collect();
         let corners = indices.chunks_exact(3).map(|t| [0, 1, 2].map(|c| vertices[t[c] as usize]));
@@ -116,11 +91,38 @@ fn check_closed(field: &Heightfield, triangles: &[Triangle]) -> Result<(), TestC
 /// Cells a side of a block.
 const CELLS: u32 = 1 << quadtree::BLOCK_BITS;
 
-/// λ with the least d₀ that is allowed, times `unit`.
-fn detail_at(lod: &TerrainLod, eye_m: Vec3, unit: f32) -> Detail {
-    let mut detail = quadtree::detail(lod, &Errors::default(), eye_m, 500.0, 1.0, f32::MAX);
-    detail.unit_m *= unit;
-    detail
+/// What an eye is shown of a land, for pictures of so many pixels a radian: the more, the farther fine levels reach.
+struct Sight {
+    reach: Reach,
+    detail: Detail,
+    blocks: Vec<Block>,
+}
+
+impl Sight {
+    fn of(lod: &TerrainLod, eye_m: Vec3, reach: Reach) -> Self {
+        let detail = quadtree::detail(lod, eye_m, false, f32::MAX);
+        let mut blocks = Vec::new();
+        quadtree::select(lod, &reach, &detail, None, &mut blocks);
+        Self { reach, detail, blocks }
+    }
+
+    fn drawn(&self, field: &Heightfield) -> Vec<Triangle> {
+        drawn(field, &self.reach, &self.detail, &self.blocks)
+    }
+
+    /// λ, wherever a block asks from.
+    fn lambda(&self, field: &Heightfield, at_m: Vec2) -> f32 {
+        let distance_m = self.detail.distance_squared_m2(at_m).sqrt();
+        let passed = |level: &u32| distance_m >= self.reach.at(*level, at_m.to_array())[0];
+        let from = (0..=quadtree::top_level(field)).rev().find(passed).unwrap_or(0);
+        self.detail.lambda(&self.reach, from, at_m)
+    }
+}
+
+/// Reaches by roughness, or by distance alone.
+fn reach(lod: &TerrainLod, pixels: f32, by_distance: bool) -> Reach {
+    let roughness = Roughness::of(&lod.field);
+    if by_distance { roughness.reach_by_distance(pixels) } else { roughness.reach(pixels) }
 }
 
 prop_compose! {
@@ -135,48 +137,64 @@ proptest! {
 
     #[test]
     fn morphed_blocks_close_without_folds(
-        depth in 2u32..9, eye in eye(), unit in 1f32..1.5, relief in 0f32..30., seed in 0u32..99
+        depth in 2u32..9, eye in eye(), pixels in 1f32..400., relief in 0f32..30., seed in 0u32..99, by_distance: bool
     ) {
         let lod = land((1 << depth) + 1, 0.5, relief, seed);
         let field = &*lod.field;
-        let detail = detail_at(&lod, eye * field.extent_m(), unit);
-        let mut blocks = Vec::new();
-        quadtree::select(&lod, &detail, None, &mut blocks);
-        check_closed(field, &drawn(field, &detail, &blocks))?;
+        let sight = Sight::of(&lod, eye * field.extent_m(), reach(&lod, pixels, by_distance));
+        check_closed(field, &sight.drawn(field))?;
     }
 
     #[test]
-    fn level_of_detail_spans_two_levels_in_a_block(eye in eye(), unit in 1f32..3., x in 0..=CELLS, z in 0..=CELLS) {
-        let field = Arc::new(Heightfield { side: 1025, spacing_m: 1.0, ..Heightfield::default() });
-        let lod = TerrainLod { field: field.clone(), ..TerrainLod::default() };
-        let detail = detail_at(&lod, eye * field.extent_m(), unit);
-        let mut blocks = Vec::new();
-        quadtree::select(&lod, &detail, None, &mut blocks);
-        let cells: u64 = blocks.iter().map(|block| u64::from(CELLS << block.level).pow(2)).sum();
-        prop_assert_eq!(cells, 1024 * 1024);
-        // The greatest λ is at a corner, for distance is convex.
-        for ([x, z], block) in [[0, 0], [CELLS, 0], [0, CELLS], [CELLS, CELLS], [x, z]].iter().flat_map(|v| blocks.iter().map(move |b| (v, b))) {
+    fn level_of_detail_spans_two_levels_in_a_block(
+        eye in eye(), pixels in 1f32..400., seed in 0u32..99, x in 0..=CELLS, z in 0..=CELLS, by_distance: bool
+    ) {
+        let lod = land(257, 1.0, 10.0, seed);
+        let field = &*lod.field;
+        let sight = Sight::of(&lod, eye * field.extent_m(), reach(&lod, pixels, by_distance));
+        let cells: u64 = sight.blocks.iter().map(|block| u64::from(CELLS << block.level).pow(2)).sum();
+        prop_assert_eq!(cells, 256 * 256);
+        for (&[x, z], block) in [[0, 0], [CELLS, 0], [0, CELLS], [CELLS, CELLS], [x, z]].iter().flat_map(|v| sight.blocks.iter().map(move |b| (v, b))) {
             let place = |from: u32, by: u32| field.place_m(from + (by << block.level));
-            let lambda = lambda(&detail, Vec2::new(place(block.i, *x), place(block.j, *z)));
+            let lambda = sight.lambda(field, Vec2::new(place(block.i, x), place(block.j, z)));
             let level = block.level as f32;
             prop_assert!(lambda >= level - 1e-4 && lambda <= level + 2.0 + 1e-4, "{lambda} in {block:?}");
         }
     }
 
     #[test]
-    fn a_look_along_the_land_meets_blocks_in_their_order(eye in eye(), yaw in -4f32..4.) {
-        let field = Arc::new(Heightfield { side: 1025, spacing_m: 1.0, ..Heightfield::default() });
-        let lod = TerrainLod { field: field.clone(), ..TerrainLod::default() };
-        let detail = detail_at(&lod, eye * field.extent_m(), 1.0);
-        let mut blocks = Vec::new();
-        quadtree::select(&lod, &detail, None, &mut blocks);
+    fn reaches_are_smooth_and_grow_from_level_to_level(
+        depth in 4u32..9, pixels in 1f32..4000., relief in 0f32..30., seed in 0u32..99, from in 0u32..4,
+        x in -0.5f32..0.5, z in -0.5f32..0.5, turn in -4f32..4., part in 0f32..0.3
+    ) {
+        let lod = land((1 << depth) + 1, 2.0, relief, seed);
+        let (field, reach) = (&*lod.field, reach(&lod, pixels, false));
+        let extent_m = field.extent_m();
+        let here = Vec2::new(x, z) * extent_m;
+        let step = Vec2::from_angle(turn) * part * extent_m;
+        let there = (here + step).clamp(Vec2::splat(-0.5 * extent_m), Vec2::splat(0.5 * extent_m));
+        let level = from.min(quadtree::top_level(field));
+        let [at_here, at_there] = [here, there].map(|at| reach.at(level, at.to_array()));
+        let band_m = |k: usize| 2.0 * 8.0 * std::f32::consts::SQRT_2 * field.spacing_m * (1u32 << (level as usize + k)) as f32;
+        for k in 0..4 {
+            let by_m = (at_here[k] - at_there[k]).abs();
+            prop_assert!(by_m <= 1.001 * here.distance(there) + 0.01, "{by_m} from {here} to {there}");
+            prop_assert!(k == 3 || at_here[k + 1] - at_here[k] >= band_m(k), "{at_here:?}");
+        }
+    }
+
+    #[test]
+    fn a_look_along_the_land_meets_blocks_in_their_order(eye in eye(), pixels in 1f32..400., yaw in -4f32..4.) {
+        let lod = land(257, 1.0, 10.0, 7);
+        let field = &*lod.field;
+        let sight = Sight::of(&lod, eye * field.extent_m(), reach(&lod, pixels, false));
         let holds = |block: &Block, place_m: Vec2| {
             let side = CELLS << block.level;
             let [low, high] = [0, side].map(|by| Vec2::new(field.place_m(block.i + by), field.place_m(block.j + by)));
             place_m.cmpgt(low).all() && place_m.cmplt(high).all()
         };
-        let places_m = (1..3000u32).map(|step| detail.eye_m + Vec2::from_angle(yaw) * (step as f32 * 0.5));
-        let met: Vec<usize> = places_m.filter_map(|at| blocks.iter().position(|block| holds(block, at))).collect();
+        let places_m = (1..1500u32).map(|step| sight.detail.eye_m + Vec2::from_angle(yaw) * (step as f32 * 0.25));
+        let met: Vec<usize> = places_m.filter_map(|at| sight.blocks.iter().position(|block| holds(block, at))).collect();
         prop_assert!(met.is_sorted(), "{met:?}");
     }
 }
@@ -197,7 +215,7 @@ proptest! {
 
     /// Over the walk vertices arrive and blocks change their levels; a pop would be as high as a displacement, metres here.
     #[test]
-    fn land_moves_little_when_the_eye_does(eye in eye(), seed in 0u32..99) {
+    fn land_moves_little_when_the_eye_does(eye in eye(), pixels in 1f32..20., seed in 0u32..99) {
         let lod = land(65, 1.0, 30.0, seed);
         let field = &*lod.field;
         let steps = (0..64u32).flat_map(|j| (0..64).map(move |i| [i, j]));
@@ -209,11 +227,11 @@ proptest! {
         let places: Vec<Vec2> = (0..20).map(|n| Vec2::new((n * 7 % 20) as f32, n as f32) * 3.1 - 30.0).collect();
         let mut before: Option<(Vec<Vec3>, Vec<f32>)> = None;
         for step in 0..12 {
-            let detail = detail_at(&lod, start + Vec3::new(0.6, 0.0, 0.8) * (step_m * step as f32), 1.0);
-            let mut blocks = Vec::new();
-            quadtree::select(&lod, &detail, None, &mut blocks);
-            let mesh = drawn(field, &detail, &blocks);
-            let vertices: Vec<Vec3> = (0..65 * 65).map(|n| drawn_m(&detail, field, [n % 65, n / 65])).collect();
+            let eye_m = start + Vec3::new(0.6, 0.0, 0.8) * (step_m * step as f32);
+            let sight = Sight::of(&lod, eye_m, reach(&lod, pixels, false));
+            let mesh = sight.drawn(field);
+            let vertices: Vec<Vec3> =
+                (0..65 * 65).map(|n| sight.detail.drawn_m(&sight.reach, field, 0, [n % 65, n / 65])).collect();
             let heights: Vec<f32> =
                 places.iter().map(|&at| height_in(&mesh, at).expect("the mesh covers the square")).collect();
             if let Some((vertices_before, heights_before)) = &before {
@@ -229,25 +247,21 @@ proptest! {
     }
 
     #[test]
-    fn blocks_look_on_average_as_near_to_the_land_as_asked(
-        eye in eye(), relief in 1f32..20., error_px in 0.5f32..8., seed in 0u32..99
+    fn blocks_look_as_near_to_the_land_as_asked(
+        eye in eye(), relief in 1f32..20., error_px in 0.5f32..8., seed in 0u32..99, by_distance: bool
     ) {
         let lod = land(129, 1.0, relief, seed);
         let field = &*lod.field;
         let eye_m = eye * field.extent_m();
-        let detail = quadtree::detail(&lod, &Errors::of(field), eye_m, 300.0, error_px, f32::MAX);
-        let mut blocks = Vec::new();
-        quadtree::select(&lod, &detail, None, &mut blocks);
-        let mesh = drawn(field, &detail, &blocks);
-        let squares_px2 = (0..400u32).map(|n| {
+        let sight = Sight::of(&lod, eye_m, reach(&lod, 300.0 / error_px, by_distance));
+        let mesh = sight.drawn(field);
+        for n in 0..1000u32 {
             let land_m = sample_m(field, [n * 37 % 129, n * 53 % 128]);
             let at = Vec2::new(land_m.x, land_m.z);
             let height = height_in(&mesh, at).expect("the mesh covers the square");
-            let distance_m2 = detail.distance_squared_m2(at);
-            (height - land_m.y) * (height - land_m.y) * 300.0 * 300.0 / distance_m2
-        });
-        let seen_px = (squares_px2.sum::<f32>() / 400.0).sqrt();
-        prop_assert!(seen_px <= error_px, "{seen_px} of {error_px} px");
+            let seen_px = (height - land_m.y).abs() * 300.0 / sight.detail.distance_squared_m2(at).sqrt();
+            prop_assert!(seen_px <= error_px, "{seen_px} of {error_px} px at {land_m}");
+        }
     }
 }
 
@@ -334,14 +348,15 @@ fn more_error_and_less_sight_mean_fewer_triangles() {
         .map(|error_px| triangulate(&lod, &camera, PICTURE, error_px, &mut strip))
         .to_vec();
     assert!(counts.is_sorted_by(|a, b| a > b), "{counts:?}");
-    let detail = detail_at(&lod, camera.position_m, 1.0);
+    let reach = reach(&lod, 100.0, false);
+    let detail = quadtree::detail(&lod, camera.position_m, false, f32::MAX);
     let mut count = |frustum: Option<&Frustum>| {
-        quadtree::select(&lod, &detail, frustum, &mut blocks);
+        quadtree::select(&lod, &reach, &detail, frustum, &mut blocks);
         blocks.len()
     };
     let (all, seen) = (count(None), count(Some(&camera.frustum(1.5))));
     assert!(seen < all && seen > 0, "{seen} of {all}");
-    let exact = quadtree::detail(&lod, &Errors::of(field), camera.position_m, 500.0, 0.0, f32::MAX);
-    quadtree::select(&lod, &exact, None, &mut blocks);
+    let exact = quadtree::detail(&lod, camera.position_m, true, f32::MAX);
+    quadtree::select(&lod, &reach, &exact, None, &mut blocks);
     assert_eq!(quadtree::triangles(field, &blocks), 128 * 128 * 2);
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::plants::PlantDraw;
-use super::{Binding, BoundMirror, CullUniform, Layouts, bind};
+use super::{Binding, BoundMirror, BoundReach, CullUniform, Layouts, bind};
 use crate::gpu::Gpu;
 use crate::upload::{SceneBuffers, TreeSet};
 
@@ -15,6 +15,8 @@ pub struct BoundScene {
     pub view_group: wgpu::BindGroup,
     pub ground_group: wgpu::BindGroup,
     trees: Option<BoundTrees>,
+    /// How near each level of the land's detail may come.
+    pub reach: BoundReach,
     /// None without a lake.
     pub mirror: Option<BoundMirror>,
     /// Blocks, or sample numbers of a strip, as the LOD mode has it.
@@ -64,7 +66,7 @@ impl BoundScene {
     pub fn new(gpu: &Gpu, layouts: &Layouts, scene: Arc<SceneBuffers>, uniform: &wgpu::Buffer) -> Self {
         use Binding::{Buffer, Sampler};
         let (sky, land) = (&scene.sky_textures, &scene.land);
-        let view = |uniform: &wgpu::Buffer| {
+        let view = |uniform: &wgpu::Buffer, reach: &BoundReach| {
             let bound = [
                 Buffer(uniform),
                 Sampler(&layouts.repeating),
@@ -77,16 +79,19 @@ impl BoundScene {
                 Sampler(&layouts.comparing),
                 Binding::texture(&land.heights),
                 Binding::texture(&land.light),
+                Binding::layers(&reach.texture),
             ];
             bind(gpu, "view", &layouts.view, (0..).zip(bound))
         };
         let ground = [&land.color, &land.weights, &land.details, &land.detail_normals];
         let ground = (0..).zip(ground.map(|texture| Binding::texture(texture)));
+        let reach = BoundReach::new(gpu, &land.roughness);
         Self {
-            view_group: view(uniform),
+            view_group: view(uniform, &reach),
             ground_group: bind(gpu, "ground", &layouts.ground, ground),
             trees: scene.trees.as_ref().map(|set| BoundTrees::new(gpu, layouts, set)),
             mirror: BoundMirror::new(gpu, layouts, &scene, view),
+            reach,
             terrain: Elements::new(gpu, "terrain"),
             part: 1.0,
             clumps: Elements::new(gpu, "clumps of grass"),

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::{Mat4, Vec3};
 
-use super::{Binding, BoundTrees, DEPTH, Elements, Layouts, RADIANCE, ViewUniform, bind};
+use super::{Binding, BoundReach, BoundTrees, DEPTH, Elements, Layouts, RADIANCE, ViewUniform, bind};
 use crate::camera::{Camera, Frustum};
 use crate::gpu::{Gpu, cleared, flat};
 use crate::upload::{Lake, SceneBuffers};
@@ -21,6 +21,8 @@ pub struct BoundMirror {
     pub(super) view_group: wgpu::BindGroup,
     /// None if the landscape has none, or no pictures of them.
     pub trees: Option<BoundTrees>,
+    /// How near each level of the mirrored land's detail may come.
+    pub reach: BoundReach,
     /// Blocks of the terrain.
     pub blocks: Elements,
     /// What is drawn of the ring's indices.
@@ -93,19 +95,21 @@ impl Reflection {
 }
 
 impl BoundMirror {
-    /// `None` where there is no lake. `bind_view` makes a view's group from its uniform.
+    /// `None` where there is no lake. `bind_view` makes a view's group from its uniform and reaches.
     pub(super) fn new(
         gpu: &Gpu,
         layouts: &Layouts,
         scene: &SceneBuffers,
-        bind_view: impl Fn(&wgpu::Buffer) -> wgpu::BindGroup,
+        bind_view: impl Fn(&wgpu::Buffer, &BoundReach) -> wgpu::BindGroup,
     ) -> Option<Self> {
         scene.land.lake.as_ref()?;
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
         let uniform = gpu.empty_buffer("mirror", size_of::<ViewUniform>() as u64, usage);
         let pictured = scene.trees.as_ref().filter(|set| set.impostors.is_some());
+        let reach = BoundReach::new(gpu, &scene.land.roughness);
         Some(Self {
-            view_group: bind_view(&uniform),
+            view_group: bind_view(&uniform, &reach),
+            reach,
             uniform,
             trees: pictured.map(|set| BoundTrees::new(gpu, layouts, set)),
             blocks: Elements::new(gpu, "mirrored terrain"),

@@ -28,18 +28,18 @@ struct View {
     clouds: vec4f,
     // The eye for which levels of detail are chosen: that of the walker, also when one looks on from above.
     lod_eye: vec3f,
-    // Distance at which level 0 of the terrain ends.
-    lod_unit: f32,
+    // How far it is above the highest land.
+    lod_above: f32,
     // Samples a side, metres between them, half the extent in metres, height of the highest land.
     field: vec4f,
     // Tile sizes in metres of the first four tiling textures of the ground, and of the fifth.
     tiles: vec4f,
     last_tile: f32,
-    // The terrain's greatest level, and how far the eye is above the highest land.
+    // The terrain's greatest level.
     lod_top: f32,
-    lod_above: f32,
     // Sides of the picture as a part of full resolution.
     part: f32,
+    pad: f32,
 }
 
 @group(0) @binding(0) var<uniform> view: View;

@@ -51,7 +51,9 @@ const FILTERED: TextureSampleType = TextureSampleType::Float { filterable: true 
 const IMAGE: BindingType = texture(FILTERED, TextureViewDimension::D2);
 const LAYERS: BindingType = texture(FILTERED, TextureViewDimension::D2Array);
 const CUBE: BindingType = texture(FILTERED, TextureViewDimension::Cube);
-const DATA: BindingType = texture(TextureSampleType::Float { filterable: false }, TextureViewDimension::D2);
+const UNFILTERED: TextureSampleType = TextureSampleType::Float { filterable: false };
+const DATA: BindingType = texture(UNFILTERED, TextureViewDimension::D2);
+const DATA_LAYERS: BindingType = texture(UNFILTERED, TextureViewDimension::D2Array);
 const DEPTH_MAP: BindingType = texture(TextureSampleType::Depth, TextureViewDimension::D2);
 
 const fn buffer(ty: BufferBindingType) -> BindingType {
@@ -71,8 +73,20 @@ impl Layouts {
         };
         let (both, fragment) = (ShaderStages::VERTEX_FRAGMENT, ShaderStages::FRAGMENT);
         let (clamp, repeat) = (AddressMode::ClampToEdge, AddressMode::Repeat);
-        let view =
-            [UNIFORM, FILTERING, FILTERING, CUBE, CUBE, IMAGE, IMAGE, DEPTH_MAP, COMPARISON, DATA, IMAGE];
+        let view = [
+            UNIFORM,
+            FILTERING,
+            FILTERING,
+            CUBE,
+            CUBE,
+            IMAGE,
+            IMAGE,
+            DEPTH_MAP,
+            COMPARISON,
+            DATA,
+            IMAGE,
+            DATA_LAYERS,
+        ];
         let sun_view = SUN_VIEW.map(|binding| (binding, view[binding as usize]));
         Self {
             view: all("view", both, &view),

@@ -14,6 +14,7 @@ struct Out {
     @location(2) level: f32,
 }
 
+@group(0) @binding(11) var reach: texture_2d_array<f32>;
 @group(1) @binding(0) var ground_color: texture_2d<f32>;
 @group(1) @binding(1) var ground_weights: texture_2d<f32>;
 @group(1) @binding(2) var details: texture_2d_array<f32>;
@@ -29,11 +30,37 @@ override GAP: f32;
 // Of a block, along a side.
 override BLOCK_VERTICES: u32;
 
-// λ: which level of detail a sample's place calls for. It depends on the place alone, so that neighbours agree.
-fn lambda_at(s: vec2u) -> f32 {
+// Four neighbouring levels' reaches, from that of a block on, at a place: between the nodes in straight lines.
+fn reach_at(place: vec2f, level: u32) -> vec4f {
+    let last = textureDimensions(reach).x - 1u;
+    let at = clamp((place / view.field.z * 0.5 + 0.5) * f32(last), vec2f(0.0), vec2f(f32(last)));
+    let node = min(vec2u(at), vec2u(last - 1u));
+    let part = at - vec2f(node);
+    let north = mix(
+        textureLoad(reach, node, level, 0),
+        textureLoad(reach, node + vec2u(1u, 0u), level, 0),
+        part.x,
+    );
+    let south = mix(
+        textureLoad(reach, node + vec2u(0u, 1u), level, 0),
+        textureLoad(reach, node + vec2u(1u, 1u), level, 0),
+        part.x,
+    );
+    return mix(north, south, part.y);
+}
+
+// λ: which level of detail a sample's place calls for, between a block's own and two more. It depends on the place alone, so
+// that neighbours agree: whichever block asks, the same two reaches decide.
+fn lambda_at(s: vec2u, level: u32) -> f32 {
     let place = vec2f(place_m(f32(s.x)), place_m(f32(s.y)));
-    let offset = vec3f(place - view.lod_eye.xz, view.lod_above);
-    return clamp(log2(length(offset) / view.lod_unit), 0.0, view.lod_top);
+    let distance = length(vec3f(place - view.lod_eye.xz, view.lod_above));
+    let d = reach_at(place, level);
+    let second = distance >= d.y;
+    let third = distance >= d.z;
+    let near = select(select(d.x, d.y, second), d.z, third);
+    let far = select(select(d.y, d.z, second), d.w, third);
+    let band = f32(level) + select(select(0.0, 1.0, second), 2.0, third);
+    return min(band + log2(1.0 + clamp((distance - near) / (far - near), 0.0, 1.0)), view.lod_top);
 }
 
 // The coarsest level that uses a sample.
@@ -58,19 +85,19 @@ fn parent(s: vec2u) -> vec2u {
 }
 
 // The way that a vertex has gone to its parent.
-fn slide(s: vec2u) -> f32 {
-    return clamp((lambda_at(s) - f32(level_of(s))) / (1.0 - GAP), 0.0, 1.0);
+fn slide(s: vec2u, level: u32) -> f32 {
+    return clamp((lambda_at(s, level) - f32(level_of(s))) / (1.0 - GAP), 0.0, 1.0);
 }
 
 // Where a vertex is drawn: at the first ancestor that has not arrived at its own parent, on the way there. No block needs
 // more than two steps.
-fn drawn_place(sample: vec2u) -> vec3f {
+fn drawn_place(sample: vec2u, level: u32) -> vec3f {
     var s = sample;
-    var way = slide(s);
+    var way = slide(s, level);
     for (var i = 0; i < 2; i++) {
         if (way >= 1.0) {
             s = parent(s);
-            way = slide(s);
+            way = slide(s, level);
         }
     }
     let place = sample_place(s);
@@ -99,7 +126,7 @@ fn out_at(world: vec3f, normal: vec3f, level: f32) -> Out {
 @vertex
 fn block_vertex(block: Block, @builtin(vertex_index) index: u32) -> Out {
     let s = block.origin + (vec2u(index % BLOCK_VERTICES, index / BLOCK_VERTICES) << vec2u(block.level));
-    let world = select(sample_place(s), drawn_place(s), view.morph_terrain != 0u);
+    let world = select(sample_place(s), drawn_place(s, block.level), view.morph_terrain != 0u);
     return out_at(world, normal_at(s), f32(block.level));
 }
 

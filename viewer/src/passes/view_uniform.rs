@@ -4,7 +4,6 @@ use glam::{BVec3, Mat4, Vec3, Vec4};
 
 use crate::camera::Camera;
 use crate::lod::morph::Detail;
-use crate::lod_mode::TerrainLodMode;
 use crate::options::FrameInput;
 use crate::upload::SceneBuffers;
 
@@ -31,13 +30,13 @@ pub struct ViewUniform {
     pub morph_terrain: u32,
     pub clouds: [f32; 4],
     pub lod_eye: [f32; 3],
-    pub lod_unit: f32,
+    pub lod_above: f32,
     pub field: [f32; 4],
     pub tiles: [f32; 4],
     pub last_tile: f32,
     pub lod_top: f32,
-    pub lod_above: f32,
     pub part: f32,
+    pub pad: f32,
 }
 
 /// What stands for "no lake".
@@ -84,14 +83,13 @@ impl ViewUniform {
             haze: sky.haze_linear,
             water_level: scene.ground.water_level_m.unwrap_or(NO_WATER_M),
             drift_clouds: options.drift_clouds.into(),
-            morph_terrain: (options.terrain_lod == TerrainLodMode::Morph).into(),
+            morph_terrain: options.terrain_lod.morphs().into(),
             clouds: scene.sky_textures.sheets_m,
             lod_eye: lod_camera.position_m.into(),
-            lod_unit: detail.unit_m,
+            lod_above: detail.above_m,
             tiles,
             last_tile,
             lod_top: detail.top,
-            lod_above: detail.above_m,
             shadow_from_world: shadow_from_world(scene).to_cols_array_2d(),
             field: Self::field(scene),
             ..Self::of_camera(camera, size_px, frame, sky.exposure)

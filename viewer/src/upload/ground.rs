@@ -4,13 +4,14 @@ use std::sync::Arc;
 
 use super::{ImageUse, Lake, PlantBuffers, Ring, Uploader};
 use crate::lod::quadtree;
+use crate::lod::reach::Roughness;
 use crate::scene::{Ground, GroundDetail, Image};
 
 /// The land on the device.
 #[derive(Debug)]
 pub struct GroundBuffers {
-    /// How far its coarser triangulations are from it.
-    pub errors: quadtree::Errors,
+    /// How far its coarser triangulations are from it, and where.
+    pub roughness: Roughness,
     /// One float a sample.
     pub heights: Arc<wgpu::Texture>,
     /// Albedo over the field.
@@ -47,7 +48,7 @@ impl Uploader {
             return Err(format!("a heightfield of {side} samples a side is too small to be drawn"));
         }
         Ok(GroundBuffers {
-            errors: quadtree::Errors::of(&ground.field),
+            roughness: Roughness::of(&ground.field),
             heights: self.heights(&ground.name, ground.field.side, &ground.field.heights_m),
             color: self.image(&surface.color, ImageUse::Color),
             weights: self.image(&surface.weights, ImageUse::Data),

@@ -3,6 +3,7 @@
 use crate::camera::Camera;
 use crate::gpu::Gpu;
 use crate::lod::quadtree;
+use crate::lod_mode::TerrainLodMode;
 use crate::options::FrameInput;
 use crate::passes::{BoundMirror, BoundScene, Cull, CullUniform, Mirror, Passes, Reflection, ViewUniform};
 use crate::upload::SceneBuffers;
@@ -36,12 +37,13 @@ impl MirrorChoice {
         mirror.reflection = lake.and_then(|lake| Reflection::of(lake, camera, size_px));
         let Some(reflection) = mirror.reflection.clone() else { return 0 };
         let error_px = frame.options.terrain_error_px.max(MIN_ERROR_PX);
-        let (lod, errors, eye_m) = (&scene.ground.lod, &scene.land.errors, lod_camera.position_m);
+        let (lod, eye_m) = (&scene.ground.lod, lod_camera.position_m);
         let focal_px = reflection.focal_px(lod_camera.focal_px(size_px[1] as f32));
-        let detail = quadtree::detail(lod, errors, eye_m, focal_px, error_px, MAX_BLOCK_M);
+        mirror.reach.set(gpu, &scene.land.roughness, TerrainLodMode::Morph, focal_px, error_px);
+        let detail = quadtree::detail(lod, eye_m, false, MAX_BLOCK_M);
         let numbers = ViewUniform::new(scene, camera, lod_camera, size_px, frame, &detail);
         mirror.set(gpu, &passes.layouts, size_px, &reflection.numbers(numbers));
-        quadtree::select(lod, &detail, Some(&reflection.frustum), &mut self.blocks);
+        quadtree::select(lod, &mirror.reach.reach, &detail, Some(&reflection.frustum), &mut self.blocks);
         mirror.blocks.write(gpu, &self.blocks);
         scene.land.ring.seen(&reflection.frustum, &mut mirror.ring);
         if frame.options.draw_trees {

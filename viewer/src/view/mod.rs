@@ -7,6 +7,7 @@ mod targets;
 mod terrain;
 
 pub use targets::Targets;
+pub use terrain::MAX_BLOCK_M;
 
 use asset::AssetChoice;
 use landscape::LandscapeChoice;

@@ -9,7 +9,7 @@ use crate::options::Options;
 use crate::passes::BoundScene;
 
 /// No block of the terrain is wider, so that what is not seen can be left out.
-pub(super) const MAX_BLOCK_M: f32 = 256.0;
+pub const MAX_BLOCK_M: f32 = 256.0;
 
 /// Lists that are kept from frame to frame.
 #[derive(Debug, Default)]
@@ -30,11 +30,11 @@ impl TerrainChoice {
         options: &Options,
     ) -> (Detail, u32) {
         let (scene, mode) = (&bound.scene, options.terrain_lod);
-        let (lod, errors) = (&scene.ground.lod, &scene.land.errors);
+        let lod = &scene.ground.lod;
         let (focal_px, eye_m) = (camera.focal_px(height), camera.position_m);
         // Without levels of detail no error is allowed.
         let error_px = if mode == TerrainLodMode::Off { 0.0 } else { options.terrain_error_px };
-        let detail = quadtree::detail(lod, errors, eye_m, focal_px, error_px, MAX_BLOCK_M);
+        let detail = quadtree::detail(lod, eye_m, error_px.is_nan() || error_px <= 0.0, MAX_BLOCK_M);
         let aspect = width / height;
         let triangles = if mode == TerrainLodMode::Roam {
             let picture = (aspect, height);
@@ -42,7 +42,9 @@ impl TerrainChoice {
             bound.terrain.write(gpu, &self.strip);
             triangles
         } else {
-            quadtree::select(lod, &detail, Some(&camera.frustum(aspect)), &mut self.blocks);
+            bound.reach.set(gpu, &scene.land.roughness, mode, focal_px, error_px);
+            let frustum = camera.frustum(aspect);
+            quadtree::select(lod, &bound.reach.reach, &detail, Some(&frustum), &mut self.blocks);
             bound.terrain.write(gpu, &self.blocks);
             quadtree::triangles(&lod.field, &self.blocks)
         };

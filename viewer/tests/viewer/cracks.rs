@@ -62,6 +62,12 @@ fn morphing_blocks_have_no_cracks() {
 
 #[test]
 #[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
+fn blocks_that_morph_by_distance_alone_have_no_cracks() {
+    no_sky_shines_through(TerrainLodMode::Distance);
+}
+
+#[test]
+#[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
 fn the_strip_of_triangles_has_no_cracks() {
     no_sky_shines_through(TerrainLodMode::Roam);
 }

@@ -95,13 +95,13 @@ fn uniforms_are_laid_out_alike() {
             morph_terrain,
             clouds,
             lod_eye,
-            lod_unit,
+            lod_above,
             field,
             tiles,
             last_tile,
             lod_top,
-            lod_above,
             part,
+            pad,
         }
     );
     same!(

@@ -1,0 +1,171 @@
+//! What it takes to draw the land with a given error at 1920 × 1080: triangles and the processor's work of morphing that
+//! follows distance and roughness, of morphing by distance alone as near to the land, and of ROAM, from cameras all over
+//! it. The error is measured: the greatest distance, over all samples that a picture shows, between the land and what is
+//! drawn there, as it looks from the eye.
+
+use std::time::Instant;
+
+use anyhow::Result;
+use glam::{Vec2, Vec3};
+
+use super::Bench;
+use super::report::{Aim, quantile};
+use crate::camera::{Camera, Frustum};
+use crate::lod::quadtree::{self, Block};
+use crate::lod::reach::{Reach, Roughness};
+use crate::lod::roam;
+use crate::options::Options;
+use crate::scene::{Scene, TerrainLod};
+use crate::view::MAX_BLOCK_M;
+use crate::walk::{EYE_HEIGHT_M, Land};
+
+const CAMERAS: u32 = 200;
+const PICTURE: [f32; 2] = [1920.0, 1080.0];
+/// Errors that are allowed, in pixels: the aim's, and about what is allowed by default.
+const ERRORS_PX: [f32; 2] = [1.0, 6.0];
+/// Steps by which the error of morphing by distance is brought to the other's.
+const BISECTIONS: u32 = 7;
+
+pub(super) fn measure(bench: &mut Bench) -> Result<()> {
+    for path in bench.paths.clone() {
+        let scene = bench.headless.read(&path)?;
+        for error_px in ERRORS_PX {
+            let title =
+                format!("Land of {}, {error_px} px allowed: {CAMERAS} cameras, 1920 × 1080", scene.name);
+            bench.report.section(title);
+            tell(bench, &scene, error_px);
+        }
+    }
+    Ok(())
+}
+
+fn tell(bench: &mut Bench, scene: &Scene, error_px: f32) {
+    let lod = &scene.ground.lod;
+    let cameras = cameras(scene);
+    let roughness = Roughness::of(&lod.field);
+    let focal_px = cameras[0].focal_px(PICTURE[1]);
+    let adaptive = Run::of(lod, &cameras, &roughness.reach(focal_px / error_px));
+    // The largest error allowed by distance alone that looks no worse.
+    let (mut low, mut high) = (1.0 / 64.0, 8.0_f32);
+    for _ in 0..BISECTIONS {
+        let middle = (low * high).sqrt();
+        let run = Run::of(lod, &cameras, &roughness.reach_by_distance(middle * focal_px));
+        *(if run.greatest_px() > adaptive.greatest_px() { &mut low } else { &mut high }) = middle;
+    }
+    let by_distance = Run::of(lod, &cameras, &roughness.reach_by_distance(high * focal_px));
+    let (mut strip, mut counts) = (Vec::new(), Vec::<f64>::new());
+    let start = Instant::now();
+    let picture = (PICTURE[0] / PICTURE[1], PICTURE[1]);
+    for camera in &cameras {
+        counts.push(f64::from(roam::triangulate(lod, camera, picture, error_px, &mut strip)));
+    }
+    let roam_ms = start.elapsed().as_secs_f64() * 1e3 / f64::from(CAMERAS);
+    let mean = |counts: &Vec<f64>| counts.iter().sum::<f64>() / counts.len() as f64;
+    let [ours, theirs, roam] = [&adaptive.triangles, &by_distance.triangles, &counts].map(mean);
+    let report = &mut bench.report;
+    report.aimed("greatest error in any picture", adaptive.greatest_px(), "px", Aim::AtMost(error_px.into()));
+    report.figure("greatest error of a picture, median", quantile(&adaptive.errors_px, 0.5), "px");
+    report.figure("by distance alone, greatest error in any picture", by_distance.greatest_px(), "px");
+    report.figure("triangles a picture", ours, "");
+    report.figure("the same by distance alone, as near to the land", theirs, "");
+    report.aimed("triangles, by roughness / by distance alone", ours / theirs, "×", Aim::AtMost(0.25));
+    report.figure("triangles of ROAM", roam, "");
+    report.aimed("processor, by roughness / ROAM", adaptive.choose_ms / roam_ms, "×", Aim::AtMost(1.0));
+}
+
+/// What all cameras are shown with given reaches.
+struct Run {
+    triangles: Vec<f64>,
+    errors_px: Vec<f64>,
+    /// Milliseconds of choosing a picture's blocks, mean.
+    choose_ms: f64,
+}
+
+impl Run {
+    fn of(lod: &TerrainLod, cameras: &[Camera], reach: &Reach) -> Self {
+        let mut blocks = Vec::new();
+        let (mut triangles, mut errors_px, mut seconds) = (Vec::new(), Vec::new(), 0.0);
+        for camera in cameras {
+            let frustum = camera.frustum(PICTURE[0] / PICTURE[1]);
+            let start = Instant::now();
+            let detail = quadtree::detail(lod, camera.position_m, false, MAX_BLOCK_M);
+            quadtree::select(lod, reach, &detail, Some(&frustum), &mut blocks);
+            seconds += start.elapsed().as_secs_f64();
+            triangles.push(f64::from(quadtree::triangles(&lod.field, &blocks)));
+            let drawn = |block, sample| detail.drawn_m(reach, &lod.field, block, sample);
+            errors_px.push(greatest_error_px(lod, camera, &frustum, &blocks, drawn));
+        }
+        Self { triangles, errors_px, choose_ms: seconds * 1e3 / cameras.len() as f64 }
+    }
+
+    fn greatest_px(&self) -> f64 {
+        quantile(&self.errors_px, 1.0)
+    }
+}
+
+/// Walkers and, every fourth, somebody who flies; places as evenly as the additive recurrence of Roberts (2018) spreads
+/// them.
+fn cameras(scene: &Scene) -> Vec<Camera> {
+    let land = Land::of(scene);
+    let extent_m = scene.ground.field.extent_m();
+    let camera = |k: u32| {
+        let part = |step: f64| ((0.5 + f64::from(k) * step).fract() as f32 - 0.5) * extent_m * 0.96;
+        let place_m = Vec2::new(part(0.754_877_666_246_692_7), part(0.569_840_290_998_053_3));
+        let above_m = if k.is_multiple_of(4) { 40.0 } else { EYE_HEIGHT_M };
+        Camera {
+            position_m: Vec3::new(place_m.x, land.footing_m(place_m) + above_m, place_m.y),
+            yaw_rad: k as f32 * 2.4,
+            pitch_rad: if k.is_multiple_of(4) { -0.3 } else { 0.0 },
+            fov_y_rad: Options::default().fov_y_deg.to_radians(),
+        }
+    };
+    (0..CAMERAS).map(camera).collect()
+}
+
+/// The greatest vertical distance between samples that are seen and what blocks draw there, in pixels at their distance.
+fn greatest_error_px(
+    lod: &TerrainLod,
+    camera: &Camera,
+    frustum: &Frustum,
+    blocks: &[Block],
+    drawn_m: impl Fn(u32, [u32; 2]) -> Vec3,
+) -> f64 {
+    let field = &lod.field;
+    let focal_px = camera.focal_px(PICTURE[1]);
+    let cells = quadtree::block_cells(field);
+    let indices = quadtree::block_indices(cells);
+    let half_m = 0.5 * field.extent_m();
+    let line = |at_m: f32| (at_m + half_m) / field.spacing_m;
+    let mut greatest_px = 0.0_f32;
+    for block in blocks {
+        let vertex = |number: u32| {
+            let (column, row) = (number % (cells + 1), number / (cells + 1));
+            drawn_m(block.level, [block.i + (column << block.level), block.j + (row << block.level)])
+        };
+        let vertices: Vec<Vec3> = (0..(cells + 1) * (cells + 1)).map(vertex).collect();
+        for corners in indices.as_chunks::<3>().0 {
+            let [a, b, c] = corners.map(|corner| vertices[usize::from(corner)]);
+            let flat = |p: Vec3| Vec2::new(p.x, p.z);
+            let (u, v) = (flat(b - a), flat(c - a));
+            let whole = u.perp_dot(v);
+            if whole == 0.0 {
+                continue;
+            }
+            let (low, high) = (flat(a.min(b).min(c)), flat(a.max(b).max(c)));
+            for j in line(low.y).ceil() as u32..=line(high.y).floor() as u32 {
+                for i in line(low.x).ceil() as u32..=line(high.x).floor() as u32 {
+                    let land_m = Vec3::new(field.place_m(i), field.at(i, j), field.place_m(j));
+                    let at = flat(land_m - a);
+                    let (s, t) = (at.perp_dot(v) / whole, u.perp_dot(at) / whole);
+                    if s < 0.0 || t < 0.0 || s + t > 1.0 || !frustum.sees_sphere(land_m, 0.0) {
+                        continue;
+                    }
+                    let drawn = a.y + s * (b.y - a.y) + t * (c.y - a.y);
+                    let distance_m = land_m.distance(camera.position_m).max(field.spacing_m);
+                    greatest_px = greatest_px.max((drawn - land_m.y).abs() * focal_px / distance_m);
+                }
+            }
+        }
+    }
+    greatest_px.into()
+}
