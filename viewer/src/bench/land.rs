@@ -11,7 +11,8 @@ use glam::{Vec2, Vec3};
 use super::Bench;
 use super::report::{Aim, quantile};
 use crate::camera::{Camera, Frustum};
-use crate::lod::quadtree::{self, Block};
+use crate::lod::block::{Block, block_cells, block_indices};
+use crate::lod::quadtree;
 use crate::lod::reach::{Reach, Roughness};
 use crate::lod::roam;
 use crate::options::Options;
@@ -132,8 +133,8 @@ fn greatest_error_px(
 ) -> f64 {
     let field = &lod.field;
     let focal_px = camera.focal_px(PICTURE[1]);
-    let cells = quadtree::block_cells(field);
-    let indices = quadtree::block_indices(cells);
+    let cells = block_cells(field);
+    let indices = block_indices(cells);
     let half_m = 0.5 * field.extent_m();
     let line = |at_m: f32| (at_m + half_m) / field.spacing_m;
     let mut greatest_px = 0.0_f32;

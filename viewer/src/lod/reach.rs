@@ -3,14 +3,14 @@
 //! The uniform triangulation of level l strays from the land by e_l at most, differently from place to place. Where it
 //! strays by little it may be drawn nearer: from the distance d_l(x, z) on. [`super::morph`] says how λ follows from these
 //! and what they must fulfil, so that no crack opens and no triangle folds: each d_l changes by at most [`STEEPNESS`]
-//! metres a metre, and d_{l+1} − d_l is at least [`LEAST_BAND_CELLS`] · 2^l cells. So both distance and roughness enter as
+//! metres a metre, and d_{l+1} − d_l is at least [`MIN_BAND_CELLS`] · 2^l cells. So both distance and roughness enter as
 //! smooth fields (the thesis, 9, asks for morphing that adapts to the land and leaves open how).
 
 use std::f32::consts::FRAC_1_SQRT_2;
 
 use genescape_schema::scene::bintree::parents;
 
-use super::quadtree::{Block, block_cells, block_number, top_level};
+use super::block::{Block, block_cells, block_number, top_level};
 use crate::scene::Heightfield;
 
 /// log₂ of the cells between the places for which reaches are kept.
@@ -19,11 +19,11 @@ const TILE_BITS: u32 = 4;
 /// by fine triangles, the more, the more of them smooth land needs.
 const STEEPNESS: f32 = 1.0;
 /// The least d_{l+1} − d_l in cells of 2^l samples, (1 + [`STEEPNESS`]) · 8√2 and a little more for rounding.
-const LEAST_BAND_CELLS: f32 = 1.03 * (1.0 + STEEPNESS) * 8.0 * std::f32::consts::SQRT_2;
+const MIN_BAND_CELLS: f32 = 1.03 * (1.0 + STEEPNESS) * 8.0 * std::f32::consts::SQRT_2;
 /// A level is used from a little farther on than its error alone would ask, because it is there before λ has reached it.
 const EARLY: f32 = 1.45;
 /// No level's reach is a smaller part of the next one's: else λ would rise at once where the next has far to go.
-const LEAST_RATIO: f32 = 0.25;
+const MIN_RATIO: f32 = 0.25;
 /// Levels beyond a block's own that its vertices may ask for.
 const LEVELS_ABOVE: usize = 3;
 
@@ -107,12 +107,12 @@ impl Roughness {
     fn finished(&self, mut levels_m: Vec<Vec<f32>>) -> Reach {
         for level in (0..levels_m.len() - 1).rev() {
             let [finer, coarser] = &mut levels_m[level..level + 2] else { continue };
-            finer.iter_mut().zip(coarser).for_each(|(d, above)| *d = d.max(LEAST_RATIO * *above));
+            finer.iter_mut().zip(coarser).for_each(|(d, above)| *d = d.max(MIN_RATIO * *above));
         }
         levels_m.iter_mut().for_each(|reach_m| self.grid.spread(reach_m));
         levels_m.extend((0..LEVELS_ABOVE).map(|_| vec![0.0; self.grid.node_count()]));
         for level in 1..levels_m.len() {
-            let band_m = LEAST_BAND_CELLS * self.grid.cell_m * (1u32 << (level - 1)) as f32;
+            let band_m = MIN_BAND_CELLS * self.grid.cell_m * (1u32 << (level - 1)) as f32;
             let [finer, coarser] = &mut levels_m[level - 1..=level] else { continue };
             coarser.iter_mut().zip(finer).for_each(|(d, below)| *d = d.max(*below + band_m));
         }

@@ -7,8 +7,9 @@ use genescape_schema::scene::bintree::parents;
 use glam::{Vec2, Vec3};
 use proptest::prelude::*;
 
+use super::block::{BLOCK_BITS, Block, block_cells, block_indices, top_level};
 use super::morph::{Detail, sample_m};
-use super::quadtree::{self, Block, block_cells, block_indices};
+use super::quadtree;
 use super::reach::{Reach, Roughness};
 use super::roam::triangulate;
 use crate::camera::{Camera, Frustum};
@@ -89,7 +90,7 @@ fn check_closed(field: &Heightfield, triangles: &[Triangle]) -> Result<(), TestC
 }
 
 /// Cells a side of a block.
-const CELLS: u32 = 1 << quadtree::BLOCK_BITS;
+const CELLS: u32 = 1 << BLOCK_BITS;
 
 /// What an eye is shown of a land, for pictures of so many pixels a radian: the more, the farther fine levels reach.
 struct Sight {
@@ -114,7 +115,7 @@ impl Sight {
     fn lambda(&self, field: &Heightfield, at_m: Vec2) -> f32 {
         let distance_m = self.detail.distance_squared_m2(at_m).sqrt();
         let passed = |level: &u32| distance_m >= self.reach.at(*level, at_m.to_array())[0];
-        let from = (0..=quadtree::top_level(field)).rev().find(passed).unwrap_or(0);
+        let from = (0..=top_level(field)).rev().find(passed).unwrap_or(0);
         self.detail.lambda(&self.reach, from, at_m)
     }
 }
@@ -173,7 +174,7 @@ proptest! {
         let here = Vec2::new(x, z) * extent_m;
         let step = Vec2::from_angle(turn) * part * extent_m;
         let there = (here + step).clamp(Vec2::splat(-0.5 * extent_m), Vec2::splat(0.5 * extent_m));
-        let level = from.min(quadtree::top_level(field));
+        let level = from.min(top_level(field));
         let [at_here, at_there] = [here, there].map(|at| reach.at(level, at.to_array()));
         let band_m = |k: usize| 2.0 * 8.0 * std::f32::consts::SQRT_2 * field.spacing_m * (1u32 << (level as usize + k)) as f32;
         for k in 0..4 {

@@ -6,7 +6,7 @@ use super::shaders::ShaderError;
 use super::terrain::{self, BLOCK, BlockIndices, RING};
 use super::trees::VISIBLE;
 use super::{BoundScene, Compiler, PipelineDesc, Target, buffer_layout, impostors};
-use crate::lod::quadtree;
+use crate::lod::block;
 use crate::options::Options;
 use crate::upload::RingVertex;
 
@@ -34,7 +34,7 @@ impl Mirror {
         };
         // A mirror turns triangles round.
         let outside = Some(wgpu::Face::Front);
-        let blocks = [buffer_layout::<quadtree::Block>(Instance, &BLOCK)];
+        let blocks = [buffer_layout::<block::Block>(Instance, &BLOCK)];
         let ring = [buffer_layout::<RingVertex>(Vertex, &RING)];
         Ok(Self {
             blocks: pipeline("block_vertex", "mirrored_ground", outside, &blocks),

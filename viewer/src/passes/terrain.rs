@@ -3,7 +3,7 @@
 use super::shaders::ShaderError;
 use super::{BoundScene, Compiler, DrawPass, Elements, FilledOrWire, PipelineDesc, Shader, buffer_layout};
 use crate::gpu::Gpu;
-use crate::lod::{morph, quadtree};
+use crate::lod::{block, morph};
 use crate::lod_mode::TerrainLodMode;
 use crate::options::Options;
 use crate::upload::RingVertex;
@@ -11,10 +11,10 @@ use crate::upload::RingVertex;
 pub const SHADER: Shader = Shader {
     name: "terrain",
     source: include_str!("terrain.wgsl"),
-    constants: &[("GAP", morph::GAP as f64), ("BLOCK_VERTICES", (1 << quadtree::BLOCK_BITS) as f64 + 1.0)],
+    constants: &[("GAP", morph::GAP as f64), ("BLOCK_VERTICES", (1 << block::BLOCK_BITS) as f64 + 1.0)],
 };
 
-/// Attributes of [`quadtree::Block`].
+/// Attributes of [`block::Block`].
 pub const BLOCK: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Uint32x2, 1 => Uint32];
 /// Attributes of [`RingVertex`].
 pub const RING: [wgpu::VertexAttribute; 3] =
@@ -35,7 +35,7 @@ pub(super) struct BlockIndices {
 
 impl BlockIndices {
     pub fn new(gpu: &Gpu) -> Self {
-        let indices = quadtree::block_indices(1 << quadtree::BLOCK_BITS);
+        let indices = block::block_indices(1 << block::BLOCK_BITS);
         let buffer = gpu.buffer("block triangles", &indices, wgpu::BufferUsages::INDEX);
         Self { buffer, count: indices.len() as u32 }
     }
@@ -60,7 +60,7 @@ impl Terrain {
         use wgpu::{PrimitiveTopology, VertexStepMode};
         let shader = &compiler.module(&SHADER)?;
         let groups = &[&compiler.layouts.view, &compiler.layouts.ground];
-        let blocks = &[buffer_layout::<quadtree::Block>(VertexStepMode::Instance, &BLOCK)];
+        let blocks = &[buffer_layout::<block::Block>(VertexStepMode::Instance, &BLOCK)];
         let ring = &[buffer_layout::<RingVertex>(VertexStepMode::Vertex, &RING)];
         let pipelines = |wireframe: bool| {
             let usual = || PipelineDesc {

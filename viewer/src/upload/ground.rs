@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{ImageUse, Lake, PlantBuffers, Ring, Uploader};
-use crate::lod::quadtree;
+use crate::lod::block;
 use crate::lod::reach::Roughness;
 use crate::scene::{Ground, GroundDetail, Image};
 
@@ -43,7 +43,7 @@ impl Uploader {
         if surface.details.len() != 5 {
             return Err(format!("the ground has {} tiling textures instead of 5", surface.details.len()));
         }
-        if ground.field.side <= 1 << quadtree::BLOCK_BITS {
+        if ground.field.side <= 1 << block::BLOCK_BITS {
             let side = ground.field.side;
             return Err(format!("a heightfield of {side} samples a side is too small to be drawn"));
         }

@@ -2,7 +2,7 @@
 
 use crate::camera::Camera;
 use crate::gpu::Gpu;
-use crate::lod::quadtree;
+use crate::lod::{block, quadtree};
 use crate::lod_mode::TerrainLodMode;
 use crate::options::FrameInput;
 use crate::passes::{BoundMirror, BoundScene, Cull, CullUniform, Mirror, Passes, Reflection, ViewUniform};
@@ -16,7 +16,7 @@ const MIN_ERROR_PX: f32 = 1.0;
 /// Lists that are kept from frame to frame.
 #[derive(Debug, Default)]
 pub(super) struct MirrorChoice {
-    blocks: Vec<quadtree::Block>,
+    blocks: Vec<block::Block>,
 }
 
 impl MirrorChoice {

@@ -3,7 +3,7 @@
 use crate::camera::Camera;
 use crate::gpu::Gpu;
 use crate::lod::morph::Detail;
-use crate::lod::{quadtree, roam};
+use crate::lod::{block, quadtree, roam};
 use crate::lod_mode::TerrainLodMode;
 use crate::options::Options;
 use crate::passes::BoundScene;
@@ -14,7 +14,7 @@ pub const MAX_BLOCK_M: f32 = 256.0;
 /// Lists that are kept from frame to frame.
 #[derive(Debug, Default)]
 pub(super) struct TerrainChoice {
-    blocks: Vec<quadtree::Block>,
+    blocks: Vec<block::Block>,
     strip: Vec<u32>,
 }
 

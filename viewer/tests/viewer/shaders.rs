@@ -3,7 +3,7 @@
 
 use std::mem::{offset_of, size_of};
 
-use genescape_viewer::lod::quadtree::Block;
+use genescape_viewer::lod::block::Block;
 use genescape_viewer::passes::Shaders;
 use genescape_viewer::passes::{CullUniform, SHADERS, ViewUniform, grass, plants, terrain, trees};
 use genescape_viewer::scene::TreeVertex;
