@@ -44,6 +44,7 @@ const REQUIRED: wgpu::Features = wgpu::Features::INDIRECT_FIRST_INSTANCE;
 
 /// What is used where the adapter has it.
 const OPTIONAL: wgpu::Features = wgpu::Features::POLYGON_MODE_LINE
+    .union(wgpu::Features::PIPELINE_STATISTICS_QUERY)
     .union(wgpu::Features::TIMESTAMP_QUERY)
     .union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS)
     .union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);

@@ -35,6 +35,7 @@ const RULES: &[Rule] = &[
             "viewer/src/app/",
             "viewer/src/load/",
             "viewer/src/bench/",
+            "viewer/src/lab/",
             "viewer/src/image_file.rs",
             "viewer/src/manual.rs",
             "viewer/src/settings.rs",
@@ -55,6 +56,7 @@ const RULES: &[Rule] = &[
             "viewer/src/app/",
             "viewer/src/baker.rs",
             "viewer/src/bench/",
+            "viewer/src/measure/",
         ],
     },
     Rule {

@@ -139,32 +139,9 @@ fn load_average() -> Option<f64> {
     std::fs::read_to_string("/proc/loadavg").ok()?.split(' ').next()?.parse().ok()
 }
 
-/// The middle value; 0 of none.
-pub(super) fn median(values: &[f64]) -> f64 {
-    quantile(values, 0.5)
-}
-
-/// The least value that a share of all values does not exceed (nearest rank); 0 of none.
-pub(super) fn quantile(values: &[f64], share: f64) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let rank = (share * sorted.len() as f64).ceil() as usize;
-    sorted.get(rank.saturating_sub(1)).copied().unwrap_or(0.0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn quantiles_are_the_nearest_rank() {
-        let values: Vec<f64> = (1..=100).rev().map(f64::from).collect();
-        assert_eq!(
-            (quantile(&values, 0.99), quantile(&values, 0.0), quantile(&values, 1.0)),
-            (99.0, 1.0, 100.0)
-        );
-        assert_eq!((median(&[3.0, 1.0, 2.0]), median(&[])), (2.0, 0.0));
-    }
 
     #[test]
     fn an_aim_is_met_up_to_its_bound() {

@@ -38,11 +38,12 @@ impl TerrainChoice {
         let aspect = width / height;
         let triangles = if mode == TerrainLodMode::Roam {
             let picture = (aspect, height);
-            let triangles = roam::triangulate(lod, camera, picture, error_px, &mut self.strip);
+            let triangles = roam::triangulate(lod, camera, picture, error_px, options.cull, &mut self.strip);
             bound.terrain.write(gpu, &self.strip);
             triangles
         } else {
-            quadtree::select(lod, &detail, Some(&camera.frustum(aspect)), &mut self.blocks);
+            let frustum = options.cull.then(|| camera.frustum(aspect));
+            quadtree::select(lod, &detail, frustum.as_ref(), &mut self.blocks);
             bound.terrain.write(gpu, &self.blocks);
             quadtree::triangles(&lod.field, &self.blocks)
         };
