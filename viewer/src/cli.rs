@@ -81,6 +81,8 @@ pub struct Cli {
 pub enum Command {
     /// Measure how long pictures take, as ratios of one run
     Bench(crate::bench::BenchArgs),
+    /// Repeat the thesis's experiments on this renderer, and write a report
+    Lab(crate::lab::LabArgs),
     /// Print what makes a shell complete this command line
     Completions {
         /// The shell

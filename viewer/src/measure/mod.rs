@@ -5,12 +5,14 @@
 mod cost;
 mod counters;
 mod flip;
+mod machine;
 mod path;
 mod statistics;
 
 pub use cost::Cost;
 pub use counters::{Counted, Counters};
 pub use flip::flip;
+pub use machine::{Machine, load_average};
 pub use path::{camera_path, forest};
 pub use statistics::{deviation, mean, median, quantile};
 
