@@ -65,6 +65,11 @@ pub struct Experiment {
 }
 
 impl Experiment {
+    /// All of them.
+    pub fn all() -> Vec<Self> {
+        [Self::of_land().to_vec(), Self::of_trees().to_vec(), Self::of_all().to_vec()].concat()
+    }
+
     /// Figures 21 to 24.
     pub fn of_land() -> [Self; 2] {
         use TerrainLodMode::{Morph, Off, Roam};

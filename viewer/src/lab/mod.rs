@@ -5,20 +5,23 @@
 //! what the thesis found, [`compare`] one of two folders.
 
 mod bench;
+mod compare;
 mod equal_cost;
 mod experiment;
+mod meshoptimizer;
 mod page;
 mod popping;
 mod preprocessing;
 mod report;
 mod scenes;
 mod store;
+mod trees;
 mod walk;
 
 use std::path::PathBuf;
 
 use anyhow::Result;
-use clap::Args;
+use clap::{Args, Subcommand};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -36,6 +39,9 @@ use store::{Configuration, Store};
 #[derive(Clone, Debug, Args)]
 #[command(args_conflicts_with_subcommands = true)]
 pub struct LabArgs {
+    #[command(subcommand)]
+    pub command: Option<LabCommand>,
+
     /// The folder for scenes, tables and report; what it holds already is not measured again
     #[arg(value_name = "OUT", default_value = "laboratory")]
     pub out: PathBuf,
@@ -62,6 +68,15 @@ pub struct LabArgs {
     pub scenes: Option<u32>,
 }
 
+/// What else the laboratory does.
+#[derive(Clone, Debug, Subcommand)]
+pub enum LabCommand {
+    /// Show each tree's levels of detail at equal size, with what they cover and how far they are from the full tree
+    Trees(trees::TreesArgs),
+    /// Set two folders of measurements side by side, as ratios
+    Compare(compare::CompareArgs),
+}
+
 impl LabArgs {
     fn configuration(&self, machine: Machine) -> Result<Configuration> {
         let usual = |full: u32, quick: u32| if self.quick { quick } else { full };
@@ -84,6 +99,11 @@ impl LabArgs {
 /// # Errors
 /// If nothing can draw, or the folder cannot be written to or holds something else.
 pub fn run(args: &LabArgs) -> Result<()> {
+    match &args.command {
+        Some(LabCommand::Trees(args)) => return trees::run(args),
+        Some(LabCommand::Compare(args)) => return compare::run(args),
+        None => {}
+    }
     let headless = Headless::open(&Shaders::from(None), 1)?;
     check_size(&headless.gpu, args.size)?;
     let configuration = args.configuration(Machine::of(&headless.gpu))?;

@@ -12,7 +12,7 @@ const POPULATIONS: [(&str, &str); 2] = [
     ("configs/thesis/figure-29e-f.ron", include_str!("../../../configs/thesis/figure-29e-f.ron")),
 ];
 
-/// A scene of figure 29, by its place in the populations.
+/// A scene of figure 29 that is walked through, by its place in the populations. The close-up is one for `viewer lab trees`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(usize)]
 pub enum TestScene {
@@ -21,7 +21,6 @@ pub enum TestScene {
     FewTrees,
     ManyTrees,
     MediumTrees,
-    CloseUp,
 }
 
 impl TestScene {
@@ -33,7 +32,6 @@ impl TestScene {
             Self::FewTrees => "Few trees, gentle hills, cumulus",
             Self::ManyTrees => "Many trees, big hills",
             Self::MediumTrees => "Medium trees, small hills, stratus",
-            Self::CloseUp => "Close-up of a tree",
         }
     }
 }
@@ -79,7 +77,6 @@ mod tests {
             (FewTrees, "Few trees and flat terrain"),
             (ManyTrees, "Many trees and big hills"),
             (MediumTrees, "Medium trees and small hills"),
-            (CloseUp, "Close-up of a tree"),
         ];
         for (scene, name) in expected {
             assert_eq!(names[scene as usize], name);

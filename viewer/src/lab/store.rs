@@ -97,7 +97,7 @@ impl Store {
                     "{} is neither empty nor a laboratory's folder; name another one",
                     root.display()
                 );
-                store.write(CONFIGURATION, &serde_json::to_string_pretty(configuration)?)?;
+                write(root, CONFIGURATION, serde_json::to_string_pretty(configuration)?)?;
             }
             Err(error) => return Err(error),
         }
@@ -149,21 +149,21 @@ impl Store {
     /// # Errors
     /// A folder that cannot be written to.
     pub fn keep<R: Serialize>(&self, name: &str, rows: &[R]) -> Result<()> {
-        self.write(&format!("{SERIES}/{name}.csv"), &to_csv(rows)?)
-    }
-
-    /// Writes a file.
-    ///
-    /// # Errors
-    /// A folder that cannot be written to.
-    pub fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> Result<()> {
-        let path = self.root.join(name);
-        atomic_write::replace(&path, bytes).with_context(|| format!("cannot write {}", path.display()))
+        write(&self.root, &format!("{SERIES}/{name}.csv"), to_csv(rows)?)
     }
 
     fn table(&self, name: &str) -> PathBuf {
         self.root.join(SERIES).join(format!("{name}.csv"))
     }
+}
+
+/// Writes a file into a folder.
+///
+/// # Errors
+/// A folder that cannot be written to.
+pub fn write(folder: &Path, name: &str, bytes: impl AsRef<[u8]>) -> Result<()> {
+    let path = folder.join(name);
+    atomic_write::replace(&path, bytes).with_context(|| format!("cannot write {}", path.display()))
 }
 
 /// Rows as CSV (RFC 4180) with a line of names.

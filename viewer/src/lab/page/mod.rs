@@ -94,21 +94,41 @@ impl Finding {
 
 /// Three significant digits, and all digits before the point; nothing of what is no number.
 pub fn rounded(value: f64) -> String {
+    to_digits(value, digits(value))
+}
+
+/// A mean with its deviation, to as many digits.
+pub fn with_deviation(mean: f64, deviation: f64) -> String {
+    format!("{} ± {}", rounded(mean), to_digits(deviation, digits(mean)))
+}
+
+/// Digits after the point that make three significant ones.
+fn digits(value: f64) -> usize {
+    if value == 0.0 || !value.is_finite() {
+        0
+    } else {
+        (2.0 - libm::log10(value.abs()).floor()).clamp(0.0, 9.0) as usize
+    }
+}
+
+fn to_digits(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return "–".into();
     }
-    let digits = [1e2, 1e1, 1.0, 1e-1, 1e-2].iter().position(|&least| value.abs() >= least);
-    let digits = digits.unwrap_or(if value == 0.0 { 0 } else { 6 });
     let text = format!("{value:.digits$}");
-    // Thousands in groups, as people read them.
-    match text.len() {
-        5.. if digits == 0 => {
-            let (sign, number) = text.strip_prefix('-').map_or(("", &text[..]), |number| ("-", number));
-            let groups = number.as_bytes().rchunks(3).rev().map(String::from_utf8_lossy);
-            format!("{sign}{}", groups.collect::<Vec<_>>().join(","))
-        }
-        _ => text,
+    let (sign, number) = text.strip_prefix('-').map_or(("", &*text), |number| ("-", number));
+    if digits > 0 || number.len() < 5 {
+        return text;
     }
+    // Thousands in groups, as people read them.
+    let groups: Vec<&str> = (0..number.len().div_ceil(3))
+        .rev()
+        .map(|group| {
+            let end = number.len() - 3 * group;
+            &number[end.saturating_sub(3)..end]
+        })
+        .collect();
+    format!("{sign}{}", groups.join(","))
 }
 
 #[cfg(test)]
@@ -117,11 +137,24 @@ mod tests {
 
     #[test]
     fn numbers_are_told_in_three_digits() {
-        let told = [0.001_234_5, 0.012_345, 0.123_45, 1.234_5, 12.345, 123.45, 12_345.6, 1_234_567.0, 0.0];
-        let expected = ["0.001234", "0.01235", "0.1235", "1.23", "12.3", "123", "12,346", "1,234,567", "0"];
-        assert_eq!(told.map(rounded)[2..], ["0.123", "1.23", "12.3", "123", "12,346", "1,234,567", "0"]);
-        assert_eq!(told.map(rounded)[1], "0.0123");
-        assert_eq!(expected.len(), told.len());
-        assert_eq!((rounded(f64::NAN), rounded(-20_000.0)), ("–".to_owned(), "-20,000".to_owned()));
+        let told = [
+            0.001_234_5,
+            0.012_345,
+            0.123_45,
+            1.234_5,
+            12.345,
+            123.45,
+            12_345.6,
+            1_234_567.0,
+            0.0,
+            -20_000.0,
+        ];
+        let expected =
+            ["0.00123", "0.0123", "0.123", "1.23", "12.3", "123", "12,346", "1,234,567", "0", "-20,000"];
+        assert_eq!(told.map(rounded), expected);
+        assert_eq!(
+            (rounded(f64::NAN), with_deviation(20.0, 1.234)),
+            ("–".to_owned(), "20.0 ± 1.2".to_owned())
+        );
     }
 }

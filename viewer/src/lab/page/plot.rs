@@ -4,7 +4,6 @@ use std::fmt::{self, Write};
 
 use genescape_schema::html::Escaped;
 
-use super::rounded;
 use super::ticks;
 
 /// How a plot looks by itself.
@@ -18,7 +17,7 @@ const RIGHT: f64 = 12.0;
 const TOP: f64 = 54.0;
 const BOTTOM: f64 = 42.0;
 /// Width of a letter in the legend.
-const LETTER: f64 = 6.3;
+const LETTER: f64 = 6.9;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plot {
@@ -157,7 +156,7 @@ impl Frame {
         let [low, high] = self.y;
         let part = match self.scale {
             Scale::Linear => (y - low) / (high - low),
-            Scale::Logarithmic => (y / low).ln() / (high / low).ln(),
+            Scale::Logarithmic => libm::log(y / low) / libm::log(high / low),
         };
         HEIGHT - BOTTOM - part * (HEIGHT - TOP - BOTTOM)
     }
@@ -172,8 +171,7 @@ impl Frame {
             let y = self.y(tick);
             let text = match self.scale {
                 Scale::Linear if tick.abs() < 1e4 => format!("{tick:.digits$}"),
-                Scale::Logarithmic if tick < 1.0 => format!("{tick}"),
-                _ => rounded(tick),
+                _ => short(tick),
             };
             write!(out, "<path class=\"grid\" d=\"M{LEFT} {y:.1}H{right}\"/>")?;
             write!(out, "<text class=\"y\" x=\"{}\" y=\"{:.1}\">{text}</text>", LEFT - 7.0, y + 4.0)?;
@@ -194,6 +192,16 @@ impl Frame {
             Escaped(&plot.x_label),
             Escaped(&plot.y_label)
         )
+    }
+}
+
+/// Few letters for a round number: 20 k, 5 M.
+fn short(number: f64) -> String {
+    match number.abs() {
+        1e6.. => format!("{} M", number / 1e6),
+        1e3.. => format!("{} k", number / 1e3),
+        // What is left of a power of ten in binary.
+        _ => format!("{}", (number * 1e9).round() / 1e9),
     }
 }
 

@@ -8,10 +8,10 @@ pub fn linear(low: f64, high: f64, wanted: f64) -> (Vec<f64>, usize) {
         return (vec![low], 3);
     }
     let rough = span / wanted;
-    let power = 10.0_f64.powf(rough.log10().floor());
+    let power = libm::pow(10.0, libm::log10(rough).floor());
     let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|factor| factor * power).find(|step| *step >= rough);
     let step = step.unwrap_or(10.0 * power);
-    let digits = (-step.log10().floor()).max(0.0) as usize;
+    let digits = (-libm::log10(step).floor()).max(0.0) as usize;
     let first = (low / step - 1e-9).ceil() as i64;
     let last = (high / step + 1e-9).floor() as i64;
     ((first..=last).map(|number| number as f64 * step).collect(), digits)
@@ -19,9 +19,10 @@ pub fn linear(low: f64, high: f64, wanted: f64) -> (Vec<f64>, usize) {
 
 /// Powers of ten from below `low` to above `high`, which are positive; with 2 and 5 times these where there are few.
 pub fn logarithmic(low: f64, high: f64) -> Vec<f64> {
-    let powers = low.log10().floor() as i32..=high.log10().ceil() as i32;
+    let powers = libm::log10(low).floor() as i32..=libm::log10(high).ceil() as i32;
     let factors: &[f64] = if powers.clone().count() > 4 { &[1.0] } else { &[1.0, 2.0, 5.0] };
-    let all = powers.flat_map(|power| factors.iter().map(move |factor| factor * 10.0_f64.powi(power)));
+    let all =
+        powers.flat_map(|power| factors.iter().map(move |factor| factor * libm::pow(10.0, f64::from(power))));
     all.filter(|tick| *tick >= low * 0.999 && *tick <= high * 1.001).collect()
 }
 

@@ -6,30 +6,32 @@ mod series;
 mod system;
 mod targets;
 
+use std::path::Path;
+
 use anyhow::Result;
 
 use super::page::{Finding, Page, Section, Verdict, html, markdown};
-use super::store::{Configuration, Store};
+use super::store::{self, Configuration, Store};
 
-pub use series::{Series, mean_of};
+pub use series::Series;
 
 /// Writes `report.html`, `report.md` and the plots of the latter from the tables of a folder.
 ///
 /// # Errors
 /// Tables that are damaged, a folder that cannot be written to.
 pub fn write(store: &Store, configuration: &Configuration) -> Result<()> {
-    keep(store, "report", &page(store, configuration)?)
+    keep(store.root(), "report", &page(store, configuration)?)
 }
 
 /// Writes a page as `NAME.html`, and as `NAME.md` with its plots.
 ///
 /// # Errors
 /// A folder that cannot be written to.
-pub fn keep(store: &Store, name: &str, page: &Page) -> Result<()> {
-    store.write(&format!("{name}.html"), html(page))?;
+pub fn keep(folder: &Path, name: &str, page: &Page) -> Result<()> {
+    store::write(folder, &format!("{name}.html"), html(page))?;
     let (text, files) = markdown(page);
-    store.write(&format!("{name}.md"), text)?;
-    files.into_iter().try_for_each(|(name, bytes)| store.write(&name, bytes))
+    store::write(folder, &format!("{name}.md"), text)?;
+    files.into_iter().try_for_each(|(name, bytes)| store::write(folder, &name, bytes))
 }
 
 fn page(store: &Store, configuration: &Configuration) -> Result<Page> {
@@ -50,7 +52,7 @@ fn summary(sections: &[Section]) -> Section {
     let said = format!(
         "{} of the thesis's findings and of our targets hold, {} do not, {} were not measured. Frame times are of one view of \
          the thesis's size, waited for; L2 is the root of the mean square difference of colours in 0 … 1 from the picture \
-         without levels of detail, FLIP what a person sees of it. Bands of tables are standard deviations over all frames.",
+         without levels of detail, FLIP what a person sees of it. What follows ± is the standard deviation over all frames.",
         count(Verdict::Holds),
         count(Verdict::HoldsNot),
         count(Verdict::Open)

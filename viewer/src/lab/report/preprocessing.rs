@@ -7,7 +7,7 @@ use anyhow::Result;
 use super::open;
 use crate::baker::laboratory::OF_TERRAIN;
 use crate::lab::PREPROCESSING;
-use crate::lab::page::{Block, Finding, Section, Table, rounded};
+use crate::lab::page::{Block, Finding, Section, Table, rounded, with_deviation};
 use crate::lab::preprocessing::Task;
 use crate::lab::store::Store;
 use crate::measure::{deviation, mean, quantile};
@@ -54,9 +54,8 @@ pub fn section(store: &Store) -> Result<Section> {
                 mean_s <= WANTED_S && most_s < THESIS_S[2],
                 claim,
                 format!(
-                    "One scene takes {} ± {} s, {} s at most: {} times less than the thesis's mean.",
-                    rounded(mean_s),
-                    rounded(deviation(&wholes)),
+                    "One scene takes {} s, {} s at most; the thesis's mean is {} times as much.",
+                    with_deviation(mean_s, deviation(&wholes)),
                     rounded(most_s),
                     rounded(THESIS_S[1] / mean_s)
                 ),

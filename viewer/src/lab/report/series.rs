@@ -3,7 +3,7 @@
 use anyhow::Result;
 
 use crate::lab::experiment::{CONTINUOUS, DISCRETE, Experiment, MORPH, NONE, ROAM, SIMPLE};
-use crate::lab::page::{Line, Plot, Scale, Table, rounded};
+use crate::lab::page::{Line, Plot, Scale, Table, rounded, with_deviation};
 use crate::lab::popping::Pop;
 use crate::lab::store::Store;
 use crate::lab::walk::Frame;
@@ -81,7 +81,7 @@ impl Series {
         Plot {
             name: format!("{figure}-{}", self.experiment.name),
             title: self.experiment.scene.title().to_owned(),
-            x_label: "Frame".into(),
+            x_label: "Frame, there and back".into(),
             y_label: y_label.to_owned(),
             scale,
             lines,
@@ -98,6 +98,7 @@ impl Series {
         };
         Plot {
             lines: self.schemes().map(line).filter(|line| !line.points.is_empty()).collect(),
+            x_label: "Frame, there".into(),
             ..self.plot(figure, "L2 from one frame to the next", Scale::Linear, |_| None)
         }
     }
@@ -108,7 +109,7 @@ impl Series {
             let all = self.of(scheme, value);
             match all.is_empty() {
                 true => "–".to_owned(),
-                false => format!("{} ± {}", rounded(mean(&all)), rounded(deviation(&all))),
+                false => with_deviation(mean(&all), deviation(&all)),
             }
         };
         let row = |scheme: &'static str| {
