@@ -4,6 +4,7 @@
 //! [`equal_cost`] and [`preprocessing`] measure, each into a table of [`store`]; [`report`] makes a page of the tables beside
 //! what the thesis found, [`compare`] one of two folders.
 
+mod answers;
 mod bench;
 mod compare;
 mod equal_cost;
@@ -30,6 +31,7 @@ use crate::image_file::{check_size, parse_size};
 use crate::measure::Machine;
 use crate::passes::Shaders;
 use crate::say;
+pub use answers::read_sheet;
 use bench::Bench;
 use experiment::Experiment;
 use scenes::TestScenes;
@@ -75,6 +77,8 @@ pub enum LabCommand {
     Trees(trees::TreesArgs),
     /// Set two folders of measurements side by side, as ratios
     Compare(compare::CompareArgs),
+    /// Analyse answers to the questionnaire, as the thesis does
+    Answers(answers::AnswersArgs),
 }
 
 impl LabArgs {
@@ -102,6 +106,7 @@ pub fn run(args: &LabArgs) -> Result<()> {
     match &args.command {
         Some(LabCommand::Trees(args)) => return trees::run(args),
         Some(LabCommand::Compare(args)) => return compare::run(args),
+        Some(LabCommand::Answers(args)) => return answers::run(args),
         None => {}
     }
     let headless = Headless::open(&Shaders::from(None), 1)?;

@@ -14,7 +14,7 @@ pub use counters::{Counted, Counters};
 pub use flip::flip;
 pub use machine::{Machine, load_average};
 pub use path::{camera_path, forest};
-pub use statistics::{deviation, mean, median, quantile};
+pub use statistics::{TTest, deviation, mean, median, quantile, t_test};
 
 use anyhow::Result;
 

@@ -1,5 +1,7 @@
 //! Figures over many values.
 
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
 /// The arithmetic mean; 0 of none.
 pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
@@ -25,6 +27,22 @@ pub fn quantile(values: &[f64], share: f64) -> f64 {
     sorted.get(rank.saturating_sub(1)).copied().unwrap_or(0.0)
 }
 
+/// Student's test of a mean against 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TTest {
+    pub t: f64,
+    /// How often chance gives a mean at least as far from 0, on either side.
+    pub p: f64,
+}
+
+/// The test of a sample; `None` of fewer than two values, or of equal ones.
+pub fn t_test(values: &[f64]) -> Option<TTest> {
+    let freedom = values.len().checked_sub(1).filter(|freedom| *freedom > 0)? as f64;
+    let t = mean(values) / (deviation(values) / (freedom + 1.0).sqrt());
+    let student = StudentsT::new(0.0, 1.0, freedom).ok()?;
+    t.is_finite().then(|| TTest { t, p: 2.0 * student.sf(t.abs()) })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -37,6 +55,20 @@ mod tests {
             (99.0, 1.0, 100.0)
         );
         assert_eq!((median(&[3.0, 1.0, 2.0]), median(&[])), (2.0, 0.0));
+    }
+
+    #[test]
+    fn students_test_is_that_of_the_tables() {
+        // Quantile 0.975 for 4 degrees of freedom: 2.776.
+        let of_t = |t: f64| {
+            let spread = [-2.0, -1.0, 0.0, 1.0, 2.0];
+            let shift = t * deviation(&spread) / 5.0_f64.sqrt();
+            t_test(&spread.map(|value| value + shift)).expect("five values")
+        };
+        for t in [2.776, -2.776] {
+            assert!((of_t(t).t - t).abs() < 1e-9 && (of_t(t).p - 0.05).abs() < 1e-4, "{:?}", of_t(t));
+        }
+        assert_eq!((t_test(&[1.0]), t_test(&[2.0, 2.0])), (None, None));
     }
 
     #[test]
