@@ -10,7 +10,7 @@ use super::page::{Block, Page, Section, Table, rounded};
 use super::preprocessing::Task;
 use super::report::{self, Series};
 use super::store::{Configuration, Store};
-use super::walk::{FourViews, Frame};
+use super::walk::FourViews;
 use super::{FOUR_VIEWS, PREPROCESSING};
 use crate::measure::{deviation, mean};
 use crate::say;
@@ -56,19 +56,6 @@ fn page(before: &Path, after: &Path) -> Result<Page> {
     Ok(Page { title: "Two runs of the laboratory".into(), facts, sections })
 }
 
-/// A number of a frame with a name.
-type Column = (&'static str, fn(&Frame) -> Option<f64>);
-
-const COLUMNS: [Column; 7] = [
-    ("Frame, ms", |frame| Some(frame.frame_ms)),
-    ("Processors, ms", |frame| Some(frame.processor_ms)),
-    ("CPU only, ms", |frame| Some(frame.recording_ms)),
-    ("Triangles", |frame| Some(frame.triangles())),
-    ("Vertices", |frame| frame.vertices.map(|number| number as f64)),
-    ("L2", |frame| frame.l2),
-    ("FLIP", |frame| frame.flip),
-];
-
 fn of_experiment(before: &Store, after: &Store, experiment: Experiment) -> Result<Option<Section>> {
     let (a, b) = (Series::read(before, experiment.clone())?, Series::read(after, experiment)?);
     if a.frames.is_empty() || b.frames.is_empty() {
@@ -76,7 +63,7 @@ fn of_experiment(before: &Store, after: &Store, experiment: Experiment) -> Resul
     }
     let mut rows = Vec::new();
     for scheme in &a.experiment.schemes {
-        for (name, value) in COLUMNS {
+        for (name, value) in report::FIGURES {
             let [a, b] = [&a, &b].map(|one| one.of(scheme.name, value));
             rows.extend(row(format!("{}: {name}", scheme.name), &a, &b));
         }

@@ -32,10 +32,11 @@ pub fn show(ui: &mut Ui, model: &Model, area: Rect) {
                         close_button(ui, "Close the questions", Panel::Questions);
                     });
                 });
-                scrolled(ui, (area.height() - 80.0).min(560.0), |ui| {
+                scrolled(ui, (area.height() - 190.0).clamp(60.0, 560.0), |ui| {
                     ui.set_width(ui.available_width() - 10.0);
                     questions(ui, model);
                 });
+                keep(ui, model);
             });
         });
 }
@@ -69,6 +70,10 @@ fn questions(ui: &mut Ui, model: &Model) {
     if answers != model.answers {
         ask(ui, Event::Answers(answers));
     }
+}
+
+/// Always in sight, whatever is scrolled.
+fn keep(ui: &mut Ui, model: &Model) {
     ui.add_space(6.0);
     let is_empty = model.answers.is_empty();
     let response =

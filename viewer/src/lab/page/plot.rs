@@ -136,7 +136,9 @@ impl Frame {
         let marks = plot.marks.iter().map(|mark| mark.y).filter(|y| is_shown(*y));
         let [low, high] = reach(&mut points().map(|point| point.1).chain(marks));
         let y = match plot.scale {
-            _ if low > high => [0.0, 1.0],
+            // Nothing to show.
+            Scale::Logarithmic if low > high => [1.0, 10.0],
+            Scale::Linear if low > high => [0.0, 1.0],
             Scale::Linear => [low.min(0.0), if high > 0.0 { high * 1.05 } else { 1.0 }],
             Scale::Logarithmic => [low / 1.2, high * 1.2],
         };

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 
-use super::series::Series;
+use super::series::{Series, cost};
 use crate::lab::equal_cost::{self, Allowed};
 use crate::lab::equal_cost_table;
 use crate::lab::experiment::{CONTINUOUS, DISCRETE, Experiment, MORPH, ROAM, SIMPLE};
@@ -15,10 +15,6 @@ const SAME: f64 = 0.15;
 
 fn is_same(ratio: f64) -> bool {
     (1.0 - SAME..=1.0 / (1.0 - SAME)).contains(&ratio)
-}
-
-fn frame_ms(frame: &Frame) -> Option<f64> {
-    Some(frame.frame_ms)
 }
 
 fn recording_ms(frame: &Frame) -> Option<f64> {
@@ -38,7 +34,8 @@ fn plots(series: &[Series], of: impl Fn(&Series) -> Plot) -> Block {
 }
 
 /// Figures 21 to 24.
-pub fn of_land(store: &Store) -> Result<Vec<Section>> {
+pub fn of_land(store: &Store, software: bool) -> Result<Vec<Section>> {
+    let (cost_label, frame_ms) = cost(software);
     let [flat, hills] = Experiment::of_land();
     let both = [Series::read(store, flat)?, Series::read(store, hills)?];
     let ratio = |value: fn(&Frame) -> Option<f64>| {
@@ -59,7 +56,7 @@ pub fn of_land(store: &Store) -> Result<Vec<Section>> {
                but drawing. The thesis plots frame rates."
             .into(),
         blocks: vec![
-            plots(&both, |one| one.plot("figure-21", "Milliseconds a frame", Scale::Logarithmic, frame_ms)),
+            plots(&both, |one| one.plot("figure-21", cost_label, Scale::Logarithmic, frame_ms)),
             plots(&both, |one| one.plot("figure-21-cpu", "Milliseconds, CPU only", Scale::Logarithmic, recording_ms)),
             Block::Table(both[0].table()),
             Block::Table(both[1].table()),
@@ -157,7 +154,8 @@ pub fn of_land(store: &Store) -> Result<Vec<Section>> {
 }
 
 /// Figures 25 to 27.
-pub fn of_trees(store: &Store) -> Result<Vec<Section>> {
+pub fn of_trees(store: &Store, software: bool) -> Result<Vec<Section>> {
+    let (cost_label, frame_ms) = cost(software);
     let mut both = Vec::new();
     let mut errors = Vec::new();
     for mut experiment in Experiment::of_trees() {
@@ -179,7 +177,7 @@ pub fn of_trees(store: &Store) -> Result<Vec<Section>> {
     };
     let told = |ratios: &[f64]| {
         let [few, many] = [0, 1].map(|n| rounded(ratios.get(n).copied().unwrap_or(f64::NAN)));
-        format!("{few} times among few trees, {many} times among many")
+        format!("{few} times as much among few trees, {many} times among many")
     };
     let pays: Vec<f64> = pairs(crate::lab::experiment::NONE, CONTINUOUS, frame_ms);
     let discrete = pairs(DISCRETE, CONTINUOUS, frame_ms);
@@ -191,7 +189,7 @@ pub fn of_trees(store: &Store) -> Result<Vec<Section>> {
             errors.join(". ")
         ),
         blocks: vec![
-            plots(&both, |one| one.plot("figure-25", "Milliseconds a frame", Scale::Logarithmic, frame_ms)),
+            plots(&both, |one| one.plot("figure-25", cost_label, Scale::Logarithmic, frame_ms)),
             plots(&both, |one| {
                 one.plot("figure-25-triangles", "Triangles of trees", Scale::Logarithmic, triangles)
             }),
@@ -203,13 +201,13 @@ pub fn of_trees(store: &Store) -> Result<Vec<Section>> {
             Finding::new(
                 pays.iter().all(|ratio| *ratio > 1.0 + SAME),
                 "Levels of detail of trees raise the frame rate in both scenes",
-                format!("Without them a frame takes as long as with the continuous ones: {}.", told(&pays)),
+                format!("A frame without them takes, against one with continuous levels, {}.", told(&pays)),
             ),
             Finding::new(
                 discrete.iter().all(|ratio| is_same(*ratio)),
                 "The continuous scheme “has similar frame rate” to the discrete one",
                 format!(
-                    "A frame of discrete levels takes as long as one of continuous ones: {}.",
+                    "A frame of discrete levels takes, against one of continuous ones, {}.",
                     told(&discrete)
                 ),
             ),
@@ -232,14 +230,14 @@ pub fn of_trees(store: &Store) -> Result<Vec<Section>> {
                 simple.iter().all(|ratio| *ratio > 1.0),
                 "The simple scheme must “produce more triangles to obtain the same quality”, and “despite this, the quality is lower”",
                 format!(
-                    "At as many triangles the L2 error of simple is that of continuous: {}.",
+                    "At as many triangles the L2 error of simple is, against that of continuous, {}.",
                     told(&simple)
                 ),
             ),
             Finding::new(
                 same_quality.iter().all(|ratio| is_same(*ratio)),
                 "The continuous scheme has “similar […] quality” to the discrete one",
-                format!("The L2 error of discrete is that of continuous: {}.", told(&same_quality)),
+                format!("The L2 error of discrete is, against that of continuous, {}.", told(&same_quality)),
             ),
             Finding::new(
                 (5.0..=20.0).contains(&(trees / land)),
@@ -264,7 +262,7 @@ pub fn of_trees(store: &Store) -> Result<Vec<Section>> {
             ratios.iter().all(|ratio| *ratio > 1.0 + SAME),
             "The continuous scheme “does not produce the severe popping that the discrete scheme does”",
             format!(
-                "The worst frame of discrete levels pops as much as that of continuous ones: {}.",
+                "The worst frame of discrete levels pops, against that of continuous ones, {}.",
                 told(&ratios)
             ),
         )],

@@ -13,7 +13,7 @@ use anyhow::Result;
 use super::page::{Finding, Page, Section, Verdict, html, markdown};
 use super::store::{self, Configuration, Store};
 
-pub use series::Series;
+pub use series::{FIGURES, Series};
 
 /// Writes `report.html`, `report.md` and the plots of the latter from the tables of a folder.
 ///
@@ -35,8 +35,8 @@ pub fn keep(folder: &Path, name: &str, page: &Page) -> Result<()> {
 }
 
 fn page(store: &Store, configuration: &Configuration) -> Result<Page> {
-    let mut sections = figures::of_land(store)?;
-    sections.extend(figures::of_trees(store)?);
+    let mut sections = figures::of_land(store, configuration.machine.software)?;
+    sections.extend(figures::of_trees(store, configuration.machine.software)?);
     sections.push(system::section(store)?);
     sections.push(preprocessing::section(store)?);
     sections.push(targets::section(store)?);

@@ -77,11 +77,13 @@ impl Series {
             let points = frames.filter_map(|frame| Some((f64::from(frame.frame), value(frame)?))).collect();
             Line { name: scheme.to_owned(), style: style(scheme), points }
         };
+        let turn = self.frames.iter().map(|frame| frame.frame / 2 + 1).max().unwrap_or_default();
+        let is_back = self.frames.iter().any(|frame| frame.frame > turn && value(frame).is_some());
         let lines = self.schemes().map(line).filter(|line| !line.points.is_empty()).collect();
         Plot {
             name: format!("{figure}-{}", self.experiment.name),
             title: self.experiment.scene.title().to_owned(),
-            x_label: "Frame, there and back".into(),
+            x_label: (if is_back { "Frame, there and back" } else { "Frame, there" }).into(),
             y_label: y_label.to_owned(),
             scale,
             lines,
@@ -98,58 +100,68 @@ impl Series {
         };
         Plot {
             lines: self.schemes().map(line).filter(|line| !line.points.is_empty()).collect(),
-            x_label: "Frame, there".into(),
             ..self.plot(figure, "L2 from one frame to the next", Scale::Linear, |_| None)
         }
     }
 
-    /// Means and deviations of everything.
+    /// Means and deviations of everything, a column for each scheme.
     pub fn table(&self) -> Table {
-        let cell = |scheme: &str, value: &dyn Fn(&Frame) -> Option<f64>| {
+        let head = self.schemes().map(str::to_owned);
+        table(
+            self.experiment.scene.title(),
+            head,
+            self.schemes().map(|scheme| self.figures(scheme)).collect(),
+        )
+    }
+
+    /// Mean and deviation of each of [`FIGURES`], then the mean popping and the worst.
+    pub fn figures(&self, scheme: &str) -> Vec<String> {
+        let told = |(_, value): &Figure| {
             let all = self.of(scheme, value);
-            match all.is_empty() {
-                true => "–".to_owned(),
-                false => with_deviation(mean(&all), deviation(&all)),
-            }
+            if all.is_empty() { "–".to_owned() } else { with_deviation(mean(&all), deviation(&all)) }
         };
-        let row = |scheme: &'static str| {
-            let (popping, worst) = self.popping(scheme);
-            let popped = |value: f64| {
-                if self.pops.is_empty() || scheme == NONE { "–".into() } else { rounded(value) }
-            };
-            vec![
-                scheme.to_owned(),
-                cell(scheme, &|frame| Some(frame.frame_ms)),
-                cell(scheme, &|frame| frame.gpu_ms),
-                cell(scheme, &|frame| Some(frame.processor_ms)),
-                cell(scheme, &|frame| Some(frame.recording_ms)),
-                cell(scheme, &|frame| Some(frame.triangles())),
-                cell(scheme, &|frame| frame.drawn_triangles.map(|number| number as f64)),
-                cell(scheme, &|frame| frame.vertices.map(|number| number as f64)),
-                cell(scheme, &|frame| frame.l2),
-                cell(scheme, &|frame| frame.flip),
-                popped(popping),
-                popped(worst),
-            ]
-        };
-        let head = [
-            "Scheme",
-            "Frame, ms",
-            "Device, ms",
-            "Processors, ms",
-            "CPU only, ms",
-            "Triangles chosen",
-            "Triangles drawn",
-            "Vertices",
-            "L2",
-            "FLIP",
-            "Popping, L2",
-            "its worst frame",
-        ];
-        Table {
-            caption: format!("{}: mean ± deviation over all frames", self.experiment.scene.title()),
-            head: head.map(str::to_owned).into(),
-            rows: self.schemes().map(row).collect(),
-        }
+        let (popping, worst) = self.popping(scheme);
+        let is_known = self.pops.iter().any(|pop| pop.scheme == scheme);
+        let popped = [popping, worst].map(|value| if is_known { rounded(value) } else { "–".to_owned() });
+        FIGURES.iter().map(told).chain(popped).collect()
+    }
+}
+
+/// A number of a frame with a name.
+pub type Figure = (&'static str, fn(&Frame) -> Option<f64>);
+
+/// What tables tell of frames.
+pub const FIGURES: [Figure; 9] = [
+    ("Frame, ms", |frame| Some(frame.frame_ms)),
+    ("Device, ms", |frame| frame.gpu_ms),
+    ("Processors, ms", |frame| Some(frame.processor_ms)),
+    ("CPU only, ms", |frame| Some(frame.recording_ms)),
+    ("Triangles chosen", |frame| Some(frame.triangles())),
+    ("Triangles drawn", |frame| frame.drawn_triangles.map(|number| number as f64)),
+    ("Vertices", |frame| frame.vertices.map(|number| number as f64)),
+    ("L2", |frame| frame.l2),
+    ("FLIP", |frame| frame.flip),
+];
+
+/// Columns of [`Series::figures`] with names over them.
+pub fn table(of: &str, names: impl Iterator<Item = String>, columns: Vec<Vec<String>>) -> Table {
+    let rows = FIGURES.iter().map(|(name, _)| *name).chain(["Popping, L2", "Popping, L2, worst frame"]);
+    let row = |(at, name): (usize, &str)| {
+        let cells = columns.iter().map(|column| column[at].clone());
+        std::iter::once(name.to_owned()).chain(cells).collect()
+    };
+    Table {
+        caption: format!("{of}: mean ± deviation over all frames"),
+        head: std::iter::once(String::new()).chain(names).collect(),
+        rows: rows.enumerate().map(row).collect(),
+    }
+}
+
+/// What a frame costs: where the processor draws, the time of all processors, which other programs do not lengthen; else the
+/// time until the picture is done.
+pub fn cost(software: bool) -> Figure {
+    match software {
+        true => ("Milliseconds of processors a frame", |frame| Some(frame.processor_ms)),
+        false => ("Milliseconds a frame", |frame| Some(frame.frame_ms)),
     }
 }

@@ -3,10 +3,10 @@
 use anyhow::Result;
 
 use super::open;
-use super::series::Series;
+use super::series::{self, Series};
 use crate::lab::FOUR_VIEWS;
 use crate::lab::experiment::{Experiment, USUAL};
-use crate::lab::page::{Block, Finding, Line, Mark, Plot, Scale, Section, Table, rounded};
+use crate::lab::page::{Block, Finding, Line, Mark, Plot, Scale, Section, rounded};
 use crate::lab::store::Store;
 use crate::lab::walk::{FourViews, Frame};
 use crate::measure::mean;
@@ -70,12 +70,14 @@ pub fn section(store: &Store) -> Result<Section> {
             ),
         )
     };
+    let columns = all.iter().map(|one| one.figures(USUAL)).collect();
+    let table = series::table("As the window draws", all.iter().map(short), columns);
     Ok(Section {
         title: "Figure 28: the whole system".into(),
         said:
             "Land, trees, grass and sky as the window draws them, one scene at a time; and all four at once."
                 .into(),
-        blocks: vec![Block::Plots(vec![rates, quality, together]), Block::Table(table(&all))],
+        blocks: vec![Block::Plots(vec![rates, quality, together]), Block::Table(table)],
         findings: vec![finding],
     })
 }
@@ -83,18 +85,4 @@ pub fn section(store: &Store) -> Result<Section> {
 fn short(series: &Series) -> String {
     let title = series.experiment.scene.title();
     title.split(',').next().unwrap_or(title).to_owned()
-}
-
-fn table(all: &[Series]) -> Table {
-    let mut whole = Table { caption: "As the window draws, mean ± deviation".into(), ..Table::default() };
-    for one in all {
-        let table = one.table();
-        whole.head.clone_from(&table.head);
-        "Scene".clone_into(&mut whole.head[0]);
-        whole.rows.extend(table.rows.into_iter().map(|mut row| {
-            row[0] = format!("{}, {}", short(one), row[0]);
-            row
-        }));
-    }
-    whole
 }

@@ -4,6 +4,7 @@ mod behaviour;
 mod export;
 mod layout;
 mod pictures;
+mod questions;
 mod shown;
 
 use std::collections::{BTreeMap, BTreeSet};
