@@ -15,6 +15,8 @@ use crate::lod_mode::LodMode;
 use crate::options::Options;
 use crate::ui::Tone;
 
+const NOT_IN_A_STUDY: &str = "Not in a study: walk, look, and answer (Q) when you have seen enough";
+
 /// What would tell the levels of detail under study, change them, or lead to other landscapes.
 fn is_hidden(command: Command) -> bool {
     use Command::*;
@@ -43,7 +45,7 @@ impl App {
         }
         self.log.event(&event);
         if self.cli.answers.is_some() && tells_levels(&event) {
-            return;
+            return self.tell(Tone::Info, NOT_IN_A_STUDY);
         }
         let settings = &mut self.file.settings;
         match event {
@@ -96,8 +98,7 @@ impl App {
     fn command(&mut self, command: Command, events: &ActiveEventLoop) {
         self.log.event(&command);
         if self.cli.answers.is_some() && is_hidden(command) {
-            return self
-                .tell(Tone::Info, "Not in a study: walk, look, and answer (Q) when you have seen enough");
+            return self.tell(Tone::Info, NOT_IN_A_STUDY);
         }
         let of_file = self.shows_file();
         let options = &mut self.file.settings.options;
