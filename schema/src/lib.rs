@@ -10,6 +10,7 @@ mod decode;
 pub mod edit;
 mod favourites;
 mod genome;
+pub mod html;
 mod kind;
 pub mod lanes;
 mod lineage;

@@ -6,6 +6,7 @@
 //! [`Event::Failed`], and the watch begins again.
 
 pub mod export;
+pub mod laboratory;
 
 use std::any::Any;
 use std::collections::BTreeMap;

@@ -44,6 +44,11 @@ pub struct Cli {
     #[arg(long, value_name = "FILE")]
     pub log: Option<PathBuf>,
 
+    /// Open the window for one walk of a study: drawn as the drawing options say, answers go into this file, and then it
+    /// closes; what tells levels of detail is hidden
+    #[arg(long, value_name = "FILE.ron", conflicts_with = "screenshot")]
+    pub answers: Option<PathBuf>,
+
     /// Draw to a PNG file instead of a window
     #[arg(long, value_name = "OUT.png")]
     pub screenshot: Option<PathBuf>,
@@ -81,6 +86,10 @@ pub struct Cli {
 pub enum Command {
     /// Measure how long pictures take, as ratios of one run
     Bench(crate::bench::BenchArgs),
+    /// Repeat the thesis's experiments on this renderer, and write a report
+    Lab(crate::lab::LabArgs),
+    /// Lead a participant of a study through walks in balanced order, with questions after each
+    Study(crate::study::StudyArgs),
     /// Print what makes a shell complete this command line
     Completions {
         /// The shell

@@ -10,6 +10,7 @@ use crate::ballots::Ballot;
 use crate::export_choice::ExportChoice;
 use crate::input::Command;
 use crate::options::Options;
+use crate::questionnaire::Answers;
 use crate::settings::Comfort;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +45,10 @@ pub enum Event {
     Comfort(Comfort),
     /// What exports are like from now on, all of it.
     ExportChoice(ExportChoice),
+    /// What is answered of the questionnaire so far, all of it.
+    Answers(Answers),
+    /// Keep the answers, in a file.
+    KeepAnswers,
     /// Write that landscape as files for other programs.
     Export(usize),
     /// The same, for the program over which the pointer lets go.
@@ -101,4 +106,6 @@ pub enum Panel {
     Export,
     /// All generations, and which came from which.
     Family,
+    /// What a person is asked after a walk.
+    Questions,
 }

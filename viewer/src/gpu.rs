@@ -13,6 +13,8 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// "llvmpipe (LLVM 15.0.6, 256 bits)".
     pub name: String,
+    /// "llvmpipe Mesa 22.3.6", as the driver calls itself.
+    pub driver: String,
     /// True if there is no graphics card and the processor draws.
     pub software: bool,
     /// Optional features that this device has.
@@ -44,6 +46,7 @@ const REQUIRED: wgpu::Features = wgpu::Features::INDIRECT_FIRST_INSTANCE;
 
 /// What is used where the adapter has it.
 const OPTIONAL: wgpu::Features = wgpu::Features::POLYGON_MODE_LINE
+    .union(wgpu::Features::PIPELINE_STATISTICS_QUERY)
     .union(wgpu::Features::TIMESTAMP_QUERY)
     .union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS)
     .union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);
@@ -79,8 +82,9 @@ impl Gpu {
         let (device, queue) =
             opened.map_err(|source| GpuError::NoDevice { name: info.name.clone(), source })?;
         let software = info.device_type == wgpu::DeviceType::Cpu;
+        let driver = format!("{} {}", info.driver, info.driver_info).trim().to_owned();
         let busy = Arc::default();
-        Ok((Self { device, queue, name: info.name, software, features, busy }, adapter))
+        Ok((Self { device, queue, name: info.name, driver, software, features, busy }, adapter))
     }
 
     /// Opens a device that draws to memory only.

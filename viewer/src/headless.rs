@@ -70,9 +70,21 @@ impl Headless {
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let mut last = Drawn::default();
         for view in views {
-            last = view.record(&mut encoder, &self.passes, frame, camera, lod_camera, &self.profiler);
+            last = self.record_into(&mut encoder, view, frame, camera, lod_camera);
         }
         (encoder.finish(), last)
+    }
+
+    /// Records one picture beside what else an encoder does.
+    pub fn record_into(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        view: &mut View,
+        frame: &FrameInput,
+        camera: &Camera,
+        lod_camera: &Camera,
+    ) -> Drawn {
+        view.record(encoder, &self.passes, frame, camera, lod_camera, &self.profiler)
     }
 
     /// Draws one picture and fetches it.

@@ -8,7 +8,7 @@ use genescape_schema::printable;
 use genescape_viewer::cli::{Cli, Command};
 use genescape_viewer::image_file::TooLarge;
 use genescape_viewer::load::LoadError;
-use genescape_viewer::{app, bench, manual, screenshot};
+use genescape_viewer::{app, bench, lab, manual, screenshot, study};
 use genescape_world::output::BadOutput;
 use genescape_world::{Source, WorldError, file_limit};
 
@@ -20,7 +20,7 @@ fn main() -> ExitCode {
     let cli = Cli::parse();
     file_limit::is_an_error();
     #[cfg(target_os = "linux")]
-    if cli.screenshot.is_some() || matches!(cli.command, Some(Command::Bench(_))) {
+    if cli.screenshot.is_some() || matches!(cli.command, Some(Command::Bench(_) | Command::Lab(_))) {
         leave_the_desktop_alone();
     }
     match run(cli) {
@@ -57,6 +57,8 @@ fn leave_the_desktop_alone() {
 fn run(cli: Cli) -> Result<()> {
     match &cli.command {
         Some(Command::Bench(args)) => return bench::run(args),
+        Some(Command::Lab(args)) => return lab::run(args),
+        Some(Command::Study(args)) => return study::run(args),
         Some(Command::Completions { shell }) => return manual::completions(*shell),
         Some(Command::Man { folder }) => return manual::man(folder.as_deref()),
         None => {}

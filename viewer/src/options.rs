@@ -60,6 +60,10 @@ pub struct Options {
     /// No land; under a file that is no landscape, no grid
     #[arg(long = "no-ground", action = ArgAction::SetFalse)]
     pub draw_terrain: bool,
+    /// Trees and land out of sight are drawn, too, as measurements of popping need it
+    // Thesis section 7.
+    #[arg(long = "no-culling", action = ArgAction::SetFalse)]
+    pub cull: bool,
     /// Factor on the landscape's own exposure
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = factor)]
     pub exposure: f32,
@@ -137,6 +141,7 @@ impl Default for Options {
             draw_trees: true,
             grass: true,
             draw_terrain: true,
+            cull: true,
             exposure: 1.0,
             samples: 1,
             fov_y_deg: 60.0,

@@ -14,6 +14,8 @@ pub const BAKED: &str = "baked";
 pub const KINDS: &str = "kinds";
 /// Landscapes that the person marked with a star.
 pub const FAVOURITES: &str = "favourites.ron";
+/// Folder of answers to the questionnaire.
+pub const ANSWERS: &str = "answers";
 /// Which scenes are ready.
 pub const CURRENT: &str = "baked/current.ron";
 

@@ -4,6 +4,7 @@ pub mod breeding;
 #[cfg(feature = "cmaes")]
 mod cma_es;
 pub mod person;
+pub mod preprocessing;
 
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
@@ -13,13 +14,10 @@ use genescape_cache::{BlobRef, Cache, How};
 use genescape_schema::{Category, Population, Space};
 
 use crate::events::{Event, Listener};
-use crate::gltf::{self, Picture};
 use crate::graph::Done;
-use crate::model::{Image8, TreeTextures};
 use crate::plan::{Plan, Resolution, TEMPLATES};
 use crate::run::Runner;
 use crate::say;
-use crate::stages::{lod, tree};
 
 /// Bakes the starters `runs` times into folders of their own and prints what each stage took, in the manner of the
 /// thesis's tables 1 and 2; then what it takes when nothing, or one category, has changed.
@@ -44,7 +42,7 @@ pub fn bench(runs: u32, pool: &rayon::ThreadPool, resolution: Resolution) -> Res
         let clock = Stages::default();
         let (ms, built) = bake(&starter, &clock)?;
         whole.add("four fresh scenes", ms, Some(built));
-        for (stage, ms) in clock.0.into_inner().unwrap_or_else(PoisonError::into_inner) {
+        for (stage, ms) in clock.times() {
             stages.add(&stage, ms, None);
         }
         let (ms, built) = bake(&starter, &Stages::default())?;
@@ -89,6 +87,12 @@ fn bake(
 #[derive(Default)]
 struct Stages(Mutex<Vec<(String, f64)>>);
 
+impl Stages {
+    fn times(self) -> Vec<(String, f64)> {
+        self.0.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
 impl Listener for Stages {
     fn tell(&self, event: &Event) {
         if let Event::Finished { stage, reused: false, ms, .. } = event {
@@ -108,34 +112,16 @@ fn tree_costs(space: &Space, starter: &Population, runs: u32) -> Result<()> {
     let mut samples = Samples::default();
     let (mut triangles, mut trees) = (0, 0);
     for individual in &starter.individuals {
-        let params: tree::TreeParams = individual.genome.read(space)?;
-        let textures = tree::textures(&individual.genome.read(space)?);
-        for index in (0..TEMPLATES).flat_map(|index| std::iter::repeat_n(index, runs.max(1) as usize)) {
-            triangles += one_core.install(|| tree_cost(&params, &textures, index, &mut samples))?;
-            trees += 1;
+        for _ in 0..runs.max(1) {
+            let templates = one_core.install(|| preprocessing::template_steps(space, &individual.genome))?;
+            templates.steps.iter().for_each(|(task, ms)| samples.add(task, *ms, None));
+            triangles += templates.triangles;
+            trees += TEMPLATES as usize;
         }
     }
     say!("templates have {} triangles on average", triangles / trees.max(1));
     samples.print("One tree template, on one core", "times");
     Ok(())
-}
-
-/// Triangles of one template.
-fn tree_cost(
-    params: &tree::TreeParams,
-    textures: &TreeTextures<Image8>,
-    index: u32,
-    samples: &mut Samples,
-) -> Result<usize> {
-    let template = samples.time("generating it", || tree::template(params, index));
-    let options = tree::lod_options(&template.mesh, textures);
-    let levels = samples.time("progressive mesh, levels, strips", || lod::levels(&template.mesh, &options));
-    let drawn = tree::drawn_from_afar(&levels.levels);
-    let impostor = samples.time("pictures from four sides", || tree::impostor(drawn, textures));
-    // The textures are made once a scene, and timed there.
-    let pictures = textures.map(|_| Picture::Embedded { bytes: &[], mime_type: "image/png" });
-    samples.time("writing the file", || gltf::tree_glb("tree", &levels, &pictures, Some(&impostor)))?;
-    Ok(template.mesh.triangle_count())
 }
 
 /// Durations by name, in the order of first appearance.
@@ -150,13 +136,6 @@ struct Sample {
 }
 
 impl Samples {
-    fn time<T>(&mut self, name: &str, work: impl FnOnce() -> T) -> T {
-        let start = Instant::now();
-        let result = work();
-        self.add(name, start.elapsed().as_secs_f64() * 1e3, None);
-        result
-    }
-
     fn add(&mut self, name: &str, ms: f64, built: Option<usize>) {
         match self.0.iter_mut().find(|sample| sample.name == name) {
             Some(sample) => {

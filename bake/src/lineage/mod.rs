@@ -1,7 +1,6 @@
 //! A world's population files → its family: every generation with its landscapes, votes and parents, as one page for
 //! people ([`page`]) or as JSON for programs.
 
-mod html;
 pub mod page;
 
 use genescape_schema::{Category, INDIVIDUALS, Individual, Population, Space, Votes};

@@ -3,10 +3,10 @@
 
 use std::fmt::{self, Display, Write};
 
+use genescape_schema::html::{Escaped, base64};
 use genescape_schema::lanes::{self, Line};
 use genescape_schema::{Category, INDIVIDUALS, Individual, Population, Votes};
 
-use super::html::{Escaped, base64};
 use super::{Family, Generation};
 
 /// What a page begins with that this program made, and may replace.

@@ -15,6 +15,28 @@ use crate::lod_mode::LodMode;
 use crate::options::Options;
 use crate::ui::Tone;
 
+const NOT_IN_A_STUDY: &str = "Not in a study: walk, look, and answer (Q) when you have seen enough";
+
+/// What would tell the levels of detail under study, change them, or lead to other landscapes.
+fn is_hidden(command: Command) -> bool {
+    use Command::*;
+    let of_laboratory = [NextTreeLod, NextTerrainLod, Wireframe, Tint, Overhead, Stats, Settings, Genome];
+    let of_others = [NextGeneration, BreedAgain, OlderGeneration, NewerGeneration, Family, Export];
+    of_laboratory.contains(&command) || of_others.contains(&command)
+}
+
+/// The same of what is pressed instead.
+fn tells_levels(event: &Event) -> bool {
+    match event {
+        Event::Panel { panel, .. } => !matches!(panel, Panel::Help | Panel::Questions),
+        Event::Options(_) | Event::Comfort(_) | Event::ResetSettings | Event::Genes { .. } => true,
+        Event::GoToGeneration(_) | Event::BreedFrom { .. } | Event::MoreLike(_) | Event::OpenFolder(_) => {
+            true
+        }
+        _ => false,
+    }
+}
+
 impl App {
     pub(super) fn dispatch(&mut self, event: Event, events: &ActiveEventLoop) {
         self.redraw();
@@ -22,6 +44,9 @@ impl App {
             return self.command(command, events);
         }
         self.log.event(&event);
+        if self.cli.answers.is_some() && tells_levels(&event) {
+            return self.tell(Tone::Info, NOT_IN_A_STUDY);
+        }
         let settings = &mut self.file.settings;
         match event {
             Event::Command(_) => {}
@@ -42,6 +67,8 @@ impl App {
             Event::LockCategory { category, locked } => self.editor.lock(category.name(), locked),
             Event::Options(options) => settings.options = options,
             Event::Comfort(comfort) => settings.comfort.value = comfort,
+            Event::Answers(answers) => self.answers = answers,
+            Event::KeepAnswers => self.keep_answers(),
             Event::ExportChoice(choice) => settings.export.value = choice,
             Event::Export(view) => self.export(view, Then::Tell),
             Event::DragOut(view) => self.drag_out(view),
@@ -70,6 +97,9 @@ impl App {
 
     fn command(&mut self, command: Command, events: &ActiveEventLoop) {
         self.log.event(&command);
+        if self.cli.answers.is_some() && is_hidden(command) {
+            return self.tell(Tone::Info, NOT_IN_A_STUDY);
+        }
         let of_file = self.shows_file();
         let options = &mut self.file.settings.options;
         match command {
@@ -105,6 +135,7 @@ impl App {
             }
             Command::Export => self.layout.toggle(Panel::Export),
             Command::Family => self.layout.toggle(Panel::Family),
+            Command::Questions => self.layout.toggle(Panel::Questions),
             Command::Quit => events.exit(),
             Command::NextTreeLod => {
                 let (chosen, whose) = match of_file {

@@ -13,6 +13,7 @@ mod lod_readback;
 mod log;
 mod model;
 mod pace;
+mod questions;
 mod screen;
 mod sharpness;
 mod taught;
@@ -38,6 +39,7 @@ use crate::gpu::Gpu;
 use crate::input::Bindings;
 use crate::loader::{Loader, Request};
 use crate::options::FrameInput;
+use crate::questionnaire::Answers;
 use crate::settings::{Bookmark, Comfort, SettingsFile, WorldSettings};
 use crate::ui::model::{Model, ViewState};
 use crate::ui::{self, Tone};
@@ -118,6 +120,10 @@ struct App {
     exports: Exports,
     thumbnails: Thumbnails,
     taught: Taught,
+    /// What is answered of the questionnaire so far.
+    answers: Answers,
+    /// Answers that the window was opened for are kept.
+    answered: bool,
     pace: Pace,
     /// When settings were saved last, if they had changed.
     last_save: Instant,
@@ -147,7 +153,10 @@ struct Focus {
 
 impl App {
     fn new(cli: Cli, source: Source, log: Log, proxy: EventLoopProxy<Wake>) -> Self {
-        let (file, problems) = SettingsFile::open(cli.settings.clone().or_else(SettingsFile::usual_path));
+        let (mut file, problems) = SettingsFile::open(cli.settings.clone().or_else(SettingsFile::usual_path));
+        if cli.answers.is_some() {
+            file.settings.options = cli.drawing;
+        }
         let (mut camera, problem) = CameraControl::new();
         let kept = file.settings.world(&source);
         let editor = Editor::open(source.clone(), &kept);
@@ -165,6 +174,8 @@ impl App {
             exports: Exports::default(),
             thumbnails: Thumbnails::default(),
             taught: Taught::default(),
+            answers: Answers::default(),
+            answered: false,
             pace: Pace::new(now),
             last_save: now,
             screenshot: false,
@@ -243,6 +254,9 @@ impl App {
         self.background.baker.iter().for_each(|baker| baker.cast(self.editor.ballots));
         if self.last_save.elapsed() > SAVE_EVERY {
             self.save_settings();
+        }
+        if self.answered {
+            events.exit();
         }
         self.wait(events, shown);
     }

@@ -49,6 +49,7 @@ impl App {
             parents: editor.parents().clone(),
             ancestors: editor.ancestors().cloned(),
             variety: editor.variety(),
+            answers: self.answers.clone(),
             family: editor.family(),
             favourites: editor.favourites().clone(),
             thumbnails: self.thumbnails.shown(),

@@ -3,8 +3,8 @@
 use anyhow::Result;
 
 use super::Bench;
-use super::forest::{camera_path, forest};
-use super::report::{Aim, median, quantile};
+use super::report::Aim;
+use crate::measure::{camera_path, forest, median, quantile};
 use crate::options::FrameInput;
 
 /// Trees of each landscape.

@@ -5,13 +5,12 @@
 use anyhow::Result;
 use strum::VariantArray;
 
-use super::cost::Cost;
-use super::forest::{camera_path, forest};
 use super::report::{Aim, Report};
 use super::{Bench, frame_with};
 use crate::camera::Camera;
 use crate::image_file;
 use crate::lod_mode::{LodMode, TerrainLodMode, TreeLodMode};
+use crate::measure::{Cost, camera_path, forest, square_error};
 use crate::view::View;
 
 /// Trees of the forest.
@@ -132,28 +131,4 @@ fn tell(runs: &[Run], report: &mut Report) -> f64 {
     report.figure("land alone: none / default, processor", pays((trees, TerrainLodMode::Off)), "×");
     report.aimed("none at all / best, processor", pays(OFF), "×", Aim::AtLeast(6.0));
     pays(OFF)
-}
-
-/// Mean square difference of colours.
-fn square_error(a: &[u8], b: &[u8]) -> f64 {
-    let colors = |rgba: &[u8]| [rgba[0], rgba[1], rgba[2]].map(|value| f64::from(value) / 255.0);
-    let pixels = a.chunks_exact(4).zip(b.chunks_exact(4));
-    let count = 3.0 * pixels.len() as f64;
-    let of_pixel =
-        |(a, b): (&[u8], &[u8])| colors(a).iter().zip(colors(b)).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
-    pixels.map(of_pixel).sum::<f64>() / count.max(1.0)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_error_of_black_for_white_is_one_and_transparency_counts_not() {
-        let (black, white) = ([0, 0, 0, 9].repeat(50), [255, 255, 255, 200].repeat(50));
-        assert_eq!(square_error(&black, &white), 1.0);
-        assert_eq!(square_error(&white, &[255, 255, 255, 0].repeat(50)), 0.0);
-        let one_channel = [255, 0, 0, 0].repeat(50);
-        assert!((square_error(&black, &one_channel) - 1.0 / 3.0).abs() < 1e-12);
-    }
 }

@@ -9,12 +9,13 @@ use anyhow::Result;
 use glam::{Vec2, Vec3};
 
 use super::Bench;
-use super::report::{Aim, quantile};
+use super::report::Aim;
 use crate::camera::{Camera, Frustum};
 use crate::lod::block::{Block, block_cells, block_indices};
 use crate::lod::quadtree;
 use crate::lod::reach::{Reach, Roughness};
 use crate::lod::roam;
+use crate::measure::quantile;
 use crate::options::Options;
 use crate::scene::{Scene, TerrainLod};
 use crate::view::MAX_BLOCK_M;
@@ -58,7 +59,7 @@ fn tell(bench: &mut Bench, scene: &Scene, error_px: f32) {
     let start = Instant::now();
     let picture = (PICTURE[0] / PICTURE[1], PICTURE[1]);
     for camera in &cameras {
-        counts.push(f64::from(roam::triangulate(lod, camera, picture, error_px, &mut strip)));
+        counts.push(f64::from(roam::triangulate(lod, camera, picture, error_px, true, &mut strip)));
     }
     let roam_ms = start.elapsed().as_secs_f64() * 1e3 / f64::from(CAMERAS);
     let mean = |counts: &Vec<f64>| counts.iter().sum::<f64>() / counts.len() as f64;

@@ -3,8 +3,8 @@
 use anyhow::Result;
 
 use super::Bench;
-use super::forest::camera_path;
 use super::report::Aim;
+use crate::measure::camera_path;
 use crate::options::FrameInput;
 
 /// Frames after which memory is looked at.

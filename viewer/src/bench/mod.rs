@@ -9,9 +9,7 @@
 //! frames of four large forests ([`card`]). [`serve`] lets another program measure beside its own pictures.
 
 mod card;
-mod cost;
 mod detail;
-mod forest;
 mod land;
 mod memory;
 mod record;
@@ -31,11 +29,12 @@ use crate::camera::Camera;
 use crate::headless::{Headless, scene_files};
 use crate::image_file::parse_size;
 use crate::lod_mode::{TerrainLodMode, TreeLodMode};
+use crate::measure::Cost;
 use crate::options::{FrameInput, Options};
 use crate::passes::Shaders;
 use crate::scene::Scene;
 use crate::view::View;
-use cost::Cost;
+
 use report::Report;
 
 /// What `viewer bench` can be asked for.

@@ -4,9 +4,8 @@
 use anyhow::Result;
 
 use super::Bench;
-use super::cost::Cost;
-use super::forest::{camera_path, forest};
-use super::report::{Aim, median};
+use super::report::Aim;
+use crate::measure::{Cost, camera_path, forest, median};
 use crate::options::FrameInput;
 
 /// Trees of the two forests.

@@ -4,6 +4,7 @@ use anyhow::Result;
 use serde::Serialize;
 
 use crate::gpu::Gpu;
+use crate::measure::{Machine, load_average};
 use crate::say;
 
 /// The bound that a figure should keep.
@@ -38,11 +39,8 @@ struct Figure {
 /// All figures of a run; in text each is printed as soon as it is known.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct Report {
-    device: String,
-    software: bool,
-    system: String,
-    cores: usize,
-    load_average_at_start: Option<f64>,
+    #[serde(flatten)]
+    machine: Machine,
     load_average_at_end: Option<f64>,
     figures: Vec<Figure>,
     notes: Vec<String>,
@@ -55,19 +53,8 @@ pub(super) struct Report {
 impl Report {
     /// Names machine and device.
     pub fn begin(gpu: &Gpu, json: bool) -> Self {
-        let report = Self {
-            device: gpu.name.clone(),
-            software: gpu.software,
-            system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
-            cores: std::thread::available_parallelism().map_or(0, usize::from),
-            load_average_at_start: load_average(),
-            json,
-            ..Self::default()
-        };
-        let kind = if gpu.software { "in software" } else { "a graphics card" };
-        let Self { device, system, cores, .. } = &report;
-        let load = busy(report.load_average_at_start);
-        report.print(&format!("{device} ({kind}), {system}, {cores} cores{load}"));
+        let report = Self { machine: Machine::of(gpu), json, ..Self::default() };
+        report.print(&report.machine.told());
         report
     }
 
@@ -134,37 +121,9 @@ fn busy(load: Option<f64>) -> String {
     load.map_or_else(String::new, |load| format!(", load average {load}"))
 }
 
-/// Programs that wanted to run in the last minute, on average, where the system tells.
-fn load_average() -> Option<f64> {
-    std::fs::read_to_string("/proc/loadavg").ok()?.split(' ').next()?.parse().ok()
-}
-
-/// The middle value; 0 of none.
-pub(super) fn median(values: &[f64]) -> f64 {
-    quantile(values, 0.5)
-}
-
-/// The least value that a share of all values does not exceed (nearest rank); 0 of none.
-pub(super) fn quantile(values: &[f64], share: f64) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let rank = (share * sorted.len() as f64).ceil() as usize;
-    sorted.get(rank.saturating_sub(1)).copied().unwrap_or(0.0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn quantiles_are_the_nearest_rank() {
-        let values: Vec<f64> = (1..=100).rev().map(f64::from).collect();
-        assert_eq!(
-            (quantile(&values, 0.99), quantile(&values, 0.0), quantile(&values, 1.0)),
-            (99.0, 1.0, 100.0)
-        );
-        assert_eq!((median(&[3.0, 1.0, 2.0]), median(&[])), (2.0, 0.0));
-    }
 
     #[test]
     fn an_aim_is_met_up_to_its_bound() {

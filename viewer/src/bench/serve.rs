@@ -14,12 +14,11 @@ use anyhow::{Context, Result, anyhow, bail};
 use clap::ValueEnum;
 use serde_json::json;
 
-use super::cost::Cost;
-use super::forest::camera_path;
 use super::{BenchArgs, frame_with};
 use crate::camera::{Camera, NEAR_M};
 use crate::headless::Headless;
 use crate::image_file;
+use crate::measure::{Cost, camera_path};
 use crate::say;
 use crate::view::View;
 

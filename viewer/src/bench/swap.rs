@@ -5,11 +5,10 @@ use std::sync::Arc;
 use anyhow::{Result, anyhow};
 
 use super::Bench;
-use super::cost::Cost;
-use super::forest::camera_path;
-use super::report::{Aim, median, quantile};
+use super::report::Aim;
 use crate::load;
 use crate::loader::{Loader, Request};
+use crate::measure::{Cost, camera_path, median, quantile};
 use crate::options::FrameInput;
 use crate::upload::Uploader;
 

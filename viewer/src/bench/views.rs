@@ -3,9 +3,8 @@
 use anyhow::Result;
 
 use super::Bench;
-use super::cost::Cost;
-use super::forest::camera_path;
-use super::report::{Aim, median};
+use super::report::Aim;
+use crate::measure::{Cost, camera_path, median};
 use crate::options::FrameInput;
 
 /// Each picture is drawn so often; the cheapest counts.

@@ -2,12 +2,11 @@
 //! camera moves, whole and without one thing after the other. All walk from where the window's walks start.
 
 use anyhow::Result;
-use wgpu::util::DownloadBuffer;
 
 use super::Bench;
-use super::cost::Cost;
-use super::report::{Aim, median};
+use super::report::Aim;
 use crate::camera::Camera;
+use crate::measure::{Cost, median, tree_triangles};
 use crate::options::{FrameInput, Options};
 use crate::scene::Scene;
 use crate::view::View;
@@ -48,7 +47,8 @@ pub(super) fn measure(bench: &mut Bench) -> Result<()> {
         };
         let times: Vec<f64> = places.iter().map(&mut cheapest).collect();
         if options == all {
-            let triangles = views.iter().map(|view| tree_triangles(bench, view)).sum::<Result<u64>>()?;
+            let triangles =
+                views.iter().map(|view| tree_triangles(&bench.headless.gpu, view)).sum::<Result<u64>>()?;
             bench.report.aimed(name, median(&times), "ms", Aim::AtMost(AIM_MS));
             bench.report.figure("triangles of trees at the last place", triangles as f64, "");
         } else {
@@ -85,17 +85,4 @@ fn cost(bench: &Bench, views: &mut [View], frame: &FrameInput, cameras: &[Camera
         headless.gpu.wait();
     };
     Cost::of(work).0
-}
-
-/// Of the trees in a view's last picture.
-fn tree_triangles(bench: &Bench, view: &View) -> Result<u64> {
-    let Some((set, counts)) = view.tree_counts() else { return Ok(0) };
-    let (gpu, (send, receive)) = (&bench.headless.gpu, std::sync::mpsc::channel());
-    DownloadBuffer::read_buffer(&gpu.device, &gpu.queue, &counts.slice(..), move |bytes| {
-        // The receiver waits.
-        let _ = send.send(bytes);
-    });
-    gpu.wait();
-    let trees: Vec<u32> = bytemuck::pod_collect_to_vec(&receive.recv()??);
-    Ok(trees.iter().zip(&set.triangles).map(|(trees, each)| u64::from(trees * each)).sum())
 }

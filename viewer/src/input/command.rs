@@ -117,6 +117,9 @@ pub enum Command {
     /// export a landscape
     #[strum(props(keys = "E"))]
     Export,
+    /// questions about the walk
+    #[strum(props(keys = "Q"))]
+    Questions,
     /// close the window
     #[strum(props(keys = "Ctrl+Q"))]
     Quit,
@@ -274,7 +277,7 @@ mod tests {
             ["tree", "terrain", "sky"].into_iter().flat_map(votes).collect(),
             fixed("next_generation breed_again family undo redo older_generation newer_generation"),
             marks("set").chain(marks("go")).collect(),
-            fixed("help genome stats settings fullscreen screenshot export quit"),
+            fixed("help genome stats settings fullscreen screenshot export questions quit"),
             fixed("tree_scheme terrain_scheme wireframe tint overhead"),
         ];
         assert_eq!(names, known.concat());

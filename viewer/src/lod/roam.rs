@@ -22,12 +22,13 @@ const ALL_PLANES: u32 = (1 << 5) - 1;
 /// Replaces `strip` by a triangle strip over the whole field: entries of its arrays, front faces counter-clockwise
 /// from above with the first triangle as written. `aspect` is the picture's width over its height, `height_px` its
 /// height; `error_px` is how far land and mesh may be apart in the picture: 0 uses every sample in sight that is not
-/// on the plane around it. Tells how many triangles are not degenerate.
+/// on the plane around it. `culls` leaves what is out of sight coarse. Tells how many triangles are not degenerate.
 pub fn triangulate(
     lod: &TerrainLod,
     camera: &Camera,
     (aspect, height_px): (f32, f32),
     error_px: f32,
+    culls: bool,
     strip: &mut Vec<u32>,
 ) -> u32 {
     let field = &lod.field;
@@ -40,7 +41,12 @@ pub fn triangulate(
     let mut marks = Marks { used: vec![false; field.heights_m.len()], side: field.side };
     let metric = Metric::new(lod, camera, (aspect, height_px), error_px);
     for root in roots {
-        refine(&metric, &mut marks, root.map(|sample| metric.corner(sample)), ALL_PLANES);
+        refine(
+            &metric,
+            &mut marks,
+            root.map(|sample| metric.corner(sample)),
+            if culls { ALL_PLANES } else { 0 },
+        );
     }
     let mut walk = Walk { marks: &marks, strip, triangles: 0 };
     for root in roots {

@@ -301,7 +301,7 @@ proptest! {
         let field = &*lod.field;
         camera.position_m *= field.extent_m();
         let mut strip = Vec::new();
-        let triangles = triangulate(&lod, &camera, PICTURE, error_px, &mut strip);
+        let triangles = triangulate(&lod, &camera, PICTURE, error_px, true, &mut strip);
         let mesh = strip_triangles(field, &strip);
         check_closed(field, &mesh)?;
         prop_assert_eq!(triangles as usize, mesh.len());
@@ -324,7 +324,7 @@ proptest! {
         let field = &*lod.field;
         camera.position_m *= field.extent_m();
         let mut strip = Vec::new();
-        triangulate(&lod, &camera, PICTURE, 0.0, &mut strip);
+        triangulate(&lod, &camera, PICTURE, 0.0, true, &mut strip);
         let frustum = camera.frustum(PICTURE.0);
         for entry in 0..field.side * field.side {
             let sample = [entry % field.side, entry / field.side];
@@ -346,7 +346,7 @@ fn more_error_and_less_sight_mean_fewer_triangles() {
         Camera { position_m: Vec3::new(0.0, 30.0, 100.0), yaw_rad: 0.0, pitch_rad: -0.2, fov_y_rad: 1.0 };
     let (mut strip, mut blocks) = (Vec::new(), Vec::new());
     let counts: Vec<u32> = [0.0, 1.0, 4.0, 64.0, 1e9]
-        .map(|error_px| triangulate(&lod, &camera, PICTURE, error_px, &mut strip))
+        .map(|error_px| triangulate(&lod, &camera, PICTURE, error_px, true, &mut strip))
         .to_vec();
     assert!(counts.is_sorted_by(|a, b| a > b), "{counts:?}");
     let reach = reach(&lod, 100.0, false);

@@ -68,7 +68,7 @@ impl CullUniform {
             eye: eye.into(),
             error_per_m: options.tree_error_px / focal_px,
             lod_mode: options.tree_lod as u32,
-            planes_used: 1,
+            planes_used: u32::from(options.cull),
             ..Self::sizes(set)
         }
     }

@@ -13,6 +13,7 @@ mod help;
 pub mod icon;
 pub mod model;
 mod notices;
+mod questions;
 mod report;
 mod settings;
 pub mod stats;
@@ -107,6 +108,9 @@ pub fn show(ui: &mut Ui, model: &Model, state: &mut State) -> Output {
     }
     if model.panels.export && model.file.is_none() {
         export::show(ui, model, area);
+    }
+    if model.panels.questions && model.file.is_none() {
+        questions::show(ui, model, area);
     }
     if model.panels.help {
         help::show(ui, model);

@@ -14,6 +14,7 @@ use crate::event::{Arrangement, Panel};
 use crate::export_choice::ExportChoice;
 use crate::input::{Bindings, Command};
 use crate::options::Options;
+use crate::questionnaire::Answers;
 use crate::scene::Facts;
 use crate::settings::Comfort;
 
@@ -76,6 +77,8 @@ pub struct Model {
     pub comfort: Comfort,
     /// Landscapes as files for other programs.
     pub export: ExportModel,
+    /// What is answered of the questionnaire so far.
+    pub answers: Answers,
     /// The panels that are shown.
     pub panels: Panels,
     /// The pointer is locked into the picture: nothing reacts to it.
@@ -316,6 +319,8 @@ pub struct Panels {
     pub export: bool,
     /// The family tree.
     pub family: bool,
+    /// The questionnaire.
+    pub questions: bool,
 }
 
 impl Panels {
@@ -327,6 +332,7 @@ impl Panels {
             Panel::Settings => &mut self.settings,
             Panel::Export => &mut self.export,
             Panel::Family => &mut self.family,
+            Panel::Questions => &mut self.questions,
         }
     }
 
@@ -335,13 +341,12 @@ impl Panels {
         *self.one(panel)
     }
 
-    /// Shows or hides a panel. Settings and export have one place.
+    /// Shows or hides a panel. Settings, export and questions have one place.
     pub fn set(&mut self, panel: Panel, open: bool) {
-        *self.one(panel) = open;
-        match panel {
-            Panel::Settings => self.export &= !open,
-            Panel::Export => self.settings &= !open,
-            _ => {}
+        let of_one_place = [Panel::Settings, Panel::Export, Panel::Questions];
+        if open && of_one_place.contains(&panel) {
+            of_one_place.into_iter().for_each(|other| *self.one(other) = false);
         }
+        *self.one(panel) = open;
     }
 }

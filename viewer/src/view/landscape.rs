@@ -80,8 +80,14 @@ fn draw(
     let mut draws = 1;
     let mut picture = targets.picture(scope);
     picture.set_bind_group(0, &bound.view_group, &[]);
+    if let Some(statistics) = &targets.statistics {
+        picture.begin_pipeline_statistics_query(statistics, 0);
+    }
     for (name, pass) in passes.picture.iter().filter(|(_, pass)| pass.is_needed(bound, options)) {
         draws += pass.draw(&mut picture.scope(*name), bound, options);
+    }
+    if targets.statistics.is_some() {
+        picture.end_pipeline_statistics_query();
     }
     draws
 }

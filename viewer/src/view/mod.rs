@@ -77,6 +77,11 @@ impl View {
         self.exhibit.as_ref()
     }
 
+    /// Has the pass that draws the landscape counted by the first query of `statistics`, until the picture's size changes.
+    pub fn count(&mut self, statistics: Option<wgpu::QuerySet>) {
+        self.targets.statistics = statistics;
+    }
+
     /// Gives the picture another size; `true` if there are new targets since the last call.
     pub fn resize(&mut self, passes: &Passes, size_px: [u32; 2]) -> bool {
         let size_px = size_px.map(|side| side.max(1));

@@ -16,6 +16,8 @@ pub struct Targets {
     /// The finished picture.
     pub display: wgpu::Texture,
     display_view: wgpu::TextureView,
+    /// What the pass that draws the landscape is counted by.
+    pub(super) statistics: Option<wgpu::QuerySet>,
     /// What tone mapping reads.
     pub(super) radiance_group: wgpu::BindGroup,
 }
@@ -40,6 +42,7 @@ impl Targets {
             display,
             radiance_group: bind(gpu, "radiance", &passes.layouts.radiance, bound),
             radiance,
+            statistics: None,
         }
     }
 

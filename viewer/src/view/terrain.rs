@@ -38,13 +38,13 @@ impl TerrainChoice {
         let aspect = width / height;
         let triangles = if mode == TerrainLodMode::Roam {
             let picture = (aspect, height);
-            let triangles = roam::triangulate(lod, camera, picture, error_px, &mut self.strip);
+            let triangles = roam::triangulate(lod, camera, picture, error_px, options.cull, &mut self.strip);
             bound.terrain.write(gpu, &self.strip);
             triangles
         } else {
             bound.reach.set(gpu, &scene.land.roughness, mode, focal_px, error_px);
-            let frustum = camera.frustum(aspect);
-            quadtree::select(lod, &bound.reach.reach, &detail, Some(&frustum), &mut self.blocks);
+            let frustum = options.cull.then(|| camera.frustum(aspect));
+            quadtree::select(lod, &bound.reach.reach, &detail, frustum.as_ref(), &mut self.blocks);
             bound.terrain.write(gpu, &self.blocks);
             quadtree::triangles(&lod.field, &self.blocks)
         };

@@ -11,6 +11,7 @@ mod display;
 mod exports;
 mod files;
 mod golden;
+mod lab;
 mod lod_twin;
 mod made_up;
 mod manual;

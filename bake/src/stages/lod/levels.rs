@@ -12,7 +12,7 @@ use crate::model::{Level, LevelledMesh, Mesh, Morph};
 use super::progressive::{self, Mark};
 use super::sequence::Sequence;
 use super::state::{NONE, State};
-use super::{LodOptions, strip};
+use super::{LodOptions, Step, strip};
 
 /// A level may miss its number of vertices by one in this many; otherwise there is no such level.
 const TOLERANCE: usize = 50;
@@ -32,8 +32,9 @@ struct Snapshot {
 }
 
 /// Makes all levels of a sound mesh.
-pub fn build(mesh: Mesh, options: &LodOptions) -> LevelledMesh {
+pub fn build(mesh: Mesh, options: &LodOptions, ended: &mut dyn FnMut(Step)) -> LevelledMesh {
     let mut sequence = Sequence::new(State::new(&mesh), options);
+    ended(Step::DataStructures);
     let mut marks = vec![Mark::of(&sequence, 0.0)];
     let full = mesh.positions.len();
     let half_way = (full as f64 / 2.0_f64.sqrt()) as usize;
@@ -59,8 +60,9 @@ pub fn build(mesh: Mesh, options: &LodOptions) -> LevelledMesh {
         marks.push(mark);
     }
     set_errors(&mut snapshots, &mut marks, error_half_way_m as f32);
+    ended(Step::ProgressiveMesh);
     let progressive = progressive::encode(&sequence.state, &marks);
-    LevelledMesh { levels: finish(snapshots, &sequence.state), progressive }
+    LevelledMesh { levels: finish(snapshots, &sequence.state, ended), progressive }
 }
 
 fn set_errors(snapshots: &mut [Snapshot], marks: &mut [Mark], half_way_m: f32) {
@@ -79,15 +81,18 @@ fn set_errors(snapshots: &mut [Snapshot], marks: &mut [Mark], half_way_m: f32) {
     }
 }
 
-fn finish(snapshots: Vec<Snapshot>, state: &State) -> Vec<Level> {
+fn finish(snapshots: Vec<Snapshot>, state: &State, ended: &mut dyn FnMut(Step)) -> Vec<Level> {
     let morph_to_next = |index: usize| Some(morph(&snapshots[index], snapshots.get(index + 1)?, state));
     let morphs: Vec<_> = (0..snapshots.len()).map(morph_to_next).collect();
+    ended(Step::Morphs);
     let level = |(snapshot, morph): (Snapshot, Option<Morph>)| {
         let vertices = snapshot.mesh.positions.len();
         let strips = snapshot.mesh.parts.iter().map(|part| strip::strip(&part.triangles, vertices)).collect();
         Level { mesh: snapshot.mesh, morph, error_m: snapshot.error_m, strips }
     };
-    snapshots.into_iter().zip(morphs).map(level).collect()
+    let levels = snapshots.into_iter().zip(morphs).map(level).collect();
+    ended(Step::Strips);
+    levels
 }
 
 /// The offsets of one level's vertices to their places in the next.

@@ -74,5 +74,20 @@ impl Default for LodOptions {
 /// is repaired first: a list of the wrong length is emptied, a triangle that names a vertex that does not exist is
 /// dropped.
 pub fn levels(mesh: &Mesh, options: &LodOptions) -> LevelledMesh {
-    levels::build(repair::repaired(mesh.clone()), options)
+    levels_observed(mesh, options, &mut |_| ())
+}
+
+/// A part of the work, in the order in which they end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    DataStructures,
+    ProgressiveMesh,
+    /// And the records of the progressive mesh.
+    Morphs,
+    Strips,
+}
+
+/// The same, and tells when each part of it has ended.
+pub fn levels_observed(mesh: &Mesh, options: &LodOptions, ended: &mut dyn FnMut(Step)) -> LevelledMesh {
+    levels::build(repair::repaired(mesh.clone()), options, ended)
 }

@@ -47,6 +47,7 @@ fn worlds() -> Vec<(&'static str, Model)> {
             }),
         ),
         ("export", change(|model| model.panels.export = true)),
+        ("questions", change(|model| model.panels.questions = true)),
         ("help", change(|model| model.panels.help = true)),
         (
             "all",

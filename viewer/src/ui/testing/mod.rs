@@ -4,6 +4,7 @@ mod behaviour;
 mod export;
 mod layout;
 mod pictures;
+mod questions;
 mod shown;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -21,6 +22,7 @@ use super::{Output, State, theme};
 use crate::ballots::Ballots;
 use crate::event::{Arrangement, Event};
 use crate::options::Options;
+use crate::questionnaire::Answers;
 use crate::settings::Comfort;
 
 /// A window's content without a window.
@@ -116,6 +118,7 @@ pub fn model() -> Model {
         parents: (1..=3).map(|generation| (generation, parent(generation - 1))).collect(),
         ancestors: Some(["Old oaks", "Wet birches", "A ridge", "Pines"].map(str::to_owned)),
         variety: Variety::USUAL,
+        answers: Answers::default(),
         family: Arc::new((0..=3).map(kin).collect()),
         favourites: [(1, 2)].into(),
         thumbnails: BTreeMap::new(),

@@ -9,7 +9,7 @@ use crate::walk::{EYE_HEIGHT_M, Land, nearest_free};
 
 /// The camera's path: straight across the middle of the land, a quarter of its extent to each side, at a walker's height
 /// and clear of trunks, with the sun behind and to the side (thesis section 7).
-pub(super) fn camera_path(scene: &Scene, steps: u32) -> Vec<Camera> {
+pub fn camera_path(scene: &Scene, steps: u32) -> Vec<Camera> {
     let land = Land::of(scene);
     let [x, _, z] = scene.sky.light.sun_direction.to_array();
     let away = Vec2::new(-x, -z).normalize_or(Vec2::NEG_Y);
@@ -31,7 +31,7 @@ pub(super) fn camera_path(scene: &Scene, steps: u32) -> Vec<Camera> {
 
 /// The same landscape with `count` trees: of more than are wanted an even choice; else copies stand between them,
 /// spread evenly over the dry land (the additive recurrence of Roberts 2018).
-pub(super) fn forest(scene: &Scene, count: usize) -> Scene {
+pub fn forest(scene: &Scene, count: usize) -> Scene {
     let known = &scene.trees.instances;
     let mut scene_with = scene.clone();
     if known.is_empty() || count <= known.len() {

@@ -10,7 +10,7 @@ use crate::options::FrameInput;
 use crate::view::View;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Cost {
+pub struct Cost {
     /// Milliseconds on the clock.
     pub wall_ms: f64,
     /// Milliseconds of processors, all threads of this process together.

@@ -1,0 +1,46 @@
+//! The same tree simplified by meshoptimizer, where the viewer was built with it.
+
+use crate::scene::Template;
+
+/// A template with as many levels, each with as many triangles of each material, made by meshoptimizer of the full tree;
+/// `None` in viewers that were built without it.
+#[cfg(feature = "meshopt")]
+pub fn alike(template: &Template) -> Option<Template> {
+    use crate::scene::{Level, Range, TreeVertex};
+    use meshopt::{SimplifyOptions, VertexDataAdapter};
+
+    let full = template.levels.first()?;
+    let end = template.levels.get(1).map_or(template.vertices.len(), |next| next.base_vertex as usize);
+    let vertices = template.vertices.get(full.base_vertex as usize..end)?;
+    let adapter = VertexDataAdapter::new(bytemuck::cast_slice(vertices), size_of::<TreeVertex>(), 0).ok()?;
+    let part = |range: &Range| {
+        let first = range.first as usize;
+        template.indices.get(first..first + range.count as usize).unwrap_or_default()
+    };
+    let mut indices = Vec::new();
+    let mut levels = Vec::new();
+    for level in &template.levels {
+        let mut ranges = Vec::new();
+        for (range, wanted) in full.ranges.iter().zip(&level.ranges) {
+            let (count, first) = (wanted.count as usize, indices.len() as u32);
+            // Leaves are pieces of their own: without pruning none would ever go.
+            let options = SimplifyOptions::Prune | SimplifyOptions::Permissive;
+            let simple = match part(range) {
+                whole if whole.len() <= count => whole.to_vec(),
+                whole => meshopt::simplify(whole, &adapter, count, f32::MAX, options, None),
+            };
+            ranges.push(Range { first, count: simple.len() as u32 });
+            indices.extend(simple);
+        }
+        // All of them are made of the full tree's vertices.
+        levels.push(Level { error_m: level.error_m, base_vertex: full.base_vertex, ranges });
+    }
+    let blob = format!("{} by meshoptimizer", template.blob);
+    Some(Template { blob, indices, levels, ..template.clone() })
+}
+
+/// `None`: this viewer was built without it.
+#[cfg(not(feature = "meshopt"))]
+pub fn alike(_: &Template) -> Option<Template> {
+    None
+}
