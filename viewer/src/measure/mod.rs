@@ -1,5 +1,5 @@
 //! What measurements of pictures have in common, for `viewer bench` and the laboratory: what work takes ([`Cost`], and on the
-//! device [`Counters`]), where cameras stand ([`camera_path`]), how unlike two pictures are ([`l2`], [`flip`]), and figures
+//! device [`Counters`]), where cameras stand ([`camera_path`]), how unlike two pictures are ([`l2`], [`flip()`]), and figures
 //! over many values.
 
 mod cost;

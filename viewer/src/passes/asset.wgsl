@@ -70,7 +70,7 @@ struct Out {
 @vertex
 fn vertex(in: In) -> Out {
     let rows = places[in.place].rows;
-    let alpha = fract(in.lambda);
+    let alpha = morphed(in.lambda);
     let world = from_template(rows, in.position + alpha * in.delta);
     let turned = normalize(mix(octahedral(in.normal), octahedral(in.normal_end), alpha));
     let normal = normal_from_template(rows, turned);

@@ -220,6 +220,14 @@ fn octahedral(packed: vec2f) -> vec3f {
     return normalize(n);
 }
 
+// The way that a mesh has gone to the next level. It stands for most of its band, since its triangles are paid for as long as
+// any of it is drawn, and goes over in the rest.
+const MORPHS_FROM = 0.6;
+
+fn morphed(lambda: f32) -> f32 {
+    return max((fract(lambda) - MORPHS_FROM) / (1.0 - MORPHS_FROM), 0.0);
+}
+
 // A colour for each level of detail.
 fn level_tint(level: f32) -> vec3f {
     let phase = level * 2.4;

@@ -36,7 +36,7 @@ struct Out {
 @vertex
 fn vertex(in: In) -> Out {
     let rows = trees[in.tree].rows;
-    let alpha = fract(in.lambda);
+    let alpha = morphed(in.lambda);
     let world = from_template(rows, in.position + alpha * in.delta);
     let turned = normalize(mix(octahedral(in.normal), octahedral(in.normal_end), alpha));
     let tangent = way_from_template(rows, octahedral(in.tangent));

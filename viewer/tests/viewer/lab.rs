@@ -30,7 +30,7 @@ fn a_run_is_written_as_it_goes_taken_up_and_compared() {
         assert!(popping.contains(scheme), "{popping}");
     }
     let walk = fs::read_to_string(series.join("walk-land-big-hills.csv")).expect("measured");
-    assert!(walk.starts_with("scheme,frame,") && walk.lines().count() == 1 + 3 * 4, "{walk}");
+    assert!(walk.starts_with("scheme,frame,") && walk.lines().count() == 1 + 4 * 4, "{walk}");
     let page = fs::read_to_string(here.join("out/report.html")).expect("a report");
     for figure in 21..=28 {
         assert!(page.contains(&format!("Figure {figure}")), "figure {figure}");
