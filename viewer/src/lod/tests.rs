@@ -60,7 +60,9 @@ fn doubled_area_m2([a, b, c]: &Triangle) -> f64 {
     u.z * v.x - u.x * v.z
 }
 
-/// No hole, no T-junction, no fold; the square is covered exactly.
+/// No hole, no T-junction, no fold; the square is covered exactly: no triangle is turned over, each edge is passed as often one
+/// way as the other, and the areas add up. (More than once where triangles without area lie on it, whose third vertex is still
+/// on its way along the edge.)
 fn check_closed(field: &Heightfield, triangles: &[Triangle]) -> Result<(), TestCaseError> {
     let bits = |v: Vec3| v.to_array().map(|x| (x + 0.0).to_bits());
     let mut edges: HashMap<_, i32> = HashMap::new();
@@ -71,14 +73,12 @@ fn check_closed(field: &Heightfield, triangles: &[Triangle]) -> Result<(), TestC
         prop_assert!(doubled > -1e-6 * cell, "folded by {doubled}: {triangle:?}");
         area += 0.5 * doubled;
         for (a, b) in [(0, 1), (1, 2), (2, 0)] {
-            let count = edges.entry((bits(triangle[a]), bits(triangle[b]))).or_default();
-            *count += 1;
-            prop_assert_eq!(*count, 1, "an edge is used twice in one direction");
+            *edges.entry((bits(triangle[a]), bits(triangle[b]))).or_default() += 1;
         }
     }
     let border = 0.5 * field.extent_m();
-    for (a, b) in edges.keys() {
-        if !edges.contains_key(&(*b, *a)) {
+    for ((a, b), count) in &edges {
+        if edges.get(&(*b, *a)) != Some(count) {
             let [a, b] = [a, b].map(|v| v.map(f32::from_bits));
             let on_border = [0, 2].iter().any(|&axis| a[axis].abs() == border && a[axis] == b[axis]);
             prop_assert!(on_border, "an open edge from {a:?} to {b:?}");
