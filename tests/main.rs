@@ -3,3 +3,4 @@
 mod distance;
 mod docs;
 mod round;
+mod strips;

@@ -64,6 +64,10 @@ pub struct Options {
     // Thesis section 7.
     #[arg(long = "no-culling", action = ArgAction::SetFalse)]
     pub cull: bool,
+    /// Bark as triangle strips, not lists: the same pictures
+    // Thesis section 4.4.1; `viewer lab` measures which pays.
+    #[arg(long)]
+    pub bark_strips: bool,
     /// Factor on the landscape's own exposure
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = factor)]
     pub exposure: f32,
@@ -134,6 +138,7 @@ impl Default for Options {
             mesh_error_px: MESH_ERROR_PX,
             terrain_error_px: 6.0,
             wireframe: false,
+            bark_strips: false,
             tint_levels: false,
             overhead: false,
             moving_resolution: None,

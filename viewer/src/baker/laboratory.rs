@@ -1,8 +1,10 @@
 //! What the laboratory has baked: test scenes, and scenes whose preprocessing is measured.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow};
+use genescape_bake::audition;
 use genescape_bake::bench::preprocessing;
 use genescape_bake::events::Untold;
 use genescape_bake::plan::Resolution;
@@ -18,11 +20,35 @@ pub use genescape_bake::bench::preprocessing::{OF_TERRAIN, Sample};
 /// # Errors
 /// Faults of a population, or a folder that cannot be written to.
 pub fn bake(root: &Path, populations: &[(&str, &str)]) -> Result<Vec<PathBuf>> {
+    let load = |session: &Session| {
+        let load =
+            |(name, text): &(&str, &str)| Ok(Population::load(session.space(), name, text)?.population);
+        populations.iter().map(load).collect()
+    };
+    bake_these(root, load)
+}
+
+/// The same of landscapes as they come: four of kinds for each seed. The first are called generation `first`.
+///
+/// # Errors
+/// A folder that cannot be written to.
+pub fn bake_random(root: &Path, seeds: Range<u64>, first: u32) -> Result<Vec<PathBuf>> {
+    let draw = |session: &Session| {
+        let (space, kinds) = (session.space(), session.kinds(&Untold));
+        let draw = |(seed, generation)| audition::drawn(space, &kinds, &[], seed, generation, 0).population;
+        Ok(seeds.zip(first..).map(draw).collect())
+    };
+    bake_these(root, draw)
+}
+
+fn bake_these(
+    root: &Path,
+    populations: impl FnOnce(&Session) -> Result<Vec<Population>>,
+) -> Result<Vec<PathBuf>> {
     let world = World::open_or_create(root)?;
     let session = Session::new(world, super::pool(None)?, Resolution::default())?;
     let mut scenes = Vec::new();
-    for (name, text) in populations {
-        let population = Population::load(session.space(), name, text)?.population;
+    for population in populations(&session)? {
         let path = session.world().population_path(population.generation);
         if !path.exists() {
             session.world().create_population(session.space(), &population)?;

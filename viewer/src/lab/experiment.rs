@@ -22,6 +22,8 @@ pub struct Scheme {
     pub land: TerrainLodMode,
     /// Error that trees may have, in pixels.
     pub tree_error_px: f32,
+    /// Bark as strips.
+    pub bark_strips: bool,
 }
 
 /// No levels of detail: what others are compared with.
@@ -37,10 +39,13 @@ pub const CONTINUOUS: &str = "continuous";
 pub const SIMPLE: &str = "simple";
 /// As the window draws.
 pub const USUAL: &str = "as in the window";
+/// Bark as lists of triangles, as strips; its finest level.
+pub const LISTS: &str = "lists";
+pub const STRIPS: &str = "strips";
 
 impl Scheme {
     fn new(name: &'static str, trees: TreeLodMode, land: TerrainLodMode) -> Self {
-        Self { name, trees, land, tree_error_px: Options::default().tree_error_px }
+        Self { name, trees, land, tree_error_px: Options::default().tree_error_px, bark_strips: false }
     }
 
     /// What a frame is drawn from.
@@ -49,6 +54,7 @@ impl Scheme {
             tree_lod: self.trees,
             terrain_lod: self.land,
             tree_error_px: self.tree_error_px,
+            bark_strips: self.bark_strips,
             draw_trees: objects != Objects::Land,
             draw_terrain: objects != Objects::Trees,
             grass: objects == Objects::All,
@@ -70,7 +76,8 @@ pub struct Experiment {
 impl Experiment {
     /// All of them.
     pub fn all() -> Vec<Self> {
-        [Self::of_land().to_vec(), Self::of_trees().to_vec(), Self::of_all().to_vec()].concat()
+        let few = [Self::of_land().to_vec(), Self::of_trees().to_vec(), vec![Self::of_bark()]];
+        [few.concat(), Self::of_all().to_vec()].concat()
     }
 
     /// Figures 21 to 24.
@@ -101,6 +108,14 @@ impl Experiment {
             objects: Objects::Trees,
             schemes: schemes(),
         })
+    }
+
+    /// Section 4.4.1: trees at their finest, whose bark is lists or strips.
+    pub fn of_bark() -> Self {
+        let lists = Scheme::new(LISTS, TreeLodMode::Off, TerrainLodMode::Off);
+        let strips = Scheme { name: STRIPS, bark_strips: true, ..lists.clone() };
+        let schemes = vec![lists, strips];
+        Self { name: "bark", scene: TestScene::FewTrees, objects: Objects::Trees, schemes }
     }
 
     /// Figure 28.

@@ -33,7 +33,8 @@ pub fn alike(template: &Template) -> Option<Template> {
             indices.extend(simple);
         }
         // All of them are made of the full tree's vertices.
-        levels.push(Level { error_m: level.error_m, base_vertex: full.base_vertex, ranges });
+        let strips = Vec::new();
+        levels.push(Level { error_m: level.error_m, base_vertex: full.base_vertex, ranges, strips });
     }
     let blob = format!("{} by meshoptimizer", template.blob);
     Some(Template { blob, indices, levels, ..template.clone() })

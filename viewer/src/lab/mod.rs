@@ -1,14 +1,17 @@
 //! `viewer lab`: the experiments of the thesis (sections 7 and 8) on this renderer, and a report of what came out.
 //!
 //! [`scenes`] are those of figure 29; [`experiment`] says what is drawn of them by which schemes; [`walk`], [`popping`],
-//! [`equal_cost`] and [`preprocessing`] measure, each into a table of [`store`]; [`report`] makes a page of the tables beside
+//! [`equal_cost`], [`bark`] and [`preprocessing`] measure, each into a table of [`store`]; [`report`] makes a page of the tables beside
 //! what the thesis found, [`compare`] one of two folders.
 
 mod answers;
+mod bark;
 mod bench;
+mod chain;
 mod compare;
 mod equal_cost;
 mod experiment;
+mod fly_out;
 mod meshoptimizer;
 mod page;
 mod popping;
@@ -16,13 +19,15 @@ mod preprocessing;
 mod report;
 mod scenes;
 mod store;
+mod tree_levels;
 mod trees;
 mod walk;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use clap::{Args, Subcommand};
+use genescape_schema::INDIVIDUALS;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -34,7 +39,7 @@ use crate::say;
 pub use answers::read_sheet;
 use bench::Bench;
 use experiment::Experiment;
-use scenes::TestScenes;
+use scenes::{TestScene, TestScenes};
 use store::{Configuration, Store};
 
 /// What `viewer lab` can be asked for.
@@ -114,7 +119,7 @@ pub fn run(args: &LabArgs) -> Result<()> {
     let configuration = args.configuration(Machine::of(&headless.gpu))?;
     let store = Store::open(&args.out, &configuration)?;
     say!("{}", configuration.machine.told());
-    let scenes = TestScenes::bake(&args.out.join("world"))?;
+    let scenes = TestScenes::bake(&world(&args.out))?;
     let bench = Bench::new(headless, scenes, args.size);
     let lab = Lab { bench, store, configuration };
     lab.measure()?;
@@ -132,7 +137,7 @@ struct Lab {
 
 impl Lab {
     fn measure(&self) -> Result<()> {
-        let Configuration { steps, scenes, .. } = self.configuration;
+        let Configuration { steps, frames, scenes, .. } = self.configuration;
         let walks = 2 * u64::from(steps);
         for experiment in Experiment::of_land() {
             self.walk(&experiment, true)?;
@@ -146,9 +151,17 @@ impl Lab {
             self.walk(&experiment, false)?;
             self.popping(&experiment)?;
         }
+        self.walk(&Experiment::of_bark(), false)?;
+        self.table(BARK_INDICES, 1, bark::measure)?;
         for experiment in Experiment::of_all() {
             self.walk(&experiment, false)?;
         }
+        let seeds = u64::from(scenes.div_ceil(8));
+        let trees = TestScene::ALL.len() as u64 + seeds * INDIVIDUALS as u64;
+        let root = world(self.store.root());
+        self.table(TREE_LEVELS, trees, |bench| tree_levels::measure(bench, &root, seeds))?;
+        let flight = fly_out::frames(frames);
+        self.table(FLY_OUT, fly_out::pairs(flight), |bench| fly_out::measure(bench, flight))?;
         self.table(FOUR_VIEWS, walks, |bench| walk::four_views(bench, steps))?;
         self.table(PREPROCESSING, u64::from(scenes), |bench| preprocessing::measure(bench, scenes))?;
         Ok(())
@@ -188,6 +201,14 @@ impl Lab {
     }
 }
 
+/// Where the laboratory's landscapes are.
+fn world(out: &Path) -> PathBuf {
+    out.join("world")
+}
+
+const BARK_INDICES: &str = "bark-indices";
+const TREE_LEVELS: &str = "tree-levels";
+const FLY_OUT: &str = "fly-out";
 const FOUR_VIEWS: &str = "four-views";
 const PREPROCESSING: &str = "preprocessing";
 

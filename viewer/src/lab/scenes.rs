@@ -7,7 +7,7 @@ use anyhow::{Result, ensure};
 use crate::baker::laboratory;
 
 /// Files of four landscapes each.
-const POPULATIONS: [(&str, &str); 2] = [
+pub const POPULATIONS: [(&str, &str); 2] = [
     ("configs/thesis/figure-29a-d.ron", include_str!("../../../configs/thesis/figure-29a-d.ron")),
     ("configs/thesis/figure-29e-f.ron", include_str!("../../../configs/thesis/figure-29e-f.ron")),
 ];
@@ -24,6 +24,9 @@ pub enum TestScene {
 }
 
 impl TestScene {
+    pub const ALL: [Self; 5] =
+        [Self::FlatTerrain, Self::BigHills, Self::FewTrees, Self::ManyTrees, Self::MediumTrees];
+
     /// As the thesis calls it.
     pub fn title(self) -> &'static str {
         match self {

@@ -171,8 +171,12 @@ impl<'a> Document<'a> {
 
     /// A primitive's indices, of any width, into its `count` vertices.
     pub fn indices(&self, primitive: &gltf::Primitive<'_>, count: usize) -> Result<Vec<u32>> {
+        self.index_list(primitive.indices().ok_or_else(|| self.wrong("a mesh has no indices"))?, count)
+    }
+
+    /// An accessor's indices, of any width, into `count` vertices.
+    pub fn index_list(&self, accessor: gltf::Accessor<'_>, count: usize) -> Result<Vec<u32>> {
         use gltf::accessor::DataType;
-        let accessor = primitive.indices().ok_or_else(|| self.wrong("a mesh has no indices"))?;
         let indices = match accessor.data_type() {
             DataType::U16 => self.values::<u16>(accessor)?.into_iter().map(u32::from).collect(),
             DataType::U32 => self.values::<u32>(accessor)?,

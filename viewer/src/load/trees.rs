@@ -77,36 +77,47 @@ fn build(
         let last = number + 1 == extension.levels.len();
         let base_vertex = template.vertices.len() as u32;
         let mut ranges = vec![Range::default(); materials.len()];
-        for (part, primitive) in mesh(document, level.mesh)?.primitives().enumerate() {
+        let mut strips = ranges.clone();
+        for (number_of_part, primitive) in mesh(document, level.mesh)?.primitives().enumerate() {
             let material = primitive.material();
             let index =
                 material.index().ok_or_else(|| document.wrong("a tree has a part without material"))?;
             let slot = materials.iter().position(|&known| known == index).unwrap_or_else(|| {
                 materials.push(index);
                 ranges.push(Range::default());
+                strips.push(Range::default());
                 materials.len() - 1
             });
             if template.materials.len() < materials.len() {
                 template.materials.push(read_material(document, &material)?);
             }
             let first_vertex = template.vertices.len() as u32 - base_vertex;
-            let delta = if last { None } else { level.texcoord_deltas.get(part).copied() };
+            let delta = if last { None } else { level.texcoord_deltas.get(number_of_part).copied() };
             let mut part = vertices(document, &primitive, delta)?;
-            if template.materials[slot].alpha_cutoff.is_some() {
+            let is_masked = template.materials[slot].alpha_cutoff.is_some();
+            let strip = level.strips.get(number_of_part).filter(|_| !is_masked);
+            if is_masked {
                 shade_crown(&mut part);
             }
             let count = part.len();
             template.vertices.extend(part);
-            let first = template.indices.len() as u32;
-            template
-                .indices
-                .extend(document.indices(&primitive, count)?.iter().map(|index| index + first_vertex));
-            ranges[slot] = Range { first, count: template.indices.len() as u32 - first };
+            let mut add = |indices: Vec<u32>| {
+                let first = template.indices.len() as u32;
+                template.indices.extend(indices.iter().map(|index| index + first_vertex));
+                Range { first, count: indices.len() as u32 }
+            };
+            ranges[slot] = add(document.indices(&primitive, count)?);
+            if let Some(&strip) = strip {
+                strips[slot] = add(document.index_list(document.accessor(strip)?, count)?);
+            }
         }
-        template.levels.push(Level { error_m: level.error_m, base_vertex, ranges });
+        template.levels.push(Level { error_m: level.error_m, base_vertex, ranges, strips });
     }
     let parts = materials.len();
-    template.levels.iter_mut().for_each(|level| level.ranges.resize(parts, Range::default()));
+    for level in &mut template.levels {
+        level.ranges.resize(parts, Range::default());
+        level.strips.resize(parts, Range::default());
+    }
     check(document, &template)?;
     (template.center_m, template.radius_m) = sphere(&template.vertices);
     Ok(template)

@@ -13,8 +13,8 @@ pub use cost::Cost;
 pub use counters::{Counted, Counters};
 pub use flip::flip;
 pub use machine::{Machine, load_average};
-pub use path::{camera_path, forest};
-pub use statistics::{TTest, deviation, mean, median, quantile, t_test};
+pub use path::{camera_path, fly_out_path, forest};
+pub use statistics::{TTest, deviation, mean, median, quantile, spearman, t_test};
 
 use anyhow::Result;
 

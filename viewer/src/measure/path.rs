@@ -29,6 +29,20 @@ pub fn camera_path(scene: &Scene, steps: u32) -> Vec<Camera> {
     (0..steps).map(at).collect()
 }
 
+/// A flight out of the middle of the land, backwards and upwards: trees go from near by to the size of a picture.
+pub fn fly_out_path(scene: &Scene, steps: u32) -> Vec<Camera> {
+    let [low, high] = [0.02, 0.24].map(|part| part * scene.ground.field.extent_m());
+    let mut start = camera_path(scene, 3)[1];
+    start.pitch_rad = -0.12;
+    let back = Vec3::new(libm::sinf(start.yaw_rad), 0.0, libm::cosf(start.yaw_rad));
+    let at = |step: u32| {
+        let way = step as f32 / (steps - 1).max(1) as f32;
+        let position_m = start.position_m + way * (high * back + low * Vec3::Y);
+        Camera { position_m, ..start }
+    };
+    (0..steps).map(at).collect()
+}
+
 /// The same landscape with `count` trees: of more than are wanted an even choice; else copies stand between them,
 /// spread evenly over the dry land (the additive recurrence of Roberts 2018).
 pub fn forest(scene: &Scene, count: usize) -> Scene {

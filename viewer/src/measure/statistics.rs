@@ -27,6 +27,26 @@ pub fn quantile(values: &[f64], share: f64) -> f64 {
     sorted.get(rank.saturating_sub(1)).copied().unwrap_or(0.0)
 }
 
+/// Spearman's rank correlation of pairs, equal values at the mean of their ranks; `None` of fewer than two pairs, or where all
+/// values of a side are equal.
+pub fn spearman(pairs: &[(f64, f64)]) -> Option<f64> {
+    let ranks = |of: fn(&(f64, f64)) -> f64| -> Vec<f64> {
+        let values: Vec<f64> = pairs.iter().map(of).collect();
+        let rank = |value: &f64| {
+            let below = values.iter().filter(|other| *other < value).count();
+            let alike = values.iter().filter(|other| *other == value).count();
+            below as f64 + 0.5 * (alike as f64 - 1.0)
+        };
+        values.iter().map(rank).collect()
+    };
+    let (a, b) = (ranks(|pair| pair.0), ranks(|pair| pair.1));
+    let (mean_a, mean_b) = (mean(&a), mean(&b));
+    let products: Vec<f64> = a.iter().zip(&b).map(|(a, b)| (a - mean_a) * (b - mean_b)).collect();
+    let covariance = products.iter().sum::<f64>() / (pairs.len() as f64 - 1.0);
+    let correlation = covariance / (deviation(&a) * deviation(&b));
+    correlation.is_finite().then_some(correlation)
+}
+
 /// Student's test of a mean against 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TTest {
@@ -55,6 +75,22 @@ mod tests {
             (99.0, 1.0, 100.0)
         );
         assert_eq!((median(&[3.0, 1.0, 2.0]), median(&[])), (2.0, 0.0));
+    }
+
+    #[test]
+    fn ranks_correlate_whatever_the_values_are() {
+        let pairs = |ys: [f64; 5]| [1.0, 2.0, 30.0, 400.0, 1e9].into_iter().zip(ys).collect::<Vec<_>>();
+        let expected = [
+            ([0.1, 0.2, 0.3, 0.35, 0.36], 1.0),
+            ([5.0, 4.0, 3.0, 2.0, 1.0], -1.0),
+            // Σd² = 4 of n = 5: 1 − 6 · 4 / (5 · 24).
+            ([2.0, 1.0, 3.0, 5.0, 4.0], 0.8),
+        ];
+        for (values, expected) in expected {
+            let told = spearman(&pairs(values)).expect("five pairs");
+            assert!((told - expected).abs() < 1e-12, "{told} for {values:?}");
+        }
+        assert_eq!((spearman(&pairs([1.0; 5])), spearman(&[(1.0, 2.0)])), (None, None));
     }
 
     #[test]

@@ -52,7 +52,7 @@ pub struct BoundTrees {
     pub counts: wgpu::Buffer,
     /// Number of each visible tree, its λ, and the share of its pixels that are drawn.
     pub visible: wgpu::Buffer,
-    /// A [`crate::upload::DrawCommand`] for each material, level and template, then for the pictures of each template.
+    /// [`TreeSet::commands`] with numbers of trees.
     pub commands: wgpu::Buffer,
     /// Levels × templates.
     pub buckets: u32,

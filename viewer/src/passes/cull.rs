@@ -53,7 +53,7 @@ pub struct CullUniform {
     pub instances: u32,
     pub templates: u32,
     pub levels: u32,
-    pub materials: u32,
+    pub mesh_draws: u32,
     pub lod_mode: u32,
     pub fixed_error_m: f32,
     pub planes_used: u32,
@@ -105,7 +105,7 @@ impl CullUniform {
             instances: set.count,
             templates: set.template_count,
             levels: set.level_count,
-            materials: set.materials.len() as u32,
+            mesh_draws: set.mesh_draws,
             ..Default::default()
         }
     }

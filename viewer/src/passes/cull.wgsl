@@ -24,10 +24,10 @@ struct Cull {
     error_per_m: f32,
     // Where the trees that are looked at end; they begin at `first`.
     instances: u32,
-    // Templates, levels (the most of any template), materials.
+    // Templates, levels (the most of any template), draws of meshes for each level and template.
     templates: u32,
     levels: u32,
-    materials: u32,
+    mesh_draws: u32,
     lod_mode: u32,
     // Error in metres that is allowed at any distance.
     fixed_error_m: f32,
@@ -173,9 +173,9 @@ fn choose(@builtin(global_invocation_id) id: vec3u) {
 @compute @workgroup_size(GROUP)
 fn write_commands(@builtin(global_invocation_id) id: vec3u) {
     let buckets = cull.templates * cull.levels;
-    if (id.x < buckets * cull.materials) {
+    if (id.x < buckets * cull.mesh_draws) {
         commands[id.x].instances = atomicLoad(&counts[id.x % buckets]);
-    } else if (id.x < buckets * cull.materials + cull.templates) {
-        commands[id.x].instances = atomicLoad(&counts[buckets + id.x - buckets * cull.materials]);
+    } else if (id.x < buckets * cull.mesh_draws + cull.templates) {
+        commands[id.x].instances = atomicLoad(&counts[buckets + id.x - buckets * cull.mesh_draws]);
     }
 }

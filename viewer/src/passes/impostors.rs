@@ -47,7 +47,7 @@ pub(super) fn draw(pass: &mut wgpu::RenderPass<'_>, set: &TreeSet, trees: &Bound
     pass.set_bind_group(1, group, &[]);
     pass.set_vertex_buffer(0, trees.visible.slice(..));
     pass.set_index_buffer(pictures.indices.slice(..), wgpu::IndexFormat::Uint16);
-    let meshes = set.materials.len() as u64 * u64::from(trees.buckets);
+    let meshes = u64::from(set.mesh_draws) * u64::from(trees.buckets);
     let first = meshes * size_of::<DrawCommand>() as u64;
     pass.multi_draw_indexed_indirect(&trees.commands, first, set.template_count);
     1

@@ -126,7 +126,7 @@ impl ShadowBake<'_> {
         {
             let mut pass = begin(&mut encoder, &self.map, LoadOp::Load);
             pass.set_bind_group(0, &self.view, &[]);
-            self.passes.shadow.trees.draw(&mut pass, set, trees);
+            self.passes.shadow.trees.draw(&mut pass, set, trees, None);
         }
         self.gpu.work(encoder.finish());
     }

@@ -11,6 +11,7 @@ pub const SHADER: Shader = Shader { name: "trees", source: include_str!("trees.w
 #[derive(Debug)]
 pub struct Trees {
     pipelines: FilledOrWire<TreePipelines>,
+    bark_strips: FilledOrWire<wgpu::RenderPipeline>,
 }
 
 /// One for each kind of material.
@@ -41,15 +42,23 @@ impl Trees {
     pub(super) fn new(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
         let (shader, layouts) = (compiler.module(&SHADER)?, compiler.layouts);
         let (buffers, groups) = (buffers(), [&layouts.view, &layouts.trees, &layouts.material]);
-        let pipelines = |wireframe: bool| {
-            let build = |fragment: &str, cull: Option<wgpu::Face>| {
-                let usual = PipelineDesc::new(&shader, &groups);
-                let fragment = Some(fragment);
-                compiler.pipeline(&PipelineDesc { fragment, buffers: &buffers, cull, wireframe, ..usual })
-            };
-            TreePipelines { opaque: build("bark", Some(wgpu::Face::Back)), masked: build("leaf", None) }
+        let bark = |wireframe: bool| {
+            let usual = PipelineDesc::new(&shader, &groups);
+            let (fragment, cull) = (Some("bark"), Some(wgpu::Face::Back));
+            PipelineDesc { fragment, buffers: &buffers, cull, wireframe, ..usual }
         };
-        Ok(Self { pipelines: FilledOrWire::new(compiler.gpu, pipelines) })
+        let pipelines = |wireframe: bool| {
+            let leaf = PipelineDesc { fragment: Some("leaf"), cull: None, ..bark(wireframe) };
+            TreePipelines { opaque: compiler.pipeline(&bark(wireframe)), masked: compiler.pipeline(&leaf) }
+        };
+        let bark_strips = |wireframe: bool| {
+            let topology = wgpu::PrimitiveTopology::TriangleStrip;
+            compiler.pipeline(&PipelineDesc { topology, ..bark(wireframe) })
+        };
+        Ok(Self {
+            pipelines: FilledOrWire::new(compiler.gpu, pipelines),
+            bark_strips: FilledOrWire::new(compiler.gpu, bark_strips),
+        })
     }
 }
 
@@ -59,21 +68,36 @@ impl DrawPass for Trees {
     }
 
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, bound: &BoundScene, options: &Options) -> u32 {
-        bound.trees().map_or(0, |(set, trees)| self.pipelines.get(options.wireframe).draw(pass, set, trees))
+        let Some((set, trees)) = bound.trees() else { return 0 };
+        let strips = options.bark_strips.then(|| self.bark_strips.get(options.wireframe));
+        self.pipelines.get(options.wireframe).draw(pass, set, trees, strips)
     }
 }
 
 impl TreePipelines {
-    /// Draws the trees that culling left and tells how many draws that takes.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, set: &TreeSet, bound: &BoundTrees) -> u32 {
+    /// Draws the trees that culling left and tells how many draws that takes. `strips`: draws what is opaque as strips, where
+    /// trees have some.
+    pub fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        set: &TreeSet,
+        bound: &BoundTrees,
+        strips: Option<&wgpu::RenderPipeline>,
+    ) -> u32 {
+        let lists = set.materials.len();
+        let strips = strips.filter(|_| set.mesh_draws as usize > lists);
         pass.set_bind_group(1, &bound.trees_group, &[]);
         pass.set_vertex_buffer(0, set.vertices.slice(..));
         pass.set_vertex_buffer(1, bound.visible.slice(..));
         pass.set_index_buffer(set.indices.slice(..), wgpu::IndexFormat::Uint32);
         for (slot, (material, group)) in set.materials.iter().zip(&bound.material_groups).enumerate() {
-            pass.set_pipeline(if material.masked { &self.masked } else { &self.opaque });
+            let (pipeline, draw) = match strips {
+                Some(strips) if !material.masked => (strips, lists + slot),
+                _ => (if material.masked { &self.masked } else { &self.opaque }, slot),
+            };
+            pass.set_pipeline(pipeline);
             pass.set_bind_group(2, group, &[]);
-            let first = slot as u64 * u64::from(bound.buckets) * size_of::<DrawCommand>() as u64;
+            let first = draw as u64 * u64::from(bound.buckets) * size_of::<DrawCommand>() as u64;
             pass.multi_draw_indexed_indirect(&bound.commands, first, bound.buckets);
         }
         set.materials.len() as u32

@@ -47,6 +47,8 @@ pub struct Level {
     pub base_vertex: u32,
     /// For each material its triangles: part of `Template::indices`.
     pub ranges: Vec<Range>,
+    /// The same triangles as one generalised strip each, where closed materials have one in the file; else empty, or not there.
+    pub strips: Vec<Range>,
 }
 
 /// Part of an index list.
@@ -54,7 +56,7 @@ pub struct Level {
 pub struct Range {
     /// First index.
     pub first: u32,
-    /// Number of indices, a multiple of 3.
+    /// Number of indices; of lists of triangles a multiple of 3.
     pub count: u32,
 }
 

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::{ImageUse, ImpostorSet, Uploader};
-use crate::scene::{Image, Instance, Material, Template, TreeVertex, Trees};
+use crate::scene::{Image, Instance, Material, Range, Template, TreeVertex, Trees};
 
 pub use crate::lod::tree::MAX_LEVELS;
 /// The most materials that all trees of a landscape may have: each is one draw.
@@ -95,9 +95,12 @@ pub struct TreeSet {
     pub template_count: u32,
     /// Levels of the template that has most.
     pub level_count: u32,
-    /// One for each material, level and template, in this order of significance, nearest levels first, with no trees yet;
-    /// then one for the pictures of each template.
+    /// One for each of [`Self::mesh_draws`], level and template, in this order of significance, nearest levels first, with no
+    /// trees yet; then one for the pictures of each template.
     pub commands: Vec<DrawCommand>,
+    /// Draws of meshes that there are commands for: lists of each material; then, if all trees have some, strips of each closed
+    /// material, in the same order.
+    pub mesh_draws: u32,
     /// Triangles of one tree for each level and template, all materials together: index level · templates + template.
     /// Pictures count as one more level.
     pub triangles: Vec<u32>,
@@ -146,6 +149,7 @@ impl Uploader {
             template_count: lists.templates.len() as u32,
             level_count: level_count(trees) as u32,
             commands: lists.commands,
+            mesh_draws: lists.mesh_draws as u32,
             triangles: lists.triangles,
             materials: materials.iter().map(|material| self.material(material)).collect(),
             impostors: self.impostors(&trees.templates),
@@ -178,6 +182,7 @@ impl Uploader {
 struct Lists {
     templates: Vec<TemplateData>,
     commands: Vec<DrawCommand>,
+    mesh_draws: usize,
     triangles: Vec<u32>,
     capacity: u32,
 }
@@ -185,23 +190,34 @@ struct Lists {
 fn arrange(trees: &Trees, materials: &[Material]) -> Lists {
     let (templates, has_pictures) = (trees.templates.len(), ImpostorSet::suits(&trees.templates));
     let buckets = level_count(trees) * templates;
-    let commands = vec![DrawCommand::default(); buckets * materials.len()];
-    let mut lists = Lists { templates: Vec::new(), commands, triangles: vec![0; buckets], capacity: 0 };
+    let mesh_draws = materials.len() + strips(trees, materials);
+    let mut lists = Lists {
+        templates: Vec::new(),
+        commands: vec![DrawCommand::default(); buckets * mesh_draws],
+        mesh_draws,
+        triangles: vec![0; buckets],
+        capacity: 0,
+    };
     lists.triangles.resize(buckets + templates, 2);
     let (mut base_vertex, mut base_index) = (0, 0);
     for (index, template) in trees.templates.iter().enumerate() {
         let capacity = trees.instances.iter().filter(|tree| tree.template as usize == index).count() as u32;
         for (number, level) in template.levels.iter().take(MAX_LEVELS).enumerate() {
             let bucket = number * templates + index;
-            for (range, material) in level.ranges.iter().zip(&template.materials) {
+            let command = |range: &Range| DrawCommand {
+                indices: range.count,
+                instances: 0,
+                first_index: base_index + range.first,
+                base_vertex: (base_vertex + level.base_vertex) as i32,
+                first_instance: lists.capacity + number as u32 * capacity,
+            };
+            for (part, (range, material)) in level.ranges.iter().zip(&template.materials).enumerate() {
                 let slot = materials.iter().position(|known| same(known, material)).unwrap_or(0);
-                lists.commands[slot * buckets + bucket] = DrawCommand {
-                    indices: range.count,
-                    instances: 0,
-                    first_index: base_index + range.first,
-                    base_vertex: (base_vertex + level.base_vertex) as i32,
-                    first_instance: lists.capacity + number as u32 * capacity,
-                };
+                lists.commands[slot * buckets + bucket] = command(range);
+                let strip = level.strips.get(part).filter(|_| slot + materials.len() < mesh_draws);
+                if let Some(strip) = strip {
+                    lists.commands[(materials.len() + slot) * buckets + bucket] = command(strip);
+                }
                 lists.triangles[bucket] += range.count / 3;
             }
         }
@@ -218,6 +234,22 @@ fn arrange(trees: &Trees, materials: &[Material]) -> Lists {
         base_index += template.indices.len() as u32;
     }
     lists
+}
+
+/// Closed materials, which are the first, if all their triangles are there as strips, too; else none.
+fn strips(trees: &Trees, materials: &[Material]) -> usize {
+    let has_strips = |template: &Template| {
+        template.levels.iter().all(|level| {
+            let parts = level.ranges.iter().zip(&template.materials).enumerate();
+            let closed =
+                parts.filter(|(_, (list, material))| list.count > 0 && material.alpha_cutoff.is_none());
+            closed
+                .map(|(part, _)| part)
+                .all(|part| level.strips.get(part).is_some_and(|strip| strip.count > 0))
+        })
+    };
+    let closed = materials.iter().filter(|material| material.alpha_cutoff.is_none()).count();
+    if trees.templates.iter().all(|template| has_strips(template)) { closed } else { 0 }
 }
 
 /// Levels of a template that are drawn.

@@ -22,7 +22,7 @@ fn a_run_is_written_as_it_goes_taken_up_and_compared() {
     let here = folder.path();
     let tiny = ["out", "--size", "40x30", "--steps", "2", "--frames", "2", "--scenes", "1"];
     let first = printed(&lab(here, &tiny));
-    assert_eq!(first.matches(" rows in ").count(), 16, "{first}");
+    assert_eq!(first.matches(" rows in ").count(), 20, "{first}");
 
     let series = here.join("out/series");
     let popping = fs::read_to_string(series.join("popping-trees-many.csv")).expect("measured");

@@ -110,7 +110,7 @@ fn chosen(
     let visible: Vec<[u32; 3]> = bytemuck::pod_collect_to_vec(&fetch(gpu, &lists.visible));
     let commands: Vec<DrawCommand> = bytemuck::pod_collect_to_vec(&fetch(gpu, &lists.commands));
     let (buckets, kinds) = (lists.buckets as usize, set.template_count as usize);
-    let meshes = buckets * set.materials.len();
+    let meshes = buckets * set.mesh_draws as usize;
     let mut shown: Vec<Option<Shown>> = vec![None; forest.scales.len()];
     for (index, (command, before)) in commands.iter().zip(&set.commands).enumerate() {
         let count = counts[if index < meshes { index % buckets } else { buckets + index - meshes }];

@@ -135,7 +135,7 @@ pub fn template(name: &str, errors_m: &[f32]) -> Template {
             vertices.push(cone_vertex([0.0, high, 0.0], [0.0, 0.0]));
         }
         let range = Range { first, count: indices.len() as u32 - first };
-        levels.push(Level { error_m, base_vertex, ranges: vec![range] });
+        levels.push(Level { error_m, base_vertex, ranges: vec![range], strips: Vec::new() });
     }
     Template {
         name: name.to_owned(),

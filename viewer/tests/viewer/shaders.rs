@@ -114,7 +114,7 @@ fn uniforms_are_laid_out_alike() {
             instances,
             templates,
             levels,
-            materials,
+            mesh_draws,
             lod_mode,
             fixed_error_m,
             planes_used,

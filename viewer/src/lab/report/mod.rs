@@ -1,5 +1,6 @@
 //! What was measured → a page beside what the thesis found.
 
+mod bark;
 mod figures;
 mod preprocessing;
 mod series;
@@ -37,6 +38,7 @@ pub fn keep(folder: &Path, name: &str, page: &Page) -> Result<()> {
 fn page(store: &Store, configuration: &Configuration) -> Result<Page> {
     let mut sections = figures::of_land(store, configuration.machine.software)?;
     sections.extend(figures::of_trees(store, configuration.machine.software)?);
+    sections.push(bark::section(store, configuration.machine.software)?);
     sections.push(system::section(store)?);
     sections.push(preprocessing::section(store)?);
     sections.push(targets::section(store)?);

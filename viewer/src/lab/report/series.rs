@@ -2,7 +2,9 @@
 
 use anyhow::Result;
 
-use crate::lab::experiment::{CONTINUOUS, DISCRETE, Experiment, MORPH, NONE, ROAM, ROUGHNESS, SIMPLE};
+use crate::lab::experiment::{
+    CONTINUOUS, DISCRETE, Experiment, LISTS, MORPH, NONE, ROAM, ROUGHNESS, SIMPLE, STRIPS,
+};
 use crate::lab::page::{Line, Plot, Scale, Table, rounded, with_deviation};
 use crate::lab::popping::Pop;
 use crate::lab::store::Store;
@@ -25,9 +27,9 @@ pub fn mean_of(values: impl Iterator<Item = f64>) -> f64 {
 /// Looks of lines: a scheme has the same everywhere.
 fn style(scheme: &str) -> usize {
     match scheme {
-        NONE => 0,
+        NONE | LISTS => 0,
         ROAM | DISCRETE => 1,
-        MORPH | CONTINUOUS => 2,
+        MORPH | CONTINUOUS | STRIPS => 2,
         SIMPLE | ROUGHNESS => 3,
         _ => 4,
     }
