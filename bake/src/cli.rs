@@ -228,7 +228,7 @@ pub enum Command {
         /// How many persons.
         #[arg(long, value_name = "N", default_value_t = 200, requires = "breeding")]
         persons: u64,
-        /// Only where the name has these words, as "real space".
+        /// Only rows whose name has these words, as "real space" or "16 genes, separable, 0.02, learned".
         #[arg(long, value_name = "WORDS", requires = "breeding")]
         only: Option<String>,
     },

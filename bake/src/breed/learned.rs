@@ -1,7 +1,7 @@
 //! Votes of all generations → the next one: a model of what the person wants says which four to show.
 //!
 //! The first landscape is the best guess at what is wanted, and the others differ so that the next choice tells most. Of
-//! what is like no kind, generations of odd number only ask: all four differ, for beside a good guess nothing else is
+//! what is like no kind, four generations of five only ask: all four differ, for beside a good guess nothing else is
 //! chosen, and little is learned.
 
 use genescape_schema::{
@@ -20,6 +20,9 @@ use super::taste::{Ideal, ideals};
 use super::variety::Varied;
 use crate::kinds::{Company, Home};
 use crate::seed::Dice;
+
+/// Of what is like no kind, the best guess is shown once in so many generations.
+const GUESSES_EVERY: u32 = 5;
 
 /// What is known of somebody who voted so.
 pub struct Learned<'a> {
@@ -137,10 +140,11 @@ impl<'a> Learned<'a> {
         four.iter().map(|one| self.chromosome(category, one, &mut dice)).collect()
     }
 
-    /// Whether all four are for asking: not where close variations are wanted. Kinds say so much of what may be wanted that there a choice tells enough anyway.
+    /// Whether all four are for asking: not where close variations are wanted. Kinds say so much of what may be wanted that
+    /// there a choice tells enough anyway.
     fn asks(&self, category: Category, next: u32) -> bool {
         let is_usual = self.parents.variety.is_none_or(|variety| variety >= Variety::USUAL);
-        is_usual && next % 2 == 1 && self.tastes[category as usize].prior.is_wild()
+        is_usual && !next.is_multiple_of(GUESSES_EVERY) && self.tastes[category as usize].prior.is_wild()
     }
 
     /// Whole codes, of the component's kind.

@@ -3,7 +3,9 @@
 //! How much a choice tells is the mutual information between it and what is wanted (Lindley, "On a Measure of the
 //! Information Provided by an Experiment", 1956; Houlsby and others, "Bayesian Active Learning for Classification and
 //! Preference Learning", 2011), summed over the samples. The three begin as what samples want (Thompson 1933), the
-//! best set of these is taken one by one, and then each is changed as long as a choice would tell more.
+//! best set of these is taken one by one, and then each is changed as long as that makes the set better. What tells most
+//! would often be far from what is wanted: so what will be missed in what is chosen is set against it (as in Viappiani and
+//! Boutilier, "Optimal Bayesian Recommendation Sets and Myopically Optimal Choice Query Sets", 2010).
 
 use std::collections::BTreeSet;
 
@@ -18,6 +20,9 @@ const POOL: usize = 150;
 const CHANGES: u32 = 500;
 /// How far towards the mean of its kind a sampled point is taken.
 const PULLS: [f32; 3] = [0.3, 0.6, 1.0];
+/// What showing something worse costs, in nats: as much as the choice would have to tell more, were all genes of what is
+/// chosen to differ by all of their range.
+const REGRET: f32 = 3.0;
 /// What must be missed in another, as a part of what is missed in the favourite, for it to take that one's place.
 const CLEARLY: f32 = 0.92;
 /// The least part of the samples that a kind must have for its mean to be a guess.
@@ -87,29 +92,30 @@ impl Spread<'_> {
 
     /// Others than `shown`, as many as it takes to make four.
     pub fn others(&self, shown: &[Vec<f32>], dice: &mut Dice) -> Vec<Vec<f32>> {
+        let units: Vec<f32> = self.ideals.iter().map(Ideal::unit).collect();
+        let worth = |rows: &[&[f32]]| worth(rows, &units);
         let pool = self.pool(dice);
         let missed: Vec<Vec<f32>> = pool.iter().map(|one| self.missed(&one.at)).collect();
         let mut set: Vec<Candidate> = Vec::new();
         let mut rows: Vec<Vec<f32>> = shown.iter().map(|one| self.missed(one)).collect();
         while rows.len() < INDIVIDUALS {
-            let told = |row: &Vec<f32>| {
+            let with = |row: &Vec<f32>| {
                 let with: Vec<&[f32]> = rows.iter().chain([row]).map(Vec::as_slice).collect();
-                // Of one alone nothing is told: the first is any.
-                information(&with)
+                worth(&with)
             };
-            let best = (0..pool.len()).max_by(|a, b| told(&missed[*a]).total_cmp(&told(&missed[*b])));
+            let best = (0..pool.len()).max_by(|a, b| with(&missed[*a]).total_cmp(&with(&missed[*b])));
             let best = best.unwrap_or_default();
             set.push(pool[best].clone());
             rows.push(missed[best].clone());
         }
-        let mut told = information(&slices(&rows));
+        let mut most = worth(&slices(&rows));
         for _ in 0..CHANGES {
             let at = dice.below(set.len() as u32) as usize;
             let Some(other) = self.changed(&set[at], dice) else { continue };
             let row = std::mem::replace(&mut rows[shown.len() + at], self.missed(&other.at));
-            let now = information(&slices(&rows));
-            if now > told {
-                told = now;
+            let now = worth(&slices(&rows));
+            if now > most {
+                most = now;
                 set[at] = other;
             } else {
                 rows[shown.len() + at] = row;
@@ -207,30 +213,68 @@ fn slices(rows: &[Vec<f32>]) -> Vec<&[f32]> {
     rows.iter().map(Vec::as_slice).collect()
 }
 
-/// How much a choice between points tells of which sample is right, in nats. `missed` has a row for each point: what
-/// each sample misses in it.
-fn information(missed: &[&[f32]]) -> f32 {
-    let samples = missed.first().map_or(0, |row| row.len());
+/// What is known of a choice before it is made: how much it would tell of which sample is right, in nats, less what would be
+/// missed in what is chosen, as [`REGRET`] says. `missed` has a row for each point: what each sample misses in it.
+/// `units` has for each sample what it misses where every gene differs by all of its range.
+fn worth(missed: &[&[f32]], units: &[f32]) -> f32 {
     let mut mean = [0.0f32; INDIVIDUALS];
-    let mut conditional = 0.0;
-    for sample in 0..samples {
+    let (mut conditional, mut regret) = (0.0, 0.0);
+    for (sample, unit) in units.iter().enumerate() {
         let least = missed.iter().map(|row| row[sample]).fold(f32::INFINITY, f32::min);
+        let gaps = missed.iter().map(|row| row[sample] - least);
         let mut chances = [0.0f32; INDIVIDUALS];
-        let mut sum = 0.0;
-        for (chance, row) in chances.iter_mut().zip(missed) {
-            *chance = libm::expf(least - row[sample]);
+        let (mut sum, mut gap) = (0.0, 0.0);
+        for (chance, above) in chances.iter_mut().zip(gaps) {
+            *chance = libm::expf(-above);
             sum += *chance;
+            gap += *chance * above;
         }
-        for (mean, chance) in mean.iter_mut().zip(chances) {
-            *mean += chance / sum;
-            conditional += entropy(chance / sum);
-        }
+        let expected = gap / sum;
+        mean.iter_mut().zip(chances).for_each(|(mean, chance)| *mean += chance / sum);
+        // The entropy of chances that fall as e to the power of the gap.
+        conditional += libm::logf(sum) + expected;
+        regret += (least + expected) / unit;
     }
-    let samples = samples.max(1) as f32;
-    mean.iter().map(|chance| entropy(chance / samples)).sum::<f32>() - conditional / samples
+    let samples = units.len().max(1) as f32;
+    let told = mean.iter().map(|chance| entropy(chance / samples)).sum::<f32>() - conditional / samples;
+    told - REGRET * regret / samples
 }
 
 /// One outcome's part of it.
 fn entropy(chance: f32) -> f32 {
     if chance > 1e-7 { -chance * libm::logf(chance) } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// What samples miss in the points of a set: each sample wants one of these, or none.
+    fn rows() -> impl Strategy<Value = Vec<Vec<f32>>> {
+        prop::collection::vec(prop::collection::vec(0.0..8.0f32, 12), INDIVIDUALS)
+    }
+
+    proptest! {
+        #[test]
+        fn of_choices_that_tell_as_much_the_nearer_is_worth_more(near in rows(), farther in 0.1..8.0f32) {
+            let far: Vec<Vec<f32>> =
+                near.iter().map(|row| row.iter().map(|missed| missed + farther).collect()).collect();
+            let units = [20.0; 12];
+            let lost = worth(&slices(&near), &units) - worth(&slices(&far), &units);
+            // What everybody misses everywhere tells nothing.
+            prop_assert!((lost - REGRET * farther / 20.0).abs() < 1e-3, "{}", lost);
+        }
+
+        #[test]
+        fn nothing_is_told_by_four_that_are_alike_and_never_more_than_which_of_four(rows in rows()) {
+            // Where range is without end nothing is missed.
+            let units = [f32::INFINITY; 12];
+            let told = worth(&slices(&rows), &units);
+            prop_assert!((-1e-4..=libm::logf(INDIVIDUALS as f32) + 1e-4).contains(&told), "{}", told);
+            let alike = worth(&[rows[0].as_slice(); INDIVIDUALS], &units);
+            prop_assert!(alike.abs() < 1e-4, "{}", alike);
+        }
+    }
 }

@@ -46,6 +46,11 @@ impl Ideal {
         let terms = point.iter().zip(&self.at).zip(&self.weights).enumerate();
         terms.map(|(gene, ((x, t), a))| a * squared(prior.is_choice(gene), *x, *t)).sum::<f32>().sqrt()
     }
+
+    /// What is missed where every gene differs by all of its range.
+    pub fn unit(&self) -> f32 {
+        self.weights.iter().sum::<f32>().sqrt()
+    }
 }
 
 fn squared(is_choice: bool, x: f32, t: f32) -> f32 {
