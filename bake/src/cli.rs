@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 
 use bytesize::ByteSize;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
-use genescape_schema::Variety;
+use genescape_schema::{Strategy, Variety};
 
 use crate::bad_input::BadInput;
-use crate::breed::Strategy;
 use crate::chosen_parents::ChosenParents;
 use crate::export::{Audience, Options};
 use crate::landscape::{Landscape, Reference, SceneArg};
@@ -129,7 +129,7 @@ pub enum Command {
         #[arg(long, value_name = "N")]
         from: Option<u32>,
         /// How it is found.
-        #[arg(long, value_enum, default_value_t)]
+        #[arg(long, value_parser = strategies(), default_value_t)]
         strategy: Strategy,
         /// How different the others are from the best guess: 0 close variations, 1 anything [default: what the generation's
         /// file says, else 0.5].
@@ -231,6 +231,12 @@ pub enum Command {
         /// Only rows whose name has these words, as "real space" or "16 genes, separable, 0.02, learned".
         #[arg(long, value_name = "WORDS", requires = "breeding")]
         only: Option<String>,
+        /// What part of a bake the cache has already from one bred generation to the next, instead.
+        #[arg(long, conflicts_with = "breeding")]
+        reuse: bool,
+        /// How many generations.
+        #[arg(long, value_name = "N", default_value_t = 50, requires = "reuse")]
+        generations: u32,
     },
     /// Print what makes a shell complete this command line.
     #[command(after_help = COMPLETIONS_EXAMPLE)]
@@ -333,6 +339,17 @@ pub enum CacheCommand {
         #[arg(long, value_name = "SIZE", value_parser = bytes)]
         max_size: u64,
     },
+}
+
+/// Their names with what they do.
+fn strategies() -> impl TypedValueParser<Value = Strategy> {
+    let told = |strategy: Strategy| {
+        PossibleValue::new(strategy.name()).help(match strategy {
+            Strategy::Learned => "By a model of what the person wants, from all votes so far",
+            Strategy::Classic => "By the thesis's genetic algorithm, from the last votes alone",
+        })
+    };
+    PossibleValuesParser::new(Strategy::ALL.map(told)).try_map(|name| name.parse())
 }
 
 /// A number of threads: more than any machine's cores would only keep it from other work.

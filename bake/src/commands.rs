@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result};
-use genescape_schema::{Kinds, Population, Space, Variety};
+use genescape_schema::{Kinds, Population, Space, Strategy, Variety};
 use genescape_world::output::BadOutput;
 use genescape_world::{World, WorldError, file_limit};
 use signal_hook::consts::SIGINT;
@@ -13,7 +13,7 @@ use signal_hook::flag;
 
 use crate::audition::{self, Auditioned};
 use crate::bad_input::BadInput;
-use crate::breed::{NoVotes, Strategy};
+use crate::breed::NoVotes;
 use crate::cache_commands::GaveUp;
 use crate::chosen_parents::ChosenParents;
 use crate::cli::{Cli, Command, RunArgs, meant_command};
@@ -96,6 +96,9 @@ fn dispatch(cli: &Cli) -> Result<()> {
         Command::Cache { action } => cache_commands::look_after(&run.world, action, &stopped),
         Command::Bench { breeding: true, persons, only, .. } => {
             bench::breeding::breeding(*persons, &pool(run.threads)?, only.as_deref())
+        }
+        Command::Bench { reuse: true, generations, .. } => {
+            bench::reuse::reuse(*generations, &pool(run.threads)?)
         }
         Command::Bench { runs, .. } => bench::bench(*runs, &pool(run.threads)?, run.size),
         Command::Completions { shell } => manual::completions(*shell),

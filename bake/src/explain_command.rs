@@ -3,7 +3,7 @@
 
 use anyhow::Result;
 use genescape_cache::{Change, Explanation, How};
-use genescape_schema::{Genome, Population, Space};
+use genescape_schema::{Genome, Population, Space, Strategy};
 use genescape_world::{World, names};
 use serde_json::{Value, json};
 
@@ -51,6 +51,9 @@ fn tell_origin(population: &Population, Origin { redrawn, taught }: &Origin) {
     if let Some([tree, terrain, sky]) = &population.bred_from {
         say!("bred from chosen parents: trees of {tree}, land of {terrain}, sky of {sky}");
     }
+    if population.strategy == Strategy::Classic {
+        say!("bred as in the thesis, from the last votes alone");
+    }
     redrawn.iter().for_each(|redrawn| say!("{redrawn}"));
     if !taught.is_empty() {
         say!("what votes have taught, in likely kinds and genes:");
@@ -62,6 +65,7 @@ fn origin_json(population: &Population, Origin { redrawn, taught }: &Origin) -> 
     let drawn = |one: &Redrawn| json!({ "landscape": one.landscape + 1, "lacked": one.lacked.lack() });
     json!({
         "parent": population.parent.map(|parent| parent.generation),
+        "strategy": population.strategy.name(),
         "bred_from": population.bred_from,
         "redrawn": redrawn.iter().map(drawn).collect::<Vec<_>>(),
         "taught": taught.iter().map(account_json).collect::<Vec<_>>(),

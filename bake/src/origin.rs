@@ -4,7 +4,7 @@ use genescape_schema::{Kinds, Population, Space};
 use genescape_world::World;
 
 use crate::audition::{self, Redrawn};
-use crate::breed::{Account, Breeder, Strategy};
+use crate::breed::{Account, Breeder};
 use crate::events::Untold;
 use crate::session;
 
@@ -55,5 +55,5 @@ fn by_votes<T>(
     let parents = world.population(space, parent.generation).ok()?.population;
     let parents = Population { votes: Some(parent.votes), variety: parent.variety, ..parents };
     let past = session::votes_before(world, space, Some(parent.generation), population.generation, &Untold);
-    Breeder::new(space, kinds, Strategy::default(), &past, &parents).ok().map(|breeder| tell(&breeder))
+    Breeder::new(space, kinds, population.strategy, &past, &parents).ok().map(|breeder| tell(&breeder))
 }

@@ -1,9 +1,9 @@
 //! A population, and all else that its children depend on.
 
-use genescape_schema::{Kinds, Population, Space, Votes};
+use genescape_schema::{Kinds, Population, Space, Strategy, Votes};
 
 use crate::audition::{self, Auditioned};
-use crate::breed::{Breeder, NoVotes, Strategy};
+use crate::breed::{Breeder, NoVotes};
 
 /// The same children for the same votes, as long as it is the same.
 #[derive(Clone, Debug, PartialEq)]

@@ -8,11 +8,11 @@ use std::time::Instant;
 
 use anyhow::Result;
 use genescape_cache::{BlobRef, Cache, Digest, How};
-use genescape_schema::{Kinds, Population, Space};
+use genescape_schema::{Kinds, Population, Space, Strategy};
 use genescape_world::{PopulationFile, World, WorldKinds, names};
 
 use crate::audition::{self, Auditioned};
-use crate::breed::{Breeder, Strategy};
+use crate::breed::Breeder;
 use crate::events::{Event, Listener};
 use crate::graph::Done;
 use crate::pedigree::Pedigree;

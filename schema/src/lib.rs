@@ -22,6 +22,7 @@ mod report;
 mod ron_tree;
 pub mod scene;
 mod space;
+mod strategy;
 mod table;
 mod variety;
 mod write;
@@ -33,8 +34,11 @@ pub use genome::{Chromosome, Genome, GenomeError};
 pub use kind::{Allowed, Bounds, Demand, Kind, Kinds, SHIPPED, ShippedKind};
 pub use lineage::{Lineage, unanswered};
 pub use parameter::{Category, Parameter, Scale};
-pub use population::{INDIVIDUALS, Individual, Loaded, LoadedPreset, Parent, Population, TreePreset, Votes};
+pub use population::{
+    INDIVIDUALS, Individual, Loaded, LoadedPreset, Parent, Population, TreePreset, Votes, landscape_named,
+};
 pub use printable::printable;
 pub use report::{Diagnostic, Report};
 pub use space::Space;
+pub use strategy::Strategy;
 pub use variety::Variety;

@@ -6,11 +6,12 @@ use crate::parameter::Category;
 use crate::population::{INDIVIDUALS, Parent, Votes};
 use crate::report::Report;
 use crate::ron_tree::{Field, Node, Value};
+use crate::strategy::Strategy;
 use crate::variety::Variety;
 
 /// Fields that a population file may have.
-const FIELDS: [&str; 8] =
-    ["generation", "seed", "parent", "bred_from", "votes", "variety", "locked", "individuals"];
+const FIELDS: [&str; 9] =
+    ["generation", "seed", "parent", "strategy", "bred_from", "votes", "variety", "locked", "individuals"];
 
 /// A population file without its genes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,6 +91,15 @@ fn read_variety(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<Variety> {
     })
 }
 
+/// `"classic"`.
+pub(crate) fn read_strategy(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<Strategy> {
+    let name = checker.text(node, "strategy")?;
+    name.parse().map_or_else(
+        |known| checker.refuse(node.span(), format!("strategy: {} is none; there is {known}", given(node))),
+        Some,
+    )
+}
+
 /// `(tree: "3.2", terrain: "fjord", sky: "old.ron:1")`, with or without a `Some`, or `None`.
 pub(crate) fn read_bred_from(checker: &mut Checker<'_>, node: &Node<'_>) -> Option<[String; 3]> {
     let node = unwrapped(node)?;
@@ -144,6 +154,7 @@ fn unwrapped<'n, 'a>(node: &'n Node<'a>) -> Option<&'n Node<'a>> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use proptest::strategy::Strategy;
 
     fn lineage(generation: u32, parent: Option<Parent>, votes: Option<Votes>) -> Lineage {
         Lineage { generation, parent, votes, variety: None }

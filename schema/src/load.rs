@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::check::{Checker, MAX_NAME, did_you_mean, given, optional, quoted, read};
 use crate::genome::{Chromosome, Genome};
-use crate::lineage::{Lineage, read_bred_from, read_lineage};
+use crate::lineage::{Lineage, read_bred_from, read_lineage, read_strategy};
 use crate::parameter::{Category, Parameter};
 use crate::population::{INDIVIDUALS, Individual, Loaded, LoadedPreset, Population, TreePreset};
 use crate::report::Report;
@@ -50,6 +50,7 @@ impl Loader<'_, '_> {
         let (fields, lineage) = read_lineage(self.checker, root)?;
         let seed = self.checker.need(&fields, root, "Population", "seed");
         let seed = seed.and_then(|node| self.checker.whole(node, "seed", u64::MAX));
+        let strategy = optional(&fields, "strategy").map(|node| read_strategy(self.checker, node));
         let bred_from = optional(&fields, "bred_from").and_then(|node| read_bred_from(self.checker, node));
         let locked = optional(&fields, "locked").map(|node| self.locked(node)).unwrap_or_default();
         let list = self.checker.need(&fields, root, "Population", "individuals")?;
@@ -69,6 +70,7 @@ impl Loader<'_, '_> {
             generation,
             seed: seed?,
             parent,
+            strategy: strategy.flatten().unwrap_or_default(),
             bred_from,
             individuals: individuals.try_into().ok()?,
             votes,

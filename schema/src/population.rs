@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use crate::genome::{Chromosome, Genome};
 use crate::parameter::{Category, Parameter};
 use crate::space::Space;
+use crate::strategy::Strategy;
 use crate::variety::Variety;
 
 /// Landscapes in a population: what the four panes of the viewer show.
@@ -93,6 +94,8 @@ pub struct Population {
     pub seed: u64,
     /// What it was bred from; `None` for one that was made otherwise.
     pub parent: Option<Parent>,
+    /// How it was found; of one that was not bred the default.
+    pub strategy: Strategy,
     /// Where a person chose parents from anywhere, those of trees, land and sky: "3.2" of a generation, "fjord", a kind, or
     /// "old.ron:1". If all are of one generation, `parent` says so as well.
     pub bred_from: Option<[String; 3]>,
@@ -124,13 +127,32 @@ impl Population {
     /// Four landscapes that nobody has voted on, and that come from none.
     pub fn new(generation: u32, seed: u64, individuals: [Individual; INDIVIDUALS]) -> Self {
         let (parent, bred_from, votes, variety, locked) = (None, None, None, None, BTreeSet::new());
-        Self { generation, seed, parent, bred_from, individuals, votes, variety, locked }
+        let strategy = Strategy::default();
+        Self { generation, seed, parent, strategy, bred_from, individuals, votes, variety, locked }
+    }
+
+    /// Generations that it was bred from and that its file names, in rising order: that of the votes, or of parents that a
+    /// person chose.
+    pub fn parent_generations(&self) -> Vec<u32> {
+        if let Some(parent) = self.parent {
+            return vec![parent.generation];
+        }
+        let named = self.bred_from.iter().flatten().filter_map(|name| landscape_named(name));
+        let generations: BTreeSet<u32> = named.map(|(generation, _)| generation).collect();
+        generations.into_iter().collect()
     }
 
     /// Whether breeding leaves a gene as it is: by itself or with its category.
     pub fn is_locked(&self, gene: &Parameter) -> bool {
         self.locked.contains(&gene.name) || self.locked.contains(gene.category.name())
     }
+}
+
+/// "3.2" → generation 3 and its landscape 2, which counts from 1; `None` of what is called otherwise.
+pub fn landscape_named(name: &str) -> Option<(u32, usize)> {
+    let (generation, landscape) = name.split_once('.')?;
+    let landscape = landscape.parse().ok().filter(|landscape| (1..=INDIVIDUALS).contains(landscape))?;
+    Some((generation.parse().ok()?, landscape))
 }
 
 /// SplitMix64 (Steele, Lea and Flood 2014).

@@ -7,6 +7,7 @@ use crate::genome::Genome;
 use crate::parameter::{Category, Parameter};
 use crate::population::{Individual, Parent, Population, Votes};
 use crate::space::Space;
+use crate::strategy::Strategy;
 
 impl Population {
     /// The file's text. Reading it gives this population again; writing that gives this text again.
@@ -16,6 +17,10 @@ impl Population {
             let variety = variety.map_or(String::new(), |variety| format!(", variety: {variety}"));
             format!("    parent: Some((generation: {generation}, votes: {}{variety})),\n", cast_text(&votes))
         });
+        let strategy = match self.strategy {
+            Strategy::Learned => String::new(),
+            classic @ Strategy::Classic => format!("    strategy: {},\n", quoted(classic.name())),
+        };
         let bred_from = self.bred_from.as_ref().map_or(String::new(), |from| {
             let from =
                 Category::ALL.map(|category| format!("{category}: {}", quoted(&from[category as usize])));
@@ -51,7 +56,7 @@ impl Population {
         format!(
             "// Four landscapes. Edit any value within its range; the nearest value that its gene has is used.\n\
              // `bake params` says what each gene does.\n\
-             Population(\n    generation: {generation},\n    seed: {seed},\n{parent}{bred_from}    \
+             Population(\n    generation: {generation},\n    seed: {seed},\n{parent}{strategy}{bred_from}    \
              // The best of each, as Some((tree: Some(0), terrain: Some(2), sky: None)): Some(0) is landscape 1, Some(3)\n    \
              // landscape 4, None no favourite.\n    \
              votes: {votes},\n{variety}{locked}    individuals: [\n{individuals}    ],\n)\n"

@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use genescape_bake::ahead;
-use genescape_bake::breed::{Settled, Strategy};
+use genescape_bake::breed::Settled;
 use genescape_bake::chosen_parents::ChosenParents;
 use genescape_bake::cli::{bytes, threads};
 use genescape_bake::events::{Listener, Untold};
@@ -29,7 +29,7 @@ use genescape_bake::origin;
 use genescape_bake::plan::Resolution;
 use genescape_bake::session::{self, Session};
 use genescape_bake::watch_loop::{self, Host};
-use genescape_schema::{Category, Parent, Population, Space};
+use genescape_schema::{Category, Parent, Population, Space, Strategy};
 use genescape_world::World;
 use thread_priority::{ThreadPriority, set_current_thread_priority};
 

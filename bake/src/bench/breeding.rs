@@ -3,11 +3,11 @@
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use genescape_schema::{Category, INDIVIDUALS, Kinds, Parent, Population, Space};
+use genescape_schema::{Category, INDIVIDUALS, Kinds, Parent, Population, Space, Strategy};
 use rayon::prelude::*;
 
 use super::person::{Person, Taste};
-use crate::breed::{Breeder, Strategy};
+use crate::breed::Breeder;
 use crate::random;
 use crate::say;
 use crate::seed::Dice;

@@ -5,6 +5,7 @@ pub mod breeding;
 mod cma_es;
 pub mod person;
 pub mod preprocessing;
+pub mod reuse;
 
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;

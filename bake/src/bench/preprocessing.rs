@@ -4,10 +4,10 @@ use std::time::Instant;
 
 use anyhow::Result;
 use genescape_cache::Cache;
-use genescape_schema::{Genome, Kinds, Parent, Population, Space, Votes};
+use genescape_schema::{Genome, Kinds, Parent, Population, Space, Strategy, Votes};
 
 use super::{Stages, bake};
-use crate::breed::{Breeder, Strategy};
+use crate::breed::Breeder;
 use crate::gltf::{self, Picture};
 use crate::plan::{Resolution, TEMPLATES};
 use crate::stages::lod::{self, Step};

@@ -17,22 +17,11 @@ mod taste;
 mod tests;
 mod variety;
 
-use clap::ValueEnum;
-use genescape_schema::{Category, Kinds, Parent, Population, Space, Votes};
+use genescape_schema::{Category, Kinds, Parent, Population, Space, Strategy, Votes};
 
 pub use account::{Account, Settled};
 pub use chances::likely_votes;
 use learned::Learned;
-
-/// How the next generation is found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Strategy {
-    /// By a model of what the person wants, from all votes so far.
-    #[default]
-    Learned,
-    /// By the thesis's genetic algorithm, from the last votes alone.
-    Classic,
-}
 
 /// Why there is no next generation.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -124,7 +113,8 @@ impl<'a> Breeder<'a> {
             Some(learned) => learned.bred(next, seed),
             None => classic::bred(self.space, self.kinds, &Population { seed, ..self.parents.clone() }, next),
         };
-        let population = Population { seed: self.parents.seed, ..population };
+        let strategy = if self.learned.is_some() { Strategy::Learned } else { Strategy::Classic };
+        let population = Population { seed: self.parents.seed, strategy, ..population };
         match self.chosen {
             Some(Chosen { names, parent }) => {
                 Population { parent: *parent, bred_from: Some(names.clone()), ..population }

@@ -49,7 +49,8 @@ impl Family {
 impl Generation {
     /// As JSON: landscapes count from 1, as people do.
     pub fn to_json(&self) -> Value {
-        let Population { generation, seed, parent, bred_from, individuals, votes, .. } = &self.population;
+        let Population { generation, seed, parent, strategy, bred_from, individuals, votes, .. } =
+            &self.population;
         let landscape = |one: &Individual| {
             let from = one.parents();
             let from = Category::ALL.map(|category| (category.name(), from[category as usize].clone()));
@@ -63,6 +64,7 @@ impl Generation {
             "parent": parent.map(|parent| json!({
                 "generation": parent.generation, "votes": votes_json(&parent.votes),
             })),
+            "strategy": strategy.name(),
             "bred_from": bred_from,
             "votes": votes.as_ref().map(votes_json),
             "landscapes": individuals.iter().map(landscape).collect::<Vec<_>>(),

@@ -5,7 +5,7 @@ use std::fmt::{self, Display, Write};
 
 use genescape_schema::html::{Escaped, base64};
 use genescape_schema::lanes::{self, Line};
-use genescape_schema::{Category, INDIVIDUALS, Individual, Population, Votes};
+use genescape_schema::{Category, INDIVIDUALS, Individual, Population, Strategy, Votes, landscape_named};
 
 use super::{Family, Generation};
 
@@ -34,7 +34,7 @@ fn write_page(out: &mut String, family: &Family) -> fmt::Result {
     let Family { name, generations, skipped } = family;
     let numbers: Vec<(u32, Option<u32>)> = generations
         .iter()
-        .map(|one| (one.population.generation, one.population.parent.map(|parent| parent.generation)))
+        .map(|one| (one.population.generation, one.population.parent_generations().pop()))
         .collect();
     let rows = lanes::rows(&numbers);
     let lanes = rows.iter().map(|row| row.lane + 1).max().unwrap_or(0);
@@ -86,14 +86,17 @@ struct Origin<'a> {
 
 impl Display for Origin<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Population { seed, parent, votes, .. } = &self.one.population;
+        let Population { seed, parent, strategy, votes, .. } = &self.one.population;
         let chosen = self.one.population.bred_from.as_ref().filter(|_| parent.is_none());
         if let Some([tree, terrain, sky]) = chosen {
-            let [tree, terrain, sky] = [tree, terrain, sky].map(|name| Escaped(name));
+            let [tree, terrain, sky] = [tree, terrain, sky].map(|name| self.linked(name));
             write!(f, "bred from chosen parents: trees of {tree}, land of {terrain}, sky of {sky}, ")?;
         }
+        if *strategy == Strategy::Classic {
+            f.write_str("as in the thesis, ")?;
+        }
         match parent.map(|parent| parent.generation) {
-            Some(parent) if self.family.generations.iter().any(|one| one.population.generation == parent) => {
+            Some(parent) if self.has(parent) => {
                 write!(f, "bred from <a href=\"#g{parent}\">generation {parent}</a>, ")?;
             }
             Some(parent) => write!(f, "bred from generation {parent}, which is not here, ")?,
@@ -107,6 +110,23 @@ impl Display for Origin<'_> {
                 let none: Vec<&str> = none.map(part).collect();
                 if none.is_empty() { Ok(()) } else { write!(f, ", none had the best {}", none.join(" or ")) }
             }
+        }
+    }
+}
+
+impl Origin<'_> {
+    fn has(&self, generation: u32) -> bool {
+        self.family.generations.iter().any(|one| one.population.generation == generation)
+    }
+
+    /// What a chosen parent is called, as a link to it if it is here.
+    fn linked(&self, name: &str) -> String {
+        let text = Escaped(name);
+        match landscape_named(name) {
+            Some((generation, landscape)) if self.has(generation) => {
+                format!("<a href=\"#g{generation}-{landscape}\">{text}</a>")
+            }
+            _ => text.to_string(),
         }
     }
 }

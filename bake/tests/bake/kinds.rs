@@ -3,11 +3,11 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use genescape_bake::breed::{Breeder, Strategy};
+use genescape_bake::breed::Breeder;
 use genescape_bake::kinds::{Company, Home};
 use genescape_bake::random;
 use genescape_bake::seed::Dice;
-use genescape_schema::{Category, INDIVIDUALS, Individual, Kind, Kinds, Population, Space, Votes};
+use genescape_schema::{Category, INDIVIDUALS, Individual, Kind, Kinds, Population, Space, Strategy, Votes};
 
 use crate::world::World;
 

@@ -47,3 +47,29 @@ fn an_earlier_page_is_replaced_and_nobody_elses() {
     assert_eq!(fs::read_to_string(&path).expect("there"), "<!doctype html>\nmine");
     assert_eq!(world.run(&["lineage", "tree.txt"]).status.code(), Some(2), "another ending");
 }
+
+#[test]
+fn parents_from_several_generations_and_the_thesiss_breeding_are_told() {
+    let world = World::starters();
+    let votes = "votes: Some((tree: Some(1), terrain: Some(2), sky: None))";
+    let start = fs::read_to_string(world.population(0)).expect("a population");
+    fs::write(world.population(0), start.replacen("votes: None", votes, 1)).expect("written");
+    world.bake(&["next", "--strategy", "classic"]).ok();
+    let explained = world.run(&["explain"]).stdout;
+    assert!(String::from_utf8_lossy(&explained).starts_with("bred as in the thesis"));
+    world.bake(&["breed", "--tree", "0.2", "--terrain", "1.3", "--sky", "1.1"]).ok();
+
+    let told = world.run(&["lineage", "--json"]).stdout;
+    let lines: Vec<serde_json::Value> =
+        serde_json::Deserializer::from_slice(&told).into_iter().map(|line| line.expect("JSON")).collect();
+    let strategies: Vec<&serde_json::Value> = lines.iter().map(|line| &line["strategy"]).collect();
+    assert_eq!(strategies, ["learned", "classic", "learned"]);
+    assert!(world.run(&["lineage"]).status.success());
+    let page = fs::read_to_string(world.file("lineage.html")).expect("a page");
+    assert_eq!(page.matches("as in the thesis").count(), 1);
+    for link in ["<a href=\"#g0-2\">0.2</a>", "<a href=\"#g1-3\">1.3</a>", "<a href=\"#g1-1\">1.1</a>"] {
+        assert!(page.contains(link), "{link}");
+    }
+    // A line arrives at each generation that was bred, also at that of parents from two.
+    assert_eq!(page.matches(" y2=\"14\"/>").count(), 2);
+}

@@ -2,7 +2,8 @@
 
 use genescape_schema::edit::{set_gene, set_locked, set_variety, set_votes};
 use genescape_schema::{
-    Category, Current, Individual, Lineage, Parent, Population, Report, Space, TreePreset, Variety, Votes,
+    Category, Current, Individual, Lineage, Parent, Population, Report, Space, Strategy as BredBy,
+    TreePreset, Variety, Votes,
 };
 use proptest::prelude::*;
 
@@ -112,6 +113,10 @@ fn wrong_genes_say_what_would_be_right() {
         (with("votes: None", "variety: 1.2"), "variety: 1.2 is outside 0, close variations, … 1, anything"),
         (with("votes: None", "variety: \"much\""), "variety: expected a number, found a text"),
         (with("votes: None", "bred_from: (tree: \"oak\", sky: \"fog\")"), "bred_from lacks terrain"),
+        (
+            with("votes: None", "strategy: \"lerned\""),
+            "strategy: \"lerned\" is none; there is \"learned\" or \"classic\"",
+        ),
         (with("generation: 0", "generation: 0, generation: 0"), "generation is given twice; first in line"),
     ];
     for (text, message) in cases {
@@ -292,7 +297,8 @@ fn population() -> impl Strategy<Value = Population> {
             let parent = parent.map(|(generation, votes, variety)| Parent { generation, votes, variety });
             let locked = ["height_m", "sky", "terrain_seed", "tree"];
             let locked = locked.into_iter().take((seed % 5) as usize).map(str::to_owned).collect();
-            Population { parent, bred_from, individuals, votes, variety, locked, ..random }
+            let strategy = BredBy::ALL[(seed / 2 % 2) as usize];
+            Population { parent, strategy, bred_from, individuals, votes, variety, locked, ..random }
         },
     )
 }

@@ -8,7 +8,7 @@ use egui::{
 };
 use egui::{StrokeKind, Ui, epaint::CubicBezierShape, pos2, vec2};
 use genescape_schema::lanes::{self, Line, Row};
-use genescape_schema::{Category, INDIVIDUALS};
+use genescape_schema::{Category, INDIVIDUALS, Strategy};
 
 use super::icon::Icon;
 use super::model::{Kin, Model};
@@ -120,7 +120,7 @@ fn tree(ui: &mut Ui, model: &Model, state: &mut State) {
     section(ui, "Generations");
     let words: Vec<String> = state.search.to_lowercase().split_whitespace().map(str::to_owned).collect();
     let numbers: Vec<(u32, Option<u32>)> =
-        model.family.iter().map(|kin| (kin.generation, kin.parent.map(|parent| parent.generation))).collect();
+        model.family.iter().map(|kin| (kin.generation, kin.bred_from.last().copied())).collect();
     let rows = lanes::rows(&numbers);
     let lanes = rows.iter().map(|row| row.lane + 1).max().unwrap_or(1).min(MAX_LANES);
     let shown: Vec<usize> = (0..rows.len())
@@ -194,8 +194,13 @@ impl Generation<'_> {
         let current = kin.generation == self.model.generation;
         let color = if current { palette.text } else { palette.weak };
         let mut text = format!("Generation {}", kin.generation);
-        if let Some(parent) = kin.parent.filter(|parent| Some(parent.generation) != self.above) {
-            text = format!("{text}, bred from {}", parent.generation);
+        // That it was bred from the row above is what one takes for granted.
+        if !kin.bred_from.is_empty() && kin.bred_from != Vec::from_iter(self.above) {
+            let generations: Vec<String> = kin.bred_from.iter().map(u32::to_string).collect();
+            text = format!("{text}, bred from {}", generations.join(" and "));
+        }
+        if kin.strategy == Strategy::Classic {
+            text.push_str(", as in the thesis");
         }
         let at = pos2(rect.left() + self.gutter, rect.top() + 0.5 * HEADING);
         ui.painter().text(at, Align2::LEFT_CENTER, text, FontId::proportional(12.0), color);

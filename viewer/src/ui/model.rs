@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use egui::TextureId;
 use genescape_schema::{
-    Genome, INDIVIDUALS, Individual, Parameter, Parent, Population, Space, Variety, Votes,
+    Genome, INDIVIDUALS, Individual, Parameter, Parent, Population, Space, Strategy, Variety, Votes,
 };
 
 use crate::ballots::Ballots;
@@ -99,7 +99,9 @@ impl Model {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Kin {
     pub generation: u32,
-    pub parent: Option<Parent>,
+    /// Generations that it was bred from, in rising order, and how.
+    pub bred_from: Vec<u32>,
+    pub strategy: Strategy,
     pub votes: Option<Votes>,
     /// What its landscapes are called, and what they have of whom.
     pub names: [String; INDIVIDUALS],
@@ -114,7 +116,8 @@ impl Kin {
             |text: fn(&Individual) -> &String| population.individuals.each_ref().map(|one| text(one).clone());
         Self {
             generation: population.generation,
-            parent: population.parent,
+            bred_from: population.parent_generations(),
+            strategy: population.strategy,
             votes: population.votes,
             names: of(|one| &one.name),
             descents: of(|one| &one.descent),

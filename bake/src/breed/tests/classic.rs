@@ -1,10 +1,10 @@
 //! The genetic algorithm: favourites live on, the rest is new, and what varies stays what it is.
 
-use genescape_schema::{Chromosome, Kind, Parent};
+use genescape_schema::{Chromosome, Kind, Parent, Strategy};
 use proptest::prelude::*;
 
 use super::*;
-use crate::breed::{Strategy, cross};
+use crate::breed::cross;
 use crate::kinds::testing::kinds;
 
 /// As the thesis does.

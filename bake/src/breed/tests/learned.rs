@@ -1,11 +1,10 @@
 //! Breeding by a model of what the person wants.
 
-use genescape_schema::{Chromosome, Parent};
+use genescape_schema::{Chromosome, Parent, Strategy};
 use proptest::prelude::*;
 
 use super::*;
 use crate::bench::person::{Person, Taste};
-use crate::breed::Strategy;
 use crate::kinds::testing::kinds;
 
 fn breed(space: &Space, kinds: &Kinds, past: &[Population], parents: &Population, next: u32) -> Population {
