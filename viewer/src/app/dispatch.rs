@@ -17,22 +17,26 @@ use crate::ui::Tone;
 
 const NOT_IN_A_STUDY: &str = "Not in a study: walk, look, and answer (Q) when you have seen enough";
 
-/// What would tell the levels of detail under study, change them, or lead to other landscapes.
+/// What would tell the levels of detail under study, change them, lead to other landscapes, or leave something in the world
+/// that the next participant would see.
 fn is_hidden(command: Command) -> bool {
     use Command::*;
     let of_laboratory = [NextTreeLod, NextTerrainLod, Wireframe, Tint, Overhead, Stats, Settings, Genome];
     let of_others = [NextGeneration, BreedAgain, OlderGeneration, NewerGeneration, Family, Export];
-    of_laboratory.contains(&command) || of_others.contains(&command)
+    let of_world = matches!(command, Vote(_) | Undo | Redo);
+    of_world || of_laboratory.contains(&command) || of_others.contains(&command)
 }
 
 /// The same of what is pressed instead.
-fn tells_levels(event: &Event) -> bool {
+fn is_hidden_event(event: &Event) -> bool {
     match event {
         Event::Panel { panel, .. } => !matches!(panel, Panel::Help | Panel::Questions),
         Event::Options(_) | Event::Comfort(_) | Event::ResetSettings | Event::Genes { .. } => true,
         Event::GoToGeneration(_) | Event::BreedFrom { .. } | Event::MoreLike(_) | Event::OpenFolder(_) => {
             true
         }
+        Event::Vote { .. } | Event::Star { .. } | Event::Variety(_) => true,
+        Event::LockGene { .. } | Event::LockCategory { .. } => true,
         _ => false,
     }
 }
@@ -44,7 +48,7 @@ impl App {
             return self.command(command, events);
         }
         self.log.event(&event);
-        if self.cli.answers.is_some() && tells_levels(&event) {
+        if self.cli.answers.is_some() && is_hidden_event(&event) {
             return self.tell(Tone::Info, NOT_IN_A_STUDY);
         }
         let settings = &mut self.file.settings;

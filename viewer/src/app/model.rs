@@ -42,7 +42,8 @@ impl App {
             stats: viewports.map_or_else(Stats::default, |viewports| viewports.stats().clone()),
             bindings: self.bindings.clone(),
             count: editor.count(),
-            votable: editor.world().is_some(),
+            votable: editor.world().is_some() && self.cli.answers.is_none(),
+            studied: self.cli.answers.is_some(),
             file: viewports
                 .and_then(|viewports| viewports.exhibit(0)?.asset())
                 .map(|asset| file_shown(asset)),

@@ -55,6 +55,8 @@ pub struct Model {
     pub count: usize,
     /// They belong to a world, where votes lead on.
     pub votable: bool,
+    /// A participant of a study looks at this: nothing tells levels of detail, and nothing changes the landscapes.
+    pub studied: bool,
     /// What is shown is anyone's file, alone.
     pub file: Option<FileShown>,
     /// What generations were bred from, if from any.

@@ -36,6 +36,10 @@ pub fn show(ui: &mut Ui, model: &Model) {
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 if model.votable {
                     generations(ui, model, words);
+                } else if model.studied {
+                    ui.add_space(6.0);
+                    let text = model.with_key("Answer when you have seen enough", Command::Questions);
+                    primary_button(ui, &text, Icon::Next).asks(Command::Questions);
                 } else if model.count == 1 {
                     let name = model.file.as_ref().map_or(&model.views[0].name, |file| &file.name);
                     ui.add_space(6.0);
@@ -55,7 +59,11 @@ fn panels(ui: &mut Ui, model: &Model) {
         (Panel::Genome, Icon::Genome, known, Command::Genome),
         (Panel::Family, Icon::Family, "Family tree", Command::Family),
     ];
-    let all = all.into_iter().filter(|(panel, ..)| *panel != Panel::Family || model.votable);
+    let all = all.into_iter().filter(|(panel, ..)| match panel {
+        Panel::Help => true,
+        Panel::Family => model.votable,
+        _ => !model.studied,
+    });
     for (panel, icon, label, command) in all {
         let open = model.panels.is_open(panel);
         let response = bar_button(ui, icon, label, open, &model.with_key(label, command));

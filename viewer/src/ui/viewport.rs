@@ -38,7 +38,7 @@ pub fn show(ui: &mut Ui, model: &Model, view: usize, rect: Rect, lively: bool) -
         Arrangement::One(_) | Arrangement::Compare { .. } => &[],
     };
     // Where they would be, so that the name stays as it is when they come.
-    let exports = rect.width() >= NARROW && model.file.is_none();
+    let exports = rect.width() >= NARROW && model.file.is_none() && !model.studied;
     let breeds = model.votable && rect.width() >= BREEDS_FROM;
     let buttons = (tools.len() + usize::from(exports) + 2 * usize::from(breeds)) as f32 * (BUTTON + 4.0);
     let below = name_tag(ui, model, view, rect, rect.width() - 20.0 - buttons);

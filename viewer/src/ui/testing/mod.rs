@@ -114,6 +114,7 @@ pub fn model() -> Model {
         bindings: Arc::default(),
         count: 4,
         votable: true,
+        studied: false,
         file: None,
         parents: (1..=3).map(|generation| (generation, parent(generation - 1))).collect(),
         ancestors: Some(["Old oaks", "Wet birches", "A ridge", "Pines"].map(str::to_owned)),

@@ -9,6 +9,7 @@ use genescape_schema::Category;
 use super::behaviour::{WINDOW, all_voted, press};
 use super::*;
 use crate::ballots::Ballot;
+use crate::input::Command;
 use crate::scene::Facts;
 use crate::ui::model::FileShown;
 use crate::ui::theme::title;
@@ -237,4 +238,25 @@ fn a_file_has_facts_instead_of_genes_and_no_generations() {
         harness.run();
         assert_eq!(harness.query_by_label("Export: 1").is_some(), exports);
     }
+}
+
+#[test]
+fn a_study_shows_landscapes_and_questions_and_nothing_else() {
+    let usual = bench(model(), WINDOW, 1.0);
+    let studied = Model { votable: false, studied: true, ..model() };
+    let mut harness = bench(studied, WINDOW, 1.0);
+    // Pictures have their buttons only under the pointer.
+    harness.hover_at(pos2(300.0, 300.0));
+    harness.run();
+    for label in ["Genes", "Settings", "Frame times", "Family tree", "Trees: best in 1"] {
+        assert!(usual.query_by_label(label).is_some(), "{label}");
+        assert!(harness.query_by_label(label).is_none(), "{label}");
+    }
+    for label in ["Export: 1", "Star: 1", "More like this: 1", "Next generation (hub)"] {
+        assert!(harness.query_by_label(label).is_none(), "{label}");
+    }
+    assert!(harness.query_by_label("Help and keys").is_some());
+    assert!(harness.query_by_label("Show this one alone: 1").is_some());
+    let asked = press(&mut harness, "Answer when you have seen enough (Q)");
+    assert_eq!(asked, [Event::Command(Command::Questions)]);
 }
