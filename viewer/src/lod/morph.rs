@@ -3,12 +3,13 @@
 //! that a vertex slides with its whole position to one parent instead of moving up or down to the middle of both, and that λ
 //! follows the land's roughness as well as the distance.
 //!
-//! λ depends on the place alone: 2^λ is the number of samples between vertices, and grows in straight lines of D from 2^l at
-//! D = d_l(x, z) to 2^(l+1) at d_{l+1}(x, z), for the [`Reach`] d, D² = dx² + dz² + c², where c is how far the eye is above
-//! the highest land. So D is at most the true distance of any land at (x, z), D grows at most as fast as one walks, and
-//! all moves with the camera without a jump. With σ the steepness of all d_l, a step along the land changes 2^λ by at most
-//! (1 + σ)·2^l/(d_{l+1} − d_l) of its length, a mean of the changes of D, d_l and d_{l+1}; and because d_{l+1} − d_l ≥
-//! (1 + σ)·8√2·2^l cells, by at most 1 for 8√2 cells.
+//! λ depends on the place alone: 2^λ is the number of samples between vertices. It is 2^l from D = d_l(x, z) on, for the
+//! [`Reach`] d, D² = dx² + dz² + c², where c is how far the eye is above the highest land; and grows in a straight line of D
+//! to 2^(l+1) while D goes the last w·2^l to d_{l+1}(x, z), where d_{l+1} − d_l ≥ w·2^l. The shorter w, the longer the land
+//! stays what it is from near by; by distance alone w·2^l is all of d_{l+1} − d_l, as in the thesis. So D is at most the true
+//! distance of any land at (x, z), D grows at most as fast as one walks, and all moves with the camera without a jump. With σ
+//! the steepness of all d_l, a step along the land changes 2^λ by at most (1 + σ)/w of its length; and because w ≥
+//! (1 + σ)·8√2 cells, by at most 1 for 8√2 cells.
 //!
 //! A vertex v of level l has slid by t(v) = clamp((λ(v) − l)/(1 − [`GAP`]), 0, 1) to its parent a. By the last sentence
 //! λ falls by less than log₂(8/7) < GAP between a vertex a of level m ≥ 1 with λ(a) > m and any sample of a cell of
@@ -35,6 +36,8 @@ pub struct Detail {
     pub eye_m: Vec2,
     /// c: the eye's height above the highest land, at least 0.
     pub above_m: f32,
+    /// How far one goes while level 0 becomes level 1, as [`Reach::morph_m`].
+    pub morph_m: f32,
     /// The greatest λ, a whole number.
     pub top: f32,
 }
@@ -51,8 +54,10 @@ impl Detail {
         let distance_m = self.distance_squared_m2(at_m).sqrt();
         let d = reach.at(from, at_m.to_array());
         let band = usize::from(distance_m >= d[1]) + usize::from(distance_m >= d[2]);
-        let part = ((distance_m - d[band]) / (d[band + 1] - d[band])).clamp(0.0, 1.0);
-        ((from as usize + band) as f32 + libm::log2f(1.0 + part)).min(self.top)
+        let level = from + band as u32;
+        let morph_m = self.morph_m * (1u32 << level) as f32;
+        let part = (1.0 + (distance_m - d[band + 1]) / morph_m).clamp(0.0, 1.0);
+        (level as f32 + libm::log2f(1.0 + part)).min(self.top)
     }
 
     /// The way that a vertex has gone to its parent, 0 to 1, as the shader has it.

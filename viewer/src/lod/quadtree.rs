@@ -24,7 +24,7 @@ use crate::scene::{Heightfield, TerrainLod};
 
 /// What λ depends on for a view from `eye_m`. `exact`: every sample is drawn; `max_block_m`: no block is wider, so that
 /// enough can be culled.
-pub fn detail(lod: &TerrainLod, eye_m: Vec3, exact: bool, max_block_m: f32) -> Detail {
+pub fn detail(lod: &TerrainLod, reach: &Reach, eye_m: Vec3, exact: bool, max_block_m: f32) -> Detail {
     let field = &lod.field;
     let width_m = block_cells(field) as f32 * field.spacing_m;
     let fits = |level: &u32| width_m * (1u32 << level) as f32 <= max_block_m;
@@ -32,6 +32,7 @@ pub fn detail(lod: &TerrainLod, eye_m: Vec3, exact: bool, max_block_m: f32) -> D
     Detail {
         eye_m: Vec2::new(eye_m.x, eye_m.z),
         above_m: (eye_m.y - lod.range_m()[1]).max(0.0),
+        morph_m: reach.morph_m,
         top: top as f32,
     }
 }

@@ -2,9 +2,9 @@
 //!
 //! The uniform triangulation of level l strays from the land by e_l at most, differently from place to place. Where it
 //! strays by little it may be drawn nearer: from the distance d_l(x, z) on. [`super::morph`] says how λ follows from these
-//! and what they must fulfil, so that no crack opens and no triangle folds: each d_l changes by at most [`STEEPNESS`]
-//! metres a metre, and d_{l+1} − d_l is at least [`MIN_BAND_CELLS`] · 2^l cells. So both distance and roughness enter as
-//! smooth fields (the thesis, 9, asks for morphing that adapts to the land and leaves open how).
+//! and what they must fulfil, so that no crack opens and no triangle folds: each d_l changes by at most σ metres a metre,
+//! and d_{l+1} − d_l is at least the way on which one level becomes the next, (1 + σ) · 8√2 · 2^l cells. So both distance and
+//! roughness enter as smooth fields (the thesis, 9, asks for morphing that adapts to the land and leaves open how).
 
 use std::f32::consts::FRAC_1_SQRT_2;
 
@@ -15,15 +15,18 @@ use crate::scene::Heightfield;
 
 /// log₂ of the cells between the places for which reaches are kept.
 const TILE_BITS: u32 = 4;
-/// How many metres a reach may change by for each metre along the land: the less, the wider rough places are surrounded
-/// by fine triangles, the more, the more of them smooth land needs.
-const STEEPNESS: f32 = 1.0;
-/// The least d_{l+1} − d_l in cells of 2^l samples, (1 + [`STEEPNESS`]) · 8√2 and a little more for rounding.
-const MIN_BAND_CELLS: f32 = 1.03 * (1.0 + STEEPNESS) * 8.0 * std::f32::consts::SQRT_2;
-/// A level is used from a little farther on than its error alone would ask, because it is there before λ has reached it.
-const EARLY: f32 = 1.45;
-/// No level's reach is a smaller part of the next one's: else λ would rise at once where the next has far to go.
-const MIN_RATIO: f32 = 0.25;
+/// How many metres a reach may change by for each metre along the land (σ): the less, the wider rough places are
+/// surrounded by fine triangles, the more, the more of them smooth land needs. At 0 the land's roughest place speaks for
+/// all of it. Which of these costs least depends on the land, and is found out. More would save triangles where the worst
+/// place is what counts, but the whole picture would be farther from the land than with as many triangles by distance alone.
+const STEEPNESSES: [f32; 2] = [0.0, 0.25];
+/// How far one goes at least, if σ is 0, while level 0 becomes level 1: 8√2 cells, and a little more for rounding.
+const MIN_MORPH_CELLS: f32 = 1.03 * 8.0 * std::f32::consts::SQRT_2;
+/// A level is used from a little farther on than its error alone would ask, because it is there before λ has reached it:
+/// by this part of the way on which it comes …
+const EARLY: f32 = 0.6;
+/// … or by distance alone, where that way is half of the reach, from that many times as far on.
+const EARLY_BY_DISTANCE: f32 = 1.45;
 /// Levels beyond a block's own that its vertices may ask for.
 const LEVELS_ABOVE: usize = 3;
 
@@ -58,6 +61,8 @@ pub struct Reach {
     levels_m: Vec<Vec<f32>>,
     /// Of each block, as [`block_number`] counts, its own level's greatest d.
     blocks_m: Vec<f32>,
+    /// How far one goes while level 0 becomes level 1; while l becomes l + 1, 2^l times as far.
+    pub morph_m: f32,
 }
 
 impl Roughness {
@@ -84,11 +89,28 @@ impl Roughness {
     /// Reaches by which no level looks farther from the land than one pixel, where `pixels` is how many a radian covers:
     /// ½·height/tan(½·fov), over the pixels of error that are allowed. Positive and finite.
     pub fn reach(&self, pixels: f32) -> Reach {
-        let scaled = |errors_m: &Vec<f32>| errors_m.iter().map(|e| EARLY * pixels * e).collect();
-        let flat = || vec![0.0; self.grid.node_count()];
-        let mut levels_m = vec![flat()];
-        levels_m.extend(self.levels_m.iter().map(scaled));
-        self.finished(levels_m)
+        let all = STEEPNESSES.map(|steepness| self.reach_of_steepness(pixels, steepness));
+        let least = all.into_iter().min_by(|a, b| a.cost().total_cmp(&b.cost()));
+        least.unwrap_or_default()
+    }
+
+    /// Reaches that are smooth, and each level's greater than the one's before.
+    fn reach_of_steepness(&self, pixels: f32, steepness: f32) -> Reach {
+        let morph_m = MIN_MORPH_CELLS * (1.0 + steepness) * self.grid.cell_m;
+        let scaled = |(finer, errors_m): (usize, &Vec<f32>)| {
+            let early_m = EARLY * morph_m * (1u32 << finer) as f32;
+            errors_m.iter().map(|e| pixels * e + early_m).collect()
+        };
+        let mut levels_m = vec![vec![0.0; self.grid.node_count()]];
+        levels_m.extend(self.levels_m.iter().enumerate().map(scaled));
+        levels_m.iter_mut().for_each(|reach_m| self.grid.spread(reach_m, steepness));
+        levels_m.extend((0..LEVELS_ABOVE).map(|_| vec![0.0; self.grid.node_count()]));
+        for level in 1..levels_m.len() {
+            let band_m = morph_m * (1u32 << (level - 1)) as f32;
+            let [finer, coarser] = &mut levels_m[level - 1..=level] else { continue };
+            coarser.iter_mut().zip(finer).for_each(|(d, below)| *d = d.max(*below + band_m));
+        }
+        self.with_blocks(levels_m, morph_m)
     }
 
     /// The same by distance alone, as in the thesis: λ = log₂(D/d₀), wherever the land is rough.
@@ -97,29 +119,13 @@ impl Roughness {
         let at_unit_m = |(level, errors_m)| greatest(errors_m) / (2u32 << level) as f32;
         let worst_m = self.levels_m.iter().enumerate().map(at_unit_m).fold(0.0, f32::max);
         let least_m = 8.0 * std::f32::consts::SQRT_2 * self.grid.cell_m;
-        let unit_m = (EARLY * pixels * worst_m).max(least_m);
+        let unit_m = (EARLY_BY_DISTANCE * pixels * worst_m).max(least_m);
         let levels = 0..=self.levels_m.len() + LEVELS_ABOVE;
         let level = |level| vec![unit_m * (1u32 << level) as f32; self.grid.node_count()];
-        self.with_blocks(levels.map(level).collect())
+        self.with_blocks(levels.map(level).collect(), unit_m)
     }
 
-    /// Makes reaches smooth, and each level's greater than the one's before.
-    fn finished(&self, mut levels_m: Vec<Vec<f32>>) -> Reach {
-        for level in (0..levels_m.len() - 1).rev() {
-            let [finer, coarser] = &mut levels_m[level..level + 2] else { continue };
-            finer.iter_mut().zip(coarser).for_each(|(d, above)| *d = d.max(MIN_RATIO * *above));
-        }
-        levels_m.iter_mut().for_each(|reach_m| self.grid.spread(reach_m));
-        levels_m.extend((0..LEVELS_ABOVE).map(|_| vec![0.0; self.grid.node_count()]));
-        for level in 1..levels_m.len() {
-            let band_m = MIN_BAND_CELLS * self.grid.cell_m * (1u32 << (level - 1)) as f32;
-            let [finer, coarser] = &mut levels_m[level - 1..=level] else { continue };
-            coarser.iter_mut().zip(finer).for_each(|(d, below)| *d = d.max(*below + band_m));
-        }
-        self.with_blocks(levels_m)
-    }
-
-    fn with_blocks(&self, levels_m: Vec<Vec<f32>>) -> Reach {
+    fn with_blocks(&self, levels_m: Vec<Vec<f32>>, morph_m: f32) -> Reach {
         let mut blocks_m = Vec::new();
         for (level, &across) in self.across.iter().enumerate().rev() {
             for row in 0..across {
@@ -127,11 +133,30 @@ impl Roughness {
                 blocks_m.extend(blocks.map(|at| self.grid.greatest(&levels_m[level], level as u32, at)));
             }
         }
-        Reach { grid: self.grid, levels_m, blocks_m }
+        Reach { grid: self.grid, levels_m, blocks_m, morph_m }
     }
 }
 
 impl Reach {
+    /// What this comes to in triangles, but for a factor: of all nodes seen from eyes all around, up to half of the land's
+    /// width away, the land between d_l and d_{l+1} in squares of 2^l cells.
+    fn cost(&self) -> f32 {
+        let far_m = 0.5 * (self.grid.nodes - 1) as f32 * self.grid.tile_m;
+        let last = self.levels_m.len() - LEVELS_ABOVE - 1;
+        let node_cost = |node: usize| {
+            let from_m = |level: usize| {
+                let reach_m = self.levels_m[level][node];
+                if level > last { far_m } else { reach_m.min(far_m) }
+            };
+            let ring = |level: usize| {
+                let [inner_m, outer_m] = [from_m(level), from_m(level + 1)];
+                (outer_m * outer_m - inner_m * inner_m) / (1u64 << (2 * level)) as f32
+            };
+            (0..=last).map(ring).sum::<f32>()
+        };
+        (0..self.grid.node_count()).map(node_cost).sum()
+    }
+
     /// d in metres of three levels and the next, from `level` on, at (x, z): between the nodes in straight lines.
     pub fn at(&self, level: u32, [x, z]: [f32; 2]) -> [f32; 4] {
         let half_m = 0.5 * (self.grid.nodes - 1) as f32 * self.grid.tile_m;
@@ -217,10 +242,10 @@ impl Grid {
         }
     }
 
-    /// Raises nodes until none is more than [`STEEPNESS`] allows below another: along both axes by 1/√2 of it, so that it
-    /// holds in all directions.
-    fn spread(&self, nodes_m: &mut [f32]) {
-        let (side, fall_m) = (self.nodes as usize, STEEPNESS * FRAC_1_SQRT_2 * self.tile_m);
+    /// Raises nodes until none is more than σ allows below another: along both axes by 1/√2 of it, so that it holds in all
+    /// directions.
+    fn spread(&self, nodes_m: &mut [f32], steepness: f32) {
+        let (side, fall_m) = (self.nodes as usize, steepness * FRAC_1_SQRT_2 * self.tile_m);
         let count = nodes_m.len();
         for node in 0..count {
             let west = if node % side == 0 { 0.0 } else { nodes_m[node - 1] };

@@ -101,7 +101,7 @@ struct Sight {
 
 impl Sight {
     fn of(lod: &TerrainLod, eye_m: Vec3, reach: Reach) -> Self {
-        let detail = quadtree::detail(lod, eye_m, false, f32::MAX);
+        let detail = quadtree::detail(lod, &reach, eye_m, false, f32::MAX);
         let mut blocks = Vec::new();
         quadtree::select(lod, &reach, &detail, None, &mut blocks);
         Self { reach, detail, blocks }
@@ -176,12 +176,32 @@ proptest! {
         let there = (here + step).clamp(Vec2::splat(-0.5 * extent_m), Vec2::splat(0.5 * extent_m));
         let level = from.min(top_level(field));
         let [at_here, at_there] = [here, there].map(|at| reach.at(level, at.to_array()));
-        let band_m = |k: usize| 2.0 * 8.0 * std::f32::consts::SQRT_2 * field.spacing_m * (1u32 << (level as usize + k)) as f32;
+        // What the length of a morph bears: w ≥ (1 + σ)·8√2 cells.
+        let steepness = reach.morph_m / (8.0 * std::f32::consts::SQRT_2 * field.spacing_m) - 1.0;
+        prop_assert!(steepness >= 0.0);
+        let band_m = |k: usize| 0.999 * reach.morph_m * (1u32 << (level as usize + k)) as f32;
         for k in 0..4 {
             let by_m = (at_here[k] - at_there[k]).abs();
-            prop_assert!(by_m <= 1.001 * here.distance(there) + 0.01, "{by_m} from {here} to {there}");
+            prop_assert!(by_m <= steepness * here.distance(there) + 0.01, "{by_m} from {here} to {there}");
             prop_assert!(k == 3 || at_here[k + 1] - at_here[k] >= band_m(k), "{at_here:?}");
         }
+    }
+
+    /// What keeps triangles from folding, and cracks from opening.
+    #[test]
+    fn samples_between_vertices_change_by_one_in_eleven_cells_at_most(
+        eye in eye(), pixels in 1f32..400., relief in 0f32..30., seed in 0u32..99, by_distance: bool,
+        x in -0.5f32..0.5, z in -0.5f32..0.5, turn in -4f32..4., cells in 0.5f32..60.
+    ) {
+        let lod = land(257, 1.0, relief, seed);
+        let field = &*lod.field;
+        let sight = Sight::of(&lod, eye * field.extent_m(), reach(&lod, pixels, by_distance));
+        let here = Vec2::new(x, z) * field.extent_m();
+        let limit = Vec2::splat(0.5 * field.extent_m());
+        let there = (here + Vec2::from_angle(turn) * cells * field.spacing_m).clamp(-limit, limit);
+        let [before, after] = [here, there].map(|at| libm::exp2f(sight.lambda(field, at)));
+        let allowed = here.distance(there) / (8.0 * std::f32::consts::SQRT_2 * field.spacing_m);
+        prop_assert!((after - before).abs() <= allowed + 1e-3, "{before} to {after} from {here} to {there}");
     }
 
     #[test]
@@ -350,14 +370,14 @@ fn more_error_and_less_sight_mean_fewer_triangles() {
         .to_vec();
     assert!(counts.is_sorted_by(|a, b| a > b), "{counts:?}");
     let reach = reach(&lod, 100.0, false);
-    let detail = quadtree::detail(&lod, camera.position_m, false, f32::MAX);
+    let detail = quadtree::detail(&lod, &reach, camera.position_m, false, f32::MAX);
     let mut count = |frustum: Option<&Frustum>| {
         quadtree::select(&lod, &reach, &detail, frustum, &mut blocks);
         blocks.len()
     };
     let (all, seen) = (count(None), count(Some(&camera.frustum(1.5))));
     assert!(seen < all && seen > 0, "{seen} of {all}");
-    let exact = quadtree::detail(&lod, camera.position_m, true, f32::MAX);
+    let exact = quadtree::detail(&lod, &reach, camera.position_m, true, f32::MAX);
     quadtree::select(&lod, &reach, &exact, None, &mut blocks);
     assert_eq!(quadtree::triangles(field, &blocks), 128 * 128 * 2);
 }

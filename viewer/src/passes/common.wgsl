@@ -39,7 +39,8 @@ struct View {
     lod_top: f32,
     // Sides of the picture as a part of full resolution.
     part: f32,
-    pad: f32,
+    // How far in metres one goes while the terrain's level 0 becomes level 1.
+    lod_morph: f32,
 }
 
 @group(0) @binding(0) var<uniform> view: View;

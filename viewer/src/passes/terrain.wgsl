@@ -57,10 +57,10 @@ fn lambda_at(s: vec2u, level: u32) -> f32 {
     let d = reach_at(place, level);
     let second = distance >= d.y;
     let third = distance >= d.z;
-    let near = select(select(d.x, d.y, second), d.z, third);
-    let far = select(select(d.y, d.z, second), d.w, third);
-    let band = f32(level) + select(select(0.0, 1.0, second), 2.0, third);
-    return min(band + log2(1.0 + clamp((distance - near) / (far - near), 0.0, 1.0)), view.lod_top);
+    let next = select(select(d.y, d.z, second), d.w, third);
+    let band = level + select(select(0u, 1u, second), 2u, third);
+    let part = 1.0 + (distance - next) / (view.lod_morph * f32(1u << band));
+    return min(f32(band) + log2(1.0 + clamp(part, 0.0, 1.0)), view.lod_top);
 }
 
 // The coarsest level that uses a sample.

@@ -36,7 +36,7 @@ pub struct ViewUniform {
     pub last_tile: f32,
     pub lod_top: f32,
     pub part: f32,
-    pub pad: f32,
+    pub lod_morph: f32,
 }
 
 /// What stands for "no lake".
@@ -90,6 +90,7 @@ impl ViewUniform {
             tiles,
             last_tile,
             lod_top: detail.top,
+            lod_morph: detail.morph_m,
             shadow_from_world: shadow_from_world(scene).to_cols_array_2d(),
             field: Self::field(scene),
             ..Self::of_camera(camera, size_px, frame, sky.exposure)

@@ -34,7 +34,11 @@ impl TerrainChoice {
         let (focal_px, eye_m) = (camera.focal_px(height), camera.position_m);
         // Without levels of detail no error is allowed.
         let error_px = if mode == TerrainLodMode::Off { 0.0 } else { options.terrain_error_px };
-        let detail = quadtree::detail(lod, eye_m, error_px.is_nan() || error_px <= 0.0, MAX_BLOCK_M);
+        let is_exact = error_px.is_nan() || error_px <= 0.0;
+        if mode != TerrainLodMode::Roam {
+            bound.reach.set(gpu, &scene.land.roughness, mode, focal_px, error_px);
+        }
+        let detail = quadtree::detail(lod, &bound.reach.reach, eye_m, is_exact, MAX_BLOCK_M);
         let aspect = width / height;
         let triangles = if mode == TerrainLodMode::Roam {
             let picture = (aspect, height);
@@ -42,7 +46,6 @@ impl TerrainChoice {
             bound.terrain.write(gpu, &self.strip);
             triangles
         } else {
-            bound.reach.set(gpu, &scene.land.roughness, mode, focal_px, error_px);
             let frustum = options.cull.then(|| camera.frustum(aspect));
             quadtree::select(lod, &bound.reach.reach, &detail, frustum.as_ref(), &mut self.blocks);
             bound.terrain.write(gpu, &self.blocks);

@@ -101,7 +101,7 @@ fn uniforms_are_laid_out_alike() {
             last_tile,
             lod_top,
             part,
-            pad,
+            lod_morph,
         }
     );
     same!(
