@@ -22,7 +22,8 @@ use genescape_schema::{Genome, GenomeError, Population, Space};
 
 use crate::graph::{Graph, Node, NodeId};
 use crate::stages::ground::{
-    ForegroundStage, GroundMapsFiles, GroundMapsStage, GroundParams, GroundTextureStage, Loose, WoodsInput,
+    ForegroundStage, GroundMapsFiles, GroundMapsStage, GroundParams, GroundTextureStage, LitterParams, Loose,
+    Season, WoodsInput,
 };
 use crate::stages::land::LandStage;
 use crate::stages::light::LightMapStage;
@@ -138,7 +139,9 @@ fn add_scene(
         .map(|index| graph.add(scene, TreeStage { params: tree.clone(), index, textures: embedded }));
     let light = graph.add(scene, SkyLightStage { params: sky.clone() });
     let sky = graph.add(scene, SkyImagesStage { params: sky, face_px, equirect_px, light });
-    let terrain = graph.add(scene, TerrainStage { params: ground.clone(), landform });
+    let shed: LitterParams = genome.read(space)?;
+    let season = Season::of(&shed);
+    let terrain = graph.add(scene, TerrainStage { params: ground.clone(), season, landform });
     let loose = Loose::of(&ground);
     let ground_textures =
         [0, 1, 2, 3, 4].map(|kind| graph.add(scene, GroundTextureStage::new(kind, loose))).to_vec();
@@ -152,7 +155,7 @@ fn add_scene(
     let view = graph.part(start, |start: &StartFiles| start.view);
     let near = graph.part(terrain, |terrain: &TerrainFiles| terrain.near.clone());
 
-    let woods = WoodsInput { params: genome.read(space)?, trees: standing, footprints };
+    let woods = WoodsInput { params: shed, trees: standing, footprints };
     let painted = GroundMapsStage { params: ground.clone(), side_px: map_px, landform, woods: woods.clone() };
     let painted = graph.add(scene, painted);
     let ground_maps = graph.part(painted, |made: &GroundMapsFiles| made.maps.clone());

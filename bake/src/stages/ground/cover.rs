@@ -129,7 +129,7 @@ impl Painter {
         let [lo, hi] = land.field.range_m();
         let chance = |salt| hash01(seed, salt, 0, 0);
         let climate = Climate::new(params.temperature_c, params.rain_mm, land);
-        let palette = Palette::new(&climate);
+        let palette = Palette::new(&climate, woods.season);
         // Where snow lies low it is cold and moist.
         let thirst = (chance(1) * 0.95 - 0.35 * (0.8 - params.snow_line).max(0.0)).clamp(0.0, 1.0);
         let kind = (chance(2) * ROCKS.len() as f32) as usize;
@@ -223,7 +223,11 @@ impl Painter {
     pub fn bloom(&self, t: &Traits, n: &Noise) -> f32 {
         let Palette { thirst, frost, .. } = self.palette;
         let drift = step(-0.5, 0.5, in_patches(t, n));
-        drift * (1.0 - 0.75 * thirst) * (1.0 - 0.35 * frost) * (1.0 - step(0.1, 0.6, t.shade))
+        self.palette.season.bloom()
+            * drift
+            * (1.0 - 0.75 * thirst)
+            * (1.0 - 0.35 * frost)
+            * (1.0 - step(0.1, 0.6, t.shade))
     }
 
     /// Where heath grows, 0 to 1.

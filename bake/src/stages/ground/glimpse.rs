@@ -2,7 +2,7 @@
 
 use super::cover::{KINDS, Noise, Painter};
 use super::traits::{self, Patches};
-use super::{GroundParams, Woods};
+use super::{GroundParams, Season, Woods};
 use crate::model::Landform;
 
 /// Places a side that are looked at.
@@ -17,9 +17,9 @@ pub struct Glimpse {
     pub colors_linear: Vec<[f32; 3]>,
 }
 
-/// Looks at places all over the field, but for those under water.
+/// Looks at places all over the field in summer, but for those under water.
 pub fn glimpse(params: &GroundParams, land: &Landform) -> Glimpse {
-    let painter = Painter::new(params, land, &Woods::none());
+    let painter = Painter::new(params, land, &Woods::none(Season::default()));
     let patches = Patches::new(params.terrain_seed, land.field.extent_m(), 0.0..=1.0);
     let place = |k: usize| (k as f32 + 0.5) / SIDE as f32;
     let look = |k: usize| {

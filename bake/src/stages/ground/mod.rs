@@ -15,6 +15,7 @@ mod palette;
 mod patch;
 mod patterns;
 mod plants;
+mod season;
 mod shapes;
 mod snow;
 mod stage;
@@ -39,6 +40,7 @@ pub use glimpse::{Glimpse, glimpse};
 use grain::Grain;
 pub use grass::BLADE_WHITE;
 pub use patch::BLOCK_M;
+pub use season::Season;
 pub use snow::snow_map;
 pub use stage::{
     ForegroundStage, GroundMapsFiles, GroundMapsStage, GroundTextureFiles, GroundTextureStage, WoodsInput,
@@ -92,8 +94,8 @@ pub fn maps(params: &GroundParams, woods: &Woods, land: &Landform, side_px: u32)
 
 /// Colours the apron: linear red, green, blue and 255 for each of its samples, row by row, 0 to 255 for 0 to 1. On
 /// the field's border they are the mean of the map around.
-pub fn apron_colors(params: &GroundParams, land: &Landform) -> Vec<[u8; 4]> {
-    let painter = Painter::new(params, land, &Woods::none());
+pub fn apron_colors(params: &GroundParams, season: Season, land: &Landform) -> Vec<[u8; 4]> {
+    let painter = Painter::new(params, land, &Woods::none(season));
     let patches = Patches::new(params.terrain_seed, land.field.extent_m(), 0.0..=1.0);
     let apron = &land.apron;
     let half_m = 0.5 * land.field.extent_m();

@@ -4,6 +4,7 @@
 //! A table over temperature and dryness in the manner of Whittaker, "Communities and Ecosystems" (1975), read between its
 //! entries, so that no two neighbouring climates differ by a jump.
 
+use super::Season;
 use crate::math::{hermite, lerp, lerp_array};
 use crate::model::Climate;
 use crate::noise::hash01;
@@ -105,6 +106,7 @@ const fn ramp(lush: Rgb, usual: Rgb, bare: Rgb) -> Ramp {
 /// The colours of one climate, and what is short in it.
 pub(super) struct Palette {
     pub growth: Ramp,
+    pub season: Season,
     /// 0 where there is rain enough, 1 in a desert.
     pub thirst: f32,
     /// 0 where summers are warm enough for grass, 1 where hardly anything grows.
@@ -116,7 +118,7 @@ pub(super) struct Palette {
 }
 
 impl Palette {
-    pub fn new(climate: &Climate) -> Self {
+    pub fn new(climate: &Climate, season: Season) -> Self {
         let dryness = climate.dryness();
         let ((i, u), (j, v)) = (place(&TEMPERATURES_C, climate.temperature_c), place(&DRYNESS, dryness));
         let growth = std::array::from_fn(|k| {
@@ -124,7 +126,8 @@ impl Palette {
             lerp_array(along(&RAMPS[j]), along(&RAMPS[j + 1]), v)
         });
         Self {
-            growth,
+            growth: season.growth(growth),
+            season,
             thirst: step(0.0, 2.4, dryness),
             frost: step(0.0, 1.0, (1.0 - climate.temperature_c) / 9.0),
             heat: step(11.0, 25.0, climate.temperature_c),

@@ -3,7 +3,6 @@
 use genescape_schema::scene::Lookout;
 use glam::Vec2;
 
-use super::GroundParams;
 use super::cover::{Cover, MOSS, Noise, Painter, in_patches};
 use super::grain::Grain;
 use super::palette::Palette;
@@ -11,6 +10,7 @@ use super::palette::{Rgb, petals, step};
 use super::shapes;
 use super::traits::{Traits, TraitsMap};
 use super::woody::{self, Foliage};
+use super::GroundParams;
 use crate::math::lerp_array as lerp;
 use crate::model::{GroundPlants, Image8, Landform, PlantKind, PlantShape};
 use crate::raster::square_image;
@@ -106,7 +106,7 @@ pub(super) fn plants(
 /// All kinds, whether they grow in a land or not.
 #[cfg(test)]
 pub(super) fn all_kinds(params: &GroundParams, land: &Landform) -> Vec<PlantKind> {
-    kinds(params, &Painter::new(params, land, &super::Woods::none()))
+    kinds(params, &Painter::new(params, land, &super::Woods::none(super::Season::default())))
 }
 
 /// Those that would hide a landscape from who stands before them.
@@ -262,7 +262,7 @@ fn kinds(params: &GroundParams, painter: &Painter) -> Vec<PlantKind> {
     // In the order of the channels.
     let looks: [(PlantShape, Vec<[Rgb; 2]>); CHANNELS] = [
         (shapes::flower(), flowers(params.terrain_seed, growth[1])),
-        (shapes::fern(), ferns(growth[1])),
+        (shapes::fern(), ferns(palette)),
         (shapes::shrub(), shrubs(palette)),
         (shapes::reed(), reeds()),
         (shapes::stone(3), stones.clone()),
@@ -297,6 +297,7 @@ const HEARTWOOD: Rgb = [0.240, 0.175, 0.100];
 fn bushes(palette: &Palette) -> Vec<[Rgb; 2]> {
     let mild = lerp([0.115, 0.180, 0.044], [0.140, 0.150, 0.052], palette.frost);
     let leaf = lerp(lerp(mild, [0.075, 0.170, 0.030], palette.heat), [0.180, 0.182, 0.105], palette.thirst);
+    let leaf = palette.season.bush(leaf);
     let of = |factor: Rgb| {
         let tip = [0, 1, 2].map(|k| leaf[k] * factor[k]);
         [tip.map(|c| 0.4 * c), tip]
@@ -320,8 +321,9 @@ fn flowers(terrain_seed: u32, stalk: Rgb) -> Vec<[Rgb; 2]> {
     petals(terrain_seed).map(|petals| [stalk, petals]).into()
 }
 
-fn ferns(lush: Rgb) -> Vec<[Rgb; 2]> {
-    let tip = |other: Rgb| lerp(lush, other, 0.6);
+fn ferns(palette: &Palette) -> Vec<[Rgb; 2]> {
+    let lush = palette.season.fern(palette.growth[1]);
+    let tip = |other: Rgb| lerp(lush, palette.season.fern(other), 0.6);
     vec![
         [lush.map(|c| 0.7 * c), tip([0.055, 0.095, 0.020])],
         [lush.map(|c| 0.9 * c), tip([0.085, 0.105, 0.030])],

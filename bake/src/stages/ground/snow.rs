@@ -1,5 +1,6 @@
 //! The snow line and the traits of a place → how much snow lies there.
 
+use super::Season;
 use super::palette::step;
 use super::traits::{Patches, Traits, TraitsMap};
 use super::woods::Woods;
@@ -20,8 +21,12 @@ pub fn snow_map(terrain_seed: u32, land: &Landform) -> Option<SnowMap> {
         return None;
     }
     let extent_m = land.field.extent_m();
-    let traits =
-        TraitsMap::new(&Patches::new(terrain_seed, extent_m, 0.0..=1.0), land, &Woods::none(), 0.0..=1.0);
+    let traits = TraitsMap::new(
+        &Patches::new(terrain_seed, extent_m, 0.0..=1.0),
+        land,
+        &Woods::none(Season::default()),
+        0.0..=1.0,
+    );
     let place = |k: usize| k as f32 / (SIDE - 1) as f32;
     let parts = raster(SIDE, SIDE, |j| {
         let (row, snow) = (traits.row(place(j)), &snow);

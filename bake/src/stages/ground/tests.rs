@@ -44,9 +44,11 @@ static TEXTURES: LazyLock<Vec<crate::model::GroundDetail<Image8>>> = LazyLock::n
 });
 
 /// As finely as landscapes are painted.
-static FINE: LazyLock<GroundMaps<Image8>> = LazyLock::new(|| maps(&PARAMS, &Woods::none(), &LAND, 1024));
+static FINE: LazyLock<GroundMaps<Image8>> =
+    LazyLock::new(|| maps(&PARAMS, &Woods::none(Season::default()), &LAND, 1024));
 
-static MAPS: LazyLock<GroundMaps<Image8>> = LazyLock::new(|| maps(&PARAMS, &Woods::none(), &LAND, 256));
+static MAPS: LazyLock<GroundMaps<Image8>> =
+    LazyLock::new(|| maps(&PARAMS, &Woods::none(Season::default()), &LAND, 256));
 
 fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("thread pool").install(work)
@@ -55,7 +57,12 @@ fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
 #[test]
 fn same_bytes_on_any_number_of_threads() {
     let both = |threads| {
-        with_threads(threads, || (maps(&PARAMS, &Woods::none(), &LAND, 256), apron_colors(&PARAMS, &LAND)))
+        with_threads(threads, || {
+            (
+                maps(&PARAMS, &Woods::none(Season::default()), &LAND, 256),
+                apron_colors(&PARAMS, Season::default(), &LAND),
+            )
+        })
     };
     assert!(both(1) == both(5));
 }
@@ -98,7 +105,7 @@ fn snow_lies_high_and_rock_is_steep() {
 #[test]
 fn the_drier_the_land_the_paler_its_grass() {
     let green = |rain_mm: f32| {
-        let made = maps(&GroundParams { rain_mm, ..PARAMS }, &Woods::none(), &LAND, 128);
+        let made = maps(&GroundParams { rain_mm, ..PARAMS }, &Woods::none(Season::default()), &LAND, 128);
         let is_grass = |w: &[u8]| w.iter().all(|&w| w < 20);
         let pixels = made.color.data.chunks_exact(3).zip(made.weights.data.chunks_exact(4));
         let grass: Vec<u32> =
@@ -111,7 +118,8 @@ fn the_drier_the_land_the_paler_its_grass() {
 
 /// Mean cover of rock, scree, snow and earth, and mean colour, of the land in a climate.
 fn of_climate(temperature_c: f32, rain_mm: f32) -> ([f32; 4], [f32; 3]) {
-    let made = maps(&GroundParams { temperature_c, rain_mm, ..PARAMS }, &Woods::none(), &LAND, 128);
+    let made =
+        maps(&GroundParams { temperature_c, rain_mm, ..PARAMS }, &Woods::none(Season::default()), &LAND, 128);
     let mean = |bytes: &[u8], channels: usize, k: usize| {
         let all = bytes.iter().skip(k).step_by(channels);
         all.map(|&byte| f32::from(byte)).sum::<f32>() / (bytes.len() / channels) as f32
@@ -163,10 +171,18 @@ fn albedo_is_that_of_real_ground() {
     }
 }
 
+const WINTER: Season = Season { winter: 1.0, autumn: 0.0, spring: 0.0 };
+
 #[test]
 fn apron_continues_the_map() {
-    let made = maps(&PARAMS, &Woods::none(), &LAND, 512);
-    let colors = apron_colors(&PARAMS, &LAND);
+    for season in [Season::default(), WINTER] {
+        check_apron(season);
+    }
+}
+
+fn check_apron(season: Season) {
+    let made = maps(&PARAMS, &Woods::none(season), &LAND, 512);
+    let colors = apron_colors(&PARAMS, season, &LAND);
     let linear = |c: u8| libm::powf((f32::from(c) / 255.0 + 0.055) / 1.055, 2.4);
     let mut apart = 0.0f32;
     for k in 0..=12 {
@@ -251,7 +267,7 @@ fn cut_with(
     let near = crate::stages::terrain_lod::mesh(&LAND, 1.0, BLOCK_M, &[]).near;
     let eye = glam::Vec3::new(east_m, LAND.field.height_m(east_m, south_m) + 1.6, south_m);
     let view = crate::model::StartView { position_m: eye, direction: glam::Vec3::new(0.6, 0.0, -0.8) };
-    let ground = Ground { params: &PARAMS, woods: &Woods::none(), land: &LAND, plants };
+    let ground = Ground { params: &PARAMS, woods: &Woods::none(Season::default()), land: &LAND, plants };
     let made = foreground(&ground, &view, &near.positions, &near.parts[0].triangles);
     (near, made)
 }

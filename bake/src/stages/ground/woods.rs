@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::Season;
 use super::palette::Rgb;
 use super::woody::Foliage;
 use crate::math::lerp_array;
@@ -109,6 +110,7 @@ pub struct Woods {
     pub(super) litter: Litter,
     /// None without trees.
     pub(super) offspring: Option<Offspring>,
+    pub(super) season: Season,
     /// Samples a side; 0 if there are no trees.
     side: usize,
     /// How much lies under crowns, 0 to 1, row by row.
@@ -117,8 +119,8 @@ pub struct Woods {
 
 impl Woods {
     /// Land without trees.
-    pub fn none() -> Self {
-        Self { litter: Litter::default(), offspring: None, side: 0, shade: Vec::new() }
+    pub fn none(season: Season) -> Self {
+        Self { litter: Litter::default(), offspring: None, season, side: 0, shade: Vec::new() }
     }
 
     /// The woods of a land; `crowns_m` gives the radius of each template's crown at scale 1.
@@ -139,7 +141,8 @@ impl Woods {
                 crown_m / spacing_m,
             );
         }
-        Self { litter: Litter::new(params), offspring: Some(Offspring::new(params)), side, shade }
+        let (litter, offspring) = (Litter::new(params), Some(Offspring::new(params)));
+        Self { litter, offspring, season: Season::of(params), side, shade }
     }
 
     /// Shade at a sample of the traits' grid.

@@ -337,7 +337,7 @@ fn no_tree_that_needs_warmth_stands_where_the_ground_is_white() {
         temperature_c: 6.0,
         rain_mm: 1000.0,
     };
-    let white = ground::maps(&genes, &ground::Woods::none(), &land, 1024).weights;
+    let white = ground::maps(&genes, &ground::Woods::none(ground::Season::default()), &land, 1024).weights;
     let snow = ground::snow_map(genes.terrain_seed, &land);
     let params = PlacementParams { terrain_seed: 5, hardiness_c: 2.0, altitude_limit: 1.0, ..usual() };
     let made = place(&params, &land, snow.as_ref(), &[OAK]);

@@ -7,13 +7,14 @@ use super::{default_error_m, lod, mesh};
 use crate::gltf::{png, terrain_glb};
 use crate::graph::{Context, File, Input, Stage, StageError, Stored};
 use crate::model::{Heightfield, Landform, Mesh};
-use crate::stages::ground::{self, GroundParams};
+use crate::stages::ground::{self, GroundParams, Season};
 
 /// Landform → mesh for any viewer, data for the levels of detail, 16-bit heights.
 #[derive(Serialize)]
 pub struct TerrainStage {
     /// Genes of the colours of the land beyond the field.
     pub params: GroundParams,
+    pub season: Season,
     pub landform: Input<Landform>,
 }
 
@@ -31,13 +32,13 @@ pub struct TerrainFiles {
 
 impl Stage for TerrainStage {
     const NAME: &'static str = "terrain";
-    const VERSION: u32 = 6;
+    const VERSION: u32 = 7;
     type Output = TerrainFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<TerrainFiles, StageError> {
         let landform = context.get(&self.landform)?;
         let field = &landform.field;
-        let colors = ground::apron_colors(&self.params, &landform);
+        let colors = ground::apron_colors(&self.params, self.season, &landform);
         let triangles = || -> Result<_, StageError> {
             let mesh = mesh(&landform, default_error_m(field), ground::BLOCK_M, &colors);
             let glb = terrain_glb(&mesh)?;

@@ -30,7 +30,7 @@ fn reeds_stand_at_the_shore_and_flowers_where_it_is_dry() {
     }
     assert!(grow("boulder").iter().all(|&above_m| above_m > -0.6));
     let drained = Landform { water_level_m: None, ..LAND.clone() };
-    let dry = maps(&PARAMS, &Woods::none(), &drained, 128).plants;
+    let dry = maps(&PARAMS, &Woods::none(Season::default()), &drained, 128).plants;
     assert!(dry.maps[0].data.iter().skip(3).step_by(4).all(|&part| part == 0), "reeds without a lake");
 }
 
@@ -96,7 +96,7 @@ fn nothing_stands_in_water_in_snow_or_on_cliffs() {
 
 #[test]
 fn the_foreground_has_no_more_plants_than_a_file_can_bear() {
-    let mut crowded = maps(&PARAMS, &Woods::none(), &LAND, 256);
+    let mut crowded = maps(&PARAMS, &Woods::none(Season::default()), &LAND, 256);
     crowded.plants.maps.iter_mut().for_each(|map| map.data.fill(255));
     let (_, made) = cut_with(&crowded.plants, 10.0, -35.0);
     let count = made.grass.parts[1].triangles.len();
@@ -154,8 +154,10 @@ fn leaves_lie_under_their_tree_and_in_its_colour() {
     let [x, z] = [k % 256 + 1, k / 256 + 1].map(|k| (k as f32 + 0.5) * 4.0 - 512.0);
     let woods = Woods::new(&MAPLE, &LAND, &[tree(x, z)], &[9.0]);
     let made = maps(&PARAMS, &woods, &LAND, 256);
+    let without = maps(&PARAMS, &Woods::new(&MAPLE, &LAND, &[], &[9.0]), &LAND, 256);
     let (mut reddest, mut changed) = (0.0f32, 0);
-    for (k, (new, old)) in made.color.data.chunks_exact(3).zip(MAPS.color.data.chunks_exact(3)).enumerate() {
+    for (k, (new, old)) in made.color.data.chunks_exact(3).zip(without.color.data.chunks_exact(3)).enumerate()
+    {
         if new == old {
             continue;
         }
@@ -245,4 +247,32 @@ fn small_plants_of_the_foreground_stand_where_the_maps_have_them() {
         let above = y - LAND.field.height_m(x, z);
         assert!((-1.0..3.0).contains(&above), "{above} m above the ground");
     }
+}
+
+#[test]
+fn the_ground_has_the_season_of_its_trees() {
+    let seen = |trees: LitterParams| {
+        let made = maps(&PARAMS, &Woods::new(&trees, &LAND, &[], &[]), &LAND, 256);
+        let flowers: u32 = stands(&made.plants, "flower").iter().map(|(part, _)| u32::from(*part)).sum();
+        let [mut red, mut green] = [0u64; 2];
+        for (color, weights) in made.color.data.chunks_exact(3).zip(made.weights.data.chunks_exact(4)) {
+            if weights.iter().all(|&part| part == 0) {
+                red += u64::from(color[0]);
+                green += u64::from(color[1]);
+            }
+        }
+        (flowers, green as f64 / red as f64)
+    };
+    let leafy = LitterParams { leaf_hue_deg: 100.0, ..MAPLE };
+    let [summer, autumn] = [leafy.clone(), MAPLE].map(seen);
+    let winter = seen(LitterParams { leaves_per_stem: 0, ..leafy.clone() });
+    let spring = seen(LitterParams { blossom: 0.3, ..leafy.clone() });
+    assert!(summer.0 > 2 * autumn.0 && autumn.0 > 0 && winter.0 == 0, "{summer:?} {autumn:?} {winter:?}");
+    assert!(summer.1 > autumn.1 + 0.02 && autumn.1 > winter.1 + 0.02, "{summer:?} {autumn:?} {winter:?}");
+    assert!(spring.0 == summer.0 && spring.1 > summer.1 + 0.02, "{spring:?} {summer:?}");
+    // Another green is the same summer: what is kept of the ground stays.
+    assert_eq!(
+        Season::of(&leafy),
+        Season::of(&LitterParams { leaf_hue_deg: 85.0, leaves_per_stem: 9, ..leafy })
+    );
 }
