@@ -3,6 +3,7 @@
 use genescape_schema::scene::Lookout;
 use glam::Vec2;
 
+use super::GroundParams;
 use super::cover::{Cover, MOSS, Noise, Painter, in_patches};
 use super::grain::Grain;
 use super::palette::Palette;
@@ -10,7 +11,6 @@ use super::palette::{Rgb, petals, step};
 use super::shapes;
 use super::traits::{Traits, TraitsMap};
 use super::woody::{self, Foliage};
-use super::GroundParams;
 use crate::math::lerp_array as lerp;
 use crate::model::{GroundPlants, Image8, Landform, PlantKind, PlantShape};
 use crate::raster::square_image;

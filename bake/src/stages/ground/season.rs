@@ -55,7 +55,8 @@ impl Season {
             let dry = k as f32 / last as f32;
             let sleeps = 0.62 * self.winter + 0.34 * self.autumn;
             *color = lerp_array(*color, lerp_array(DORMANT[0], DORMANT[1], dry), sleeps);
-            *color = lerp_array(*color, lerp_array(FRESH[0], FRESH[1], dry), 0.45 * self.spring * (1.0 - dry));
+            *color =
+                lerp_array(*color, lerp_array(FRESH[0], FRESH[1], dry), 0.45 * self.spring * (1.0 - dry));
         }
         ramp
     }
