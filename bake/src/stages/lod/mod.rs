@@ -73,8 +73,24 @@ impl Default for LodOptions {
 /// Vertices keep their order. `normals`, `uvs` and `colors` may each be empty. A mesh that breaks the rules of [`Mesh`]
 /// is repaired first: a list of the wrong length is emptied, a triangle that names a vertex that does not exist is
 /// dropped.
+///
+/// Errors are those of the collapses, in metres: how far the surface moves, how much elements grow.
 pub fn levels(mesh: &Mesh, options: &LodOptions) -> LevelledMesh {
-    levels_observed(mesh, options, &mut |_| ())
+    levels::build(repair::repaired(mesh.clone()), options, None, &mut |_| ())
+}
+
+/// Finds the errors of levels in metres, given all of them: one for each after D_0.
+pub type Judge<'a> = dyn Fn(&[&Mesh]) -> Vec<f32> + 'a;
+
+/// The same with the errors that a judge finds, as far as they grow from level to level; tells when each part of the work
+/// has ended.
+pub fn levels_judged(
+    mesh: &Mesh,
+    options: &LodOptions,
+    judge: &Judge<'_>,
+    ended: &mut dyn FnMut(Step),
+) -> LevelledMesh {
+    levels::build(repair::repaired(mesh.clone()), options, Some(judge), ended)
 }
 
 /// A part of the work, in the order in which they end.
@@ -82,12 +98,9 @@ pub fn levels(mesh: &Mesh, options: &LodOptions) -> LevelledMesh {
 pub enum Step {
     DataStructures,
     ProgressiveMesh,
+    /// Of levels, where somebody judges them.
+    Errors,
     /// And the records of the progressive mesh.
     Morphs,
     Strips,
-}
-
-/// The same, and tells when each part of it has ended.
-pub fn levels_observed(mesh: &Mesh, options: &LodOptions, ended: &mut dyn FnMut(Step)) -> LevelledMesh {
-    levels::build(repair::repaired(mesh.clone()), options, ended)
 }
