@@ -2,7 +2,8 @@
 //! for each, triangle strips, and the whole progressive mesh as vertex splits.
 //!
 //! Surfaces simplify by edge collapse with quadric errors (Garland and Heckbert 1997; new vertices on the collapsed
-//! edge as in Merry's thesis, appendix A, then moved so that volume is kept, Lindstrom and Turk 1998). Aggregates
+//! edge as in Merry's thesis, appendix A, then, unless [`Placement::Edge`] is asked for, moved so that volume is kept,
+//! Lindstrom and Turk 1998). Aggregates
 //! (leaf cards) simplify stochastically: elements go, the rest grow (Cook, Halstead, Planck, Ryu 2007). One cost in
 //! metres orders both.
 //!
@@ -34,9 +35,23 @@ mod tests;
 
 use crate::model::{AlphaMask, LevelledMesh, Mesh};
 
+/// Where the new vertex of a collapsed edge goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Placement {
+    /// Off the edge, so that the volume stays, where that folds nothing and costs little
+    // Lindstrom and Turk (1998).
+    #[default]
+    Volume,
+    /// On the edge, where the quadric is least, as in the thesis
+    // Merry's thesis, appendix A.
+    Edge,
+}
+
 /// Choices about levels of detail.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LodOptions {
+    /// Where new vertices of surfaces go.
+    pub placement: Placement,
     /// The most levels after D_0.
     pub max_levels: u32,
     /// No level gets fewer vertices than this.
@@ -56,6 +71,7 @@ pub struct LodOptions {
 impl Default for LodOptions {
     fn default() -> Self {
         Self {
+            placement: Placement::default(),
             max_levels: 8,
             min_vertices: 100,
             aggregate_weight: 0.25,
