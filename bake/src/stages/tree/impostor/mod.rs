@@ -23,9 +23,9 @@ const SAMPLES: usize = 2;
 const MARGIN: f32 = 1.06;
 /// No picture is smaller than this, in metres, not even of nothing.
 const MIN_SIZE_M: f32 = 1e-3;
-/// The error is so many of its pixels. Where an error of 1.5 pixels of the screen is allowed, a tree is then shown in three
-/// quarters as many as its picture has at most, with some to spare for supersampled or turned screens.
-const ERROR_PX: f32 = 2.0;
+/// The error is so many of its pixels. Where an error of 2.3 pixels of the screen is allowed, a tree is then shown in nine
+/// tenths as many as its picture has at most.
+const ERROR_PX: f32 = 2.5;
 
 /// What part of space the pictures show.
 #[derive(Clone, Copy, Debug)]
