@@ -13,6 +13,7 @@ use crate::chosen_parents::ChosenParents;
 use crate::export::{Audience, Options};
 use crate::landscape::{Landscape, Reference, SceneArg};
 use crate::plan::Resolution;
+use crate::stages::lod::Placement;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -211,6 +212,9 @@ pub enum Command {
         /// Where faces meet at more than this angle and the file brings no normals, a crease is made.
         #[arg(long, value_name = "DEG", default_value_t = 60.0)]
         crease_deg: f32,
+        /// Where the new vertex of a collapsed edge goes.
+        #[arg(long, value_name = "WHERE", value_enum, default_value_t)]
+        placement: Placement,
     },
     /// Look after the cache.
     Cache {

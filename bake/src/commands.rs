@@ -92,7 +92,9 @@ fn dispatch(cli: &Cli) -> Result<()> {
         Command::Params { markdown } => params(&run.world, *markdown),
         Command::Explain { landscape } => explain_command::run(*landscape, run),
         Command::Export { scene, out, options } => export_command::run(scene, out, *options, run),
-        Command::Lod { input, out, crease_deg } => lod_command::convert(input, out, *crease_deg),
+        Command::Lod { input, out, crease_deg, placement } => {
+            lod_command::convert(input, out, *crease_deg, *placement)
+        }
         Command::Cache { action } => cache_commands::look_after(&run.world, action, &stopped),
         Command::Bench { breeding: true, persons, only, .. } => {
             bench::breeding::breeding(*persons, &pool(run.threads)?, only.as_deref())

@@ -14,7 +14,7 @@ use crate::{progress, say};
 
 /// Reads `input`, prints what had to be repaired, makes all levels and writes them to `out`. Where the file brings no
 /// normals, faces that meet at less than `crease_deg` are smoothed over.
-pub fn convert(input: &Path, out: &Path, crease_deg: f32) -> Result<()> {
+pub fn convert(input: &Path, out: &Path, crease_deg: f32, placement: lod::Placement) -> Result<()> {
     if !(0.0..=180.0).contains(&crease_deg) {
         return Err(BadInput(format!("--crease-deg {crease_deg}: an angle from 0 to 180 degrees")).into());
     }
@@ -32,7 +32,8 @@ pub fn convert(input: &Path, out: &Path, crease_deg: f32) -> Result<()> {
         imported.mesh = tree::crease_normals(&imported.mesh, crease_deg.to_radians());
     }
     let working = progress::spinner(format!("simplifying {} triangles", imported.mesh.triangle_count()));
-    let levels = lod::levels(&imported.mesh, &lod::LodOptions::default());
+    let options = lod::LodOptions { placement, ..lod::LodOptions::default() };
+    let levels = lod::levels(&imported.mesh, &options);
     working.set_message("writing");
     let name = input.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy());
     let glb = gltf::levelled_glb(&name, &levels, &materials(&imported), None)

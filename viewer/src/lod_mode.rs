@@ -25,10 +25,10 @@ use strum::{EnumMessage, VariantArray};
 pub enum TreeLodMode {
     /// Continuous, by the error of each mesh on the screen
     // q(f(d)) ∝ d for the error q in metres.
+    #[default]
     Quality,
     /// Continuous, by the number of vertices alone
-    // 2·log₂ d + β. Of leafy trees it shows more for less, see `viewer bench --only detail`.
-    #[default]
+    // 2·log₂ d + β.
     Simple,
     /// By error, without morphing between levels
     Discrete,

@@ -134,7 +134,7 @@ impl Default for Options {
             tree_lod: TreeLodMode::default(),
             mesh_lod: TreeLodMode::Quality,
             terrain_lod: TerrainLodMode::default(),
-            tree_error_px: 1.5,
+            tree_error_px: 2.3,
             mesh_error_px: MESH_ERROR_PX,
             terrain_error_px: 6.0,
             wireframe: false,

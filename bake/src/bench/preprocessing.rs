@@ -9,6 +9,7 @@ use genescape_schema::{Genome, Kinds, Parent, Population, Space, Strategy, Votes
 use super::{Stages, bake};
 use crate::breed::Breeder;
 use crate::gltf::{self, Picture};
+use crate::model::Mesh;
 use crate::plan::{Resolution, TEMPLATES};
 use crate::stages::lod::{self, Step};
 use crate::stages::tree;
@@ -94,10 +95,12 @@ pub(super) fn template_steps(space: &Space, genome: &Genome) -> Result<Templates
         ended("generating the tree");
         triangles += template.mesh.triangle_count();
         let options = tree::lod_options(&template.mesh, &textures);
-        let levels = lod::levels_observed(&template.mesh, &options, &mut |step| {
+        let judge = |levels: &[&Mesh]| tree::errors(levels, &textures);
+        let levels = lod::levels_judged(&template.mesh, &options, &judge, &mut |step| {
             ended(match step {
                 Step::DataStructures => "data structures",
                 Step::ProgressiveMesh => "progressive mesh",
+                Step::Errors => "errors of pictures",
                 Step::Morphs => "morphs and records",
                 Step::Strips => "triangle strips",
             });

@@ -1,4 +1,5 @@
-//! The levels of detail of a tree of each of many landscapes, all as large on the screen: what the targets for trees are about.
+//! The levels of detail of a tree of each of many landscapes, all as large on the screen and in one light: what the targets for
+//! trees are about.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -12,6 +13,7 @@ use super::scenes::{POPULATIONS, TestScene};
 use crate::baker::laboratory;
 use crate::headless::Headless;
 use crate::passes::Shaders;
+use crate::scene::Scene;
 
 /// One level of one template.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,17 +30,18 @@ pub struct TreeLevel {
     pub flip: f64,
 }
 
-/// The first template of each test scene, and of four random landscapes, as they come, for each of some seeds. `root` is the
-/// laboratory's world.
+/// The first template of each test scene, and of four random landscapes, as they come, for each of some seeds. All stand in
+/// the weather of the first: in fog no level differs by much from any other. `root` is the laboratory's world.
 pub fn measure(bench: &Bench, root: &Path, seeds: u64) -> Result<Vec<TreeLevel>> {
     // Smooth edges, as in the window: a tree is looked at.
     let headless = Headless::open(&Shaders::from(None), 4)?;
     let tests = TestScene::ALL.map(|scene| bench.scenes.path(scene).to_owned());
     let random = laboratory::bake_random(root, 1..seeds + 1, POPULATIONS.len() as u32)?;
     let (mut rows, mut known) = (Vec::new(), BTreeSet::new());
+    let weather = headless.read(bench.scenes.path(TestScene::FlatTerrain))?.sky;
     for path in tests.into_iter().chain(random) {
         bench.bar.inc(1);
-        let scene = headless.read(&path)?;
+        let scene = Scene { sky: weather.clone(), ..headless.read(&path)? };
         // Bare land has no trees.
         let Some(&tree) = scene.trees.instances.first() else { continue };
         let template = &scene.trees.templates[tree.template as usize];

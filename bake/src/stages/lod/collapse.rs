@@ -4,6 +4,7 @@
 
 use glam::DVec3;
 
+use super::Placement;
 use super::edge::{Edge, EdgeTriangles};
 use super::merge::merge;
 use super::quadric::{Freedom, Quadrics};
@@ -41,6 +42,7 @@ pub struct Collapsed {
 /// Surface parts with what it takes to collapse their edges.
 pub struct Surface {
     pub topology: Topology,
+    placement: Placement,
     quadrics: Quadrics,
     /// Scratch memory.
     seen: PointSet,
@@ -51,11 +53,12 @@ pub struct Surface {
 
 impl Surface {
     /// Prepares all surface parts of a whole mesh.
-    pub fn new(state: &State) -> Self {
+    pub fn new(state: &State, placement: Placement) -> Self {
         let topology = Topology::new(state);
         let points = topology.positions.len();
         let mut surface = Self {
             topology,
+            placement,
             quadrics: Quadrics::new(points),
             seen: PointSet::new(points),
             slots: PointMap::new(points),
@@ -194,15 +197,15 @@ impl Surface {
         Some((if across_seams == Freedom::Edge { Freedom::Start } else { across_seams }, SEAM_PENALTY))
     }
 
-    /// Where the new vertex goes: with the volume kept if that folds nothing (Lindstrom and Turk 1998), else on the
-    /// edge, else nowhere.
+    /// Where the new vertex goes: with the volume kept if that is wanted and folds nothing (Lindstrom and Turk 1998), else
+    /// on the edge, else nowhere.
     fn place(&self, state: &State, edge: &Edge, freedom: Freedom) -> Option<(f64, DVec3)> {
         let topology = &self.topology;
         let ([a, b], ends) = (edge.points.map(|p| p as usize), edge.ends);
         let along = self.quadrics.place(a, b, ends, freedom).along;
         let on_edge = if along == 0.0 { ends[0] } else { ends[0] + (ends[1] - ends[0]) * along };
         let open = (topology.flags[a] | topology.flags[b]) & BOUNDARY != 0;
-        if freedom == Freedom::Edge && !open {
+        if self.placement == Placement::Volume && freedom == Freedom::Edge && !open {
             let at = edge.keep_volume(topology, state, on_edge);
             let [moved, still] = [at, on_edge].map(|x| self.quadrics.error_m(a, b, x));
             let near = moved <= VOLUME_SLACK * still + LENGTH_WEIGHT * edge.length();

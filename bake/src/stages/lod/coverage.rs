@@ -66,16 +66,14 @@ impl Canvas {
 
     /// Draws what lives of the surface parts, grown by `offset_m` along its normals.
     pub fn draw_surfaces(&mut self, state: &State, offset_m: f32) {
+        let grown = |v: u32| Vec3::from_array(state.grown(v as usize, offset_m));
+        let surfaces = state.parts.iter().filter(|span| span.elements().is_none());
+        let living = surfaces.flat_map(PartSpan::range).filter(|&t| state.triangle_lives[t]);
+        let triangles: Vec<[Vec3; 3]> = living.map(|t| state.triangles[t].map(grown)).collect();
         let camera = self.camera;
-        let grown = |id: usize| Vec3::from_array(state.grown(id, offset_m));
-        let places: Vec<_> = (0..state.vertices.len()).map(grown).collect();
         for (pixels, view) in self.views.iter_mut().zip(VIEWS) {
-            let flat = |v: u32| camera.place(view, places[v as usize]);
-            for span in state.parts.iter().filter(|span| span.elements().is_none()) {
-                for t in span.range().filter(|&t| state.triangle_lives[t]) {
-                    fill(pixels, camera.side, state.triangles[t].map(flat), |_, _| true);
-                }
-            }
+            let flat = |corner: Vec3| camera.place(view, corner);
+            triangles.iter().for_each(|corners| fill(pixels, camera.side, corners.map(flat), |_, _| true));
         }
     }
 }

@@ -1,9 +1,9 @@
 //! The simplification sequence → distinguished meshes and the geomorphs between them.
 //!
 //! D_{i+1} has half the vertices of D_i (thesis 4.3.1). A vertex of D_i that D_{i+1} lacks morphs to the vertex that it
-//! merged into, or to where its piece shrank to. Errors are the greatest so far (thesis 4.3.3). For D_0,
-//! which no collapse made, log q is continued in a straight line from the error at √½ of the vertices (λ = ½) and
-//! that of D_1: q₀ = q(½)² / q(1).
+//! merged into, or to where its piece shrank to. Errors are the greatest cost so far (thesis 4.3.3), or what a judge
+//! says. For D_0, which is the original, log q is continued in a straight line: from the cost at √½ of the vertices (λ = ½)
+//! and that of D_1, q₀ = q(½)² / q(1); or from what the judge says of D_1 and D_2, q₀ = q(1)² / q(2).
 
 use glam::Vec3;
 
@@ -12,7 +12,7 @@ use crate::model::{Level, LevelledMesh, Mesh, Morph};
 use super::progressive::{self, Mark};
 use super::sequence::Sequence;
 use super::state::{NONE, State};
-use super::{LodOptions, Step, strip};
+use super::{Judge, LodOptions, Step, strip};
 
 /// A level may miss its number of vertices by one in this many; otherwise there is no such level.
 const TOLERANCE: usize = 50;
@@ -28,17 +28,21 @@ struct Snapshot {
     mesh: Mesh,
     /// Vertex of this mesh for each original one.
     now: Vec<u32>,
-    error_m: f32,
 }
 
-/// Makes all levels of a sound mesh.
-pub fn build(mesh: Mesh, options: &LodOptions, ended: &mut dyn FnMut(Step)) -> LevelledMesh {
+/// Makes all levels of a sound mesh, with the errors that its judge finds or else with those of the collapses.
+pub fn build(
+    mesh: Mesh,
+    options: &LodOptions,
+    judge: Option<&Judge<'_>>,
+    ended: &mut dyn FnMut(Step),
+) -> LevelledMesh {
     let mut sequence = Sequence::new(State::new(&mesh), options);
     ended(Step::DataStructures);
-    let mut marks = vec![Mark::of(&sequence, 0.0)];
+    let mut marks = vec![Mark::of(&sequence)];
     let full = mesh.positions.len();
     let half_way = (full as f64 / 2.0_f64.sqrt()) as usize;
-    let mut snapshots = vec![Snapshot { mesh, now: (0..full as u32).collect(), error_m: 0.0 }];
+    let mut snapshots = vec![Snapshot { mesh, now: (0..full as u32).collect() }];
     let mut error_half_way_m = 0.0;
     for _ in 0..options.max_levels {
         let before = sequence.state.vertex_count;
@@ -56,41 +60,53 @@ pub fn build(mesh: Mesh, options: &LodOptions, ended: &mut dyn FnMut(Step)) -> L
         }
         let mark = Mark::calibrated(&mut sequence);
         let (mesh, now) = sequence.state.to_mesh(&mark.sizes());
-        snapshots.push(Snapshot { mesh, now, error_m: sequence.error_m as f32 });
+        snapshots.push(Snapshot { mesh, now });
         marks.push(mark);
     }
-    set_errors(&mut snapshots, &mut marks, error_half_way_m as f32);
     ended(Step::ProgressiveMesh);
+    set_errors(&snapshots, &mut marks, judge, error_half_way_m as f32);
+    ended(Step::Errors);
     let progressive = progressive::encode(&sequence.state, &marks);
-    LevelledMesh { levels: finish(snapshots, &sequence.state, ended), progressive }
+    LevelledMesh { levels: finish(snapshots, &marks, &sequence.state, ended), progressive }
 }
 
-fn set_errors(snapshots: &mut [Snapshot], marks: &mut [Mark], half_way_m: f32) {
+fn set_errors(snapshots: &[Snapshot], marks: &mut [Mark], judge: Option<&Judge<'_>>, half_way_m: f32) {
     let bounds = snapshots[0].mesh.bounds();
     let diagonal = (bounds.max - bounds.min).length();
-    let first = match snapshots.get(1) {
-        Some(next) if next.error_m > 0.0 => half_way_m * (half_way_m / next.error_m),
+    if let Some(judge) = judge {
+        let meshes: Vec<&Mesh> = snapshots.iter().map(|snapshot| &snapshot.mesh).collect();
+        let coarser = marks.iter_mut().skip(1);
+        coarser.zip(judge(&meshes)).for_each(|(mark, error_m)| mark.error_m = error_m);
+    }
+    let errors_m: Vec<f32> = marks.iter().skip(1).map(|mark| mark.error_m).collect();
+    let first = match (judge, errors_m.as_slice()) {
+        (Some(_), &[one, two, ..]) if two > 0.0 => one * (one / two),
+        (None, &[one, ..]) if one > 0.0 => half_way_m * (half_way_m / one),
         _ => 0.0,
     };
-    snapshots[0].error_m = first.min(snapshots.get(1).map_or(0.0, |next| next.error_m / MIN_GROWTH));
+    marks[0].error_m = first.min(errors_m.first().map_or(0.0, |next| next / MIN_GROWTH));
     let mut floor = (diagonal * MIN_ERROR).clamp(f32::MIN_POSITIVE, f32::MAX);
-    for (snapshot, mark) in snapshots.iter_mut().zip(marks) {
-        snapshot.error_m = snapshot.error_m.max(floor);
-        mark.error_m = snapshot.error_m;
-        floor = snapshot.error_m * MIN_GROWTH;
+    for mark in marks {
+        mark.error_m = mark.error_m.max(floor);
+        floor = mark.error_m * MIN_GROWTH;
     }
 }
 
-fn finish(snapshots: Vec<Snapshot>, state: &State, ended: &mut dyn FnMut(Step)) -> Vec<Level> {
+fn finish(
+    snapshots: Vec<Snapshot>,
+    marks: &[Mark],
+    state: &State,
+    ended: &mut dyn FnMut(Step),
+) -> Vec<Level> {
     let morph_to_next = |index: usize| Some(morph(&snapshots[index], snapshots.get(index + 1)?, state));
     let morphs: Vec<_> = (0..snapshots.len()).map(morph_to_next).collect();
     ended(Step::Morphs);
-    let level = |(snapshot, morph): (Snapshot, Option<Morph>)| {
+    let level = |((snapshot, mark), morph): ((Snapshot, &Mark), Option<Morph>)| {
         let vertices = snapshot.mesh.positions.len();
         let strips = snapshot.mesh.parts.iter().map(|part| strip::strip(&part.triangles, vertices)).collect();
-        Level { mesh: snapshot.mesh, morph, error_m: snapshot.error_m, strips }
+        Level { mesh: snapshot.mesh, morph, error_m: mark.error_m, strips }
     };
-    let levels = snapshots.into_iter().zip(morphs).map(level).collect();
+    let levels = snapshots.into_iter().zip(marks).zip(morphs).map(level).collect();
     ended(Step::Strips);
     levels
 }
@@ -145,4 +161,24 @@ fn shrink(mesh: &Mesh, vertices: &[usize], morph: &mut Morph) {
 
 fn difference<const N: usize>(to: [f32; N], from: [f32; N]) -> [f32; N] {
     std::array::from_fn(|k| to[k] - from[k])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::progressive::reader;
+    use crate::model::Mesh;
+    use crate::stages::lod::shapes::sphere;
+    use crate::stages::lod::{LodOptions, levels_judged};
+
+    #[test]
+    fn a_judge_says_how_far_levels_are_and_they_grow_all_the_same() {
+        let mesh = sphere(32, 30);
+        let judge = |levels: &[&Mesh]| (1..levels.len()).map(|i| [0.5, 1.0, 0.2][i.min(3) - 1]).collect();
+        let made = levels_judged(&mesh, &LodOptions::default(), &judge, &mut |_| ());
+        let errors: Vec<f32> = made.levels.iter().map(|level| level.error_m).collect();
+        assert_eq!(errors[..3], [0.25, 0.5, 1.0], "D_0 goes on in a straight line");
+        assert!(errors.len() > 3 && errors.is_sorted_by(|a, b| a < b), "{errors:?}");
+        let payload = reader::decode(&made.progressive).unwrap();
+        assert!(payload.marks().iter().zip(errors).all(|(mark, error_m)| mark.error_m == error_m));
+    }
 }

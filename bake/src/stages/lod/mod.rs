@@ -2,7 +2,8 @@
 //! for each, triangle strips, and the whole progressive mesh as vertex splits.
 //!
 //! Surfaces simplify by edge collapse with quadric errors (Garland and Heckbert 1997; new vertices on the collapsed
-//! edge as in Merry's thesis, appendix A, then moved so that volume is kept, Lindstrom and Turk 1998). Aggregates
+//! edge as in Merry's thesis, appendix A, then, unless [`Placement::Edge`] is asked for, moved so that volume is kept,
+//! Lindstrom and Turk 1998). Aggregates
 //! (leaf cards) simplify stochastically: elements go, the rest grow (Cook, Halstead, Planck, Ryu 2007). One cost in
 //! metres orders both.
 //!
@@ -34,9 +35,23 @@ mod tests;
 
 use crate::model::{AlphaMask, LevelledMesh, Mesh};
 
+/// Where the new vertex of a collapsed edge goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Placement {
+    /// Off the edge, so that the volume stays, where that folds nothing and costs little
+    // Lindstrom and Turk (1998).
+    #[default]
+    Volume,
+    /// On the edge, where the quadric is least, as in the thesis
+    // Merry's thesis, appendix A.
+    Edge,
+}
+
 /// Choices about levels of detail.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LodOptions {
+    /// Where new vertices of surfaces go.
+    pub placement: Placement,
     /// The most levels after D_0.
     pub max_levels: u32,
     /// No level gets fewer vertices than this.
@@ -56,6 +71,7 @@ pub struct LodOptions {
 impl Default for LodOptions {
     fn default() -> Self {
         Self {
+            placement: Placement::default(),
             max_levels: 8,
             min_vertices: 100,
             aggregate_weight: 0.25,
@@ -73,8 +89,24 @@ impl Default for LodOptions {
 /// Vertices keep their order. `normals`, `uvs` and `colors` may each be empty. A mesh that breaks the rules of [`Mesh`]
 /// is repaired first: a list of the wrong length is emptied, a triangle that names a vertex that does not exist is
 /// dropped.
+///
+/// Errors are those of the collapses, in metres: how far the surface moves, how much elements grow.
 pub fn levels(mesh: &Mesh, options: &LodOptions) -> LevelledMesh {
-    levels_observed(mesh, options, &mut |_| ())
+    levels::build(repair::repaired(mesh.clone()), options, None, &mut |_| ())
+}
+
+/// Finds the errors of levels in metres, given all of them: one for each after D_0.
+pub type Judge<'a> = dyn Fn(&[&Mesh]) -> Vec<f32> + 'a;
+
+/// The same with the errors that a judge finds, as far as they grow from level to level; tells when each part of the work
+/// has ended.
+pub fn levels_judged(
+    mesh: &Mesh,
+    options: &LodOptions,
+    judge: &Judge<'_>,
+    ended: &mut dyn FnMut(Step),
+) -> LevelledMesh {
+    levels::build(repair::repaired(mesh.clone()), options, Some(judge), ended)
 }
 
 /// A part of the work, in the order in which they end.
@@ -82,12 +114,9 @@ pub fn levels(mesh: &Mesh, options: &LodOptions) -> LevelledMesh {
 pub enum Step {
     DataStructures,
     ProgressiveMesh,
+    /// Of levels, where somebody judges them.
+    Errors,
     /// And the records of the progressive mesh.
     Morphs,
     Strips,
-}
-
-/// The same, and tells when each part of it has ended.
-pub fn levels_observed(mesh: &Mesh, options: &LodOptions, ended: &mut dyn FnMut(Step)) -> LevelledMesh {
-    levels::build(repair::repaired(mesh.clone()), options, ended)
 }

@@ -52,7 +52,7 @@ enum Next {
 impl Sequence {
     /// The whole mesh.
     pub fn new(state: State, options: &LodOptions) -> Self {
-        let surface = Surface::new(&state);
+        let surface = Surface::new(&state, options.placement);
         let bounds = bounds(&state);
         let aggregate = |part: usize| Aggregate::new(&state, part, options.aggregate_weight);
         let aggregates: Vec<_> = (0..state.parts.len()).filter_map(aggregate).collect();

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::progressive::reader;
 use super::shapes::{plane, sphere, torus, tree};
-use super::{LodOptions, levels, strip};
+use super::{LodOptions, Placement, levels, strip};
 use crate::model::{AlphaMask, Image8, Level, LevelledMesh, Material, Mesh, Morph, Part, PartKind};
 
 fn shapes() -> Vec<(&'static str, Mesh)> {
@@ -137,20 +137,33 @@ fn what_is_closed_stays_closed() {
     }
 }
 
+fn volume(mesh: &Mesh) -> f32 {
+    let at = |v: u32| Vec3::from_array(mesh.positions[v as usize]);
+    let of = |t: &[u32; 3]| at(t[0]).dot(at(t[1]).cross(at(t[2])));
+    mesh.parts[0].triangles.iter().map(of).sum::<f32>() / 6.0
+}
+
 #[test]
 fn a_sphere_keeps_its_radius_and_its_volume() {
-    let volume = |mesh: &Mesh| {
-        let at = |v: u32| Vec3::from_array(mesh.positions[v as usize]);
-        let of = |t: &[u32; 3]| at(t[0]).dot(at(t[1]).cross(at(t[2])));
-        mesh.parts[0].triangles.iter().map(of).sum::<f32>() / 6.0
-    };
     let mesh = sphere(48, 46);
-    let made = made(&mesh);
-    for level in &made.levels {
+    for level in &made(&mesh).levels {
         assert!((volume(&level.mesh) / volume(&mesh) - 1.0).abs() < 0.02, "{}", volume(&level.mesh));
         let worst = level.mesh.positions.iter().map(|&p| (Vec3::from_array(p).length() - 1.0).abs());
         let worst = worst.fold(0.0, f32::max);
         assert!(worst < 0.12 && worst <= 4.0 * level.error_m + 1e-3, "{worst} at {}", level.error_m);
+    }
+}
+
+#[test]
+fn vertices_placed_on_edges_stay_inside_the_sphere_which_shrinks() {
+    let mesh = sphere(48, 46);
+    let on_edges = levels(&mesh, &LodOptions { placement: Placement::Edge, ..LodOptions::default() });
+    for level in &on_edges.levels[1..] {
+        let lengths = level.mesh.positions.iter().map(|&p| Vec3::from_array(p).length());
+        let farthest = lengths.fold(0.0, f32::max);
+        assert!(farthest <= 1.0 + 1e-5, "{farthest}");
+        let share = volume(&level.mesh) / volume(&mesh);
+        assert!((0.5..0.999).contains(&share), "{share}");
     }
 }
 

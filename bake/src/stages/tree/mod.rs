@@ -18,9 +18,12 @@ mod leaf_texture;
 mod measure;
 mod mips;
 mod params;
+mod raster;
+mod seen;
 mod shade;
 mod skeleton;
 mod stage;
+mod surfaces;
 #[cfg(test)]
 mod tests;
 
@@ -35,6 +38,7 @@ pub use crease::crease_normals;
 pub use impostor::impostor;
 pub use measure::{TreeMeasures, measure};
 pub use params::{TreeParams, TreeTextureParams};
+pub use seen::errors;
 
 /// Texels of leaf and blossom cards with less alpha than this are not drawn.
 pub const ALPHA_CUTOFF: f32 = 0.5;

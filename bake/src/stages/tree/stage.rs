@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{ALPHA_CUTOFF, TreeParams, TreeTextureParams, impostor, template, textures};
+use super::{ALPHA_CUTOFF, TreeParams, TreeTextureParams, errors, impostor, template, textures};
 use crate::gltf::{Picture, png, tree_glb};
 use crate::graph::{Context, File, Input, Stage, StageError, Stored};
 use crate::model::TreeFootprint;
@@ -80,13 +80,15 @@ pub struct TreeFiles {
 
 impl Stage for TreeStage {
     const NAME: &'static str = "tree";
-    const VERSION: u32 = 12;
+    const VERSION: u32 = 15;
     type Output = TreeFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<TreeFiles, StageError> {
         let template = template(&self.params, self.index);
         let textures = context.get(&self.textures)?.try_map(|file| context.bytes(file))?;
-        let levels = lod::levels(&template.mesh, &lod_options(&template.mesh, &textures));
+        let options = lod_options(&template.mesh, &textures);
+        let judge = |levels: &[&Mesh]| errors(levels, &textures);
+        let levels = lod::levels_judged(&template.mesh, &options, &judge, &mut |_| ());
         let impostor = impostor(drawn_from_afar(&levels.levels), &textures);
         let embedded = textures.map(|bytes| Picture::Embedded { bytes, mime_type: "image/png" });
         let glb = tree_glb(&format!("tree-{}", self.index), &levels, &embedded, Some(&impostor))?;

@@ -30,15 +30,15 @@ pub struct Mark {
 }
 
 impl Mark {
-    /// The current state, with records counted from the original.
-    pub fn of(sequence: &Sequence, error_m: f32) -> Self {
+    /// The current state with the greatest cost so far, and with records counted from the original.
+    pub fn of(sequence: &Sequence) -> Self {
         let state = &sequence.state;
         let part = |span: &PartSpan| span.elements().map_or((0, 0.0), |(elements, ..)| (elements, 1.0));
         Self {
             vertices: state.vertex_count as u32,
             triangles: count(&state.triangle_lives),
             records: state.log.len() as u32,
-            error_m,
+            error_m: sequence.error_m as f32,
             parts: state.parts.iter().map(part).collect(),
         }
     }
@@ -46,7 +46,7 @@ impl Mark {
     /// The current state with sizes at which coverage is kept.
     pub fn calibrated(sequence: &mut Sequence) -> Self {
         let parts = sequence.sizes();
-        Self { parts, ..Self::of(sequence, 0.0) }
+        Self { parts, ..Self::of(sequence) }
     }
 
     /// Size of each part: the scale of its elements, or the growth of its surface in metres.

@@ -1,19 +1,17 @@
 //! A template → pictures of it from four sides, for where it is so far away that single leaves no longer count.
 
 mod picture;
-mod raster;
 #[cfg(test)]
 mod tests;
 
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::ALPHA_CUTOFF;
 use super::mips::Encoder;
-use crate::math::linear_from_srgb;
-use crate::model::{AlphaMask, Image8, Impostor, Material, Mesh, TreeTextures};
+use super::raster::{Drawing, Look};
+use super::surfaces::Surfaces;
+use crate::model::{Impostor, Mesh, TreeTextures};
 use picture::Picture;
-use raster::{Card, Drawing, Look, Surface};
 
 /// Pixels a side of one picture, of a tree with leaves and of a bare one, whose twigs need more.
 const SIDE: usize = 128;
@@ -25,9 +23,9 @@ const SAMPLES: usize = 2;
 const MARGIN: f32 = 1.06;
 /// No picture is smaller than this, in metres, not even of nothing.
 const MIN_SIZE_M: f32 = 1e-3;
-/// The error is so many of its pixels. Where an error of 1.5 pixels of the screen is allowed, a tree is then shown in three
-/// quarters as many as its picture has at most, with some to spare for supersampled or turned screens.
-const ERROR_PX: f32 = 2.0;
+/// The error is so many of its pixels. Where an error of 2.3 pixels of the screen is allowed, a tree is then shown in nine
+/// tenths as many as its picture has at most.
+const ERROR_PX: f32 = 2.5;
 
 /// What part of space the pictures show.
 #[derive(Clone, Copy, Debug)]
@@ -59,15 +57,10 @@ impl Frame {
 /// Draws a template, whose finest or next level `mesh` is, from four sides: the same bytes for any number of threads.
 pub fn impostor<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> Impostor {
     let frame = Frame::of(mesh);
-    let cards = [&textures.leaf_small, &textures.blossom_small].map(card);
-    let bark = Surface::Wood(Vec3::from_array(textures.bark_linear));
-    let surface = |material: Material| match material {
-        Material::Leaf => Surface::Card(&cards[0]),
-        Material::Blossom => Surface::Card(&cards[1]),
-        _ => bark,
-    };
+    let surfaces = Surfaces::of(textures);
     let draw = |k: usize| {
-        let drawing = Drawing::new(mesh, &surface, &Look::new(&frame, k));
+        let look = Look::new(k, frame.foot_m, frame.size_m, SAMPLES * frame.side);
+        let drawing = Drawing::new(mesh, &surfaces, &look);
         Picture::of(&drawing, &frame)
     };
     let pictures: Vec<Picture> = (0..Impostor::AZIMUTHS.len()).into_par_iter().map(draw).collect();
@@ -79,21 +72,5 @@ pub fn impostor<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> Impostor {
         low_m: frame.foot_m.y,
         size_m: frame.size_m,
         error_m: ERROR_PX / frame.side as f32 * frame.size_m[0].max(frame.size_m[1]),
-    }
-}
-
-/// A card's small picture, ready to be drawn; white and opaque where there is none.
-fn card(image: &Image8) -> Card {
-    let mask = AlphaMask::of(image, ALPHA_CUTOFF);
-    if image.channels != 4 || image.data.is_empty() {
-        return Card { mask, width: 1, height: 1, texels: vec![Vec3::ONE] };
-    }
-    let linear: Vec<f32> = (0..256).map(|byte| linear_from_srgb(byte as f32 / 255.0)).collect();
-    let texel = |pixel: &[u8]| Vec3::from_array([0, 1, 2].map(|c| linear[usize::from(pixel[c])]));
-    Card {
-        mask,
-        width: image.width as usize,
-        height: image.height as usize,
-        texels: image.data.chunks_exact(4).map(texel).collect(),
     }
 }

@@ -2,11 +2,11 @@
 
 use glam::Vec3;
 
-use super::raster::Drawing;
 use super::{Frame, SAMPLES};
 use crate::math::unit_to_byte;
 use crate::model::{Image8, Impostor};
 use crate::stages::tree::mips::Encoder;
+use crate::stages::tree::raster::Drawing;
 
 /// How far colours are bled, in pixels: as far as a bilinear filter of three mip levels reaches. Beyond them is the mean.
 const BLED_PX: usize = 8;

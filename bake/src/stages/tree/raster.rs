@@ -2,37 +2,14 @@
 
 use glam::{Vec2, Vec3};
 
-use super::{Frame, SAMPLES};
-use crate::model::{AlphaMask, Impostor, Material, Mesh};
+use super::surfaces::{Surface, Surfaces};
+use crate::model::{Impostor, Mesh};
 
 /// Samples a side of a tile.
 const TILE: usize = 8;
-/// How often it is noted in which tiles nothing more can show.
+/// How often it is noted in which tiles nothing more can show, and after how many triangles at the earliest.
 const ROUNDS: usize = 24;
-
-/// A card's colours, and where it is cut away.
-pub(super) struct Card {
-    pub mask: AlphaMask,
-    pub width: usize,
-    pub height: usize,
-    /// Rows from the top; linear.
-    pub texels: Vec<Vec3>,
-}
-
-impl Card {
-    fn at(&self, u: f32, v: f32) -> Vec3 {
-        let index = |t: f32, count: usize| ((t * count as f32).max(0.0) as usize).min(count - 1);
-        self.texels[index(v, self.height) * self.width + index(u, self.width)]
-    }
-}
-
-/// What triangles are made of.
-#[derive(Clone, Copy)]
-pub(super) enum Surface<'a> {
-    /// A colour, linear.
-    Wood(Vec3),
-    Card(&'a Card),
-}
+const MIN_ROUND: usize = 1024;
 
 /// From where, and how metres become samples.
 pub(super) struct Look {
@@ -45,12 +22,11 @@ pub(super) struct Look {
 }
 
 impl Look {
-    /// For picture `k`.
-    pub fn new(frame: &Frame, k: usize) -> Self {
+    /// From side `k` of an impostor, of what lies above and beside `foot_m` in a picture of that width and height with
+    /// `size` samples a side.
+    pub fn new(k: usize, foot_m: Vec3, size_m: [f32; 2], size: usize) -> Self {
         let [eye, right] = Impostor::eye_and_right(k);
-        let size = SAMPLES * frame.side;
-        let samples_per_m = size as f32 / Vec2::from_array(frame.size_m);
-        Self { foot_m: frame.foot_m, eye, right, samples_per_m, size }
+        Self { foot_m, eye, right, samples_per_m: size as f32 / Vec2::from_array(size_m), size }
     }
 
     /// Place in samples from the upper left corner, and metres before the axis.
@@ -70,6 +46,8 @@ pub(super) struct Sample {
     pub color: Vec3,
     /// Whether it is leaf or blossom.
     pub leaf: bool,
+    /// Mean normal of the triangle's corners, a unit vector; zero of a mesh without normals.
+    pub normal: Vec3,
 }
 
 /// What is nearest at each sample, rows from the top.
@@ -85,28 +63,30 @@ pub(super) struct Drawing<'a> {
 }
 
 impl<'a> Drawing<'a> {
-    pub fn new(mesh: &Mesh, surface: &dyn Fn(Material) -> Surface<'a>, look: &Look) -> Self {
+    pub fn new(mesh: &Mesh, surfaces: &'a Surfaces, look: &Look) -> Self {
         let size = look.size;
         let (depths_m, nearest) = (vec![f32::NEG_INFINITY; size * size], vec![0; size * size]);
         let mut drawing = Self { triangles: Vec::new(), depths_m, nearest, size };
-        drawing.draw(mesh, surface, look);
+        drawing.draw(mesh, surfaces, look);
         drawing
     }
 
     /// Draws the nearest triangles first, since most of what comes later is then hidden. Where two are equally near, the
     /// one that comes first in the mesh is drawn.
-    fn draw(&mut self, mesh: &Mesh, surface: &dyn Fn(Material) -> Surface<'a>, look: &Look) {
+    fn draw(&mut self, mesh: &Mesh, surfaces: &'a Surfaces, look: &Look) {
         let places: Vec<Vec3> = mesh.positions.iter().map(|&p| look.project(p)).collect();
         let corners = |triangle: [u32; 3]| triangle.map(|i| places[i as usize]);
-        let parts = mesh.parts.iter().map(|part| (surface(part.material), &part.triangles));
+        let parts = mesh.parts.iter().map(|part| (surfaces.of_part(part.material), &part.triangles));
         let all: Vec<_> = parts.flat_map(|(surface, part)| part.iter().map(move |&t| (surface, t))).collect();
-        let nearest_m = |&(_, t): &(_, [u32; 3])| corners(t).iter().map(|c| c.z).fold(f32::MIN, f32::max);
-        let mut order: Vec<(f32, u32)> = all.iter().map(nearest_m).zip(0..).collect();
-        order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        for some in order.chunks(order.len() / ROUNDS + 1) {
+        let nearest_m = |t: [u32; 3]| corners(t).iter().map(|c| c.z).fold(f32::MIN, f32::max);
+        let mut order: Vec<u64> =
+            (0..).zip(&all).map(|(index, (_, t))| farther_later(nearest_m(*t)) << 32 | index).collect();
+        order.sort_unstable();
+        for some in order.chunks((order.len() / ROUNDS).max(MIN_ROUND)) {
             let farthest_m = self.tiles();
-            for &(nearest_m, index) in some {
-                let (surface, vertices) = all[index as usize];
+            for &key in some {
+                let (surface, vertices) = all[key as u32 as usize];
+                let nearest_m = nearest_m(vertices);
                 let corners = corners(vertices);
                 if self.tiles_around(corners).all(|tile| farthest_m[tile] >= nearest_m) {
                     continue;
@@ -120,10 +100,13 @@ impl<'a> Drawing<'a> {
 
     fn add(&mut self, triangle: Triangle<'a>) {
         match triangle.surface {
-            Surface::Wood(_) => self.fill(&triangle, |_, _| true),
+            Surface::Wood(_) => self.fill(&triangle, |_| |_| true),
             Surface::Card(card) => {
                 let [u, v] = &triangle.uv;
-                self.fill(&triangle, |x, y| card.mask.is_opaque([u.at(x, y), v.at(x, y)]));
+                self.fill(&triangle, |y| {
+                    let (u, v) = (u.row(y), v.row(y));
+                    move |x| card.mask.is_opaque([u.at(x), v.at(x)])
+                });
             }
         }
         self.triangles.push(triangle);
@@ -146,15 +129,15 @@ impl<'a> Drawing<'a> {
         for (row, depths_m) in self.depths_m.chunks_exact(self.size).enumerate() {
             let tiles = &mut tiles[row / TILE * across..][..across];
             for (tile, depths_m) in tiles.iter_mut().zip(depths_m.chunks_exact(TILE)) {
-                *tile = depths_m.iter().fold(*tile, |farthest, &depth_m| farthest.min(depth_m));
+                *tile = depths_m.iter().fold(*tile, |farthest, &m| if m < farthest { m } else { farthest });
             }
         }
         tiles
     }
 
-    /// Puts a triangle where it is the nearest so far, and `is_there`.
+    /// Puts a triangle where it is the nearest so far, and there in a row.
     #[inline]
-    fn fill(&mut self, triangle: &Triangle<'_>, is_there: impl Fn(f32, f32) -> bool) {
+    fn fill<Row: Fn(f32) -> bool>(&mut self, triangle: &Triangle<'_>, row_at: impl Fn(f32) -> Row) {
         let index = self.triangles.len() as u32;
         let [a, b, c] = triangle.corners.map(|corner| corner.y);
         let size = self.size;
@@ -165,10 +148,11 @@ impl<'a> Drawing<'a> {
             let columns = start..first(right + EDGE, size).max(start);
             let line = row * size + columns.start..row * size + columns.end;
             let depths_m = self.depths_m[line.clone()].iter_mut().zip(&mut self.nearest[line]);
+            let (row_m, is_there) = (triangle.depth_m.row(y), row_at(y));
             for (column, (depth_m, nearest)) in columns.zip(depths_m) {
                 let x = column as f32 + 0.5;
-                let here_m = triangle.depth_m.at(x, y);
-                if here_m > *depth_m && is_there(x, y) {
+                let here_m = row_m.at(x);
+                if here_m > *depth_m && is_there(x) {
                     (*depth_m, *nearest) = (here_m, index);
                 }
             }
@@ -186,9 +170,9 @@ impl<'a> Drawing<'a> {
         let [u, v] = &triangle.uv;
         let (color, leaf) = match triangle.surface {
             Surface::Wood(color) => (color, false),
-            Surface::Card(card) => (card.at(u.at(x, y), v.at(x, y)), true),
+            Surface::Card(card) => (card.at(u.row(y).at(x), v.row(y).at(x)), true),
         };
-        Some(Sample { depth_m, color: color * triangle.tint, leaf })
+        Some(Sample { depth_m, color: color * triangle.tint, leaf, normal: triangle.normal })
     }
 }
 
@@ -199,10 +183,24 @@ struct Plane {
     per_y: f32,
 }
 
+/// The same along a row.
+#[derive(Clone, Copy)]
+struct Row {
+    origin: f32,
+    per_x: f32,
+}
+
 impl Plane {
     #[inline]
-    fn at(&self, x: f32, y: f32) -> f32 {
-        self.origin + self.per_x * x + self.per_y * y
+    fn row(&self, y: f32) -> Row {
+        Row { origin: self.origin + self.per_y * y, per_x: self.per_x }
+    }
+}
+
+impl Row {
+    #[inline]
+    fn at(&self, x: f32) -> f32 {
+        self.origin + self.per_x * x
     }
 }
 
@@ -210,11 +208,14 @@ impl Plane {
 struct Triangle<'a> {
     /// x, y in samples and metres before the axis.
     corners: [Vec3; 3],
+    /// Samples to the right a row, along the edge from each corner to the next.
+    slopes: [f32; 3],
     surface: Surface<'a>,
     depth_m: Plane,
     uv: [Plane; 2],
     /// Linear factor on the surface's colour, the mean of the corners'.
     tint: Vec3,
+    normal: Vec3,
 }
 
 /// Triangles with less than this area in samples are seen from their edge.
@@ -231,9 +232,10 @@ impl<'a> Triangle<'a> {
         if area.abs() < MIN_AREA {
             return None;
         }
+        let (ab_over, ac_over) = (ab / area, ac / area);
         let plane = |values: [f32; 3]| {
             let (db, dc) = (values[1] - values[0], values[2] - values[0]);
-            let (per_x, per_y) = ((db * ac.y - dc * ab.y) / area, (dc * ab.x - db * ac.x) / area);
+            let (per_x, per_y) = (db * ac_over.y - dc * ab_over.y, dc * ab_over.x - db * ac_over.x);
             Plane { origin: values[0] - per_x * a.x - per_y * a.y, per_x, per_y }
         };
         let uvs = vertices.map(|i| mesh.uvs.get(i).copied().unwrap_or_default());
@@ -242,9 +244,13 @@ impl<'a> Triangle<'a> {
                 .get(i)
                 .map_or(Vec3::ONE, |&[r, g, b, _]| Vec3::from_array([r, g, b].map(f32::from)) / 255.0)
         };
+        let normals = vertices.iter().filter_map(|&i| mesh.normals.get(i));
+        let slope = |(p, q): (Vec3, Vec3)| (q.x - p.x) / (q.y - p.y);
         Some(Self {
             corners,
+            slopes: [(a, b), (b, c), (c, a)].map(slope),
             surface,
+            normal: normals.map(|&normal| Vec3::from_array(normal)).sum::<Vec3>().normalize_or_zero(),
             depth_m: plane(corners.map(|corner| corner.z)),
             uv: [0, 1].map(|axis| plane(uvs.map(|uv| uv[axis]))),
             tint: vertices.iter().map(tint).sum::<Vec3>() / 3.0,
@@ -257,7 +263,7 @@ impl<'a> Triangle<'a> {
         for k in 0..3 {
             let (a, b) = (self.corners[k], self.corners[(k + 1) % 3]);
             if (a.y <= y) != (b.y <= y) {
-                let x = a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y));
+                let x = a.x + (y - a.y) * self.slopes[k];
                 (left, right) = (left.min(x), right.max(x));
             }
         }
@@ -269,4 +275,12 @@ impl<'a> Triangle<'a> {
 #[inline]
 fn first(place: f32, size: usize) -> usize {
     ((place + 0.5).max(0.0) as usize).min(size)
+}
+
+/// A key by which the farther of two depths comes later: equal for equal ones.
+#[inline]
+fn farther_later(depth_m: f32) -> u64 {
+    // The bits of a positive number grow with it, those of a negative one fall.
+    let bits = (depth_m + 0.0).to_bits();
+    u64::from(if bits >> 31 == 0 { !bits & 0x7FFF_FFFF } else { bits })
 }

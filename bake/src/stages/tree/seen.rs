@@ -1,0 +1,192 @@
+//! Levels of detail of a tree → how far each is from the full tree to the eye, as errors in metres.
+//!
+//! Each level is drawn as the full tree is, cut out by the alpha of its leaves, with its colours in the light of a sun, from
+//! two sides, in square pictures around the sphere that holds all levels. Pixels are averaged to a 16th, an 8th and a 4th of
+//! the sphere's radius R and brought to what the eye makes of them: the square root of linear light, which is near to L* of
+//! CIELAB. Δ is the mean absolute difference of two such pictures over channels, pixels, sizes of pixels and sides.
+//!
+//! The error is 2RΔ, the mean width in metres of what differs in a row of the picture, black for white counting in full: where
+//! a pixel is as large, a row differs by one pixel in all. An outline that lies ε off on either side has an error of 2ε times
+//! its contrast; leaves that are moved a little differ less the larger the pixels are, leaves that are missed do not.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::raster::{Drawing, Look, Sample};
+use super::surfaces::Surfaces;
+use crate::model::{Mesh, TreeTextures};
+
+/// Which of the impostor's sides the tree is drawn from: one beside the other.
+const SIDES: [usize; 2] = [1, 3];
+/// Pixels a side of the finest pictures that are compared, and how many sizes of pixels there are, each twice the last.
+const PIXELS: usize = 32;
+const SIZES: usize = 3;
+/// Samples along each side of a pixel.
+const SAMPLES: usize = 6;
+/// Behind the tree: the sky, linear.
+const SKY: Vec3 = Vec3::new(0.45, 0.6, 0.8);
+/// Towards the sun, a unit vector; its light, and that from all around.
+const SUN: Vec3 = Vec3::new(0.5, 0.75, 0.433);
+const SUNLIGHT: f32 = 0.7;
+const SKYLIGHT: f32 = 0.3;
+
+/// The errors in metres of all levels but the first, which is the full tree: the same for any number of threads.
+pub fn errors<P>(levels: &[&Mesh], textures: &TreeTextures<P>) -> Vec<f32> {
+    let surfaces = Surfaces::of(textures);
+    let (foot_m, side_m) = frame(levels);
+    let draw = |&(level, k): &(usize, usize)| {
+        let look = Look::new(k, foot_m, [side_m; 2], PIXELS * SAMPLES);
+        Picture::of(&Drawing::new(levels[level], &surfaces, &look))
+    };
+    let sides = SIDES.len();
+    let all: Vec<_> = (0..levels.len()).flat_map(|level| SIDES.map(move |k| (level, k))).collect();
+    let pictures: Vec<Picture> = all.par_iter().map(draw).collect();
+    let (full, coarser) = pictures.split_at(sides.min(pictures.len()));
+    let error_m = |level: &[Picture]| {
+        let sum: f32 = full.iter().zip(level).map(|(a, b)| a.difference(b)).sum();
+        side_m * sum / sides as f32
+    };
+    coarser.chunks(sides).map(error_m).collect()
+}
+
+/// The square around the sphere that holds all levels: the middle of its lower edge, and its side in metres.
+fn frame(levels: &[&Mesh]) -> (Vec3, f32) {
+    let points = || levels.iter().flat_map(|level| &level.positions).map(|&p| Vec3::from_array(p));
+    let (low, high) = points().fold((Vec3::MAX, Vec3::MIN), |(low, high), p| (low.min(p), high.max(p)));
+    let center = 0.5 * (low + high);
+    let radius_m = points().map(|p| p.distance_squared(center)).fold(0.0, f32::max).sqrt();
+    (center - radius_m * Vec3::Y, 2.0 * radius_m)
+}
+
+/// What the eye makes of a side of a tree before the sky, for each size of pixels.
+struct Picture([Vec<Vec3>; SIZES]);
+
+impl Picture {
+    fn of(drawing: &Drawing<'_>) -> Self {
+        const ALL: usize = SAMPLES * SAMPLES;
+        let pixel = |i: usize| {
+            let (x, y) = (i % PIXELS * SAMPLES, i / PIXELS * SAMPLES);
+            let sample = |k: usize| drawing.sample(x + k % SAMPLES, y + k / SAMPLES).map_or(SKY, lit);
+            (0..ALL).map(sample).sum::<Vec3>() / ALL as f32
+        };
+        let mut linear: Vec<Vec3> = (0..PIXELS * PIXELS).map(pixel).collect();
+        Self(std::array::from_fn(|_| {
+            let halved = halved(&linear);
+            std::mem::replace(&mut linear, halved).into_iter().map(|color| color.map(f32::sqrt)).collect()
+        }))
+    }
+
+    /// Mean over channels, pixels and their sizes.
+    fn difference(&self, other: &Self) -> f32 {
+        let of_size = |(a, b): (&Vec<Vec3>, &Vec<Vec3>)| {
+            let sum: f32 = a.iter().zip(b).map(|(a, b)| (a - b).abs().element_sum()).sum();
+            sum / (3 * a.len()) as f32
+        };
+        self.0.iter().zip(&other.0).map(of_size).sum::<f32>() / SIZES as f32
+    }
+}
+
+fn lit(sample: Sample) -> Vec3 {
+    sample.color * (SKYLIGHT + SUNLIGHT * sample.normal.dot(SUN).max(0.0))
+}
+
+/// A square picture with pixels twice as large.
+fn halved(pixels: &[Vec3]) -> Vec<Vec3> {
+    let side = pixels.len().isqrt();
+    let pixel = |i: usize| {
+        let first = 2 * (i / (side / 2) * side + i % (side / 2));
+        [0, 1, side, side + 1].map(|offset| pixels[first + offset]).iter().sum::<Vec3>() / 4.0
+    };
+    (0..pixels.len() / 4).map(pixel).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Image8, Material, Part, PartKind};
+    use crate::stages::lod;
+    use crate::stages::tree::tests::{presets, read};
+    use crate::stages::tree::{ALPHA_CUTOFF, lod_options, template, textures};
+
+    /// Bark is grey, leaves are opaque.
+    fn plain() -> TreeTextures<()> {
+        TreeTextures {
+            bark_color: (),
+            bark_normal: (),
+            leaf: Vec::new(),
+            blossom: Vec::new(),
+            bark_linear: [0.1; 3],
+            leaf_small: Image8::default(),
+            blossom_small: Image8::default(),
+            alpha_cutoff: ALPHA_CUTOFF,
+        }
+    }
+
+    /// A column of upright squares, one on the other.
+    fn column(height: usize, side_m: f32, color: [u8; 4]) -> Mesh {
+        let mut mesh = Mesh::default();
+        let mut triangles = Vec::new();
+        for y in 0..height {
+            let first = mesh.positions.len() as u32;
+            for [x, up] in [[-0.5, 0.0], [0.5, 0.0], [0.5, 1.0], [-0.5, 1.0f32]] {
+                mesh.positions.push([side_m * x, side_m * (y as f32 + up), side_m * x]);
+                mesh.uvs.push([0.5; 2]);
+                mesh.colors.push(color);
+            }
+            triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+        }
+        mesh.parts.push(Part { material: Material::Bark, kind: PartKind::Surface, triangles });
+        mesh
+    }
+
+    #[test]
+    fn the_error_grows_with_what_is_missing_and_with_the_size_of_the_tree() {
+        let white = [255; 4];
+        let of = |side_m: f32| {
+            let meshes = [8, 8, 7, 6, 4].map(|height| column(height, side_m, white));
+            errors(&meshes.each_ref(), &plain())
+        };
+        let (small, large) = (of(1.0), of(3.0));
+        assert_eq!(small[0], 0.0, "the same is no error");
+        assert!(small.is_sorted_by(|a, b| a < b), "{small:?}");
+        for (small, large) in small.iter().zip(&large) {
+            assert!((large - 3.0 * small).abs() <= 1e-4 * large, "{small} and {large}");
+        }
+    }
+
+    #[test]
+    fn a_change_of_colour_or_of_light_is_an_error() {
+        let white = column(8, 1.0, [255; 4]);
+        let mut turned = white.clone();
+        turned.normals = vec![SUN.to_array(); turned.positions.len()];
+        let all =
+            [&white, &column(8, 1.0, [255, 200, 255, 255]), &column(8, 1.0, [255, 120, 255, 255]), &turned];
+        let found = errors(&all, &plain());
+        assert!(0.0 < found[0] && found[0] < found[1] && found[2] > 0.0, "{found:?}");
+    }
+
+    #[test]
+    fn the_number_of_threads_changes_nothing_and_levels_have_what_was_found() {
+        let (_, genome) = presets().remove(0);
+        let (tree, textures) = (template(&read(&genome), 1), textures(&read(&genome)));
+        let options = lod_options(&tree.mesh, &textures);
+        let judge = |levels: &[&Mesh]| errors(levels, &textures);
+        let made = lod::levels_judged(&tree.mesh, &options, &judge, &mut |_| ());
+        let meshes: Vec<&Mesh> = made.levels.iter().map(|level| &level.mesh).collect();
+        let on = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            pool.install(|| errors(&meshes, &textures))
+        };
+        assert_eq!(on(1), on(4));
+        let stored: Vec<f32> = made.levels.iter().skip(1).map(|level| level.error_m).collect();
+        assert_eq!(on(1), stored, "they grow from level to level by themselves");
+    }
+
+    #[test]
+    fn nothing_differs_from_nothing() {
+        assert_eq!(errors(&[&Mesh::default(), &Mesh::default()], &plain()), [0.0]);
+        let point = column(2, 0.0, [255; 4]);
+        assert_eq!(errors(&[&point, &Mesh::default()], &plain()), [0.0]);
+        assert!(errors(&[], &plain()).is_empty());
+    }
+}
