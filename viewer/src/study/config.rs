@@ -113,9 +113,9 @@ mod tests {
             assert_ne!(text, EXAMPLE);
             Study::parse("study.ron", &text).expect_err(to).to_string()
         };
-        assert!(told("\"discrete\"", "\"simple\"").contains("two conditions are called \"simple\""));
+        assert!(told("\"discrete\"", "\"quality\"").contains("two conditions are called \"quality\""));
         assert!(told("tree_lod: Discrete", "tree_lod: Discreet").contains("study.ron:"));
-        assert!(told("tree_error_px: 6", "tree_error_px: -6").contains("0 to 10000"));
+        assert!(told("tree_error_px: 9", "tree_error_px: -9").contains("0 to 10000"));
         assert!(told("conditions", "condition").contains("study.ron:"));
     }
 }

@@ -8,6 +8,10 @@
 //! The error is 2RΔ, the mean width in metres of what differs in a row of the picture, black for white counting in full: where
 //! a pixel is as large, a row differs by one pixel in all. An outline that lies ε off on either side has an error of 2ε times
 //! its contrast; leaves that are moved a little differ less the larger the pixels are, leaves that are missed do not.
+//!
+//! Where little is seen of the tree at all, its twigs in winter, Δ of a level from which half of them are gone is small, and
+//! yet everybody sees it. So Δ counts more, by the square root of how much less is seen of the tree than of one with leaves:
+//! half way from what differs in the picture to what differs of the tree.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -29,6 +33,9 @@ const SKY: Vec3 = Vec3::new(0.45, 0.6, 0.8);
 const SUN: Vec3 = Vec3::new(0.5, 0.75, 0.433);
 const SUNLIGHT: f32 = 0.7;
 const SKYLIGHT: f32 = 0.3;
+/// Δ of a tree with leaves from the sky alone, and how much more a level's Δ counts at most where less is seen of a tree.
+const USUALLY_SEEN: f32 = 0.1;
+const MOST_SPARSE: f32 = 2.5;
 
 /// The errors in metres of all levels but the first, which is the full tree: the same for any number of threads.
 pub fn errors<P>(levels: &[&Mesh], textures: &TreeTextures<P>) -> Vec<f32> {
@@ -42,9 +49,13 @@ pub fn errors<P>(levels: &[&Mesh], textures: &TreeTextures<P>) -> Vec<f32> {
     let all: Vec<_> = (0..levels.len()).flat_map(|level| SIDES.map(move |k| (level, k))).collect();
     let pictures: Vec<Picture> = all.par_iter().map(draw).collect();
     let (full, coarser) = pictures.split_at(sides.min(pictures.len()));
+    let nothing = Picture::of_sky();
+    let of_sides = |sum: f32| sum / sides as f32;
+    let seen = of_sides(full.iter().map(|picture| picture.difference(&nothing)).sum());
+    let sparse = (USUALLY_SEEN / seen.max(f32::MIN_POSITIVE)).sqrt().clamp(1.0, MOST_SPARSE);
     let error_m = |level: &[Picture]| {
-        let sum: f32 = full.iter().zip(level).map(|(a, b)| a.difference(b)).sum();
-        side_m * sum / sides as f32
+        let difference = of_sides(full.iter().zip(level).map(|(a, b)| a.difference(b)).sum());
+        side_m * sparse * difference
     };
     coarser.chunks(sides).map(error_m).collect()
 }
@@ -74,6 +85,12 @@ impl Picture {
             let halved = halved(&linear);
             std::mem::replace(&mut linear, halved).into_iter().map(|color| color.map(f32::sqrt)).collect()
         }))
+    }
+
+    /// Nothing but sky.
+    fn of_sky() -> Self {
+        let sky = SKY.map(f32::sqrt);
+        Self(std::array::from_fn(|size| vec![sky; (PIXELS >> size).pow(2)]))
     }
 
     /// Mean over channels, pixels and their sizes.
@@ -180,6 +197,23 @@ mod tests {
         assert_eq!(on(1), on(4));
         let stored: Vec<f32> = made.levels.iter().skip(1).map(|level| level.error_m).collect();
         assert_eq!(on(1), stored, "they grow from level to level by themselves");
+    }
+
+    #[test]
+    fn what_a_slender_tree_loses_counts_more() {
+        let errors_of = |width: f32| {
+            let narrow = |height: usize| {
+                let mut mesh = column(height, 1.0, [255; 4]);
+                mesh.positions.iter_mut().for_each(|p| (p[0], p[2]) = (width * p[0], width * p[2]));
+                mesh
+            };
+            errors(&[8, 7, 4].map(narrow).each_ref(), &plain())
+        };
+        let (wide, slender) = (errors_of(3.0), errors_of(0.75));
+        for (wide, slender) in wide.iter().zip(&slender) {
+            let part = slender / wide;
+            assert!(0.3 < part && part < 0.8, "a quarter as wide: {part}, between a quarter and all");
+        }
     }
 
     #[test]

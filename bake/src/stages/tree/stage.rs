@@ -80,7 +80,7 @@ pub struct TreeFiles {
 
 impl Stage for TreeStage {
     const NAME: &'static str = "tree";
-    const VERSION: u32 = 15;
+    const VERSION: u32 = 16;
     type Output = TreeFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<TreeFiles, StageError> {
