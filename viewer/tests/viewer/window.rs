@@ -331,7 +331,7 @@ fn it_ends_and_remembers(stage: &Stage, mut viewer: Viewer) {
     assert_eq!(viewer.quit(&stage.display).code(), Some(0));
     let (kept, problems) = SettingsFile::open(Some(stage.path("settings.ron")));
     assert_eq!(problems, [""; 0]);
-    assert_eq!(kept.settings.options.tree_lod, genescape_viewer::lod_mode::TreeLodMode::Discrete);
+    assert_eq!(kept.settings.options.tree_lod, genescape_viewer::lod_mode::TreeLodMode::Simple);
 
     let mut viewer = stage.viewer(&["--no-bake"]);
     viewer.until("the second start shows all", |viewer| viewer.shows(0));

@@ -422,8 +422,8 @@ fn settings_give_the_whole_new_value() {
     let mut harness = bench(model, [1280.0, 1400.0], 1.0);
     let options = Options { wireframe: true, ..Options::default() };
     assert_eq!(press(&mut harness, "Wireframe"), [Event::Options(options)]);
-    let options = Options { tree_lod: crate::lod_mode::TreeLodMode::Quality, ..Options::default() };
-    assert_eq!(press(&mut harness, "Tree detail: Quality"), [Event::Options(options)]);
+    let options = Options { tree_lod: crate::lod_mode::TreeLodMode::Simple, ..Options::default() };
+    assert_eq!(press(&mut harness, "Tree detail: Simple"), [Event::Options(options)]);
     let comfort = Comfort { theme: Theme::Dark, ..Comfort::default() };
     assert_eq!(press(&mut harness, "Theme: Dark"), [Event::Comfort(comfort)]);
     assert_eq!(press(&mut harness, "Reset all settings"), [Event::ResetSettings]);
