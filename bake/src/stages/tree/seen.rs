@@ -35,7 +35,7 @@ const SUNLIGHT: f32 = 0.7;
 const SKYLIGHT: f32 = 0.3;
 /// Δ of a tree with leaves from the sky alone, and how much more a level's Δ counts at most where less is seen of a tree.
 const USUALLY_SEEN: f32 = 0.1;
-const MOST_SPARSE: f32 = 2.5;
+const MAX_SPARSE: f32 = 2.5;
 
 /// The errors in metres of all levels but the first, which is the full tree: the same for any number of threads.
 pub fn errors<P>(levels: &[&Mesh], textures: &TreeTextures<P>) -> Vec<f32> {
@@ -52,7 +52,7 @@ pub fn errors<P>(levels: &[&Mesh], textures: &TreeTextures<P>) -> Vec<f32> {
     let nothing = Picture::of_sky();
     let of_sides = |sum: f32| sum / sides as f32;
     let seen = of_sides(full.iter().map(|picture| picture.difference(&nothing)).sum());
-    let sparse = (USUALLY_SEEN / seen.max(f32::MIN_POSITIVE)).sqrt().clamp(1.0, MOST_SPARSE);
+    let sparse = (USUALLY_SEEN / seen.max(f32::MIN_POSITIVE)).sqrt().clamp(1.0, MAX_SPARSE);
     let error_m = |level: &[Picture]| {
         let difference = of_sides(full.iter().zip(level).map(|(a, b)| a.difference(b)).sum());
         side_m * sparse * difference
