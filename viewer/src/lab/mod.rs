@@ -1,8 +1,8 @@
 //! `viewer lab`: the experiments of the thesis (sections 7 and 8) on this renderer, and a report of what came out.
 //!
 //! [`scenes`] are those of figure 29; [`experiment`] says what is drawn of them by which schemes; [`walk`], [`popping`],
-//! [`equal_cost`], [`bark`] and [`preprocessing`] measure, each into a table of [`store`]; [`report`] makes a page of the tables beside
-//! what the thesis found, [`compare`] one of two folders.
+//! [`equal_cost`], [`bark`], [`tree_levels`], [`fly_out`] and [`preprocessing`] measure, each into a table of [`store`];
+//! [`report`] makes a page of the tables beside what the thesis found, [`compare`] one of two folders.
 
 mod answers;
 mod bark;

@@ -36,15 +36,20 @@ const FRESH: [Rgb; 2] = [[0.040, 0.092, 0.016], [0.090, 0.140, 0.032]];
 const TWIGS: Rgb = [0.105, 0.078, 0.055];
 const BRACKEN: Rgb = [0.165, 0.085, 0.034];
 
+/// How far leaves of a hue have turned: 1 where they are yellow or red, 0 where they are green.
+pub(super) fn turned(leaf_hue_deg: f32) -> f32 {
+    let [green, yellow] = TURNING_DEG;
+    ((green - leaf_hue_deg) / (green - yellow)).clamp(0.0, 1.0)
+}
+
 impl Season {
     /// The season that trees of these genes show.
     pub fn of(trees: &LitterParams) -> Self {
-        let whole = |part: f32| (part.clamp(0.0, 1.0) * STEPS).round() / STEPS;
+        let whole = |part: f32| (part.min(1.0) * STEPS).round() / STEPS;
         if trees.leaves_per_stem == 0 {
             return Self { winter: 1.0, ..Self::default() };
         }
-        let [green, yellow] = TURNING_DEG;
-        let autumn = whole((green - trees.leaf_hue_deg) / (green - yellow));
+        let autumn = whole(turned(trees.leaf_hue_deg));
         Self { winter: 0.0, autumn, spring: whole(trees.blossom / FULL_BLOSSOM) * (1.0 - autumn) }
     }
 

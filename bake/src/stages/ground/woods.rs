@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Season;
 use super::palette::Rgb;
+use super::season::turned;
 use super::woody::Foliage;
 use crate::math::lerp_array;
 use crate::model::leaf_color;
@@ -72,8 +73,7 @@ impl Offspring {
 impl Litter {
     fn new(params: &LitterParams) -> Self {
         let hue = params.leaf_hue_deg;
-        // 1 up to 55°, where leaves are yellow, 0 where they are green.
-        let autumn = ((75.0 - hue) / 20.0).clamp(0.0, 1.0);
+        let autumn = turned(hue);
         let above = AUTUMN.iter().position(|stop| stop.0 >= hue).unwrap_or(2).max(1);
         let ((low, a), (high, b)) = (AUTUMN[above - 1], AUTUMN[above]);
         let bright = lerp_array(a, b, ((hue - low) / (high - low)).clamp(0.0, 1.0));

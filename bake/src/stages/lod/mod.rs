@@ -3,9 +3,8 @@
 //!
 //! Surfaces simplify by edge collapse with quadric errors (Garland and Heckbert 1997; new vertices on the collapsed
 //! edge as in Merry's thesis, appendix A, then, unless [`Placement::Edge`] is asked for, moved so that volume is kept,
-//! Lindstrom and Turk 1998). Aggregates
-//! (leaf cards) simplify stochastically: elements go, the rest grow (Cook, Halstead, Planck, Ryu 2007). One cost in
-//! metres orders both.
+//! Lindstrom and Turk 1998). Aggregates (leaf cards) simplify stochastically: elements go, the rest grow (Cook, Halstead,
+//! Planck, Ryu 2007). One cost in metres orders both.
 //!
 //! Read `repair`, `state` and `log` (the mesh being simplified), `topology`, `quadric`, `edge`, `merge` and
 //! `collapse` (one edge), `flattening` and `aggregate` (leaf cards), `coverage` and `calibration` (as many pixels at

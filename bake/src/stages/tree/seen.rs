@@ -49,15 +49,11 @@ pub fn errors<P>(levels: &[&Mesh], textures: &TreeTextures<P>) -> Vec<f32> {
     let all: Vec<_> = (0..levels.len()).flat_map(|level| SIDES.map(move |k| (level, k))).collect();
     let pictures: Vec<Picture> = all.par_iter().map(draw).collect();
     let (full, coarser) = pictures.split_at(sides.min(pictures.len()));
-    let nothing = Picture::of_sky();
-    let of_sides = |sum: f32| sum / sides as f32;
-    let seen = of_sides(full.iter().map(|picture| picture.difference(&nothing)).sum());
+    let differs =
+        |other: &[Picture]| full.iter().zip(other).map(|(a, b)| a.difference(b)).sum::<f32>() / sides as f32;
+    let seen = differs(&SIDES.map(|_| Picture::of_sky()));
     let sparse = (USUALLY_SEEN / seen.max(f32::MIN_POSITIVE)).sqrt().clamp(1.0, MAX_SPARSE);
-    let error_m = |level: &[Picture]| {
-        let difference = of_sides(full.iter().zip(level).map(|(a, b)| a.difference(b)).sum());
-        side_m * sparse * difference
-    };
-    coarser.chunks(sides).map(error_m).collect()
+    coarser.chunks(sides).map(|level| side_m * sparse * differs(level)).collect()
 }
 
 /// The square around the sphere that holds all levels: the middle of its lower edge, and its side in metres.
@@ -120,24 +116,12 @@ fn halved(pixels: &[Vec3]) -> Vec<Vec3> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Image8, Material, Part, PartKind};
+    use crate::model::{Material, Part, PartKind};
     use crate::stages::lod;
-    use crate::stages::tree::tests::{presets, read};
-    use crate::stages::tree::{ALPHA_CUTOFF, lod_options, template, textures};
+    use crate::stages::tree::tests::{plain, presets, read};
+    use crate::stages::tree::{lod_options, template, textures};
 
-    /// Bark is grey, leaves are opaque.
-    fn plain() -> TreeTextures<()> {
-        TreeTextures {
-            bark_color: (),
-            bark_normal: (),
-            leaf: Vec::new(),
-            blossom: Vec::new(),
-            bark_linear: [0.1; 3],
-            leaf_small: Image8::default(),
-            blossom_small: Image8::default(),
-            alpha_cutoff: ALPHA_CUTOFF,
-        }
-    }
+    const BARK: [f32; 3] = [0.1; 3];
 
     /// A column of upright squares, one on the other.
     fn column(height: usize, side_m: f32, color: [u8; 4]) -> Mesh {
@@ -161,7 +145,7 @@ mod tests {
         let white = [255; 4];
         let of = |side_m: f32| {
             let meshes = [8, 8, 7, 6, 4].map(|height| column(height, side_m, white));
-            errors(&meshes.each_ref(), &plain())
+            errors(&meshes.each_ref(), &plain(BARK))
         };
         let (small, large) = (of(1.0), of(3.0));
         assert_eq!(small[0], 0.0, "the same is no error");
@@ -178,7 +162,7 @@ mod tests {
         turned.normals = vec![SUN.to_array(); turned.positions.len()];
         let all =
             [&white, &column(8, 1.0, [255, 200, 255, 255]), &column(8, 1.0, [255, 120, 255, 255]), &turned];
-        let found = errors(&all, &plain());
+        let found = errors(&all, &plain(BARK));
         assert!(0.0 < found[0] && found[0] < found[1] && found[2] > 0.0, "{found:?}");
     }
 
@@ -207,7 +191,7 @@ mod tests {
                 mesh.positions.iter_mut().for_each(|p| (p[0], p[2]) = (width * p[0], width * p[2]));
                 mesh
             };
-            errors(&[8, 7, 4].map(narrow).each_ref(), &plain())
+            errors(&[8, 7, 4].map(narrow).each_ref(), &plain(BARK))
         };
         let (wide, slender) = (errors_of(3.0), errors_of(0.75));
         for (wide, slender) in wide.iter().zip(&slender) {
@@ -218,9 +202,9 @@ mod tests {
 
     #[test]
     fn nothing_differs_from_nothing() {
-        assert_eq!(errors(&[&Mesh::default(), &Mesh::default()], &plain()), [0.0]);
+        assert_eq!(errors(&[&Mesh::default(), &Mesh::default()], &plain(BARK)), [0.0]);
         let point = column(2, 0.0, [255; 4]);
-        assert_eq!(errors(&[&point, &Mesh::default()], &plain()), [0.0]);
-        assert!(errors(&[], &plain()).is_empty());
+        assert_eq!(errors(&[&point, &Mesh::default()], &plain(BARK)), [0.0]);
+        assert!(errors(&[], &plain(BARK)).is_empty());
     }
 }

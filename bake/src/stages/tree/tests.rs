@@ -10,7 +10,7 @@ use genescape_schema::{Category, Genome, Population, Space, TreePreset};
 
 use super::budget::Budget;
 use super::{ALPHA_CUTOFF, TreeParams, TreeTextureParams, cards, skeleton, template, textures};
-use crate::model::{Material, Mesh, Part, PartKind, TreeTemplate};
+use crate::model::{Image8, Material, Mesh, Part, PartKind, TreeTemplate, TreeTextures};
 use crate::seed::Dice;
 
 const GENOMES: u32 = 50;
@@ -42,6 +42,20 @@ pub(super) fn presets() -> Vec<(String, Genome)> {
     let presets: Vec<_> = files.into_iter().map(genome).collect();
     assert!(presets.len() >= 9);
     presets
+}
+
+/// Bark of one colour, linear; leaves are white and opaque.
+pub(super) fn plain(bark_linear: [f32; 3]) -> TreeTextures<()> {
+    TreeTextures {
+        bark_color: (),
+        bark_normal: (),
+        leaf: Vec::new(),
+        blossom: Vec::new(),
+        bark_linear,
+        leaf_small: Image8::default(),
+        blossom_small: Image8::default(),
+        alpha_cutoff: ALPHA_CUTOFF,
+    }
 }
 
 fn oak() -> Genome {

@@ -4,23 +4,11 @@ use glam::Vec3;
 
 use super::{SIDE, impostor};
 use crate::math::linear_from_srgb;
-use crate::model::{AlphaMask, Image8, Impostor, Material, Mesh, Part, PartKind, TreeTextures};
-use crate::stages::tree::tests::{presets, read};
+use crate::model::{AlphaMask, Impostor, Material, Mesh, Part, PartKind};
+use crate::stages::tree::tests::{plain, presets, read};
 use crate::stages::tree::{ALPHA_CUTOFF, template, textures};
 
-/// Bark is grey, leaves are white and opaque.
-fn plain() -> TreeTextures<()> {
-    TreeTextures {
-        bark_color: (),
-        bark_normal: (),
-        leaf: Vec::new(),
-        blossom: Vec::new(),
-        bark_linear: [0.5; 3],
-        leaf_small: Image8::default(),
-        blossom_small: Image8::default(),
-        alpha_cutoff: ALPHA_CUTOFF,
-    }
-}
+const BARK: [f32; 3] = [0.5; 3];
 
 /// Adds an upright square about a place that faces along +z or −z.
 fn square(mesh: &mut Mesh, middle: Vec3, side_m: f32, material: Material, color: [u8; 3]) {
@@ -68,7 +56,7 @@ fn things_are_where_one_sees_them_from_each_side() {
     square(&mut mesh, trunk, 1.0, Material::Bark, [0, 0, 255]);
     // Right behind the green one, so that it never shows from the front.
     square(&mut mesh, green - Vec3::Z * 0.5, 0.9, Material::Bark, [255, 0, 255]);
-    let impostor = impostor(&mesh, &plain());
+    let impostor = impostor(&mesh, &plain(BARK));
     assert_eq!((impostor.colors.width, impostor.colors.height), (4 * SIDE as u32, SIDE as u32));
     for k in [0, 1, 3] {
         let (sin, cos) = libm::sincosf(std::f32::consts::FRAC_PI_4 * k as f32);
@@ -172,7 +160,7 @@ fn transparent_pixels_go_on_in_the_trees_colour() {
     let mut mesh = Mesh::default();
     square(&mut mesh, Vec3::new(0.0, 2.0, 0.0), 1.0, Material::Leaf, [200, 0, 0]);
     square(&mut mesh, Vec3::ZERO, 0.1, Material::Leaf, [200, 0, 0]);
-    let impostor = impostor(&mesh, &plain());
+    let impostor = impostor(&mesh, &plain(BARK));
     let colors = (0..SIDE * SIDE).map(|i| impostor.colors.pixel((i % SIDE) as u32, (i / SIDE) as u32));
     assert!(colors.clone().any(|color| color[3] == 0));
     let first = impostor.colors.pixel(64, 64)[..3].to_vec();
@@ -193,20 +181,20 @@ fn the_number_of_threads_changes_nothing() {
 
 #[test]
 fn bare_flat_and_empty_meshes_have_pictures() {
-    let nothing = impostor(&Mesh::default(), &plain());
+    let nothing = impostor(&Mesh::default(), &plain(BARK));
     assert!(nothing.colors.data.chunks_exact(4).all(|pixel| pixel[3] == 0));
     let mut bare = Mesh::default();
     square(&mut bare, Vec3::Y, 1.0, Material::Bark, [255; 3]);
     bare.colors.clear();
     bare.uvs.clear();
-    assert!(at(&impostor(&bare, &plain()), 0, Vec3::Y).is_some());
+    assert!(at(&impostor(&bare, &plain(BARK)), 0, Vec3::Y).is_some());
     // On the ground, seen from its edge.
     let mut flat = bare.clone();
     flat.positions.iter_mut().for_each(|p| *p = [p[0], 0.0, p[1]]);
     // Upright, without any width.
     let mut thin = bare;
     thin.positions.iter_mut().for_each(|p| *p = [0.0, p[1], 0.0]);
-    for impostor in [nothing, impostor(&flat, &plain()), impostor(&thin, &plain())] {
+    for impostor in [nothing, impostor(&flat, &plain(BARK)), impostor(&thin, &plain(BARK))] {
         assert!(impostor.size_m.iter().all(|&m| m > 0.0) && impostor.error_m > 0.0);
     }
 }
