@@ -3,6 +3,7 @@
 //! A forked, four-level tree of 71 × 31 branches would have hundreds of thousands of triangles. Instead of cutting
 //! afterwards, the numbers of thin stems are scaled down beforehand; the cards then grow to keep the leaf area.
 
+use super::culms;
 use super::params::{Habit, TreeParams};
 
 /// Triangles that leaves and blossom may use.
@@ -13,6 +14,8 @@ const BARE_BUDGET: f32 = 16_000.0;
 /// Triangles of bark that are never exceeded.
 const MAX_BARK: u32 = 12_500;
 const MAX_BARE_BARK: u32 = 22_500;
+/// Primary branches on all culms of a clump.
+const MAX_ON_CULMS: f32 = 260.0;
 /// What a stem of level 2 and one of level 3 cost, in triangles.
 const SECONDARY_COST: f32 = 16.0;
 const TERTIARY_COST: f32 = 10.0;
@@ -50,10 +53,13 @@ impl Budget {
             _ => params.levels.min(4),
         };
         let forks = (params.segment_splits * 1.2).min(2.0);
-        let primaries = (params.primary_branches as f32).min(90.0 / (1.0 + 0.5 * forks)).max(1.0);
+        let culms = culms::count(params);
+        let max_primaries = if culms > 1 { MAX_ON_CULMS } else { 90.0 };
+        let primaries = (params.primary_branches * culms) as f32;
+        let primaries = primaries.min(max_primaries / (1.0 + 0.5 * forks)).max(1.0);
         let arms = primaries * (1.0 + 0.5 * forks);
         let inner = ((300.0 / arms) as u32).clamp(4, 8);
-        let trunk = 1_300.0 + 220.0 * params.base_splits as f32;
+        let trunk = 1_300.0 + 220.0 * params.base_splits.max(culms - 1) as f32;
         let bark = if bare { BARE_BUDGET } else { BARK_BUDGET };
         let left = (bark - trunk - arms * inner as f32 * 11.0).max(1_200.0);
         let mut budget = Self {

@@ -11,6 +11,7 @@ mod budget;
 mod canvas;
 mod cards;
 mod crease;
+mod culms;
 mod foliage;
 mod impostor;
 mod leaf_outline;

@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+/// Radius over length below which a stem is a cane.
+const CANE_RATIO: f32 = 0.01;
+
 /// Genes of form and foliage, for [`super::template`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TreeParams {
@@ -38,6 +41,13 @@ pub struct TreeParams {
     pub blossom: f32,
     /// Moss grows on dark bark.
     pub bark_tone: f32,
+}
+
+impl TreeParams {
+    /// Whether it grows canes, green and without bark, instead of a trunk.
+    pub(super) fn is_cane(&self) -> bool {
+        self.radius_ratio < CANE_RATIO
+    }
 }
 
 /// Genes of leaf, blossom and bark textures, for [`super::textures`].

@@ -10,6 +10,7 @@ use std::ops::Range;
 use glam::Vec3;
 
 use super::budget::Budget;
+use super::culms;
 use super::params::{Habit, TreeParams};
 use crate::math::lerp;
 use crate::seed::Dice;
@@ -145,7 +146,11 @@ pub(super) fn grow(params: &TreeParams, budget: &Budget, dice: &mut Dice) -> Ske
     let trunk_m = params.height_m * (1.0 + params.height_variation * 0.7 * dice.signed());
     let skeleton = Skeleton::default();
     let mut grower = Grower { params, budget, dice, skeleton, trunk_m, arms_left: 0, fork_error: 0.0 };
-    grower.trunk();
+    if culms::count(params) > 1 {
+        grower.clump()
+    } else {
+        grower.trunk()
+    }
     for level in 1..budget.levels {
         grower.branches(level);
     }
@@ -204,6 +209,22 @@ impl Grower<'_> {
             thickness: 1.0,
             ..Sprout::default()
         });
+    }
+
+    /// Grows a trunk for each culm of a clump of canes.
+    fn clump(&mut self) {
+        for culm in culms::set_out(self.params, self.trunk_m, self.dice) {
+            let length_m = self.trunk_m * culm.length;
+            self.stem(Sprout {
+                at: culm.at,
+                along: culm.along,
+                axis: culm.axis,
+                length_m,
+                radius_m: length_m * self.params.radius_ratio * culm.thickness,
+                thickness: 1.0,
+                ..Sprout::default()
+            });
+        }
     }
 
     /// Grows a stem and all arms that it forks into.
@@ -302,7 +323,8 @@ impl Grower<'_> {
     fn bend(&mut self, along: Vec3, axis: Vec3, level: usize, z: f32, segments: u32) -> Vec3 {
         let p = self.params;
         let palm = self.is_palm();
-        let curve_gain = [if palm { 0.3 } else { 0.0 }, 1.0, 0.7, 0.5][level];
+        let nods = p.is_cane() && z >= 0.5;
+        let curve_gain = [if palm { 0.3 } else { f32::from(u8::from(nods)) }, 1.0, 0.7, 0.5][level];
         let gnarl_gain = [if palm { 0.2 } else { 0.3 }, 0.9, 1.0, 0.8][level];
         let step = 1.0 / segments as f32;
         let back = if z + 0.5 * step >= 0.5 { 2.0 * p.curve_back_deg } else { 0.0 };
@@ -313,8 +335,8 @@ impl Grower<'_> {
         let down = [0.0, 0.9, 3.4, 2.6][level];
         let up = [if palm { 0.4 } else { 0.0 }, 0.5, 0.9, 0.9][level];
         let pull = if p.tropism < 0.0 { p.tropism * down } else { p.tropism * up };
-        // Leaders right themselves whatever the genes say.
-        let pull = if level == 0 && !palm { 0.45 } else { pull };
+        // Leaders right themselves whatever the genes say, but for the tips of canes.
+        let pull = if level == 0 && !palm && !nods { 0.45 } else { pull };
         let level_part = Vec3::Y - next * next.y;
         (next + level_part * (pull * step)).normalize_or(next)
     }
@@ -327,7 +349,7 @@ impl Grower<'_> {
         // A tree without a clear trunk, a bush, forks in the ground.
         let base = u32::from(p.clear_trunk > 0.06) + (p.clear_trunk * 0.35 * segments as f32) as u32;
         let forks = if sprout.level == 0 && segment == base && !sprout.is_arm && p.base_splits > 0 {
-            p.base_splits
+            if p.is_cane() { 0 } else { p.base_splits }
         } else {
             let wish = match sprout.level {
                 0 if z >= p.clear_trunk.max(0.2) && z < 0.8 && !self.is_palm() => 0.28 * p.segment_splits,
@@ -424,7 +446,7 @@ impl Grower<'_> {
         let p = self.params;
         let vary = 1.0 + 0.14 * self.dice.signed();
         match level {
-            1 => self.trunk_m * p.primary_length * envelope(p.crown_shape, ratio) * vary,
+            1 => parent.length_m * p.primary_length * envelope(p.crown_shape, ratio) * vary,
             2 => parent.length_m * p.secondary_length * (1.0 - 0.6 * z) * 1.25 * vary,
             _ => parent.length_m * (0.35 + 0.35 * p.secondary_length) * (1.0 - 0.6 * z) * 1.25 * vary,
         }
