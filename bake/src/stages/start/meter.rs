@@ -1,12 +1,13 @@
 //! A picture and the light → its exposure: the log-average luminance of what is seen, as Reinhard et al., "Photographic
 //! Tone Reproduction for Digital Images" (2002), take it, and a key that falls gently with that luminance, after Krawczyk,
 //! Myszkowski and Seidel, "Lightness Perception in Tone Reproduction for High Dynamic Range Images" (2005): snow stays
-//! brighter than grass, and dusk darker than noon, but by less than they are.
+//! brighter than grass, and dusk darker than noon, but by less than they are. What lies before one's feet is never lost in the
+//! dark: a picture is lifted for it, within limits.
 
 use super::light::luminance;
 use super::panorama::{Kind, Seen};
 use super::picture::Picture;
-use crate::math::interpolate;
+use crate::math::{interpolate, lerp};
 use crate::model::SkyLight;
 
 /// The log-average that needs no exposure, in the units of [`SkyLight`].
@@ -18,6 +19,16 @@ const SNOW_EV: f32 = 1.0;
 const MUCH_SNOW: f32 = 0.4;
 /// No picture is dimmed or lifted by more than these factors.
 const LIMITS: [f32; 2] = [0.25, 6.0];
+/// The foreground's log-average, in shade as in the sun, that a picture is to show at least: of display luminance it is 8 %,
+/// in which grass and trunks are still told apart. And the greatest factor by which a picture is lifted for it: dusk stays dusk.
+const FOREGROUND: f32 = 0.1;
+const MAX_LIFT: f32 = 2.4;
+/// No more of the ground counts as lit by the sun: who walks on comes into shade.
+const MAX_LIT: f32 = 0.5;
+/// Metres up to which land and trees are foreground.
+const NEAR_M: f32 = 40.0;
+/// Part of the sky's light that reaches what the sun does not: what hides the sun hides some sky.
+const OPEN_IN_SHADE: f32 = 0.7;
 /// How much the sky counts beside as large a part of the land: who looks at a bright sky still wants to see the ground.
 const SKY_WEIGHT: f32 = 0.5;
 /// Black enough to be no measure, as a part of the neutral luminance.
@@ -34,45 +45,48 @@ const MIRRORED: f32 = 0.35;
 pub(super) fn exposure(picture: &Picture<'_>, light: &SkyLight, lit: f32) -> f32 {
     let snow = picture.share(|kind| kind == Kind::Snow);
     let key = libm::exp2f(SNOW_EV * (snow / MUCH_SNOW).min(1.0));
-    let factor = key * libm::powf(NEUTRAL / log_average(picture, light, lit), ADAPTED);
-    factor.clamp(LIMITS[0], LIMITS[1])
-}
-
-/// Log-average luminance of the picture.
-fn log_average(picture: &Picture<'_>, light: &SkyLight, lit: f32) -> f32 {
-    let scene = Scene::of(light, lit);
-    let (mut sum, mut weights) = (0.0, 0.0);
-    for (slope, seen) in picture.rays() {
-        let weight = if seen.kind == Kind::Sky { SKY_WEIGHT } else { 1.0 };
-        sum += weight * libm::logf(scene.luminance(slope, seen) + DARK * NEUTRAL);
-        weights += weight;
-    }
-    libm::expf(sum / f32::max(weights, 1.0))
+    let (scene, lit) = (Scene::of(light), lit.min(MAX_LIT));
+    let whole = scene.log_average(picture, lit, f32::INFINITY);
+    let factor = key * libm::powf(NEUTRAL / whole, ADAPTED);
+    let lift = FOREGROUND / (factor * scene.log_average(picture, lit, NEAR_M));
+    (factor * lift.clamp(1.0, MAX_LIFT)).clamp(LIMITS[0], LIMITS[1])
 }
 
 /// The light as numbers to meter with.
 struct Scene {
     /// By elevation, from the horizon to the zenith.
     sky: Vec<f32>,
-    /// Irradiance of level ground over π.
-    ground: f32,
-    /// The same without the sun.
-    shade: f32,
+    /// Irradiance of level ground over π, in the sun and in shade.
+    sunny: f32,
+    shady: f32,
     haze: f32,
     haze_per_m: f32,
 }
 
 impl Scene {
-    fn of(light: &SkyLight, lit: f32) -> Self {
-        let shade = luminance(light.sky_irradiance_linear) * std::f32::consts::FRAC_1_PI;
+    fn of(light: &SkyLight) -> Self {
+        let around = luminance(light.sky_irradiance_linear);
         let sun = luminance(light.sun_irradiance_linear) * light.sun_direction.y.max(0.0);
         Self {
             sky: light.zonal_radiance_linear.iter().copied().map(luminance).collect(),
-            ground: shade + lit * sun * std::f32::consts::FRAC_1_PI,
-            shade,
+            sunny: (around + sun) * std::f32::consts::FRAC_1_PI,
+            shady: around * OPEN_IN_SHADE * std::f32::consts::FRAC_1_PI,
             haze: luminance(light.haze_linear),
             haze_per_m: light.haze_extinction_per_m,
         }
+    }
+
+    /// Log-average luminance of what the picture shows up to a depth, the sun reaching the part `lit` of it. Without anything so
+    /// near, neutral.
+    fn log_average(&self, picture: &Picture<'_>, lit: f32, depth_m: f32) -> f32 {
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for (slope, seen) in picture.rays().filter(|(_, seen)| seen.depth_m <= depth_m) {
+            let weight = if seen.kind == Kind::Sky { SKY_WEIGHT } else { 1.0 };
+            let log = |ground: f32| libm::logf(self.luminance(slope, seen, ground) + DARK * NEUTRAL);
+            sum += weight * lerp(log(self.shady), log(self.sunny), lit);
+            weights += weight;
+        }
+        if weights > 0.0 { libm::expf(sum / weights) } else { NEUTRAL }
     }
 
     fn sky(&self, slope: f32) -> f32 {
@@ -80,12 +94,13 @@ impl Scene {
         interpolate(&self.sky, elevation * (self.sky.len() - 1) as f32)
     }
 
-    fn luminance(&self, slope: f32, seen: &Seen) -> f32 {
+    /// Of what is seen, where level ground gets that irradiance over π.
+    fn luminance(&self, slope: f32, seen: &Seen, ground: f32) -> f32 {
         let bare = match seen.kind {
             Kind::Sky => return self.sky(slope),
-            Kind::Ground => GROUND * self.ground,
-            Kind::Snow => SNOW * self.ground,
-            Kind::Tree => TREE * (self.shade + self.ground),
+            Kind::Ground => GROUND * ground,
+            Kind::Snow => SNOW * ground,
+            Kind::Tree => TREE * (self.shady + ground),
             Kind::Water => MIRRORED * self.sky(0.2),
         };
         let clear = libm::expf(-seen.depth_m * self.haze_per_m);

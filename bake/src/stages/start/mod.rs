@@ -4,7 +4,7 @@
 //! 1. `panorama` looks around from each place: what is seen in which direction, how far away.
 //! 2. `light` says how the sun stands to a look.
 //! 3. `appraise` turns the `picture` that a look shows, and its light, into terms from 0 to 1; their product is the score.
-//! 4. `meter` says how the best one is to be exposed.
+//! 4. `meter` says how the best ones are to be exposed.
 //!
 //! All landscapes are asked about the same lookouts ([`Lookout`]), so that one for several can be chosen from their
 //! scores alone; placement keeps trunks away from all of them.
@@ -34,6 +34,8 @@ pub use stage::{StartFiles, StartStage};
 const FEW: usize = 8;
 /// A prime, so that places tried after each other lie far from each other.
 const SCATTER: usize = 101;
+/// Looks, each from another place, that a landscape's exposure is metered for.
+const METERED: usize = 8;
 /// Metres that one may want to step aside at once.
 const STEPS_M: f32 = 5.0;
 
@@ -62,7 +64,7 @@ pub fn first_look(
     let lookouts = Lookouts::new(appraisals.iter().map(prospect).collect()).expect("one for each");
     let best = Lookouts::shared(&[&lookouts]).expect("one landscape");
     let appraisal = appraisals[all.partition_point(|lookout| *lookout < best.lookout)];
-    let exposure = metered(&scene, &sun, light, best.lookout);
+    let exposure = metered(&scene, &sun, light, &good_looks(&all, &appraisals));
     FirstLook { view: best.on(&land.field, land.water_level_m), appraisal, exposure, lookouts }
 }
 
@@ -91,13 +93,32 @@ pub fn any_good_look(
     best
 }
 
-/// The exposure of the picture from a lookout.
-fn metered(scene: &Surroundings<'_>, sun: &Sun, light: &SkyLight, lookout: Lookout) -> f32 {
-    let place = lookout.place_m(scene.land.field.extent_m());
-    let panorama = Panorama::new(scene, place);
-    let trees = scene.trees_around(place, SHADES_M);
-    let lit = sun.lit(scene, &trees, place, lookout.ahead());
-    meter::exposure(&Picture::new(&panorama, lookout), light, lit)
+/// The best look from each of the best places, the best first: those that one may well begin with, when a view is shared with
+/// other landscapes.
+fn good_looks(all: &[Lookout], appraisals: &[Appraisal]) -> Vec<Lookout> {
+    let places = all.chunks(Lookout::HEADINGS).zip(appraisals.chunks(Lookout::HEADINGS));
+    let mut looks: Vec<(f32, Lookout)> = places
+        .filter_map(|(looks, appraisals)| {
+            let scored = looks.iter().zip(appraisals).map(|(&look, appraisal)| (appraisal.score(), look));
+            scored.reduce(|a, b| if b.0 > a.0 { b } else { a })
+        })
+        .collect();
+    looks.sort_by(|a, b| b.0.total_cmp(&a.0));
+    looks.truncate(METERED);
+    looks.into_iter().map(|(_, look)| look).collect()
+}
+
+/// The exposure that suits the pictures from some lookouts: the mean of each one's, in stops.
+fn metered(scene: &Surroundings<'_>, sun: &Sun, light: &SkyLight, lookouts: &[Lookout]) -> f32 {
+    let stops = |&lookout: &Lookout| {
+        let place = lookout.place_m(scene.land.field.extent_m());
+        let panorama = Panorama::new(scene, place);
+        let trees = scene.trees_around(place, SHADES_M);
+        let lit = sun.lit(scene, &trees, place, lookout.ahead());
+        libm::log2f(meter::exposure(&Picture::new(&panorama, lookout), light, lit))
+    };
+    let stops: Vec<f32> = lookouts.par_iter().map(stops).collect();
+    libm::exp2f(stops.iter().sum::<f32>() / stops.len().max(1) as f32)
 }
 
 /// All headings at one place.

@@ -274,23 +274,38 @@ fn luma(color: Vec3) -> f32 {
     color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
+const NOON: SkyParams = SkyParams {
+    sky_seed: 5,
+    sun_elevation_deg: 50.0,
+    sun_azimuth_deg: 130.0,
+    turbidity: 3.0,
+    sun_size_deg: 0.53,
+    exposure_ev: 0.0,
+    cloud_cover: 0.2,
+    cloud_base_m: 1400.0,
+    cloud_thickness_m: 900.0,
+    cloud_scale_m: 1500.0,
+    cirrus: 0.0,
+    haze_m: 30_000.0,
+};
+
+#[test]
+fn grass_in_shade_is_seen_at_any_hour() {
+    let land = land(|_, _| 0.0, None);
+    for (elevation_deg, cover) in [2.0, 4.0, 8.0, 13.0, 30.0, 65.0].into_iter().zip([0.1, 0.5, 0.9].repeat(2))
+    {
+        let sky = SkyParams { sun_elevation_deg: elevation_deg, cloud_cover: cover, ..NOON };
+        let light = sky::light(&sky);
+        let shade = Vec3::from(light.sky_irradiance_linear) * 0.75 / core::f32::consts::PI;
+        let grass = Vec3::new(0.09, 0.10, 0.04) * shade * look(&land, &[], &light).exposure;
+        let shown = luma(Vec3::from(film(grass.to_array())));
+        assert!(shown > 0.19, "{elevation_deg}°, {cover}: {shown}");
+    }
+}
+
 #[test]
 fn metered_pictures_are_neither_dark_nor_burnt_and_dusk_has_colour() {
-    let noon = SkyParams {
-        sky_seed: 5,
-        sun_elevation_deg: 50.0,
-        sun_azimuth_deg: 130.0,
-        turbidity: 3.0,
-        sun_size_deg: 0.53,
-        exposure_ev: 0.0,
-        cloud_cover: 0.2,
-        cloud_base_m: 1400.0,
-        cloud_thickness_m: 900.0,
-        cloud_scale_m: 1500.0,
-        cirrus: 0.0,
-        haze_m: 30_000.0,
-    };
-    let overcast = SkyParams { cloud_cover: 1.0, ..noon };
+    let (noon, overcast) = (NOON, SkyParams { cloud_cover: 1.0, ..NOON });
     let dusk = SkyParams { sun_elevation_deg: 3.0, ..noon };
     let dull_dusk = SkyParams { cloud_cover: 1.0, ..dusk };
     let means = [&noon, &overcast, &dusk, &dull_dusk].map(|sky| {
