@@ -80,6 +80,8 @@ const SCREE: usize = 1;
 const SNOW: usize = 2;
 const EARTH: usize = 3;
 
+/// Part of the ground that is gravel where wind takes the snow away, and with it what shelters plants.
+const FELL_FIELD: f32 = 0.85;
 const SNOW_WHITE: Rgb = [0.80, 0.83, 0.87];
 const WET_MUD: Rgb = [0.062, 0.054, 0.037];
 const SAND: Rgb = [0.37, 0.30, 0.20];
@@ -185,7 +187,9 @@ impl Painter {
         cover.over(EARTH, mud);
         cover.over(SCREE, scree);
         cover.over(ROCK, rock);
-        cover.over(SNOW, self.snow.part(t, broken));
+        let [snow, blown] = self.snow.parts(t, broken);
+        cover.over(SCREE, FELL_FIELD * blown);
+        cover.over(SNOW, snow);
         cover
     }
 
@@ -277,7 +281,7 @@ impl Painter {
             add(&mut color, self.soil(t, n), cover.soil);
         }
         if snow > 0.0 {
-            add(&mut color, scale(SNOW_WHITE, 1.0 + 0.03 * n.broad + 0.05 * n.grain), snow);
+            add(&mut color, scale(SNOW_WHITE, self.snow.tone(t) + 0.03 * n.broad + 0.05 * n.grain), snow);
         }
         color.map(|c| if c > 0.0 { c } else { 0.0 })
     }

@@ -202,11 +202,11 @@ impl Stone {
 pub(super) fn snow() -> Pattern {
     let noise = [Waves(41, 6, 2, 0.5), Waves(42, 8, 3, 0.5), Waves(44, 5, 1, 0.5), Waves(45, 128, 2, 0.8)];
     paint(noise, |u, v, [bend, drift, still, grain]| {
-        // Ripples: the same noise drawn out across the wind, bent by it.
-        let ripple = gradient2(43, u * 12.0 + 0.6 * bend, v * 48.0 + 3.0 * bend, 12);
-        let ripple = ripple * (0.5 + 0.5 * still);
-        let height = 0.5 + 0.55 * drift + 0.13 * ripple + 0.07 * grain;
-        let tone = 128.0 * (1.0 + 0.08 * drift + 0.05 * ripple + 0.10 * grain);
+        // Sastrugi: sharp ridges along the wind, which blows along u, with still places between them.
+        let ridge = gradient2(43, u * 12.0 + 0.6 * bend, v * 36.0 + 3.0 * bend, 12);
+        let ridge = (0.4 - 1.6 * ridge.abs()) * (0.55 + 0.9 * still).clamp(0.1, 1.0);
+        let height = 0.5 + 0.55 * drift + 0.26 * ridge + 0.06 * grain;
+        let tone = 128.0 * (1.0 + 0.08 * drift + 0.10 * ridge + 0.08 * grain);
         Texel { height, tone: [tone * (1.0 - 0.02 * drift), tone, tone * (1.0 + 0.03 * drift)] }
     })
 }

@@ -46,7 +46,7 @@ pub struct GroundMapsFiles {
 
 impl Stage for GroundMapsStage {
     const NAME: &'static str = "ground maps";
-    const VERSION: u32 = 8;
+    const VERSION: u32 = 9;
     type Output = GroundMapsFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<GroundMapsFiles, StageError> {
@@ -89,7 +89,7 @@ pub struct GroundTextureFiles {
 
 impl Stage for GroundTextureStage {
     const NAME: &'static str = "ground texture";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
     type Output = GroundTextureFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<GroundTextureFiles, StageError> {
@@ -123,7 +123,7 @@ pub struct ForegroundStage {
 
 impl Stage for ForegroundStage {
     const NAME: &'static str = "foreground";
-    const VERSION: u32 = 9;
+    const VERSION: u32 = 10;
     type Output = File;
 
     fn run(&self, context: &Context<'_>) -> Result<File, StageError> {

@@ -1,5 +1,6 @@
 //! Properties of the ground.
 
+mod drifts;
 mod growth;
 
 use std::sync::LazyLock;

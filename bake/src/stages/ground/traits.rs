@@ -12,6 +12,11 @@ use crate::model::{Heightfield, Landform};
 use crate::noise::{fbm2, fbm2_row};
 use crate::seed::noise_seed;
 
+/// The direction that the wind blows to along x and z: that of clouds and grass in the viewer.
+const WIND: [f32; 2] = [0.91, 0.41];
+/// Metres upwind at which shelter is looked for.
+const UPWIND_M: [f32; 4] = [6.0, 13.0, 25.0, 40.0];
+
 /// The traits of one place.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
@@ -33,6 +38,8 @@ pub(super) struct Traits {
     pub outcrop: f32,
     /// How far the slope faces the noon sun in the south: 1 is a cliff in the sun, -1 one in the shade.
     pub sunny: f32,
+    /// Above 0 in the lee of higher land, below 0 where the wind is let at it, [-1, 1].
+    pub lee: f32,
     /// How much lies under crowns of trees, [0, 1].
     pub shade: f32,
 }
@@ -40,7 +47,7 @@ pub(super) struct Traits {
 impl Traits {
     /// [`lerp_array`] of each.
     fn lerp(self, other: Self, t: f32) -> Self {
-        bytemuck::cast(lerp_array::<10>(bytemuck::cast(self), bytemuck::cast(other), t))
+        bytemuck::cast(lerp_array::<11>(bytemuck::cast(self), bytemuck::cast(other), t))
     }
 }
 
@@ -108,15 +115,15 @@ pub(super) fn near(patches: &Patches, land: &Landform, u: f32, v: f32) -> Traits
 fn sample(patches: &Patches, land: &Landform, i: u32, j: u32, step: u32) -> Traits {
     let at = (j * land.field.side + i) as usize;
     let [height_m, flow, deposit] = [&land.field.heights_m, &land.flow, &land.deposit].map(|grid| grid[at]);
-    let Form { slope, hollow, sunny } = form_at(&land.field, i, j, step);
+    let Form { slope, hollow, sunny, lee } = form_at(&land.field, i, j, step);
     let last = (land.field.side - 1) as f32;
     let [patch, tuft, outcrop] = patches.at(i as f32 / last, j as f32 / last);
-    Traits { height_m, slope, flow, deposit, hollow, patch, tuft, outcrop, sunny, shade: 0.0 }
+    Traits { height_m, slope, flow, deposit, hollow, patch, tuft, outcrop, sunny, lee, shade: 0.0 }
 }
 
 /// Traits of a sample of the apron, whose spacing hides much of the slope.
 pub(super) fn far(patches: &Patches, land: &Landform, i: u32, j: u32) -> Traits {
-    let Form { slope, hollow, sunny } = form_at(&land.apron, i, j, 1);
+    let Form { slope, hollow, sunny, lee } = form_at(&land.apron, i, j, 1);
     let seed = |k: usize| patches.seeds[k];
     let (x, z) = (i as f32 * land.apron.spacing_m, j as f32 * land.apron.spacing_m);
     Traits {
@@ -129,6 +136,7 @@ pub(super) fn far(patches: &Patches, land: &Landform, i: u32, j: u32) -> Traits 
         tuft: fbm2(seed(1), x / 150.0, z / 150.0, 2, 0.5, 0),
         outcrop: fbm2(seed(2), x / 300.0, z / 300.0, 2, 0.5, 0),
         sunny,
+        lee,
         shade: 0.0,
     }
 }
@@ -138,6 +146,7 @@ struct Form {
     slope: f32,
     hollow: f32,
     sunny: f32,
+    lee: f32,
 }
 
 /// From neighbours `step` samples away.
@@ -154,7 +163,21 @@ fn form_at(field: &Heightfield, i: u32, j: u32, step: u32) -> Form {
         slope: steep.sqrt(),
         hollow: (rise * 6.0 / (step as f32 * field.spacing_m)).clamp(-1.0, 1.0),
         sunny: -dz / (1.0 + steep).sqrt(),
+        lee: lee(field, i, j),
     }
+}
+
+/// Greatest slope up to what stands upwind, from about 6 to 40 m away: the shelter that decides where drifts lie (Winstral, Elder and
+/// Davis, "Spatial snow modeling of wind-redistributed snow using terrain-based parameters", 2002).
+fn lee(field: &Heightfield, i: u32, j: u32) -> f32 {
+    let here_m = field.at(i, j);
+    let upwind = |reach_m: f32| {
+        let steps = WIND.map(|part| (part * reach_m / field.spacing_m).round() as i32);
+        let step = |at: u32, by: i32| at.saturating_add_signed(-by).min(field.side - 1);
+        let away_m = ((steps[0] * steps[0] + steps[1] * steps[1]) as f32).sqrt() * field.spacing_m;
+        if away_m > 0.0 { (field.at(step(i, steps[0]), step(j, steps[1])) - here_m) / away_m } else { -1.0 }
+    };
+    UPWIND_M.map(upwind).into_iter().fold(-1.0, f32::max).min(1.0)
 }
 
 /// Three layers of noise on a coarse grid.
