@@ -172,10 +172,13 @@ fn form_at(field: &Heightfield, i: u32, j: u32, step: u32) -> Form {
 fn lee(field: &Heightfield, i: u32, j: u32) -> f32 {
     let here_m = field.at(i, j);
     let upwind = |reach_m: f32| {
-        let steps = WIND.map(|part| (part * reach_m / field.spacing_m).round() as i32);
-        let step = |at: u32, by: i32| at.saturating_add_signed(-by).min(field.side - 1);
+        let steps = WIND.map(|part| (part * reach_m / field.spacing_m + 0.5) as u32);
         let away_m = ((steps[0] * steps[0] + steps[1] * steps[1]) as f32).sqrt() * field.spacing_m;
-        if away_m > 0.0 { (field.at(step(i, steps[0]), step(j, steps[1])) - here_m) / away_m } else { -1.0 }
+        if away_m > 0.0 {
+            (field.at(i.saturating_sub(steps[0]), j.saturating_sub(steps[1])) - here_m) / away_m
+        } else {
+            -1.0
+        }
     };
     UPWIND_M.map(upwind).into_iter().fold(-1.0, f32::max).min(1.0)
 }
