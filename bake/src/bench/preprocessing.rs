@@ -8,10 +8,9 @@ use genescape_schema::{Genome, Kinds, Parent, Population, Space, Strategy, Votes
 
 use super::{Stages, bake};
 use crate::breed::Breeder;
-use crate::gltf::{self, Picture};
-use crate::model::Mesh;
+use crate::gltf::{self, Picture, TreePictures};
 use crate::plan::{Resolution, TEMPLATES};
-use crate::stages::lod::{self, Step};
+use crate::stages::lod::Step;
 use crate::stages::tree;
 
 /// Milliseconds on one core that one task took once.
@@ -94,22 +93,22 @@ pub(super) fn template_steps(space: &Space, genome: &Genome) -> Result<Templates
         let template = tree::template(&params, index);
         ended("generating the tree");
         triangles += template.mesh.triangle_count();
-        let options = tree::lod_options(&template.mesh, &textures);
-        let judge = |levels: &[&Mesh]| tree::errors(levels, &textures);
-        let levels = lod::levels_judged(&template.mesh, &options, &judge, &mut |step| {
+        let made = tree::levelled(&template.mesh, &textures, &mut |step| {
             ended(match step {
                 Step::DataStructures => "data structures",
                 Step::ProgressiveMesh => "progressive mesh",
-                Step::Errors => "errors of pictures",
-                Step::Morphs => "morphs and records",
+                Step::Morphs => "morphs",
                 Step::Strips => "triangle strips",
+                Step::Finish => "clusters and errors of pictures",
+                Step::Records => "records",
             });
         });
-        let impostor = tree::impostor(tree::drawn_from_afar(&levels.levels), &textures);
+        let impostor = tree::impostor(tree::drawn_from_afar(&made.mesh.levels), &textures);
         ended("pictures from four sides");
         // The textures are made once a scene, and timed there.
         let pictures = textures.map(|_| Picture::Embedded { bytes: &[], mime_type: "image/png" });
-        gltf::tree_glb("tree", &levels, &pictures, Some(&impostor))?;
+        let of_tree = TreePictures { impostor: Some(&impostor), clusters: made.clusters.as_ref() };
+        gltf::tree_glb("tree", &made.mesh, &pictures, &of_tree)?;
         ended("writing the file");
     }
     Ok(Templates { steps, triangles })

@@ -12,7 +12,7 @@ use super::impostor::Cards;
 use super::level_scenes::{Rung, add_scenes};
 use super::materials::MaterialSet;
 use super::vertices::{Primitive, add_vertices, set_bounds};
-use crate::model::LevelledMesh;
+use crate::model::{Level, LevelledMesh, Material};
 
 /// One .glb with all levels of `mesh`, named after `name`. `cards` take the place of its last levels.
 ///
@@ -81,7 +81,9 @@ pub fn levelled_glb(
     }
     if !mesh.progressive.is_empty() {
         let buffer_view = document.view(&mesh.progressive, None, None);
-        let extension = ProgressiveMeshExtension { buffer_view, levels: records };
+        let has_clusters = |level: &Level| level.mesh.parts.iter().any(|p| p.material == Material::Cluster);
+        let clusters = levels.iter().position(|level| has_clusters(level));
+        let extension = ProgressiveMeshExtension { buffer_view, levels: records, clusters };
         document.meshes[0]["extensions"] = json!({ GSC_PROGRESSIVE_MESH: extension });
         document.extensions_used.insert(GSC_PROGRESSIVE_MESH.into());
     }

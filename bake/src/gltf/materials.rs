@@ -81,6 +81,15 @@ impl<'a> MaterialSet<'a> {
         )
     }
 
+    /// Gives the material of that number, made of cards, a picture of normals.
+    pub(super) fn add_normals(&mut self, material: usize, name: &str, picture: Picture<'a>) {
+        let image = push(&mut self.images, (name.into(), picture));
+        let colors = self.materials[material]["pbrMetallicRoughness"]["baseColorTexture"]["index"].as_u64();
+        let sampler = colors.map_or(json!(0), |colors| self.textures[colors as usize]["sampler"].clone());
+        let texture = push(&mut self.textures, json!({ "name": name, "sampler": sampler, "source": image }));
+        self.materials[material]["normalTexture"] = json!({ "index": texture });
+    }
+
     /// Adds materials, textures and samplers; the images must follow before anyone else adds one. Gives the number
     /// that the first material got.
     pub(super) fn add_to(&self, document: &mut Document) -> usize {

@@ -40,7 +40,7 @@ pub use scene::scene_gltf;
 pub use scene_parts::{Blob, GlbBlob, SceneParts};
 pub use single::single_glb;
 pub use terrain::terrain_glb;
-pub use tree::tree_glb;
+pub use tree::{TreePictures, tree_glb};
 
 /// What `asset.generator` says.
 pub const GENERATOR: &str = concat!("Genescape ", env!("CARGO_PKG_VERSION"));

@@ -14,7 +14,7 @@ use super::impostor::{self, IMPOSTOR};
 use super::materials::Picture;
 use super::scene_import::{FileMaterial, GlbImport};
 use super::scene_parts::SceneParts;
-use super::tree::tree_materials;
+use super::tree::{CLUSTER_NORMALS, CLUSTERS, add_clusters, tree_materials};
 use crate::model::Material;
 
 /// Triangles that any viewer opens quickly.
@@ -46,19 +46,28 @@ pub fn add_trees(
         Material::Blossom => has("blossom"),
         _ => true,
     });
-    let mut impostors = Vec::new();
+    // What each template has of its own.
+    let mut own = Vec::new();
     for file in &files {
-        let picture = file.import_image(document, IMPOSTOR)?.map(|buffer_view| Picture::View { buffer_view });
-        impostors.push(picture.map(|picture| impostor::add_material(&mut set, picture)));
+        let mut picture = |name: &str| {
+            let view = file.import_image(document, name)?;
+            Ok::<_, ExportError>(view.map(|buffer_view| Picture::View { buffer_view }))
+        };
+        let (impostor, clusters) = (picture(IMPOSTOR)?, picture(CLUSTERS)?.zip(picture(CLUSTER_NORMALS)?));
+        let cutoff = parts.tree_images.alpha_cutoff;
+        own.push([
+            (IMPOSTOR, impostor.map(|picture| impostor::add_material(&mut set, picture))),
+            (CLUSTERS, clusters.map(|pictures| add_clusters(&mut set, pictures.into(), cutoff))),
+        ]);
     }
     let first_material = set.add_to(document);
     set.add_images_to(document);
     let (mut templates, mut levels) = (Vec::new(), Vec::new());
-    for (index, (file, impostor)) in files.iter().zip(impostors).enumerate() {
+    for (index, (file, own)) in files.iter().zip(own).enumerate() {
         let material_of = |material: FileMaterial<'_>| {
             // All else is shared by the templates.
             let shared = || set.materials.iter().position(|m| m["name"] == material.name);
-            let found = if material.name == IMPOSTOR { impostor } else { shared() };
+            let found = own.iter().find(|own| own.0 == material.name).map_or_else(shared, |own| own.1);
             found.map(|i| first_material + i)
         };
         let mesh = file.import_meshes(document, &material_of)?;

@@ -310,7 +310,15 @@ pub fn synthetic(count: u32) -> Synthetic {
     let trees: Vec<_> = [false, true]
         .iter()
         .enumerate()
-        .map(|(i, &s)| tree_glb(&format!("tree-{i}"), &tree(s), &images, Some(&impostor())).unwrap())
+        .map(|(i, &s)| {
+            tree_glb(
+                &format!("tree-{i}"),
+                &tree(s),
+                &images,
+                &TreePictures { impostor: Some(&impostor()), clusters: None },
+            )
+            .unwrap()
+        })
         .collect();
     for (i, glb) in trees.iter().enumerate() {
         files.add(&format!("tree-{i}.glb"), glb.clone());

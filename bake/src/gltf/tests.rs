@@ -41,7 +41,13 @@ fn images(pictures: &[Vec<u8>; 3]) -> TreeTextures<Picture<'_>> {
 }
 
 pub(super) fn tree_file(mesh: &LevelledMesh) -> Vec<u8> {
-    tree_glb("tree", mesh, &images(&tree_images()), Some(&impostor())).unwrap()
+    tree_glb(
+        "tree",
+        mesh,
+        &images(&tree_images()),
+        &TreePictures { impostor: Some(&impostor()), clusters: None },
+    )
+    .unwrap()
 }
 
 #[test]
@@ -281,7 +287,7 @@ fn nothing_is_required_and_all_our_extensions_are_named() {
 fn bad_input_is_an_error() {
     let good = tree(false);
     let pictures = tree_images();
-    let glb = |tree: &LevelledMesh| tree_glb("tree", tree, &images(&pictures), None);
+    let glb = |tree: &LevelledMesh| tree_glb("tree", tree, &images(&pictures), &TreePictures::default());
     let empty = LevelledMesh { levels: Vec::new(), progressive: Vec::new() };
     assert!(matches!(glb(&empty), Err(ExportError::Empty(_))));
     let mut nan = good.clone();

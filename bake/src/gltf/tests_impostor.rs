@@ -78,7 +78,10 @@ fn no_mesh_is_shown_that_is_farther_from_the_tree_than_its_pictures() {
         blossom_small: Image8::default(),
         alpha_cutoff: 0.5,
     };
-    let (document, _) = gltf_of(&tree_glb("tree", &tree, &textures, Some(&finer)).unwrap());
+    let (document, _) = gltf_of(
+        &tree_glb("tree", &tree, &textures, &TreePictures { impostor: Some(&finer), clusters: None })
+            .unwrap(),
+    );
     let finished = document.default_scene().unwrap().nodes().next().unwrap();
     let ids = finished.extension_value("MSFT_lod").unwrap()["ids"].as_array().unwrap();
     let names = ids.iter().map(|id| document.nodes().nth(id.as_u64().unwrap() as usize).unwrap());

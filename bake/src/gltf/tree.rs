@@ -1,4 +1,5 @@
-//! A tree → one .glb: its levels of detail, the materials of bark, leaves and blossom, and pictures from four sides.
+//! A tree → one .glb: its levels of detail, the materials of bark, leaves, blossom and clusters, and pictures from four
+//! sides.
 
 use serde_json::json;
 
@@ -7,7 +8,7 @@ use super::impostor::{Cards, add_material};
 use super::levels::levelled_glb;
 use super::materials::{MaterialSet, Picture, REPEATING, sampler};
 use super::png;
-use crate::model::{Impostor, LevelledMesh, Material, TreeTextures};
+use crate::model::{Clusters, Image8, Impostor, LevelledMesh, Material, TreeTextures};
 
 /// Bark, leaf and blossom as glTF materials; cards only as far as `used` says that parts have them.
 pub fn tree_materials<'a>(
@@ -52,6 +53,29 @@ fn card_picture<'a>(levels: &[Picture<'a>]) -> Option<Picture<'a>> {
     })
 }
 
+/// Name of the material of clusters of leaves, and of their image; and of that of their normals.
+pub const CLUSTERS: &str = "clusters";
+pub const CLUSTER_NORMALS: &str = "cluster normals";
+
+/// Pictures of a tree that only its own file has.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct TreePictures<'a> {
+    pub impostor: Option<&'a Impostor>,
+    /// Of clusters of leaves.
+    pub clusters: Option<&'a Clusters>,
+}
+
+/// Adds the material of clusters of leaves with their pictures of colours and of normals; gives its number.
+pub fn add_clusters<'a>(
+    set: &mut MaterialSet<'a>,
+    [colors, normals]: [Picture<'a>; 2],
+    alpha_cutoff: f32,
+) -> usize {
+    let number = set.add_cards(CLUSTERS, colors, alpha_cutoff, 0.65);
+    set.add_normals(number, CLUSTER_NORMALS, normals);
+    number
+}
+
 /// One tree as a self-contained .glb (with `Picture::File`, one that shares its pictures): see [`levelled_glb`].
 ///
 /// # Errors
@@ -60,15 +84,29 @@ pub fn tree_glb(
     name: &str,
     mesh: &LevelledMesh,
     textures: &TreeTextures<Picture<'_>>,
-    impostor: Option<&Impostor>,
+    pictures: &TreePictures<'_>,
 ) -> Result<Vec<u8>, ExportError> {
     let parts = || mesh.levels.iter().flat_map(|level| &level.mesh.parts);
     let used = |slot| parts().any(|part| part.material == slot && !part.triangles.is_empty());
     let mut materials = tree_materials(textures, used);
-    let Some(impostor) = impostor else { return levelled_glb(name, mesh, &materials, None) };
-    let (colors, relief) =
-        rayon::join(|| png::encode(&impostor.colors), || png::encode_linear(&impostor.relief));
-    let picture = Picture::Embedded { bytes: &colors, mime_type: "image/png" };
-    let material = add_material(&mut materials, picture);
-    levelled_glb(name, mesh, &materials, Some(&Cards { impostor, relief: &relief, material }))
+    let encoded = |colors: &Image8, data: &Image8| {
+        let (colors, data) = rayon::join(|| png::encode(colors), || png::encode_linear(data));
+        [colors, data]
+    };
+    let (clusters, impostor) = rayon::join(
+        || pictures.clusters.map(|clusters| encoded(&clusters.colors, &clusters.normals)),
+        || pictures.impostor.map(|impostor| (impostor, encoded(&impostor.colors, &impostor.relief))),
+    );
+    fn embedded(bytes: &Vec<u8>) -> Picture<'_> {
+        Picture::Embedded { bytes, mime_type: "image/png" }
+    }
+    if let Some(clusters) = &clusters {
+        add_clusters(&mut materials, clusters.each_ref().map(embedded), textures.alpha_cutoff);
+        materials.slots.push(Material::Cluster);
+    }
+    let cards = impostor.as_ref().map(|(impostor, [colors, relief])| {
+        let material = add_material(&mut materials, embedded(colors));
+        Cards { impostor, relief, material }
+    });
+    levelled_glb(name, mesh, &materials, cards.as_ref())
 }

@@ -37,12 +37,14 @@ pub enum Material {
     Water,
     /// The nth material of someone's own file (`bake lod`).
     Foreign(u32),
+    /// Cards with pictures of many leaves or blossoms: alpha-masked, two-sided. Caches know materials by their order here.
+    Cluster,
 }
 
 impl Material {
     /// Alpha-masked cards.
     pub fn is_card(self) -> bool {
-        matches!(self, Self::Leaf | Self::Blossom)
+        matches!(self, Self::Leaf | Self::Blossom | Self::Cluster)
     }
 }
 

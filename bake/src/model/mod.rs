@@ -23,7 +23,9 @@ pub use leaf_color::leaf_color;
 pub use light::LightMap;
 pub use mesh::{Bounds, Material, Mesh, Part, PartKind};
 pub use terrain::{Landform, TerrainMesh};
-pub use tree::{Impostor, Level, LevelledMesh, Morph, Placement, TreeFootprint, TreeTemplate, TreeTextures};
+pub use tree::{
+    Clusters, Impostor, Level, LevelledMesh, Morph, Placement, TreeFootprint, TreeTemplate, TreeTextures,
+};
 
 /// The sky as pixels.
 pub type SkyImages = genescape_schema::scene::SkyImages<ImageF16, Image8>;

@@ -70,6 +70,15 @@ impl<P> TreeTextures<P> {
     }
 }
 
+/// Pictures of clusters of leaves, on the cards that stand for them in coarse levels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clusters {
+    /// Albedo in sRGB, and alpha as a leaf card has it: RGBA.
+    pub colors: Image8,
+    /// Normals of the leaves, turned to the side from which the picture was taken, in the space of the card: RGB.
+    pub normals: Image8,
+}
+
 /// Pictures of a template from four sides, side by side, as `schema/docs/GSC_impostor.md` defines them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Impostor {

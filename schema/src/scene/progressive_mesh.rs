@@ -13,6 +13,9 @@ pub struct ProgressiveMeshExtension {
     pub buffer_view: usize,
     /// D_0 … D_k, finest first; the first is the mesh that carries this extension.
     pub levels: Vec<ProgressiveLevel>,
+    /// The first level in which clusters stand for single leaves; none if there is no such level.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clusters: Option<usize>,
 }
 
 /// One distinguished mesh.

@@ -37,7 +37,7 @@ pub fn alike(template: &Template) -> Option<Template> {
         levels.push(Level { error_m: level.error_m, base_vertex: full.base_vertex, ranges, strips });
     }
     let blob = format!("{} by meshoptimizer", template.blob);
-    Some(Template { blob, indices, levels, ..template.clone() })
+    Some(Template { blob, indices, levels, clusters: None, ..template.clone() })
 }
 
 /// `None`: this viewer was built without it.

@@ -70,26 +70,31 @@ fn build(
     blob: &str,
     extension: &ProgressiveMeshExtension,
 ) -> Result<Template> {
-    let mut template = Template { name: name.to_owned(), blob: blob.to_owned(), ..Default::default() };
+    let clusters = extension.clusters.map(|level| level as u32);
+    let mut template =
+        Template { name: name.to_owned(), blob: blob.to_owned(), clusters, ..Default::default() };
     // Numbers of the materials in the file, in the order of the finest level.
     let mut materials: Vec<usize> = Vec::new();
     for (number, level) in extension.levels.iter().enumerate() {
         let last = number + 1 == extension.levels.len();
         let base_vertex = template.vertices.len() as u32;
-        let mut ranges = vec![Range::default(); materials.len()];
-        let mut strips = ranges.clone();
+        // Of each material; several parts may be of one.
+        let mut lists = vec![Vec::new(); materials.len()];
+        let mut strips = vec![Range::default(); materials.len()];
         for (number_of_part, primitive) in mesh(document, level.mesh)?.primitives().enumerate() {
             let material = primitive.material();
             let index =
                 material.index().ok_or_else(|| document.wrong("a tree has a part without material"))?;
             let slot = materials.iter().position(|&known| known == index).unwrap_or_else(|| {
                 materials.push(index);
-                ranges.push(Range::default());
+                lists.push(Vec::new());
                 strips.push(Range::default());
                 materials.len() - 1
             });
             if template.materials.len() < materials.len() {
-                template.materials.push(read_material(document, &material)?);
+                let material = read_material(document, &material)?;
+                let clusters = material.alpha_cutoff.is_some() && Some(number as u32) == template.clusters;
+                template.materials.push(Material { clusters, ..material });
             }
             let first_vertex = template.vertices.len() as u32 - base_vertex;
             let delta = if last { None } else { level.texcoord_deltas.get(number_of_part).copied() };
@@ -101,16 +106,15 @@ fn build(
             }
             let count = part.len();
             template.vertices.extend(part);
-            let mut add = |indices: Vec<u32>| {
-                let first = template.indices.len() as u32;
-                template.indices.extend(indices.iter().map(|index| index + first_vertex));
-                Range { first, count: indices.len() as u32 }
-            };
-            ranges[slot] = add(document.indices(&primitive, count)?);
+            let moved = |indices: Vec<u32>| indices.into_iter().map(move |index| index + first_vertex);
+            let indices: &mut Vec<u32> = &mut lists[slot];
+            indices.extend(moved(document.indices(&primitive, count)?));
             if let Some(&strip) = strip {
-                strips[slot] = add(document.index_list(document.accessor(strip)?, count)?);
+                strips[slot] =
+                    add(&mut template.indices, moved(document.index_list(document.accessor(strip)?, count)?));
             }
         }
+        let ranges = lists.into_iter().map(|list| add(&mut template.indices, list.into_iter())).collect();
         template.levels.push(Level { error_m: level.error_m, base_vertex, ranges, strips });
     }
     let parts = materials.len();
@@ -121,6 +125,13 @@ fn build(
     check(document, &template)?;
     (template.center_m, template.radius_m) = sphere(&template.vertices);
     Ok(template)
+}
+
+/// Adds indices to a list of them.
+fn add(list: &mut Vec<u32>, indices: impl Iterator<Item = u32>) -> Range {
+    let first = list.len() as u32;
+    list.extend(indices);
+    Range { first, count: list.len() as u32 - first }
 }
 
 /// The pictures of a tree whose meshes are read.
@@ -276,6 +287,7 @@ fn read_material(document: &Document, material: &gltf::Material<'_>) -> Result<M
             gltf::material::AlphaMode::Opaque => None,
             _ => Some(material.alpha_cutoff().unwrap_or(0.5)),
         },
+        clusters: false,
     })
 }
 

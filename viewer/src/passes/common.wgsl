@@ -139,6 +139,13 @@ fn dither(pixel: vec2f) -> f32 {
     return fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715))));
 }
 
+// Whether a pixel belongs to a share of all: those with a number of `dither` from the first to below the second, which counts
+// as beyond all numbers where it is 1.
+fn is_shown(pixel: vec2f, shown: vec2f) -> bool {
+    let number = dither(pixel);
+    return number >= shown.x && (number < shown.y || shown.y == 1.0);
+}
+
 // 1 where the sun reaches a point, 0 in shadow; a soft edge a texel wide.
 fn sun_visibility(world: vec3f, bias_m: f32) -> f32 {
     let lifted = world + view.sun_direction * bias_m;

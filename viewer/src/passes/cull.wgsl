@@ -49,14 +49,20 @@ struct Template {
     simple_error: f32,
     // Of its pictures in metres; beyond all errors if it has none.
     picture_error: f32,
-    pad: array<f32, 3>,
+    // The first level in which clusters stand for leaves; beyond all if there is none.
+    clusters: u32,
+    pad: array<f32, 2>,
 }
+
+// What does not go on to the last stays below it in 16 bits.
+const MAX_EDGE: f32 = 65534.0 / 65535.0;
 
 struct Visible {
     tree: u32,
     lambda: f32,
-    // Share of its pixels that are drawn: while a mesh dissolves into the picture, or the other way round.
-    shown: f32,
+    // Which of its pixels are drawn, as `is_shown` of `common.wgsl` knows them, in twice 16 bits: while leaves dissolve into
+    // clusters, clusters into fewer, or all of it into the picture. Only what goes on to the last draws bark.
+    shown: u32,
 }
 
 struct Command {
@@ -161,12 +167,21 @@ fn choose(@builtin(global_invocation_id) id: vec3u) {
     let share = pictured(template_index, scale, distance, steepness);
     if (share < 1.0) {
         let level = u32(lambda);
+        let next = level + 1u;
+        let dissolves = next >= templates[template_index].clusters && next < templates[template_index].levels;
+        let edge = select(share, mix(share, 1.0, morphed(lambda)), dissolves);
         let slot = atomicAdd(&counts[bucket(template_index, level)], 1u);
-        visible[list(template_index, level) + slot] = Visible(index, lambda, 1.0 - share);
+        visible[list(template_index, level) + slot] = Visible(index, lambda, pack2x16unorm(vec2f(min(edge, MAX_EDGE), 1.0)));
+        if (edge > share) {
+            let slot = atomicAdd(&counts[bucket(template_index, next)], 1u);
+            let shown = pack2x16unorm(vec2f(share, min(edge, MAX_EDGE)));
+            visible[list(template_index, next) + slot] = Visible(index, f32(next), shown);
+        }
     }
     if (share > 0.0) {
         let slot = atomicAdd(&counts[bucket(template_index, cull.levels)], 1u);
-        visible[list(template_index, templates[template_index].levels) + slot] = Visible(index, lambda, share);
+        let shown = pack2x16unorm(vec2f(0.0, share));
+        visible[list(template_index, templates[template_index].levels) + slot] = Visible(index, lambda, shown);
     }
 }
 

@@ -31,12 +31,12 @@ struct Out {
     // Direction of the eye in eighths of a turn, [0, 8]; number of the template.
     @location(5) @interpolate(flat) turn: f32,
     @location(6) @interpolate(flat) template_index: u32,
-    // Share of its pixels that are drawn.
-    @location(7) @interpolate(flat) shown: f32,
+    // Which of its pixels are drawn.
+    @location(7) @interpolate(flat) shown: vec2f,
 }
 
 @vertex
-fn vertex(@location(8) tree: u32, @location(10) shown: f32, @builtin(vertex_index) index: u32) -> Out {
+fn vertex(@location(8) tree: u32, @location(10) shown: vec2f, @builtin(vertex_index) index: u32) -> Out {
     let rows = trees[tree].rows;
     let frame = frames[trees[tree].template_index];
     let corner = vec2f(f32(index & 1u), f32(index >> 1u));
@@ -132,7 +132,7 @@ fn pixel(in: Out, is_kept: bool) -> Pixel {
 
 @fragment
 fn fragment(in: Out) -> Pixel {
-    return pixel(in, dither(in.clip.xy) <= in.shown);
+    return pixel(in, is_shown(in.clip.xy, in.shown));
 }
 
 // As a lake mirrors it: what is above the water.

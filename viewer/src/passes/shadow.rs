@@ -42,6 +42,7 @@ impl Shadow {
                 // The sides of a trunk that face away bound its shadow (second-depth shadow mapping).
                 opaque: trees(None, Some(wgpu::Face::Front)),
                 masked: trees(Some("leaf"), None),
+                clusters: trees(Some("leaf"), None),
             },
             land: compiler.pipeline(&land),
         })

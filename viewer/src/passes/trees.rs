@@ -19,6 +19,7 @@ pub struct Trees {
 pub(super) struct TreePipelines {
     pub opaque: wgpu::RenderPipeline,
     pub masked: wgpu::RenderPipeline,
+    pub clusters: wgpu::RenderPipeline,
 }
 
 /// Attributes of [`TreeVertex`].
@@ -26,9 +27,9 @@ pub const VERTEX: [wgpu::VertexAttribute; 8] = wgpu::vertex_attr_array![
     0 => Float32x3, 1 => Unorm8x4, 2 => Float32x3, 3 => Snorm16x2,
     4 => Float32x2, 5 => Float32x2, 6 => Snorm16x2, 7 => Snorm16x2,
 ];
-/// Attributes of a visible tree: its number, λ, and the share of its pixels that are drawn.
+/// Attributes of a visible tree: its number, λ, and which of its pixels are drawn.
 pub const VISIBLE: [wgpu::VertexAttribute; 3] =
-    wgpu::vertex_attr_array![8 => Uint32, 9 => Float32, 10 => Float32];
+    wgpu::vertex_attr_array![8 => Uint32, 9 => Float32, 10 => Unorm16x2];
 
 /// The two vertex buffers of every draw of trees.
 pub(super) fn buffers() -> [Option<wgpu::VertexBufferLayout<'static>>; 2] {
@@ -45,11 +46,15 @@ impl Trees {
         let bark = |wireframe: bool| {
             let usual = PipelineDesc::new(&shader, &groups);
             let (fragment, cull) = (Some("bark"), Some(wgpu::Face::Back));
-            PipelineDesc { fragment, buffers: &buffers, cull, wireframe, ..usual }
+            PipelineDesc { vertex: "bark_vertex", fragment, buffers: &buffers, cull, wireframe, ..usual }
         };
         let pipelines = |wireframe: bool| {
-            let leaf = PipelineDesc { fragment: Some("leaf"), cull: None, ..bark(wireframe) };
-            TreePipelines { opaque: compiler.pipeline(&bark(wireframe)), masked: compiler.pipeline(&leaf) }
+            let cards = |fragment: &'static str| {
+                let cards = PipelineDesc { vertex: "vertex", cull: None, ..bark(wireframe) };
+                compiler.pipeline(&PipelineDesc { fragment: Some(fragment), ..cards })
+            };
+            let opaque = compiler.pipeline(&bark(wireframe));
+            TreePipelines { opaque, masked: cards("leaf"), clusters: cards("cluster") }
         };
         let bark_strips = |wireframe: bool| {
             let topology = wgpu::PrimitiveTopology::TriangleStrip;
@@ -93,6 +98,7 @@ impl TreePipelines {
         for (slot, (material, group)) in set.materials.iter().zip(&bound.material_groups).enumerate() {
             let (pipeline, draw) = match strips {
                 Some(strips) if !material.masked => (strips, lists + slot),
+                _ if material.clusters => (&self.clusters, slot),
                 _ => (if material.masked { &self.masked } else { &self.opaque }, slot),
             };
             pass.set_pipeline(pipeline);

@@ -17,8 +17,8 @@ struct In {
     @location(8) tree: u32,
     // λ: level of detail and, after the point, how far it has morphed to the next.
     @location(9) lambda: f32,
-    // Share of its leaves' pixels that are drawn: the others show its picture.
-    @location(10) shown: f32,
+    // Which of its leaves' pixels are drawn: the others show clusters or its picture.
+    @location(10) shown: vec2f,
 }
 
 struct Out {
@@ -30,11 +30,10 @@ struct Out {
     @location(4) color: vec3f,
     // Leaves: share of the open sky and ground that they see between their neighbours.
     @location(5) open: f32,
-    @location(6) @interpolate(flat) shown: f32,
+    @location(6) @interpolate(flat) shown: vec2f,
 }
 
-@vertex
-fn vertex(in: In) -> Out {
+fn placed(in: In) -> Out {
     let rows = trees[in.tree].rows;
     let alpha = morphed(in.lambda);
     let world = from_template(rows, in.position + alpha * in.delta);
@@ -49,6 +48,22 @@ fn vertex(in: In) -> Out {
     out.color = select(in.color.rgb, level_tint(in.lambda) * 1.6, view.tint_levels != 0u);
     out.open = in.color.a;
     out.shown = in.shown;
+    return out;
+}
+
+@vertex
+fn vertex(in: In) -> Out {
+    return placed(in);
+}
+
+// Bark is of the level that goes on to the last of the pixels, and there whole.
+@vertex
+fn bark_vertex(in: In) -> Out {
+    var out = placed(in);
+    if (in.shown.y < 1.0) {
+        // Outside of all pictures.
+        out.clip = vec4f(0.0, 0.0, 2.0, 1.0);
+    }
     return out;
 }
 
@@ -74,27 +89,46 @@ fn bark(in: Out) -> @location(0) vec4f {
     return vec4f(aerial_perspective(radiance, distance(in.world, view.eye)), 1.0);
 }
 
-@fragment
-fn leaf(in: Out, @builtin(front_facing) front: bool) -> @location(0) vec4f {
-    var albedo = vec4f(in.color, 1.0) * material.factor;
-    albedo *= textureSample(color_map, clamped, in.uv);
-    if (albedo.a < material.alpha_cutoff || dither(in.clip.xy) < 1.0 - in.shown) {
-        discard;
-    }
+// A leaf has two sides and lets light through: seen from the side that the sun doesn't shine on it glows. In its own shade is
+// what lies less than `bias_m` behind others.
+fn leaf_light(in: Out, albedo: vec3f, normal: vec3f, bias_m: f32) -> vec4f {
     let to_eye = normalize(view.eye - in.world);
-    let normal = normalize(in.normal);
-    // A leaf has two sides and lets light through: seen from the side that the sun doesn't shine on it glows.
     let toward_sun = dot(normal, view.sun_direction);
     let same_side = toward_sun * dot(normal, to_eye) > 0.0;
     let lit = abs(toward_sun) * 0.75 + 0.25;
     // Chlorophyll takes red and blue on the way through.
-    let through = albedo.rgb * vec3f(0.75, 0.9, 0.3);
-    let reflected = select(through * 0.6, albedo.rgb * 0.8, same_side) * lit;
+    let through = albedo * vec3f(0.75, 0.9, 0.3);
+    let reflected = select(through * 0.6, albedo * 0.8, same_side) * lit;
     let facing = max(dot(-to_eye, view.sun_direction), 0.0);
     let glow = 0.6 * facing * facing * facing * facing * facing * facing;
-    let sun = sun_visibility(in.world, 0.4) * smoothstep(0.0, 0.7, in.open);
+    let sun = sun_visibility(in.world, bias_m) * smoothstep(0.0, 0.7, in.open);
     let outward = select(-normal, normal, normal.y > 0.0);
-    var radiance = ambient(outward, albedo.rgb) * (0.15 + 0.75 * in.open * in.open);
+    var radiance = ambient(outward, albedo) * (0.15 + 0.75 * in.open * in.open);
     radiance += (reflected + through * glow) / PI * view.sun_irradiance * sun;
     return vec4f(aerial_perspective(radiance, distance(in.world, view.eye)), 1.0);
+}
+
+fn card_albedo(in: Out) -> vec3f {
+    let albedo = vec4f(in.color, 1.0) * material.factor * textureSample(color_map, clamped, in.uv);
+    if (albedo.a < material.alpha_cutoff || !is_shown(in.clip.xy, in.shown)) {
+        discard;
+    }
+    return albedo.rgb;
+}
+
+@fragment
+fn leaf(in: Out) -> @location(0) vec4f {
+    return leaf_light(in, card_albedo(in), normalize(in.normal), 0.4);
+}
+
+// So far before a card are the outermost of the leaves that it shows, which are not in their own shade.
+const CLUSTER_BIAS_M = 0.8;
+
+@fragment
+fn cluster(in: Out) -> @location(0) vec4f {
+    let bump = textureSample(normal_map, clamped, in.uv).xyz * 2.0 - 1.0;
+    let right = normalize(in.tangent.xyz);
+    let front = normalize(in.normal);
+    let normal = normalize(right * bump.x + cross(front, right) * bump.y + front * bump.z);
+    return leaf_light(in, card_albedo(in), normal, CLUSTER_BIAS_M);
 }

@@ -34,6 +34,8 @@ pub struct Template {
     pub center_m: [f32; 3],
     /// Its radius.
     pub radius_m: f32,
+    /// The first level in which clusters stand for single leaves, if there is one.
+    pub clusters: Option<u32>,
     /// Pictures of it, if the file has any.
     pub impostor: Option<Impostor>,
 }
@@ -96,4 +98,6 @@ pub struct Material {
     pub normal: Option<Image>,
     /// Pixels below this alpha are not drawn; `None` for opaque materials.
     pub alpha_cutoff: Option<f32>,
+    /// Whether it shows pictures of clusters of leaves.
+    pub clusters: bool,
 }

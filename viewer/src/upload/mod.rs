@@ -2,6 +2,7 @@
 //! it. What two landscapes have in common (a tree that was inherited, a texture) is uploaded once.
 
 mod asset;
+mod clusters;
 mod exhibit;
 mod ground;
 mod impostors;

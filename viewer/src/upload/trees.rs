@@ -1,8 +1,10 @@
 //! Trees: one vertex buffer and one index buffer for all templates and levels, instances, and the commands that draw
 //! them.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
+use super::clusters::{self, ClusterSheet};
 use super::{ImageUse, ImpostorSet, Uploader};
 use crate::scene::{Image, Instance, Material, Range, Template, TreeVertex, Trees};
 
@@ -44,8 +46,10 @@ pub struct TemplateData {
     pub simple_error: f32,
     /// Error of its pictures in metres; beyond all errors if it has none.
     pub picture_error: f32,
+    /// The first level in which clusters stand for leaves; beyond all if there is none.
+    pub clusters: u32,
     /// Unused.
-    pub pad: [f32; 3],
+    pub pad: [f32; 2],
 }
 
 /// The arguments of an indexed indirect draw.
@@ -119,6 +123,8 @@ pub struct TreeMaterial {
     pub name: String,
     /// True if it has holes and two sides.
     pub masked: bool,
+    /// True if it shows pictures of clusters of leaves.
+    pub clusters: bool,
     /// [`MaterialUniform`].
     pub uniform: wgpu::Buffer,
     /// Colour.
@@ -134,11 +140,22 @@ impl Uploader {
             return None;
         }
         use wgpu::BufferUsages as Usage;
-        let (gpu, materials) = (&self.gpu, common_materials(trees));
+        let sheet = ClusterSheet::of(&trees.templates);
+        let plain = sheet.is_none() && trees.templates.iter().any(|template| template.clusters.is_some());
+        let plain = plain.then(|| Trees {
+            templates: trees.templates.iter().map(|template| Arc::new(clusters::without(template))).collect(),
+            ..trees.clone()
+        });
+        let trees = plain.as_ref().unwrap_or(trees);
+        let (gpu, materials) = (&self.gpu, common_materials(trees, sheet.as_ref()));
         let lists = arrange(trees, &materials);
         let all_trees: Vec<TreeData> = trees.instances.iter().map(tree_data).collect();
-        let vertices: Vec<&[TreeVertex]> =
-            trees.templates.iter().map(|template| &template.vertices[..]).collect();
+        let vertices = trees.templates.iter().enumerate().map(|(number, template)| match &sheet {
+            Some(sheet) => Cow::Owned(sheet.moved(number, template)),
+            None => Cow::Borrowed(&template.vertices),
+        });
+        let vertices: Vec<Cow<'_, Vec<TreeVertex>>> = vertices.collect();
+        let vertices: Vec<&[TreeVertex]> = vertices.iter().map(|vertices| &vertices[..]).collect();
         let indices: Vec<&[u32]> = trees.templates.iter().map(|template| &template.indices[..]).collect();
         Some(TreeSet {
             vertices: gpu.buffer("tree vertices", &vertices.concat(), Usage::VERTEX),
@@ -165,14 +182,17 @@ impl Uploader {
             unused: [0.0; 2],
         };
         let image = |image: &Option<Image>, otherwise: [u8; 4], kind: ImageUse| match image {
+            Some(image) if material.clusters => self.sheet(image, kind),
             Some(image) => self.image(image, kind),
             None => self.image(&Image::of_one_pixel(otherwise), kind),
         };
+        let cutout_or_color = if material.clusters { ImageUse::Cutout } else { ImageUse::Color };
         TreeMaterial {
             name: material.name.clone(),
             masked: material.alpha_cutoff.is_some(),
+            clusters: material.clusters,
             uniform: self.gpu.buffer("material", &[uniform], wgpu::BufferUsages::UNIFORM),
-            color: image(&material.color, [255; 4], ImageUse::Color),
+            color: image(&material.color, [255; 4], cutout_or_color),
             normal: image(&material.normal, [128, 128, 255, 255], ImageUse::Data),
         }
     }
@@ -274,6 +294,7 @@ fn template_data(template: &Template, first: u32, capacity: u32) -> TemplateData
         levels: levels as u32,
         first,
         capacity,
+        clusters: template.clusters.unwrap_or(u32::MAX),
         simple_error: crate::lod::tree::simple_error_m(&errors[..levels]),
         ..TemplateData::default()
     }
@@ -288,9 +309,10 @@ fn tree_data(instance: &Instance) -> TreeData {
     }
 }
 
-/// Materials of all templates, equal ones once; beyond [`MATERIALS_PER_TREE_SET`] the first is used instead.
-fn common_materials(trees: &Trees) -> Vec<Material> {
-    let mut materials: Vec<Material> = Vec::new();
+/// Materials of all templates, equal ones once, and all clusters as one; beyond [`MATERIALS_PER_TREE_SET`] the first is used
+/// instead.
+fn common_materials(trees: &Trees, sheet: Option<&ClusterSheet>) -> Vec<Material> {
+    let mut materials: Vec<Material> = sheet.iter().map(|sheet| sheet.material.clone()).collect();
     for material in trees.templates.iter().flat_map(|template| &template.materials) {
         let known = materials.iter().any(|known| same(known, material));
         if !known && materials.len() < MATERIALS_PER_TREE_SET {
@@ -303,6 +325,9 @@ fn common_materials(trees: &Trees) -> Vec<Material> {
 }
 
 fn same(a: &Material, b: &Material) -> bool {
+    if a.clusters || b.clusters {
+        return a.clusters == b.clusters;
+    }
     let name = |image: &Option<Image>| image.as_ref().map(|image| image.name.clone());
     (name(&a.color), name(&a.normal), a.color_factor, a.alpha_cutoff)
         == (name(&b.color), name(&b.normal), b.color_factor, b.alpha_cutoff)

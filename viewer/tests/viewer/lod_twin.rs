@@ -9,7 +9,7 @@ use genescape_viewer::lod::tree::{Control, MAX_LEVELS, distance_m, lod_number, p
 use genescape_viewer::lod_mode::TreeLodMode;
 use genescape_viewer::options::Options;
 use genescape_viewer::passes::{BoundTrees, CullUniform};
-use genescape_viewer::scene::{Template, Trees};
+use genescape_viewer::scene::{Image, Material, Template, Trees};
 use genescape_viewer::upload::{DrawCommand, SceneBuffers};
 use glam::Vec3;
 use proptest::prelude::*;
@@ -37,8 +37,9 @@ struct Forest {
 struct Shown {
     /// By its mesh or by its picture.
     lambda: f32,
-    /// Shares of its pixels that show its mesh, and its picture.
+    /// Shares of its pixels that show its mesh, clusters of the next level, and its picture.
     mesh: f32,
+    next: f32,
     picture: f32,
 }
 
@@ -59,7 +60,19 @@ fn forest(rng: &mut Pcg32) -> Forest {
     let template = |(kind, errors_m): (usize, &Vec<f32>)| {
         let name = format!("kind {kind}");
         let impostor = picture_error_m.map(|error_m| made_up::impostor(&name, error_m));
-        Arc::new(Template { impostor, ..made_up::template(&name, errors_m) })
+        let mut template = Template { impostor, ..made_up::template(&name, errors_m) };
+        // Every other kind has clusters from its second level on.
+        if kind % 2 == 0 && errors_m.len() > 1 {
+            let color = Some(Image::of_one_pixel([255; 4]));
+            template.materials.push(Material {
+                color,
+                alpha_cutoff: Some(0.5),
+                clusters: true,
+                ..template.materials[0].clone()
+            });
+            template.clusters = Some(1);
+        }
+        Arc::new(template)
     };
     let templates = errors_m.iter().enumerate().map(template).collect();
     let (mut instances, mut scales) = (Vec::new(), Vec::new());
@@ -119,13 +132,26 @@ fn chosen(
     for list in 0..buckets + kinds {
         let (level, kind, is_picture) = (list / kinds, list % kinds, list >= buckets);
         let first = commands[if is_picture { meshes + kind } else { list }].first_instance as usize;
-        for &[tree, lambda, share] in &visible[first..first + counts[list] as usize] {
-            let [lambda, share] = [lambda, share].map(f32::from_bits);
+        for &[tree, lambda, part] in &visible[first..first + counts[list] as usize] {
+            let lambda = f32::from_bits(lambda);
+            let [from, to] = [part & 0xffff, part >> 16].map(|edge| edge as f32 / 65535.0);
             assert!(is_picture || lambda as usize == level, "a tree is listed at its level");
             assert_eq!(forest.trees.instances[tree as usize].template as usize, kind, "and under its kind");
-            let one = shown[tree as usize].get_or_insert(Shown { lambda, mesh: 0.0, picture: 0.0 });
-            let part = if is_picture { &mut one.picture } else { &mut one.mesh };
-            assert!(std::mem::replace(part, share) == 0.0 && share > 0.0, "tree {tree} is drawn twice");
+            let one =
+                shown[tree as usize].get_or_insert(Shown { lambda, mesh: 0.0, next: 0.0, picture: 0.0 });
+            let part = match (is_picture, to < 1.0) {
+                (true, _) => &mut one.picture,
+                (false, true) => &mut one.next,
+                (false, false) => &mut one.mesh,
+            };
+            assert!(std::mem::replace(part, to - from) == 0.0 && to > from, "tree {tree} is drawn twice");
+            if !is_picture && to < 1.0 {
+                let clusters = forest.trees.templates[kind].clusters.expect("only clusters dissolve");
+                assert!(
+                    clusters as usize <= level && one.lambda as usize + 1 == level,
+                    "into the next level"
+                );
+            }
         }
     }
     shown
@@ -172,12 +198,13 @@ fn compare(studio: &Headless, seed: u64) -> [usize; 4] {
                     "seed {seed}, tree {tree}"
                 );
             }
-            let Some(Shown { lambda, mesh, picture }) = shown else {
+            let Some(Shown { lambda, mesh, next, picture }) = shown else {
                 seen[0] += 1;
                 continue;
             };
             seen[if picture == 0.0 { 1 } else { 2 + usize::from(mesh == 0.0) }] += 1;
-            assert!((mesh + picture - 1.0).abs() < 1e-6, "seed {seed}, tree {tree}: {mesh} and {picture}");
+            let all = mesh + next + picture;
+            assert!((all - 1.0).abs() < 5e-5, "seed {seed}, tree {tree}: {mesh}, {next} and {picture}");
             let errors_m = &forest.errors_m[instance.template as usize];
             let away_m = distance_m(center.distance(camera.position_m), radius_m);
             let number = |control: &Control, away_m: f32| {

@@ -130,7 +130,18 @@ fn elements_of_buffers_are_laid_out_alike() {
     same!(
         ["cull"],
         "Template",
-        TemplateData { center, radius, errors, levels, first, capacity, simple_error, picture_error, pad }
+        TemplateData {
+            center,
+            radius,
+            errors,
+            levels,
+            first,
+            capacity,
+            simple_error,
+            picture_error,
+            clusters,
+            pad
+        }
     );
     same!(["impostors"], "Frame", ImpostorData { axis, size, crown_middle, low, crown_half, alpha_cutoff });
     same!(["cull"], "Command", DrawCommand { indices, instances, first_index, base_vertex, first_instance });

@@ -1,17 +1,14 @@
 //! What is left of a mesh → how much larger its elements and how much thicker its twigs must be to cover as many pixels
 //! as the whole mesh does (Cook et al. 2007, "contrast and area are preserved").
 
-use std::ops::Range;
-
 use glam::Vec3;
 
 use super::aggregate::Aggregate;
 use super::coverage::{Camera, Canvas, Elements};
 use super::state::State;
+use crate::math::matching;
 use crate::model::AlphaMask;
 
-/// A pixel count is close enough to its target when off by this part.
-const TOLERANCE: f32 = 0.003;
 /// Pixels a side of the views in which leaves are counted, with the twigs among them, and of those of bare twigs, which are
 /// thin.
 const LEAVES_PX: usize = 128;
@@ -147,34 +144,4 @@ fn covered_with(state: &State, drawn: &Canvas, offset_m: f32) -> u32 {
     let mut canvas = drawn.clone();
     canvas.draw_surfaces(state, offset_m);
     canvas.covered()
-}
-
-/// Where in a range a growing function comes closest to the target: by false position, between a guess and a point beyond
-/// the target.
-fn matching(target: u32, range: Range<f32>, guess: f32, count: impl Fn(f32) -> u32) -> f32 {
-    let target = target as f32;
-    let off = |x: f32| count(x) as f32 - target;
-    let close = |off: f32| off.abs() <= TOLERANCE * target;
-    let (least, most) = (range.start, range.end.max(range.start));
-    let (mut low, mut high) = ((least, f32::NEG_INFINITY), (most, f32::INFINITY));
-    let mut at = guess.clamp(least, most);
-    let mut min_step = 0.02 * (most - least);
-    for _ in 0..9 {
-        let here = (at, off(at));
-        let beyond = if here.1 < 0.0 { at >= most } else { at <= least };
-        if close(here.1) || beyond || high.0 - low.0 <= 1e-4 * high.0 {
-            return at;
-        }
-        *(if here.1 < 0.0 { &mut low } else { &mut high }) = here;
-        at = if low.1.is_finite() && high.1.is_finite() {
-            let part = (-low.1 / (high.1 - low.1)).clamp(0.1, 0.9);
-            low.0 + (high.0 - low.0) * part
-        } else {
-            // About a third of what elements grow by is not hidden by others.
-            let step = (3.0 * here.1.abs() / target * at).max(min_step);
-            min_step *= 8.0;
-            (at - step.copysign(here.1)).clamp(least, most)
-        };
-    }
-    at
 }

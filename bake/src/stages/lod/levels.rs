@@ -1,9 +1,9 @@
 //! The simplification sequence → distinguished meshes and the geomorphs between them.
 //!
 //! D_{i+1} has half the vertices of D_i (thesis 4.3.1). A vertex of D_i that D_{i+1} lacks morphs to the vertex that it
-//! merged into, or to where its piece shrank to. Errors are the greatest cost so far (thesis 4.3.3), or what a judge
-//! says. For D_0, which is the original, log q is continued in a straight line: from the cost at √½ of the vertices (λ = ½)
-//! and that of D_1, q₀ = q(½)² / q(1); or from what the judge says of D_1 and D_2, q₀ = q(1)² / q(2).
+//! merged into, or to where its piece shrank to. Errors are the greatest cost so far (thesis 4.3.3), or what is found as
+//! levels are finished. For D_0, which is the original, log q is continued in a straight line: from the cost at √½ of the vertices (λ = ½)
+//! and that of D_1, q₀ = q(½)² / q(1); or from what is found of D_1 and D_2, q₀ = q(1)² / q(2).
 
 use glam::Vec3;
 
@@ -12,7 +12,7 @@ use crate::model::{Level, LevelledMesh, Mesh, Morph};
 use super::progressive::{self, Mark};
 use super::sequence::Sequence;
 use super::state::{NONE, State};
-use super::{Judge, LodOptions, Step, strip};
+use super::{Finish, LodOptions, Step, strip};
 
 /// A level may miss its number of vertices by one in this many; otherwise there is no such level.
 const TOLERANCE: usize = 50;
@@ -30,13 +30,14 @@ struct Snapshot {
     now: Vec<u32>,
 }
 
-/// Makes all levels of a sound mesh, with the errors that its judge finds or else with those of the collapses.
+/// Makes all levels of a sound mesh, with the errors that are found as they are finished or else with those of the collapses.
 pub fn build(
     mesh: Mesh,
     options: &LodOptions,
-    judge: Option<&Judge<'_>>,
+    finish: Option<&mut Finish<'_>>,
     ended: &mut dyn FnMut(Step),
 ) -> LevelledMesh {
+    let bounds = mesh.bounds();
     let mut sequence = Sequence::new(State::new(&mesh), options);
     ended(Step::DataStructures);
     let mut marks = vec![Mark::of(&sequence)];
@@ -64,49 +65,46 @@ pub fn build(
         marks.push(mark);
     }
     ended(Step::ProgressiveMesh);
-    set_errors(&snapshots, &mut marks, judge, error_half_way_m as f32);
-    ended(Step::Errors);
+    let mut levels = with_morphs(snapshots, &sequence.state, ended);
+    let found = finish.map(|finish| finish(&mut levels));
+    set_errors(&mut marks, found, error_half_way_m as f32, (bounds.max - bounds.min).length());
+    levels.iter_mut().zip(&marks).for_each(|(level, mark)| level.error_m = mark.error_m);
+    ended(Step::Finish);
     let progressive = progressive::encode(&sequence.state, &marks);
-    LevelledMesh { levels: finish(snapshots, &marks, &sequence.state, ended), progressive }
+    ended(Step::Records);
+    LevelledMesh { levels, progressive }
 }
 
-fn set_errors(snapshots: &[Snapshot], marks: &mut [Mark], judge: Option<&Judge<'_>>, half_way_m: f32) {
-    let bounds = snapshots[0].mesh.bounds();
-    let diagonal = (bounds.max - bounds.min).length();
-    if let Some(judge) = judge {
-        let meshes: Vec<&Mesh> = snapshots.iter().map(|snapshot| &snapshot.mesh).collect();
-        let coarser = marks.iter_mut().skip(1);
-        coarser.zip(judge(&meshes)).for_each(|(mark, error_m)| mark.error_m = error_m);
-    }
+/// Of a mesh of that diagonal; `found` for all levels but the first.
+fn set_errors(marks: &mut [Mark], found: Option<Vec<f32>>, half_way_m: f32, diagonal_m: f32) {
+    let is_found = found.is_some();
+    let coarser = marks.iter_mut().skip(1);
+    coarser.zip(found.into_iter().flatten()).for_each(|(mark, error_m)| mark.error_m = error_m);
     let errors_m: Vec<f32> = marks.iter().skip(1).map(|mark| mark.error_m).collect();
-    let first = match (judge, errors_m.as_slice()) {
-        (Some(_), &[one, two, ..]) if two > 0.0 => one * (one / two),
-        (None, &[one, ..]) if one > 0.0 => half_way_m * (half_way_m / one),
+    let first = match (is_found, errors_m.as_slice()) {
+        (true, &[one, two, ..]) if two > 0.0 => one * (one / two),
+        (false, &[one, ..]) if one > 0.0 => half_way_m * (half_way_m / one),
         _ => 0.0,
     };
     marks[0].error_m = first.min(errors_m.first().map_or(0.0, |next| next / MIN_GROWTH));
-    let mut floor = (diagonal * MIN_ERROR).clamp(f32::MIN_POSITIVE, f32::MAX);
+    let mut floor = (diagonal_m * MIN_ERROR).clamp(f32::MIN_POSITIVE, f32::MAX);
     for mark in marks {
         mark.error_m = mark.error_m.max(floor);
         floor = mark.error_m * MIN_GROWTH;
     }
 }
 
-fn finish(
-    snapshots: Vec<Snapshot>,
-    marks: &[Mark],
-    state: &State,
-    ended: &mut dyn FnMut(Step),
-) -> Vec<Level> {
+/// The levels, without errors yet.
+fn with_morphs(snapshots: Vec<Snapshot>, state: &State, ended: &mut dyn FnMut(Step)) -> Vec<Level> {
     let morph_to_next = |index: usize| Some(morph(&snapshots[index], snapshots.get(index + 1)?, state));
     let morphs: Vec<_> = (0..snapshots.len()).map(morph_to_next).collect();
     ended(Step::Morphs);
-    let level = |((snapshot, mark), morph): ((Snapshot, &Mark), Option<Morph>)| {
+    let level = |(snapshot, morph): (Snapshot, Option<Morph>)| {
         let vertices = snapshot.mesh.positions.len();
         let strips = snapshot.mesh.parts.iter().map(|part| strip::strip(&part.triangles, vertices)).collect();
-        Level { mesh: snapshot.mesh, morph, error_m: mark.error_m, strips }
+        Level { mesh: snapshot.mesh, morph, error_m: 0.0, strips }
     };
-    let levels = snapshots.into_iter().zip(marks).zip(morphs).map(level).collect();
+    let levels = snapshots.into_iter().zip(morphs).map(level).collect();
     ended(Step::Strips);
     levels
 }
@@ -166,15 +164,16 @@ fn difference<const N: usize>(to: [f32; N], from: [f32; N]) -> [f32; N] {
 #[cfg(test)]
 mod tests {
     use super::progressive::reader;
-    use crate::model::Mesh;
+    use crate::model::Level;
     use crate::stages::lod::shapes::sphere;
-    use crate::stages::lod::{LodOptions, levels_judged};
+    use crate::stages::lod::{LodOptions, levels_finished};
 
     #[test]
-    fn a_judge_says_how_far_levels_are_and_they_grow_all_the_same() {
+    fn what_finishes_levels_says_how_far_they_are_and_errors_grow_all_the_same() {
         let mesh = sphere(32, 30);
-        let judge = |levels: &[&Mesh]| (1..levels.len()).map(|i| [0.5, 1.0, 0.2][i.min(3) - 1]).collect();
-        let made = levels_judged(&mesh, &LodOptions::default(), &judge, &mut |_| ());
+        let mut finish =
+            |levels: &mut [Level]| (1..levels.len()).map(|i| [0.5, 1.0, 0.2][i.min(3) - 1]).collect();
+        let made = levels_finished(&mesh, &LodOptions::default(), &mut finish, &mut |_| ());
         let errors: Vec<f32> = made.levels.iter().map(|level| level.error_m).collect();
         assert_eq!(errors[..3], [0.25, 0.5, 1.0], "D_0 goes on in a straight line");
         assert!(errors.len() > 3 && errors.is_sorted_by(|a, b| a < b), "{errors:?}");

@@ -32,7 +32,7 @@ mod shapes;
 #[cfg(test)]
 mod tests;
 
-use crate::model::{AlphaMask, LevelledMesh, Mesh};
+use crate::model::{AlphaMask, Level, LevelledMesh, Mesh};
 
 /// Where the new vertex of a collapsed edge goes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -94,18 +94,19 @@ pub fn levels(mesh: &Mesh, options: &LodOptions) -> LevelledMesh {
     levels::build(repair::repaired(mesh.clone()), options, None, &mut |_| ())
 }
 
-/// Finds the errors of levels in metres, given all of them: one for each after D_0.
-pub type Judge<'a> = dyn Fn(&[&Mesh]) -> Vec<f32> + 'a;
+/// Finishes levels that have no errors yet: gives the errors of all but the first, in metres. Before, it may put something
+/// else in the place of any part of any level but the first; the payload knows nothing of that.
+pub type Finish<'a> = dyn FnMut(&mut [Level]) -> Vec<f32> + 'a;
 
-/// The same with the errors that a judge finds, as far as they grow from level to level; tells when each part of the work
+/// The same with the errors that `finish` finds, as far as they grow from level to level; tells when each part of the work
 /// has ended.
-pub fn levels_judged(
+pub fn levels_finished(
     mesh: &Mesh,
     options: &LodOptions,
-    judge: &Judge<'_>,
+    finish: &mut Finish<'_>,
     ended: &mut dyn FnMut(Step),
 ) -> LevelledMesh {
-    levels::build(repair::repaired(mesh.clone()), options, Some(judge), ended)
+    levels::build(repair::repaired(mesh.clone()), options, Some(finish), ended)
 }
 
 /// A part of the work, in the order in which they end.
@@ -113,9 +114,10 @@ pub fn levels_judged(
 pub enum Step {
     DataStructures,
     ProgressiveMesh,
-    /// Of levels, where somebody judges them.
-    Errors,
-    /// And the records of the progressive mesh.
     Morphs,
     Strips,
+    /// What finishes levels.
+    Finish,
+    /// Of the progressive mesh.
+    Records,
 }

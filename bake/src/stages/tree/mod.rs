@@ -10,15 +10,18 @@ mod bark_texture;
 mod budget;
 mod canvas;
 mod cards;
+mod clusters;
 mod crease;
 mod culms;
 mod foliage;
 mod impostor;
 mod leaf_outline;
 mod leaf_texture;
+mod levelled;
 mod measure;
 mod mips;
 mod params;
+mod picture;
 mod raster;
 mod seen;
 mod shade;
@@ -33,13 +36,13 @@ use rayon::join;
 use crate::model::{Image8, TreeTemplate, TreeTextures};
 use crate::seed::Dice;
 use budget::Budget;
-pub use stage::{TreeFiles, TreeStage, TreeTexturesStage, drawn_from_afar, lod_options};
+pub use stage::{TreeFiles, TreeStage, TreeTexturesStage};
 
 pub use crease::crease_normals;
 pub use impostor::impostor;
+pub use levelled::{Levelled, drawn_from_afar, levelled};
 pub use measure::{TreeMeasures, measure};
 pub use params::{TreeParams, TreeTextureParams};
-pub use seen::errors;
 
 /// Texels of leaf and blossom cards with less alpha than this are not drawn.
 pub const ALPHA_CUTOFF: f32 = 0.5;

@@ -11,11 +11,17 @@ const TILE: usize = 8;
 const ROUNDS: usize = 24;
 const MIN_ROUND: usize = 1024;
 
+/// Towards the sun in whose light levels are compared, a unit vector.
+pub(super) const SUN: Vec3 = Vec3::new(0.5, 0.75, 0.433);
+
 /// From where, and how metres become samples.
 pub(super) struct Look {
+    /// In the middle of the lower edge.
     foot_m: Vec3,
+    /// Unit vectors: towards the eye, to the right and up.
     eye: Vec3,
     right: Vec3,
+    up: Vec3,
     samples_per_m: Vec2,
     /// Samples a side.
     size: usize,
@@ -26,14 +32,22 @@ impl Look {
     /// `size` samples a side.
     pub fn new(k: usize, foot_m: Vec3, size_m: [f32; 2], size: usize) -> Self {
         let [eye, right] = Impostor::eye_and_right(k);
-        Self { foot_m, eye, right, samples_per_m: size as f32 / Vec2::from_array(size_m), size }
+        let samples_per_m = size as f32 / Vec2::from_array(size_m);
+        Self { foot_m, eye, right, up: Vec3::Y, samples_per_m, size }
+    }
+
+    /// Straight before a rectangle with that middle, those directions to the right and up, and half of that width and
+    /// height.
+    pub fn before(middle_m: Vec3, [right, up]: [Vec3; 2], half_m: Vec2, size: usize) -> Self {
+        let samples_per_m = 0.5 * size as f32 / half_m;
+        Self { foot_m: middle_m - half_m.y * up, eye: right.cross(up), right, up, samples_per_m, size }
     }
 
     /// Place in samples from the upper left corner, and metres before the axis.
     fn project(&self, position: [f32; 3]) -> Vec3 {
         let p = Vec3::from_array(position) - self.foot_m;
         let x = 0.5 * self.size as f32 + p.dot(self.right) * self.samples_per_m.x;
-        Vec3::new(x, self.size as f32 - p.y * self.samples_per_m.y, p.dot(self.eye))
+        Vec3::new(x, self.size as f32 - p.dot(self.up) * self.samples_per_m.y, p.dot(self.eye))
     }
 }
 
@@ -48,6 +62,8 @@ pub(super) struct Sample {
     pub leaf: bool,
     /// Mean normal of the triangle's corners, a unit vector; zero of a mesh without normals.
     pub normal: Vec3,
+    /// Cosine of the angle between normal and [`SUN`], 0 on the far side; of a cluster the mean of its leaves.
+    pub sunlit: f32,
 }
 
 /// What is nearest at each sample, rows from the top.
@@ -98,6 +114,17 @@ impl<'a> Drawing<'a> {
         }
     }
 
+    /// Samples a side.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Samples at which anything is seen, or in another drawing of the same size.
+    pub fn covered_with(&self, other: &Self) -> u32 {
+        let is_seen = |(a, b): (&f32, &f32)| u32::from(a.max(*b) > f32::NEG_INFINITY);
+        self.depths_m.iter().zip(&other.depths_m).map(is_seen).sum()
+    }
+
     fn add(&mut self, triangle: Triangle<'a>) {
         match triangle.surface {
             Surface::Wood(_) => self.fill(&triangle, |_| |_| true),
@@ -106,6 +133,13 @@ impl<'a> Drawing<'a> {
                 self.fill(&triangle, |y| {
                     let (u, v) = (u.row(y), v.row(y));
                     move |x| card.mask.is_opaque([u.at(x), v.at(x)])
+                });
+            }
+            Surface::Atlas(atlas) => {
+                let [u, v] = &triangle.uv;
+                self.fill(&triangle, |y| {
+                    let (u, v) = (u.row(y), v.row(y));
+                    move |x| atlas.is_opaque(u.at(x), v.at(x))
                 });
             }
         }
@@ -168,11 +202,17 @@ impl<'a> Drawing<'a> {
         let triangle = &self.triangles[self.nearest[row * self.size + column] as usize];
         let (x, y) = (column as f32 + 0.5, row as f32 + 0.5);
         let [u, v] = &triangle.uv;
-        let (color, leaf) = match triangle.surface {
-            Surface::Wood(color) => (color, false),
-            Surface::Card(card) => (card.at(u.row(y).at(x), v.row(y).at(x)), true),
+        let normal = triangle.normal;
+        let sunlit = normal.dot(SUN).max(0.0);
+        let (color, sunlit, leaf) = match triangle.surface {
+            Surface::Wood(color) => (color, sunlit, false),
+            Surface::Card(card) => (card.at(u.row(y).at(x), v.row(y).at(x)), sunlit, true),
+            Surface::Atlas(atlas) => {
+                let (color, sunlit) = atlas.at(u.row(y).at(x), v.row(y).at(x));
+                (color, sunlit, true)
+            }
         };
-        Some(Sample { depth_m, color: color * triangle.tint, leaf, normal: triangle.normal })
+        Some(Sample { depth_m, color: color * triangle.tint, leaf, normal, sunlit })
     }
 }
 

@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 use super::raster::{Drawing, Look, Sample};
 use super::surfaces::Surfaces;
-use crate::model::{Mesh, TreeTextures};
+use crate::model::Mesh;
 
 /// Which of the impostor's sides the tree is drawn from: one beside the other.
 const SIDES: [usize; 2] = [1, 3];
@@ -29,8 +29,7 @@ const SIZES: usize = 3;
 const SAMPLES: usize = 6;
 /// Behind the tree: the sky, linear.
 const SKY: Vec3 = Vec3::new(0.45, 0.6, 0.8);
-/// Towards the sun, a unit vector; its light, and that from all around.
-const SUN: Vec3 = Vec3::new(0.5, 0.75, 0.433);
+/// Light of the sun, and that from all around.
 const SUNLIGHT: f32 = 0.7;
 const SKYLIGHT: f32 = 0.3;
 /// Δ of a tree with leaves from the sky alone, and how much more a level's Δ counts at most where less is seen of a tree.
@@ -38,12 +37,11 @@ const USUALLY_SEEN: f32 = 0.1;
 const MAX_SPARSE: f32 = 2.5;
 
 /// The errors in metres of all levels but the first, which is the full tree: the same for any number of threads.
-pub fn errors<P>(levels: &[&Mesh], textures: &TreeTextures<P>) -> Vec<f32> {
-    let surfaces = Surfaces::of(textures);
+pub(super) fn errors(levels: &[&Mesh], surfaces: &Surfaces) -> Vec<f32> {
     let (foot_m, side_m) = frame(levels);
     let draw = |&(level, k): &(usize, usize)| {
         let look = Look::new(k, foot_m, [side_m; 2], PIXELS * SAMPLES);
-        Picture::of(&Drawing::new(levels[level], &surfaces, &look))
+        Picture::of(&Drawing::new(levels[level], surfaces, &look))
     };
     let sides = SIDES.len();
     let all: Vec<_> = (0..levels.len()).flat_map(|level| SIDES.map(move |k| (level, k))).collect();
@@ -57,7 +55,7 @@ pub fn errors<P>(levels: &[&Mesh], textures: &TreeTextures<P>) -> Vec<f32> {
 }
 
 /// The square around the sphere that holds all levels: the middle of its lower edge, and its side in metres.
-fn frame(levels: &[&Mesh]) -> (Vec3, f32) {
+pub(super) fn frame(levels: &[&Mesh]) -> (Vec3, f32) {
     let points = || levels.iter().flat_map(|level| &level.positions).map(|&p| Vec3::from_array(p));
     let (low, high) = points().fold((Vec3::MAX, Vec3::MIN), |(low, high), p| (low.min(p), high.max(p)));
     let center = 0.5 * (low + high);
@@ -100,7 +98,7 @@ impl Picture {
 }
 
 fn lit(sample: Sample) -> Vec3 {
-    sample.color * (SKYLIGHT + SUNLIGHT * sample.normal.dot(SUN).max(0.0))
+    sample.color * (SKYLIGHT + SUNLIGHT * sample.sunlit)
 }
 
 /// A square picture with pixels twice as large.
@@ -115,11 +113,11 @@ fn halved(pixels: &[Vec3]) -> Vec<Vec3> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::raster::SUN;
     use super::*;
     use crate::model::{Material, Part, PartKind};
-    use crate::stages::lod;
     use crate::stages::tree::tests::{plain, presets, read};
-    use crate::stages::tree::{lod_options, template, textures};
+    use crate::stages::tree::{levelled, template, textures};
 
     const BARK: [f32; 3] = [0.1; 3];
 
@@ -145,7 +143,7 @@ mod tests {
         let white = [255; 4];
         let of = |side_m: f32| {
             let meshes = [8, 8, 7, 6, 4].map(|height| column(height, side_m, white));
-            errors(&meshes.each_ref(), &plain(BARK))
+            errors(&meshes.each_ref(), &Surfaces::of(&plain(BARK)))
         };
         let (small, large) = (of(1.0), of(3.0));
         assert_eq!(small[0], 0.0, "the same is no error");
@@ -162,25 +160,23 @@ mod tests {
         turned.normals = vec![SUN.to_array(); turned.positions.len()];
         let all =
             [&white, &column(8, 1.0, [255, 200, 255, 255]), &column(8, 1.0, [255, 120, 255, 255]), &turned];
-        let found = errors(&all, &plain(BARK));
+        let found = errors(&all, &Surfaces::of(&plain(BARK)));
         assert!(0.0 < found[0] && found[0] < found[1] && found[2] > 0.0, "{found:?}");
     }
 
     #[test]
-    fn the_number_of_threads_changes_nothing_and_levels_have_what_was_found() {
+    fn the_number_of_threads_changes_nothing_and_errors_grow() {
         let (_, genome) = presets().remove(0);
         let (tree, textures) = (template(&read(&genome), 1), textures(&read(&genome)));
-        let options = lod_options(&tree.mesh, &textures);
-        let judge = |levels: &[&Mesh]| errors(levels, &textures);
-        let made = lod::levels_judged(&tree.mesh, &options, &judge, &mut |_| ());
-        let meshes: Vec<&Mesh> = made.levels.iter().map(|level| &level.mesh).collect();
         let on = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-            pool.install(|| errors(&meshes, &textures))
+            pool.install(|| levelled(&tree.mesh, &textures, &mut |_| ()))
         };
-        assert_eq!(on(1), on(4));
-        let stored: Vec<f32> = made.levels.iter().skip(1).map(|level| level.error_m).collect();
-        assert_eq!(on(1), stored, "they grow from level to level by themselves");
+        let (one, four) = (on(1), on(4));
+        assert_eq!(one.mesh, four.mesh);
+        assert_eq!(one.clusters, four.clusters);
+        let stored: Vec<f32> = one.mesh.levels.iter().skip(1).map(|level| level.error_m).collect();
+        assert!(stored.is_sorted_by(|a, b| a < b), "{stored:?}");
     }
 
     #[test]
@@ -191,7 +187,7 @@ mod tests {
                 mesh.positions.iter_mut().for_each(|p| (p[0], p[2]) = (width * p[0], width * p[2]));
                 mesh
             };
-            errors(&[8, 7, 4].map(narrow).each_ref(), &plain(BARK))
+            errors(&[8, 7, 4].map(narrow).each_ref(), &Surfaces::of(&plain(BARK)))
         };
         let (wide, slender) = (errors_of(3.0), errors_of(0.75));
         for (wide, slender) in wide.iter().zip(&slender) {
@@ -202,9 +198,10 @@ mod tests {
 
     #[test]
     fn nothing_differs_from_nothing() {
-        assert_eq!(errors(&[&Mesh::default(), &Mesh::default()], &plain(BARK)), [0.0]);
+        let surfaces = Surfaces::of(&plain(BARK));
+        assert_eq!(errors(&[&Mesh::default(), &Mesh::default()], &surfaces), [0.0]);
         let point = column(2, 0.0, [255; 4]);
-        assert_eq!(errors(&[&point, &Mesh::default()], &plain(BARK)), [0.0]);
-        assert!(errors(&[], &plain(BARK)).is_empty());
+        assert_eq!(errors(&[&point, &Mesh::default()], &surfaces), [0.0]);
+        assert!(errors(&[], &surfaces).is_empty());
     }
 }

@@ -3,12 +3,13 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{ALPHA_CUTOFF, TreeParams, TreeTextureParams, errors, impostor, template, textures};
-use crate::gltf::{Picture, png, tree_glb};
+use super::{
+    Levelled, TreeParams, TreeTextureParams, drawn_from_afar, impostor, levelled, template, textures,
+};
+use crate::gltf::{Picture, TreePictures, png, tree_glb};
 use crate::graph::{Context, File, Input, Stage, StageError, Stored};
 use crate::model::TreeFootprint;
-use crate::model::{AlphaMask, Image8, Level, Material, Mesh, Part, TreeTextures};
-use crate::stages::lod::{self, LodOptions};
+use crate::model::{Image8, Mesh, TreeTextures};
 
 /// Mip levels of a card smaller than this are left to the viewer: at that distance a crown covers a few pixels.
 const MIN_MIP_PX: u32 = 16;
@@ -80,18 +81,17 @@ pub struct TreeFiles {
 
 impl Stage for TreeStage {
     const NAME: &'static str = "tree";
-    const VERSION: u32 = 17;
+    const VERSION: u32 = 19;
     type Output = TreeFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<TreeFiles, StageError> {
         let template = template(&self.params, self.index);
         let textures = context.get(&self.textures)?.try_map(|file| context.bytes(file))?;
-        let options = lod_options(&template.mesh, &textures);
-        let judge = |levels: &[&Mesh]| errors(levels, &textures);
-        let levels = lod::levels_judged(&template.mesh, &options, &judge, &mut |_| ());
-        let impostor = impostor(drawn_from_afar(&levels.levels), &textures);
+        let Levelled { mesh, clusters, caster } = levelled(&template.mesh, &textures, &mut |_| ());
+        let impostor = impostor(drawn_from_afar(&mesh.levels), &textures);
         let embedded = textures.map(|bytes| Picture::Embedded { bytes, mime_type: "image/png" });
-        let glb = tree_glb(&format!("tree-{}", self.index), &levels, &embedded, Some(&impostor))?;
+        let pictures = TreePictures { impostor: Some(&impostor), clusters: clusters.as_ref() };
+        let glb = tree_glb(&format!("tree-{}", self.index), &mesh, &embedded, &pictures)?;
         let footprint = TreeFootprint {
             height_m: template.bounds.max.y,
             trunk_radius_m: template.trunk_radius_m,
@@ -99,41 +99,10 @@ impl Stage for TreeStage {
             root_depth_m: -template.bounds.min.y,
             clear_trunk: TreeFootprint::clear_trunk(self.params.levels, self.params.clear_trunk),
         };
-        Ok(TreeFiles {
-            glb: context.file("glb", glb),
-            footprint,
-            caster: context.store(caster(levels.levels)),
-        })
+        Ok(TreeFiles { glb: context.file("glb", glb), footprint, caster: context.store(caster) })
     }
 
     fn label(&self) -> String {
         format!("tree {}", self.index)
     }
-}
-
-/// The level of which pictures are drawn: with half of the leaves, which cover as much, in half of the time; a leaf is less
-/// than a pixel of them. A bare tree has no leaf to spare.
-pub fn drawn_from_afar(levels: &[Level]) -> &Mesh {
-    &levels[usize::from(levels[0].mesh.has_cards() && levels.len() > 1)].mesh
-}
-
-/// How a template with these textures is simplified.
-pub fn lod_options<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> LodOptions {
-    let mask = |part: &Part| match part.material {
-        Material::Leaf => AlphaMask::of(&textures.leaf_small, ALPHA_CUTOFF),
-        Material::Blossom => AlphaMask::of(&textures.blossom_small, ALPHA_CUTOFF),
-        _ => AlphaMask::default(),
-    };
-    let masks = mesh.parts.iter().map(mask).collect();
-    LodOptions { masks, thickens: true, ..LodOptions::default() }
-}
-
-/// Triangles that are enough to cast a shadow onto a texel of a metre.
-const CASTER_TRIANGLES: usize = 2_000;
-
-/// The finest level that is small enough to be rasterised for every instance, else the coarsest.
-fn caster(mut levels: Vec<Level>) -> Mesh {
-    let small = |level: &Level| level.mesh.triangle_count() <= CASTER_TRIANGLES;
-    let index = levels.iter().position(small).unwrap_or(levels.len() - 1);
-    levels.swap_remove(index).mesh
 }

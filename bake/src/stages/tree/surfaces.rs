@@ -9,32 +9,72 @@ use crate::model::{AlphaMask, Image8, Material, TreeTextures};
 /// A card's colours, and where it is cut away.
 pub(super) struct Card {
     pub mask: AlphaMask,
+    texels: Texels,
+}
+
+/// The pictures of all clusters of leaves.
+pub(super) struct Atlas {
+    /// Where it is not cut away.
+    opaque: Vec<bool>,
+    sunlit: Vec<f32>,
+    texels: Texels,
+}
+
+/// Colours, linear: rows from the top.
+struct Texels {
     width: usize,
     height: usize,
-    /// Rows from the top; linear.
-    texels: Vec<Vec3>,
+    colors: Vec<Vec3>,
+}
+
+impl Texels {
+    /// Of an RGBA picture; white where there is none.
+    fn of(image: &Image8) -> Self {
+        if image.channels != 4 || image.data.is_empty() {
+            return Self { width: 1, height: 1, colors: vec![Vec3::ONE] };
+        }
+        let linear: Vec<f32> = (0..256).map(|byte| linear_from_srgb(byte as f32 / 255.0)).collect();
+        let texel = |pixel: &[u8]| Vec3::from_array([0, 1, 2].map(|c| linear[usize::from(pixel[c])]));
+        Self {
+            width: image.width as usize,
+            height: image.height as usize,
+            colors: image.data.chunks_exact(4).map(texel).collect(),
+        }
+    }
+
+    /// Which texel is at texture coordinates, which are clamped to [0, 1].
+    fn index(&self, u: f32, v: f32) -> usize {
+        let index = |t: f32, count: usize| ((t * count as f32).max(0.0) as usize).min(count - 1);
+        index(v, self.height) * self.width + index(u, self.width)
+    }
 }
 
 impl Card {
     /// A card's small picture, ready to be drawn; white and opaque where there is none.
     fn of(image: &Image8) -> Self {
-        let mask = AlphaMask::of(image, ALPHA_CUTOFF);
-        if image.channels != 4 || image.data.is_empty() {
-            return Self { mask, width: 1, height: 1, texels: vec![Vec3::ONE] };
-        }
-        let linear: Vec<f32> = (0..256).map(|byte| linear_from_srgb(byte as f32 / 255.0)).collect();
-        let texel = |pixel: &[u8]| Vec3::from_array([0, 1, 2].map(|c| linear[usize::from(pixel[c])]));
-        Self {
-            mask,
-            width: image.width as usize,
-            height: image.height as usize,
-            texels: image.data.chunks_exact(4).map(texel).collect(),
-        }
+        Self { mask: AlphaMask::of(image, ALPHA_CUTOFF), texels: Texels::of(image) }
     }
 
     pub fn at(&self, u: f32, v: f32) -> Vec3 {
-        let index = |t: f32, count: usize| ((t * count as f32).max(0.0) as usize).min(count - 1);
-        self.texels[index(v, self.height) * self.width + index(u, self.width)]
+        self.texels.colors[self.texels.index(u, v)]
+    }
+}
+
+impl Atlas {
+    /// Of an RGBA picture; with how far what each texel shows is turned to the sun.
+    pub fn new(image: &Image8, sunlit: Vec<f32>) -> Self {
+        let opaque = |pixel: &[u8]| f32::from(pixel[3]) >= 255.0 * ALPHA_CUTOFF;
+        Self { opaque: image.data.chunks_exact(4).map(opaque).collect(), sunlit, texels: Texels::of(image) }
+    }
+
+    pub fn is_opaque(&self, u: f32, v: f32) -> bool {
+        self.opaque[self.texels.index(u, v)]
+    }
+
+    /// Colour, and how far it is turned to the sun.
+    pub fn at(&self, u: f32, v: f32) -> (Vec3, f32) {
+        let index = self.texels.index(u, v);
+        (self.texels.colors[index], self.sunlit[index])
     }
 }
 
@@ -44,6 +84,7 @@ pub(super) enum Surface<'a> {
     /// A colour, linear.
     Wood(Vec3),
     Card(&'a Card),
+    Atlas(&'a Atlas),
 }
 
 /// What all parts of a tree are made of.
@@ -51,6 +92,7 @@ pub(super) struct Surfaces {
     bark: Vec3,
     leaf: Card,
     blossom: Card,
+    clusters: Option<Atlas>,
 }
 
 impl Surfaces {
@@ -59,13 +101,20 @@ impl Surfaces {
             bark: Vec3::from_array(textures.bark_linear),
             leaf: Card::of(&textures.leaf_small),
             blossom: Card::of(&textures.blossom_small),
+            clusters: None,
         }
+    }
+
+    /// The same with pictures of clusters.
+    pub fn with_clusters(self, atlas: Atlas) -> Self {
+        Self { clusters: Some(atlas), ..self }
     }
 
     pub fn of_part(&self, material: Material) -> Surface<'_> {
         match material {
             Material::Leaf => Surface::Card(&self.leaf),
             Material::Blossom => Surface::Card(&self.blossom),
+            Material::Cluster => self.clusters.as_ref().map_or(Surface::Wood(self.bark), Surface::Atlas),
             _ => Surface::Wood(self.bark),
         }
     }

@@ -101,6 +101,7 @@ fn material_code(material: Material) -> u32 {
         Material::Blossom => 2,
         Material::Ground => 3,
         Material::Water => 4,
+        Material::Cluster => 5,
         Material::Foreign(n) => n.saturating_add(16),
     }
 }

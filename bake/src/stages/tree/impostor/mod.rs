@@ -1,6 +1,5 @@
 //! A template → pictures of it from four sides, for where it is so far away that single leaves no longer count.
 
-mod picture;
 #[cfg(test)]
 mod tests;
 
@@ -8,10 +7,10 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::mips::Encoder;
+use super::picture::{self, Picture};
 use super::raster::{Drawing, Look};
 use super::surfaces::Surfaces;
 use crate::model::{Impostor, Mesh, TreeTextures};
-use picture::Picture;
 
 /// Pixels a side of one picture, of a tree with leaves and of a bare one, whose twigs need more.
 const SIDE: usize = 128;
@@ -61,7 +60,7 @@ pub fn impostor<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> Impostor {
     let draw = |k: usize| {
         let look = Look::new(k, frame.foot_m, frame.size_m, SAMPLES * frame.side);
         let drawing = Drawing::new(mesh, &surfaces, &look);
-        Picture::of(&drawing, &frame)
+        Picture::of(&drawing, SAMPLES, frame.size_m[0])
     };
     let pictures: Vec<Picture> = (0..Impostor::AZIMUTHS.len()).into_par_iter().map(draw).collect();
     let (colors, relief) = picture::side_by_side(&pictures, &Encoder::new());

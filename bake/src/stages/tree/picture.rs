@@ -1,12 +1,11 @@
-//! Samples of one side → its picture: averaged, bled, and with an alpha that keeps the area at the cutoff.
+//! Samples of a tree, or of some of its leaves, from one side → a picture: averaged, bled, and with an alpha that keeps the area at the cutoff.
 
 use glam::Vec3;
 
-use super::{Frame, SAMPLES};
+use super::mips::Encoder;
+use super::raster::Drawing;
 use crate::math::unit_to_byte;
 use crate::model::{Image8, Impostor};
-use crate::stages::tree::mips::Encoder;
-use crate::stages::tree::raster::Drawing;
 
 /// How far colours are bled, in pixels: as far as a bilinear filter of three mip levels reaches. Beyond them is the mean.
 const BLED_PX: usize = 8;
@@ -50,20 +49,18 @@ pub(super) struct Picture {
     alpha: Vec<u8>,
     /// How many samples of each pixel are covered.
     covered: Vec<u32>,
+    /// Samples of a pixel.
+    all: u32,
 }
 
-/// Samples of a pixel.
-const ALL: u32 = (SAMPLES * SAMPLES) as u32;
-
 impl Picture {
-    /// Of a tree that is drawn in that frame.
-    pub fn of(drawing: &Drawing<'_>, frame: &Frame) -> Self {
-        let (side, width_m) = (frame.side, frame.size_m[0]);
+    /// Of what is drawn `width_m` wide, reduced to an `n`th of the width and height.
+    pub fn of(drawing: &Drawing<'_>, n: usize, width_m: f32) -> Self {
+        let side = drawing.size() / n;
         let (mut pixels, mut covered) = (Vec::new(), Vec::new());
         for (y, x) in (0..side).flat_map(|y| (0..side).map(move |x| (y, x))) {
-            let samples = (0..SAMPLES * SAMPLES).filter_map(|sample| {
-                drawing.sample(x * SAMPLES + sample % SAMPLES, y * SAMPLES + sample / SAMPLES)
-            });
+            let samples =
+                (0..n * n).filter_map(|sample| drawing.sample(x * n + sample % n, y * n + sample / n));
             let (sum, count) = Pixel::sum(samples.map(|sample| Pixel {
                 color: sample.color,
                 relief: [(0.5 + sample.depth_m / width_m).clamp(0.0, 1.0), f32::from(u8::from(sample.leaf))],
@@ -71,7 +68,8 @@ impl Picture {
             pixels.push(sum.over(count));
             covered.push(count);
         }
-        Self { pixels: bled(pixels, side), alpha: alpha(&covered, side), covered }
+        let all = (n * n) as u32;
+        Self { pixels: bled(pixels, side), alpha: alpha(&covered, side, all), covered, all }
     }
 }
 
@@ -102,14 +100,14 @@ fn around(i: usize, side: usize) -> impl Iterator<Item = usize> {
 ///
 /// A few samples give few different values, so that often hundreds of pixels are equally near to the cutoff; of these, the
 /// ones with more around them pass.
-fn alpha(covered: &[u32], side: usize) -> Vec<u8> {
-    let wanted = ((covered.iter().sum::<u32>() + ALL / 2) / ALL) as usize;
+fn alpha(covered: &[u32], side: usize, all: u32) -> Vec<u8> {
+    let wanted = ((covered.iter().sum::<u32>() + all / 2) / all) as usize;
     let mut order: Vec<(u32, u32, usize)> = (0..covered.len())
         .filter(|&i| covered[i] > 0)
         .map(|i| (covered[i], around(i, side).map(|j| covered[j]).sum(), i))
         .collect();
     order.sort_unstable_by(|a, b| b.cmp(a));
-    let lowest = wanted.checked_sub(1).and_then(|last| order.get(last)).map_or(ALL, |kept| kept.0);
+    let lowest = wanted.checked_sub(1).and_then(|last| order.get(last)).map_or(all, |kept| kept.0);
     let scale = Impostor::ALPHA_CUTOFF / lowest as f32;
     let mut alpha = vec![0; covered.len()];
     for (place, &(count, _, i)) in order.iter().enumerate() {
@@ -133,7 +131,7 @@ pub(super) fn side_by_side(pictures: &[Picture], encoder: &Encoder) -> (Image8, 
             relief.data[3 * at..][..3].copy_from_slice(&[
                 depth,
                 leaf,
-                (255 * picture.covered[i] / ALL) as u8,
+                (255 * picture.covered[i] / picture.all) as u8,
             ]);
         }
     }

@@ -1,0 +1,118 @@
+//! Places with weights → groups of those that lie close together, of about the same weight.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+/// Rounds in which places go to the nearest middle and middles move among their places.
+const ROUNDS: usize = 5;
+
+/// A place, and how many leaves it stands for.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    pub at_m: Vec3,
+    pub weight: f32,
+}
+
+/// The group of each place: numbers below `count`, each of somebody where there are enough places. Halves of halves along the longest side are
+/// the start of k-means (Lloyd, "Least squares quantization in PCM", 1982). The same for any number of threads.
+pub fn groups(places: &[Place], count: usize) -> Vec<u32> {
+    let mut group = vec![0; places.len()];
+    let mut order: Vec<u32> = (0..places.len() as u32).collect();
+    split(&mut order, places, 0..count as u32, &mut group);
+    for _ in 0..ROUNDS {
+        let middles = middles(places, &group, count);
+        let nearest = |place: &Place| {
+            let closer = |best: (f32, u32), (number, middle): (u32, &Vec3)| {
+                let square = place.at_m.distance_squared(*middle);
+                if square < best.0 { (square, number) } else { best }
+            };
+            (0..).zip(&middles).fold((f32::INFINITY, 0), closer).1
+        };
+        group = places.par_iter().map(nearest).collect();
+        share_out(places, &mut group, count);
+    }
+    group
+}
+
+/// Gives each group of nobody the place that is farthest from the middle of the largest.
+fn share_out(places: &[Place], group: &mut [u32], count: usize) {
+    let mut sizes = vec![0u32; count];
+    group.iter().for_each(|&group| sizes[group as usize] += 1);
+    for empty in 0..count {
+        let Some(largest) = (0..count).max_by_key(|&n| (sizes[n], n)).filter(|&n| sizes[n] > 1) else {
+            return;
+        };
+        if sizes[empty] > 0 {
+            continue;
+        }
+        let members = || (0..places.len()).filter(|&i| group[i] as usize == largest);
+        let middle = members().map(|i| places[i].at_m).sum::<Vec3>() / sizes[largest] as f32;
+        let away = |i: &usize| places[*i].at_m.distance_squared(middle);
+        if let Some(farthest) = members().max_by(|a, b| away(a).total_cmp(&away(b)).then(a.cmp(b))) {
+            group[farthest] = empty as u32;
+            sizes[largest] -= 1;
+            sizes[empty] = 1;
+        }
+    }
+}
+
+/// The middle of each group; of nobody far away.
+pub fn middles(places: &[Place], group: &[u32], count: usize) -> Vec<Vec3> {
+    let mut sums = vec![(Vec3::ZERO, 0.0f32); count];
+    for (place, &group) in places.iter().zip(group) {
+        let (sum, weight) = &mut sums[group as usize];
+        *sum += place.at_m * place.weight;
+        *weight += place.weight;
+    }
+    sums.into_iter().map(|(sum, weight)| if weight > 0.0 { sum / weight } else { Vec3::MAX }).collect()
+}
+
+/// Gives the places these numbers, each to about as many.
+fn split(order: &mut [u32], places: &[Place], numbers: std::ops::Range<u32>, group: &mut [u32]) {
+    let count = numbers.len();
+    if count <= 1 || order.len() <= 1 {
+        order.iter().for_each(|&place| group[place as usize] = numbers.start);
+        return;
+    }
+    let at = |place: u32| places[place as usize].at_m;
+    let (low, high) =
+        order.iter().fold((Vec3::MAX, Vec3::MIN), |(low, high), &p| (low.min(at(p)), high.max(at(p))));
+    let axis = (high - low).max_position();
+    let half = count / 2;
+    let before = order.len() * half / count;
+    if before > 0 {
+        order.select_nth_unstable_by(before, |&p, &q| at(p)[axis].total_cmp(&at(q)[axis]).then(p.cmp(&q)));
+    }
+    let (lower, upper) = order.split_at_mut(before);
+    let middle = numbers.start + half as u32;
+    split(lower, places, numbers.start..middle, group);
+    split(upper, places, middle..numbers.end, group);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn heaps_that_lie_apart_are_groups() {
+        let heaps = [Vec3::ZERO, Vec3::new(9.0, 0.0, 0.0), Vec3::new(0.0, 9.0, 4.0)];
+        let places: Vec<Place> = (0..30u32)
+            .map(|i| Place { at_m: heaps[i as usize % 3] + 0.1 * Vec3::splat((i / 3) as f32), weight: 1.0 })
+            .collect();
+        let group = groups(&places, 3);
+        for i in 0..30 {
+            assert_eq!(group[i], group[i % 3], "those of one heap are together");
+        }
+        assert!(group[0] != group[1] && group[1] != group[2] && group[2] != group[0]);
+        let middle = middles(&places, &group, 3)[group[1] as usize];
+        assert!(middle.distance(heaps[1] + 0.45 * Vec3::ONE) < 1e-4);
+    }
+
+    #[test]
+    fn there_may_be_more_groups_than_places_or_none_at_all() {
+        let place = Place { at_m: Vec3::ONE, weight: 1.0 };
+        assert_eq!(groups(&[place], 5).len(), 1);
+        assert!(groups(&[place; 4], 3).iter().all(|&group| group < 3));
+        assert!(groups(&[], 3).is_empty());
+    }
+}

@@ -1,0 +1,357 @@
+//! Levels of a tree → the same with clusters in the place of leaves where single leaves no longer pay.
+//!
+//! Of a tree with an eighth of its vertices or fewer, the leaves that stay would have to be so large that they show as what
+//! they are. So all leaves of the full tree are grouped instead, and each group is shown by two crossed cards with pictures of
+//! it: a billboard cloud (Décoret, Durand, Sillion, Dorsey, "Billboard clouds for extreme model simplification", 2003) of small
+//! crossed pairs. Each level has as many vertices as it had with leaves. Cards grow or shrink until the level covers as
+//! much as the full tree.
+
+mod atlas;
+mod card;
+mod groups;
+
+use std::ops::Range;
+
+use glam::Vec3;
+
+use super::raster::{Drawing, Look};
+use super::seen::frame;
+use super::surfaces::Surfaces;
+use crate::math::matching;
+use crate::model::{Clusters, Level, Material, Mesh, Morph, Part, PartKind};
+use atlas::Subject;
+use card::Card;
+use groups::Place;
+
+/// The first level that may have clusters.
+const FIRST: usize = 3;
+/// Leaves are shown one by one where a cluster would have fewer of them on average.
+const MIN_LEAVES: usize = 4;
+/// Vertices of a card, and of a cluster.
+const CARD: usize = 4;
+const CLUSTER: usize = 2 * CARD;
+
+/// Sides of the impostor from which it is counted how much a level covers, and samples a side.
+const SIDES: [usize; 2] = [0, 2];
+const COVERAGE_PX: usize = 128;
+/// How much smaller or larger cards may become.
+const SCALES: Range<f32> = 0.7..1.5;
+
+/// Puts clusters in the place of leaves and gives their pictures; `None` where all levels stay as they are.
+pub fn substitute(levels: &mut [Level], surfaces: Surfaces) -> (Surfaces, Option<Clusters>) {
+    let Some(full) = levels.first().map(|level| &level.mesh) else { return (surfaces, None) };
+    let foliage: Vec<Foliage<'_>> =
+        (0..full.parts.len()).filter_map(|part| Foliage::of(full, part)).collect();
+    let pays = |level: &Level| foliage.iter().all(|leaves| leaves.pays_in(level));
+    let first = levels.iter().skip(FIRST).position(pays).filter(|_| !foliage.is_empty());
+    let Some(first) = first.map(|after| FIRST + after) else { return (surfaces, None) };
+
+    let mut subjects = Vec::new();
+    // Of each level its parts, and which of the subjects are theirs.
+    let mut owned = vec![Vec::new(); levels.len() - first];
+    for leaves in &foliage {
+        for (owned, of_level) in owned.iter_mut().zip(leaves.subjects(&levels[first..])) {
+            let before = subjects.len();
+            subjects.extend(of_level);
+            owned.push((leaves.part, before..subjects.len()));
+        }
+    }
+    let (pictures, atlas) = atlas::draw(&subjects, &surfaces);
+    let surfaces = surfaces.with_clusters(atlas);
+    let wardrobe = Wardrobe::new(&subjects);
+    let canvas = Canvas::new(full, &surfaces);
+    let mut scale = 1.0;
+    let dress = |(level, owned): (&Level, &Vec<Owned>)| {
+        let bark = canvas.of(&without(&level.mesh, owned));
+        let covered = |scale: f32| canvas.covered(&bark, &wardrobe.cards_of(owned, scale));
+        scale = matching(canvas.full, SCALES, scale, covered);
+        wardrobe.dressed(level, owned, scale)
+    };
+    let dressed: Vec<Level> = levels[first..].iter().zip(&owned).map(dress).collect();
+    let parts: Vec<usize> = foliage.iter().map(|leaves| leaves.part).collect();
+    levels[first..].iter_mut().zip(dressed).for_each(|(level, dressed)| *level = dressed);
+    parts.into_iter().for_each(|part| hold_still(&mut levels[first - 1], part));
+    (surfaces, Some(pictures))
+}
+
+/// A part of a level, and the run of subjects that it shows.
+type Owned = (usize, Range<usize>);
+
+/// All leaves of a part of the full tree.
+struct Foliage<'a> {
+    mesh: &'a Mesh,
+    part: usize,
+    /// Vertices and triangles of a leaf.
+    per: [usize; 2],
+    first_vertex: usize,
+    /// One for each leaf.
+    places: Vec<Place>,
+}
+
+impl<'a> Foliage<'a> {
+    /// `None` of what is no aggregate, or an empty one.
+    fn of(mesh: &'a Mesh, part: usize) -> Option<Self> {
+        let PartKind::Aggregate { vertices, triangles } = mesh.parts[part].kind else { return None };
+        let per = [vertices, triangles].map(|count| (count as usize).max(1));
+        let run = run(&mesh.parts[part]);
+        let center = |leaf: &[[f32; 3]]| {
+            let at_m = leaf.iter().map(|&p| Vec3::from_array(p)).sum::<Vec3>() / leaf.len() as f32;
+            Place { at_m, weight: 1.0 }
+        };
+        let places: Vec<Place> = mesh.positions[run.clone()].chunks_exact(per[0]).map(center).collect();
+        (!places.is_empty()).then_some(Self { mesh, part, per, first_vertex: run.start, places })
+    }
+
+    /// Whether each cluster would have enough leaves.
+    fn pays_in(&self, level: &Level) -> bool {
+        let vertices = run(&level.mesh.parts[self.part]).len();
+        vertices >= CLUSTER && vertices / CLUSTER * MIN_LEAVES <= self.places.len()
+    }
+
+    /// What each of some levels shows, one coarser than the other: as many cards as it has vertices for.
+    fn subjects(&self, levels: &[Level]) -> Vec<Vec<Subject>> {
+        let mut places = self.places.clone();
+        let mut place_of: Vec<u32> = (0..places.len() as u32).collect();
+        let of_level = |level: &Level| {
+            let cards = (run(&level.mesh.parts[self.part]).len() / CARD).max(1);
+            let count = cards.div_ceil(2);
+            let group = groups::groups(&places, count);
+            place_of.iter_mut().for_each(|place| *place = group[*place as usize]);
+            let weight_of = |number: u32| {
+                let of_group = places.iter().zip(&group).filter(|(_, group)| **group == number);
+                of_group.map(|(place, _)| place.weight).sum()
+            };
+            let middles = groups::middles(&places, &group, count);
+            places = (0..).zip(middles).map(|(n, at_m)| Place { at_m, weight: weight_of(n) }).collect();
+            let mut leaves = vec![Vec::new(); count];
+            place_of.iter().enumerate().for_each(|(leaf, &group)| leaves[group as usize].push(leaf));
+            let subject = |(n, leaves): (usize, Vec<usize>)| self.subject(&leaves, (cards - 2 * n).min(2));
+            leaves.into_iter().enumerate().filter(|(_, leaves)| !leaves.is_empty()).map(subject).collect()
+        };
+        levels.iter().map(of_level).collect()
+    }
+
+    /// Some leaves, on one card or two.
+    fn subject(&self, leaves: &[usize], cards: usize) -> Subject {
+        let [vertices, triangles] = self.per;
+        let part = &self.mesh.parts[self.part];
+        let mut shown = Mesh::default();
+        let mut faces = Vec::with_capacity(triangles * leaves.len());
+        for leaf in leaves {
+            let first = self.first_vertex + leaf * vertices;
+            let moved = shown.positions.len() as u32;
+            shown.positions.extend_from_slice(&self.mesh.positions[first..][..vertices]);
+            let run = first..first + vertices;
+            shown.normals.extend_from_slice(self.mesh.normals.get(run.clone()).unwrap_or_default());
+            shown.uvs.extend_from_slice(self.mesh.uvs.get(run.clone()).unwrap_or_default());
+            shown.colors.extend_from_slice(self.mesh.colors.get(run).unwrap_or_default());
+            let of_leaf = &part.triangles[leaf * triangles..][..triangles];
+            faces.extend(of_leaf.iter().map(|t| t.map(|v| v - first as u32 + moved)));
+        }
+        let points: Vec<Vec3> = shown.positions.iter().map(|&p| Vec3::from_array(p)).collect();
+        shown.parts.push(Part { material: part.material, kind: part.kind, triangles: faces });
+        let cards = Card::crossed(&points).into_iter().take(cards);
+        Subject { leaves: shown, cards: cards.map(|card| card.grown(atlas::MARGIN)).collect() }
+    }
+}
+
+/// The vertices of a part.
+fn run(part: &Part) -> Range<usize> {
+    let used = part.triangles.as_flattened();
+    match (used.iter().min(), used.iter().max()) {
+        (Some(&low), Some(&high)) => low as usize..high as usize + 1,
+        _ => 0..0,
+    }
+}
+
+/// All cards with their numbers in the image.
+struct Wardrobe {
+    cards: Vec<Card>,
+    /// Of each subject, and one past the last.
+    first_card: Vec<usize>,
+}
+
+impl Wardrobe {
+    fn new(subjects: &[Subject]) -> Self {
+        let mut first_card = vec![0];
+        first_card.extend(subjects.iter().scan(0, |sum, subject| {
+            *sum += subject.cards.len();
+            Some(*sum)
+        }));
+        let cards = subjects.iter().flat_map(|subject| subject.cards.iter().copied()).collect();
+        Self { cards, first_card }
+    }
+
+    /// The cards of some parts, larger by `scale`.
+    fn cards_of(&self, owned: &[Owned], scale: f32) -> Mesh {
+        let mut mesh = Mesh::default();
+        for (_, subjects) in owned {
+            let triangles = self.add_cards(&mut mesh, self.run(subjects), scale);
+            mesh.parts.push(Part { material: Material::Cluster, kind: PartKind::Surface, triangles });
+        }
+        mesh
+    }
+
+    fn run(&self, subjects: &Range<usize>) -> Range<usize> {
+        self.first_card[subjects.start]..self.first_card[subjects.end]
+    }
+
+    /// A level with subjects in the place of some of its parts, on cards larger by `scale`.
+    fn dressed(&self, level: &Level, owned: &[Owned], scale: f32) -> Level {
+        let old = &level.mesh;
+        let mut mesh = Mesh::default();
+        let mut morph = level.morph.as_ref().map(|_| Morph::default());
+        let mut strips = Vec::new();
+        for (index, part) in old.parts.iter().enumerate() {
+            let first = mesh.positions.len();
+            if let Some((_, subjects)) = owned.iter().find(|(part, _)| *part == index) {
+                let triangles = self.add_cards(&mut mesh, self.run(subjects), scale);
+                strips.push(strip_of_cards(&triangles));
+                let kind = PartKind::Aggregate { vertices: CARD as u32, triangles: 2 };
+                mesh.parts.push(Part { material: Material::Cluster, kind, triangles });
+            } else {
+                let run = run(part);
+                let moved = |v: &u32| v - run.start as u32 + first as u32;
+                mesh.positions.extend_from_slice(&old.positions[run.clone()]);
+                mesh.normals.extend_from_slice(old.normals.get(run.clone()).unwrap_or_default());
+                mesh.uvs.extend_from_slice(old.uvs.get(run.clone()).unwrap_or_default());
+                mesh.colors.extend_from_slice(old.colors.get(run.clone()).unwrap_or_default());
+                strips.push(level.strips.get(index).into_iter().flatten().map(moved).collect());
+                let triangles = part.triangles.iter().map(|t| t.each_ref().map(moved)).collect();
+                mesh.parts.push(Part { material: part.material, kind: part.kind, triangles });
+                if let Some((morph, old)) = morph.as_mut().zip(level.morph.as_ref()) {
+                    morph.positions.extend_from_slice(&old.positions[run.clone()]);
+                    morph.normals.extend_from_slice(old.normals.get(run.clone()).unwrap_or_default());
+                    morph.uvs.extend_from_slice(old.uvs.get(run).unwrap_or_default());
+                }
+            }
+            if let Some(morph) = &mut morph {
+                morph.positions.resize(mesh.positions.len(), [0.0; 3]);
+                morph.normals.resize(mesh.normals.len(), [0.0; 3]);
+                morph.uvs.resize(mesh.uvs.len(), [0.0; 2]);
+            }
+        }
+        Level { mesh, morph, error_m: level.error_m, strips }
+    }
+
+    fn add_cards(&self, mesh: &mut Mesh, cards: Range<usize>, scale: f32) -> Vec<[u32; 3]> {
+        let mut triangles = Vec::with_capacity(2 * cards.len());
+        for number in cards {
+            let first = mesh.positions.len() as u32;
+            let card = self.cards[number].grown(scale);
+            for corner in card.corners() {
+                mesh.positions.push(corner.to_array());
+                // Its picture of normals says the rest.
+                mesh.normals.push(card.front().to_array());
+                mesh.colors.push([255; 4]);
+            }
+            mesh.uvs.extend(atlas::corners(number, self.cards.len()));
+            triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+        }
+        triangles
+    }
+}
+
+/// Two triangles a card → one generalised strip, in which vertices that are named twice lead from card to card.
+fn strip_of_cards(triangles: &[[u32; 3]]) -> Vec<u32> {
+    let (cards, _) = triangles.as_chunks::<2>();
+    let mut strip: Vec<u32> = Vec::with_capacity(6 * cards.len());
+    for [[a, b, c], [_, _, d]] in cards {
+        strip.extend(strip.last().copied().into_iter().flat_map(|last| [last, *b]));
+        strip.extend([b, c, a, d]);
+    }
+    strip
+}
+
+/// Leaves of a level stay where they are while clusters come in their place.
+fn hold_still(level: &mut Level, part: usize) {
+    let run = run(&level.mesh.parts[part]);
+    if let Some(morph) = &mut level.morph {
+        morph.positions[run.clone()].fill([0.0; 3]);
+        morph.normals.get_mut(run.clone()).unwrap_or_default().fill([0.0; 3]);
+        morph.uvs.get_mut(run).unwrap_or_default().fill([0.0; 2]);
+    }
+}
+
+/// A mesh without some of its parts.
+fn without(mesh: &Mesh, owned: &[Owned]) -> Mesh {
+    let parts = mesh.parts.iter().enumerate();
+    let kept = parts.filter(|(index, _)| owned.iter().all(|(part, _)| part != index));
+    Mesh {
+        positions: mesh.positions.clone(),
+        parts: kept.map(|(_, part)| part.clone()).collect(),
+        ..Mesh::default()
+    }
+}
+
+/// Sides from which it is counted how much of them a mesh covers.
+struct Canvas<'a> {
+    looks: [Look; SIDES.len()],
+    surfaces: &'a Surfaces,
+    /// What the full tree covers.
+    full: u32,
+}
+
+impl<'a> Canvas<'a> {
+    fn new(full: &Mesh, surfaces: &'a Surfaces) -> Self {
+        let (foot_m, side_m) = frame(&[full]);
+        let looks = SIDES.map(|k| Look::new(k, foot_m, [side_m; 2], COVERAGE_PX));
+        let mut canvas = Self { looks, surfaces, full: 0 };
+        let nothing = canvas.of(&Mesh::default());
+        canvas.full = canvas.covered(&nothing, full);
+        canvas
+    }
+
+    fn of(&self, mesh: &Mesh) -> [Drawing<'a>; SIDES.len()] {
+        self.looks.each_ref().map(|look| Drawing::new(mesh, self.surfaces, look))
+    }
+
+    /// What a mesh covers together with what is drawn.
+    fn covered(&self, drawn: &[Drawing<'_>; SIDES.len()], mesh: &Mesh) -> u32 {
+        self.of(mesh).iter().zip(drawn).map(|(one, other)| one.covered_with(other)).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stages::tree::tests::{presets, read};
+    use crate::stages::tree::{levelled, template, textures};
+
+    #[test]
+    fn levels_with_clusters_halve_as_before_and_are_whole() {
+        let mut dressed = 0;
+        for (name, genome) in presets() {
+            let (tree, textures) = (template(&read(&genome), 0), textures(&read(&genome)));
+            let made = levelled(&tree.mesh, &textures, &mut |_| ());
+            let is_cluster = |part: &Part| part.material == Material::Cluster;
+            let levels = &made.mesh.levels;
+            let first = levels.iter().position(|level| level.mesh.parts.iter().any(is_cluster));
+            assert_eq!(first.is_some(), made.clusters.is_some(), "{name}");
+            let Some(first) = first else { continue };
+            assert!(first >= FIRST, "{name}");
+            dressed += 1;
+            for (k, pair) in levels.windows(2).enumerate().skip(first - 1) {
+                let [before, after] = [0, 1].map(|i| pair[i].mesh.positions.len() as f32);
+                // A cluster may not fit in any more.
+                assert!(
+                    (after - before / 2.0).abs() <= 0.02 * before + 8.0,
+                    "{name} D{k}: {before}, {after}"
+                );
+            }
+            for level in &levels[first..] {
+                let mesh = &level.mesh;
+                assert!(mesh.uvs.iter().zip(&mesh.positions).len() == mesh.normals.len());
+                let morphs = level.morph.as_ref();
+                assert!(morphs.is_none_or(|morph| morph.positions.len() == mesh.positions.len()));
+                for part in mesh.parts.iter().filter(|part| is_cluster(part)) {
+                    assert!(run(part).all(|v| mesh.uvs[v].iter().all(|t| (0.0..=1.0).contains(t))));
+                }
+            }
+            let held = levels[first - 1].morph.as_ref().expect("a morph");
+            let leaves = levels[first - 1].mesh.parts.iter().filter(|part| part.material.is_card());
+            assert!(leaves.flat_map(run).all(|v| held.positions[v] == [0.0; 3]), "{name}: leaves move");
+        }
+        assert!(dressed > 2, "hardly any tree has clusters");
+    }
+}

@@ -1,0 +1,59 @@
+//! A template → its levels of detail, as its file has them: with clusters, errors of pictures, and what casts its shadow.
+
+use super::ALPHA_CUTOFF;
+use super::clusters;
+use super::seen::errors;
+use super::surfaces::Surfaces;
+use crate::model::{AlphaMask, Clusters, Level, LevelledMesh, Material, Mesh, Part, TreeTextures};
+use crate::stages::lod::{self, LodOptions, Step};
+
+/// Triangles that are enough to cast a shadow onto a texel of a metre.
+const CASTER_TRIANGLES: usize = 2_000;
+
+/// A template with its levels.
+#[derive(Clone, Debug)]
+pub struct Levelled {
+    pub mesh: LevelledMesh,
+    /// Pictures of the clusters that stand for leaves in coarse levels, if any do.
+    pub clusters: Option<Clusters>,
+    /// The mesh that casts the template's shadow.
+    pub caster: Mesh,
+}
+
+/// Makes the levels of a template; tells when each part of the work has ended.
+pub fn levelled<P>(mesh: &Mesh, textures: &TreeTextures<P>, ended: &mut dyn FnMut(Step)) -> Levelled {
+    let (mut caster, mut pictures) = (Mesh::default(), None);
+    let mut finish = |levels: &mut [Level]| {
+        // What a shadow is cast by lets light through between its leaves, which a map of such coarse texels knows by itself.
+        caster = smallest_enough(levels).clone();
+        let (surfaces, found) = clusters::substitute(levels, Surfaces::of(textures));
+        pictures = found;
+        let meshes: Vec<&Mesh> = levels.iter().map(|level| &level.mesh).collect();
+        errors(&meshes, &surfaces)
+    };
+    let mesh = lod::levels_finished(mesh, &options(mesh, textures), &mut finish, ended);
+    Levelled { mesh, clusters: pictures, caster }
+}
+
+/// How a template with these textures is simplified.
+fn options<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> LodOptions {
+    let mask = |part: &Part| match part.material {
+        Material::Leaf => AlphaMask::of(&textures.leaf_small, ALPHA_CUTOFF),
+        Material::Blossom => AlphaMask::of(&textures.blossom_small, ALPHA_CUTOFF),
+        _ => AlphaMask::default(),
+    };
+    let masks = mesh.parts.iter().map(mask).collect();
+    LodOptions { masks, thickens: true, ..LodOptions::default() }
+}
+
+/// The finest level that is small enough to be rasterised for every instance, else the coarsest.
+fn smallest_enough(levels: &[Level]) -> &Mesh {
+    let small = |level: &&Level| level.mesh.triangle_count() <= CASTER_TRIANGLES;
+    &levels.iter().find(small).unwrap_or(&levels[levels.len() - 1]).mesh
+}
+
+/// The level of which pictures are drawn: with half of the leaves, which cover as much, in half of the time; a leaf is less
+/// than a pixel of them. A bare tree has no leaf to spare.
+pub fn drawn_from_afar(levels: &[Level]) -> &Mesh {
+    &levels[usize::from(levels[0].mesh.has_cards() && levels.len() > 1)].mesh
+}
