@@ -3,6 +3,7 @@
 
 use glam::Vec3;
 
+use super::LodOptions;
 use super::aggregate::Aggregate;
 use super::coverage::{Camera, Canvas, Elements};
 use super::state::State;
@@ -35,6 +36,8 @@ pub struct Calibration {
     full_elements: Vec<u32>,
     full: u32,
     max_offset_m: f32,
+    /// At how many more levels elements are counted.
+    counted: u32,
     last: Sizes,
     /// For each aggregate, the scales that were found over those that give the elements their whole area: at the last two
     /// levels, the latest first. They fall evenly, as elements come to hide each other, so the next one can be guessed.
@@ -42,22 +45,22 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// Measures the whole mesh, which lies in a box. `masks` say what each part's texture leaves opaque: all of it for
-    /// parts beyond the list. Surfaces grow if `thickens`.
+    /// Measures the whole mesh, which lies in a box.
     pub fn new(
         state: &State,
         aggregates: &[Aggregate],
         [low, high]: [Vec3; 2],
-        masks: &[AlphaMask],
-        thickens: bool,
+        options: &LodOptions,
     ) -> Self {
+        let thickens = options.thickens;
         let diagonal_m = (high - low).max(Vec3::ZERO).length();
         let mut calibration = Self {
             camera: Camera::of([low, high], if aggregates.is_empty() { TWIGS_PX } else { LEAVES_PX }),
-            masks: masks.to_vec(),
+            masks: options.masks.clone(),
             full_elements: Vec::new(),
             full: 0,
             max_offset_m: if thickens { MAX_OFFSET * diagonal_m } else { 0.0 },
+            counted: options.counted_levels,
             last: Sizes { scales: vec![1.0; aggregates.len()], offset_m: 0.0 },
             found: vec![[1.0; 2]; aggregates.len()],
         };
@@ -75,15 +78,20 @@ impl Calibration {
     /// elements.
     pub fn sizes(&mut self, state: &State, aggregates: &[Aggregate]) -> Sizes {
         let mut sizes = self.last.clone();
+        let counts = self.counted > 0;
+        self.counted = self.counted.saturating_sub(1);
         let elements = self.elements(state, aggregates);
         for (index, (elements, aggregate)) in elements.iter().zip(aggregates).enumerate() {
             let scale = sizes.scales[index];
             let range = MIN_SHRUNK * scale..aggregate.max_scale(scale);
             let [last, before] = self.found[index];
             let guess = aggregate.same_area_scale() * last * last / before;
-            let scale = matching(self.full_elements[index], range, guess, |scale| {
-                elements.covered(&self.camera, scale)
-            });
+            let covered = |scale: f32| elements.covered(&self.camera, scale);
+            let scale = if counts {
+                matching(self.full_elements[index], range, guess, covered)
+            } else {
+                guess.clamp(range.start, range.end)
+            };
             sizes.scales[index] = scale;
             self.found[index] = [scale / aggregate.same_area_scale(), last];
         }
@@ -93,7 +101,9 @@ impl Calibration {
             let guess = sizes.offset_m + 0.1 * self.max_offset_m;
             sizes.offset_m =
                 matching(self.full, range, guess, |offset_m| covered_with(state, &canvas, offset_m));
-            self.make_up_with_elements(state, aggregates, &elements, &mut sizes);
+            if counts {
+                self.make_up_with_elements(state, aggregates, &elements, &mut sizes);
+            }
         }
         self.last = sizes.clone();
         sizes

@@ -62,6 +62,9 @@ pub struct LodOptions {
     pub piece_weight: f32,
     /// What the texture of each part's elements leaves opaque; all of it for parts beyond the list.
     pub masks: Vec<AlphaMask>,
+    /// Up to this level, elements are scaled until they cover as many pixels as in D_0. Beyond it, where something else is
+    /// shown in their place, they go on as they grew.
+    pub counted_levels: u32,
     /// Whether surfaces grow along their normals so that the mesh covers as much as it did: right for branches, whose
     /// twigs go one by one, not for solid bodies.
     pub thickens: bool,
@@ -76,6 +79,7 @@ impl Default for LodOptions {
             aggregate_weight: 0.25,
             piece_weight: 1.0,
             masks: Vec::new(),
+            counted_levels: u32::MAX,
             thickens: false,
         }
     }

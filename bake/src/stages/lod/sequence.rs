@@ -57,7 +57,7 @@ impl Sequence {
         let aggregate = |part: usize| Aggregate::new(&state, part, options.aggregate_weight);
         let aggregates: Vec<_> = (0..state.parts.len()).filter_map(aggregate).collect();
         let diagonal_m = (bounds[1] - bounds[0]).max(Vec3::ZERO).length();
-        let calibration = Calibration::new(&state, &aggregates, bounds, &options.masks, options.thickens);
+        let calibration = Calibration::new(&state, &aggregates, bounds, options);
         let mut used = vec![false; state.vertices.len()];
         state.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
         for span in &state.parts {

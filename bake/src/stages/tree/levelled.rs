@@ -43,7 +43,9 @@ fn options<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> LodOptions {
         _ => AlphaMask::default(),
     };
     let masks = mesh.parts.iter().map(mask).collect();
-    LodOptions { masks, thickens: true, ..LodOptions::default() }
+    // Where leaves stay to the end, they are counted to the end.
+    let counted_levels = clusters::first_level(mesh).map_or(u32::MAX, |first| first as u32 - 1);
+    LodOptions { masks, counted_levels, thickens: true, ..LodOptions::default() }
 }
 
 /// The finest level that is small enough to be rasterised for every instance, else the coarsest.

@@ -95,8 +95,9 @@ impl<'a> Drawing<'a> {
         let parts = mesh.parts.iter().map(|part| (surfaces.of_part(part.material), &part.triangles));
         let all: Vec<_> = parts.flat_map(|(surface, part)| part.iter().map(move |&t| (surface, t))).collect();
         let nearest_m = |t: [u32; 3]| corners(t).iter().map(|c| c.z).fold(f32::MIN, f32::max);
+        let shown = (0..).zip(&all).filter(|(_, (_, t))| self.holds_a_sample(corners(*t)));
         let mut order: Vec<u64> =
-            (0..).zip(&all).map(|(index, (_, t))| farther_later(nearest_m(*t)) << 32 | index).collect();
+            shown.map(|(index, (_, t))| farther_later(nearest_m(*t)) << 32 | index).collect();
         order.sort_unstable();
         for some in order.chunks((order.len() / ROUNDS).max(MIN_ROUND)) {
             let farthest_m = self.tiles();
@@ -144,6 +145,12 @@ impl<'a> Drawing<'a> {
             }
         }
         self.triangles.push(triangle);
+    }
+
+    /// Whether there is any sample in the rectangle around a triangle: in that of a small one, often none is.
+    fn holds_a_sample(&self, [a, b, c]: [Vec3; 3]) -> bool {
+        let (low, high) = (a.min(b).min(c) - EDGE, a.max(b).max(c) + EDGE);
+        [0, 1].iter().all(|&axis| first(low[axis], self.size) < first(high[axis], self.size))
     }
 
     /// The tiles that a triangle may reach into.

@@ -6,15 +6,12 @@ use rayon::prelude::*;
 use super::card::Card;
 use crate::math::unit_to_byte;
 use crate::model::{Clusters, Image8, Mesh};
-use crate::stages::tree::ALPHA_CUTOFF;
 use crate::stages::tree::mips::Encoder;
 use crate::stages::tree::raster::{Drawing, Look, Sample};
 use crate::stages::tree::surfaces::{Atlas, Surfaces};
 
 /// Pixels a side of one picture. A cluster is some twenty pixels of the screen wide where it begins to be shown.
 pub const SIDE: usize = 16;
-/// Each is drawn this many times as wide and high, and reduced.
-const SAMPLES: usize = 2;
 /// Pictures in a row of the image: images of all templates are of one width.
 const COLUMNS: usize = 64;
 /// A card is larger by this than what it shows, which leaves a pixel transparent along each edge of its picture.
@@ -56,7 +53,7 @@ pub fn draw(subjects: &[Subject], surfaces: &Surfaces) -> (Clusters, Atlas) {
 struct Pixel {
     /// sRGB with alpha.
     color: [u8; 4],
-    /// Turned to the eye, in the card's space.
+    /// In the card's space, turned to the eye.
     normal: [u8; 3],
     /// As [`super::super::raster::Sample::sunlit`].
     sunlit: f32,
@@ -66,68 +63,31 @@ struct Pixel {
 type Picture = [Pixel; SIDE * SIDE];
 
 fn picture(leaves: &Mesh, card: &Card, surfaces: &Surfaces, encoder: &Encoder) -> Picture {
-    let look = Look::before(card.middle_m, card.axes, card.half_m, SAMPLES * SIDE);
+    let look = Look::before(card.middle_m, card.axes, card.half_m, SIDE);
     let drawing = Drawing::new(leaves, surfaces, &look);
-    let sums: [Sum; SIDE * SIDE] = std::array::from_fn(|i| {
-        let (x, y) = (i % SIDE * SAMPLES, i / SIDE * SAMPLES);
-        let sample = |k: usize| drawing.sample(x + k % SAMPLES, y + k / SAMPLES);
-        (0..SAMPLES * SAMPLES).filter_map(sample).fold(Sum::default(), |sum, sample| sum.with(&sample, card))
-    });
-    let mean = sums.iter().fold(Sum::default(), |all, one| all.and(one));
-    let fewest = fewest_samples(&sums);
-    sums.map(|sum| {
-        // What is empty has the mean colour, which filters and mip levels mix with what is beside it.
-        let shown = if sum.count > 0 { sum } else { mean };
-        let over = 1.0 / shown.count.max(1) as f32;
-        let [r, g, b] = (shown.color * over).to_array().map(|linear| encoder.byte(linear));
-        let alpha = unit_to_byte(ALPHA_CUTOFF * sum.count as f32 / fewest as f32 + MARGIN_OF_ALPHA);
-        Pixel {
-            color: [r, g, b, alpha],
-            normal: shown.normal.normalize_or(Vec3::Z).to_array().map(|x| unit_to_byte(0.5 + 0.5 * x)),
-            sunlit: shown.sunlit * over,
-        }
+    let seen: [Option<Sample>; SIDE * SIDE] = std::array::from_fn(|i| drawing.sample(i % SIDE, i / SIDE));
+    let (sum, count) =
+        seen.iter().flatten().fold((Vec3::ZERO, 0), |(sum, count), s| (sum + s.color, count + 1));
+    // What is empty has the mean colour, which filters and mip levels mix with what is beside it.
+    let empty =
+        Pixel { color: srgb(sum / count.max(1) as f32, 0, encoder), normal: packed(Vec3::Z), sunlit: 0.0 };
+    seen.map(|sample| {
+        sample.map_or(empty, |sample| Pixel {
+            color: srgb(sample.color, u8::MAX, encoder),
+            normal: packed(card.toward_eye(sample.normal).normalize_or(Vec3::Z)),
+            sunlit: sample.sunlit,
+        })
     })
 }
 
-/// So much more alpha than the cutoff has what is just kept, lest it be lost in rounding.
-const MARGIN_OF_ALPHA: f32 = 0.004;
-
-/// Samples that a pixel must have for it to be kept, so that as nearly as possible as many pixels are kept as are covered in
-/// all (Castaño, "Computing Alpha Mipmaps", 2010).
-fn fewest_samples(sums: &[Sum]) -> u32 {
-    const ALL: u32 = (SAMPLES * SAMPLES) as u32;
-    let covered: u32 = sums.iter().map(|sum| sum.count).sum();
-    let kept = |fewest: u32| ALL * sums.iter().filter(|sum| sum.count >= fewest).count() as u32;
-    (1..=ALL).min_by_key(|&fewest| kept(fewest).abs_diff(covered)).unwrap_or(1)
+fn srgb(linear: Vec3, alpha: u8, encoder: &Encoder) -> [u8; 4] {
+    let [r, g, b] = linear.to_array().map(|linear| encoder.byte(linear));
+    [r, g, b, alpha]
 }
 
-/// Of the samples of a pixel at which anything is seen.
-#[derive(Clone, Copy, Default)]
-struct Sum {
-    /// Linear.
-    color: Vec3,
-    /// Turned to the eye, in the card's space.
-    normal: Vec3,
-    sunlit: f32,
-    count: u32,
-}
-
-impl Sum {
-    fn with(self, sample: &Sample, card: &Card) -> Self {
-        let front = card.front();
-        let turned = sample.normal * 1.0_f32.copysign(sample.normal.dot(front));
-        let normal = Vec3::new(turned.dot(card.axes[0]), turned.dot(card.axes[1]), turned.dot(front));
-        self.and(&Self { color: sample.color, normal, sunlit: sample.sunlit, count: 1 })
-    }
-
-    fn and(self, other: &Self) -> Self {
-        Self {
-            color: self.color + other.color,
-            normal: self.normal + other.normal,
-            sunlit: self.sunlit + other.sunlit,
-            count: self.count + other.count,
-        }
-    }
+/// A unit vector as a pixel of a picture of normals.
+fn packed(normal: Vec3) -> [u8; 3] {
+    normal.to_array().map(|x| unit_to_byte(0.5 + 0.5 * x))
 }
 
 /// Texture coordinates of the corners of the nth card, counter-clockwise from the lower left one, where there are `count`.

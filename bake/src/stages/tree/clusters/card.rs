@@ -45,6 +45,13 @@ impl Card {
         self.axes[0].cross(self.axes[1])
     }
 
+    /// A normal on either side, turned to those who see the card the right way round: to its right, up, and towards them.
+    pub fn toward_eye(&self, normal: Vec3) -> Vec3 {
+        let [right, up] = self.axes;
+        let turned = normal * 1.0_f32.copysign(normal.dot(self.front()));
+        Vec3::new(turned.dot(right), turned.dot(up), turned.dot(self.front()))
+    }
+
     /// Its corners, counter-clockwise from the lower left one.
     pub fn corners(&self) -> [Vec3; 4] {
         let [right, up] = self.axes;

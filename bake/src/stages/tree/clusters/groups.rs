@@ -4,7 +4,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 /// Rounds in which places go to the nearest middle and middles move among their places.
-const ROUNDS: usize = 5;
+const ROUNDS: usize = 3;
 
 /// A place, and how many leaves it stands for.
 #[derive(Clone, Copy, Debug)]
@@ -13,8 +13,9 @@ pub struct Place {
     pub weight: f32,
 }
 
-/// The group of each place: numbers below `count`, each of somebody where there are enough places. Halves of halves along the longest side are
-/// the start of k-means (Lloyd, "Least squares quantization in PCM", 1982). The same for any number of threads.
+/// The group of each place: numbers below `count`, each of somebody where there are enough places. Halves of halves along
+/// the longest side are the start of k-means (Lloyd, "Least squares quantization in PCM", 1982). The same for any number
+/// of threads.
 pub fn groups(places: &[Place], count: usize) -> Vec<u32> {
     let mut group = vec![0; places.len()];
     let mut order: Vec<u32> = (0..places.len() as u32).collect();
@@ -38,13 +39,11 @@ pub fn groups(places: &[Place], count: usize) -> Vec<u32> {
 fn share_out(places: &[Place], group: &mut [u32], count: usize) {
     let mut sizes = vec![0u32; count];
     group.iter().for_each(|&group| sizes[group as usize] += 1);
-    for empty in 0..count {
+    let empties: Vec<usize> = (0..count).filter(|&n| sizes[n] == 0).collect();
+    for empty in empties {
         let Some(largest) = (0..count).max_by_key(|&n| (sizes[n], n)).filter(|&n| sizes[n] > 1) else {
             return;
         };
-        if sizes[empty] > 0 {
-            continue;
-        }
         let members = || (0..places.len()).filter(|&i| group[i] as usize == largest);
         let middle = members().map(|i| places[i].at_m).sum::<Vec3>() / sizes[largest] as f32;
         let away = |i: &usize| places[*i].at_m.distance_squared(middle);

@@ -37,6 +37,19 @@ const COVERAGE_PX: usize = 128;
 /// How much smaller or larger cards may become.
 const SCALES: Range<f32> = 0.7..1.5;
 
+/// The first level of a full tree that will have clusters, as far as can be told before it is simplified.
+pub fn first_level(full: &Mesh) -> Option<usize> {
+    let element = |part: &Part| match part.kind {
+        PartKind::Aggregate { vertices, .. } => Some(vertices as usize),
+        PartKind::Surface => None,
+    };
+    let mut elements =
+        full.parts.iter().filter(|part| !part.triangles.is_empty()).filter_map(element).peekable();
+    // A quarter of the leaves' vertices at most is left where the tree has an eighth of its own.
+    let pays = |vertices: usize| vertices * MIN_LEAVES <= 4 * CLUSTER;
+    (elements.peek().is_some() && elements.all(pays)).then_some(FIRST)
+}
+
 /// Puts clusters in the place of leaves and gives their pictures; `None` where all levels stay as they are.
 pub fn substitute(levels: &mut [Level], surfaces: Surfaces) -> (Surfaces, Option<Clusters>) {
     let Some(full) = levels.first().map(|level| &level.mesh) else { return (surfaces, None) };
