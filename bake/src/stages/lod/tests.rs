@@ -249,6 +249,25 @@ fn leaves_keep_covering_the_sky() {
 }
 
 #[test]
+fn leaves_that_are_not_counted_go_on_growing() {
+    let mesh = tree(30, 10, 3000);
+    let made = |counted_levels| levels(&mesh, &LodOptions { counted_levels, ..LodOptions::default() }).levels;
+    let (all, two) = (made(u32::MAX), made(2));
+    assert!(all[..=2].iter().zip(&two).all(|(a, b)| a.mesh == b.mesh), "the same where they are counted");
+    let opaque = AlphaMask::default();
+    let sum = |level: &Level| -> usize {
+        AZIMUTHS.iter().map(|&azimuth| covered(&level.mesh, &[1], azimuth, &opaque, None)).sum()
+    };
+    for (counted, guessed) in all.iter().zip(&two).skip(3) {
+        let ratio = sum(guessed) as f32 / sum(counted) as f32;
+        assert!(
+            ratio != 1.0 && (0.85..1.15).contains(&ratio),
+            "{ratio}: near to what would be counted, but a guess"
+        );
+    }
+}
+
+#[test]
 fn trees_of_few_leaves_keep_covering_the_sky() {
     let mesh = tree(30, 10, 300);
     let levels = levels(&mesh, &LodOptions { thickens: true, ..LodOptions::default() }).levels;
