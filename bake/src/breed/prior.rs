@@ -148,6 +148,11 @@ impl Prior {
         self.shares[0] > 0.5
     }
 
+    /// Whether there is one component only: without kinds.
+    pub fn is_one(&self) -> bool {
+        self.components.len() == 1
+    }
+
     pub fn genes(&self) -> usize {
         self.choices.len()
     }
@@ -178,7 +183,7 @@ impl Prior {
 
     /// One that a point may belong to, by how well each explains it.
     pub fn component_of(&self, point: &[f32], dice: &mut Dice) -> usize {
-        if self.components.len() == 1 {
+        if self.is_one() {
             return 0;
         }
         let bins: Vec<usize> = point.iter().map(|x| bin(*x)).collect();

@@ -13,6 +13,7 @@ use genescape_schema::INDIVIDUALS;
 
 use super::prior::Prior;
 use super::taste::Ideal;
+use crate::math::exp;
 use crate::seed::Dice;
 
 /// Points that sets are made of at first, and changes that are tried on a set.
@@ -217,26 +218,35 @@ fn slices(rows: &[Vec<f32>]) -> Vec<&[f32]> {
 /// missed in what is chosen, as [`REGRET`] says. `missed` has a row for each point: what each sample misses in it.
 /// `units` has for each sample what it misses where every gene differs by all of its range.
 fn worth(missed: &[&[f32]], units: &[f32]) -> f32 {
-    let mut mean = [0.0f32; INDIVIDUALS];
-    let (mut conditional, mut regret) = (0.0, 0.0);
-    for (sample, unit) in units.iter().enumerate() {
-        let least = missed.iter().map(|row| row[sample]).fold(f32::INFINITY, f32::min);
-        let gaps = missed.iter().map(|row| row[sample] - least);
-        let mut chances = [0.0f32; INDIVIDUALS];
-        let (mut sum, mut gap) = (0.0, 0.0);
-        for (chance, above) in chances.iter_mut().zip(gaps) {
-            *chance = libm::expf(-above);
-            sum += *chance;
-            gap += *chance * above;
+    let mut least = vec![f32::INFINITY; units.len()];
+    for row in missed {
+        least.iter_mut().zip(*row).for_each(|(least, one)| *least = if one < least { *one } else { *least });
+    }
+    // Of each sample: what speaks for its choices, together, and what that misses beyond the least.
+    let (mut sums, mut gaps) = (vec![0.0f32; units.len()], vec![0.0f32; units.len()]);
+    let mut chances = vec![vec![0.0f32; units.len()]; missed.len()];
+    for (row, chances) in missed.iter().zip(&mut chances) {
+        let totals = sums.iter_mut().zip(&mut gaps);
+        for (((one, least), chance), (sum, gap)) in row.iter().zip(&least).zip(chances).zip(totals) {
+            let above = one - least;
+            *chance = exp(-above);
+            *sum += *chance;
+            *gap += *chance * above;
         }
+    }
+    // The entropy of chances that fall as e to the power of the gap: sums are 4 at most, so many multiply to no infinity.
+    let mut conditional: f32 = sums.chunks(32).map(|some| libm::logf(some.iter().product())).sum();
+    let mut regret = 0.0;
+    for (((sum, gap), least), unit) in sums.iter().zip(&gaps).zip(&least).zip(units) {
         let expected = gap / sum;
-        mean.iter_mut().zip(chances).for_each(|(mean, chance)| *mean += chance / sum);
-        // The entropy of chances that fall as e to the power of the gap.
-        conditional += libm::logf(sum) + expected;
+        conditional += expected;
         regret += (least + expected) / unit;
     }
     let samples = units.len().max(1) as f32;
-    let told = mean.iter().map(|chance| entropy(chance / samples)).sum::<f32>() - conditional / samples;
+    let mean = |chances: &Vec<f32>| {
+        chances.iter().zip(&sums).map(|(chance, sum)| chance / sum).sum::<f32>() / samples
+    };
+    let told = chances.iter().map(|one| entropy(mean(one))).sum::<f32>() - conditional / samples;
     told - REGRET * regret / samples
 }
 

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 use super::evidence::{Choice, SLOTS};
 use super::prior::Prior;
+use crate::math::exp;
 use crate::seed::Dice;
 
 /// The chance that a vote means nothing: a slip, or a change of mind.
@@ -25,9 +26,10 @@ const OTHER_CHOICE: f32 = 0.15;
 
 /// Chains, sweeps over all genes of each, and samples that each gives, from its last two thirds.
 const CHAINS: usize = 4;
-const SWEEPS: usize = 150;
+const SWEEPS: usize = 300;
 const SAMPLES: usize = 25;
-/// Starts that a chain chooses from, and jumps to another kind that it tries in a sweep.
+/// Starts that a chain chooses from, and jumps to another kind that it tries in a sweep; where there is but one, it soon
+/// stays.
 const STARTS: usize = 48;
 const JUMPS: usize = 4;
 
@@ -73,46 +75,68 @@ pub fn ideals(prior: &Prior, choices: &[Choice]) -> Vec<Ideal> {
     chains.collect::<Vec<_>>().concat()
 }
 
+/// Choices whose chances are multiplied before a logarithm is taken: more could underflow.
+const TOGETHER: usize = 8;
+
 /// Choices, by gene: a change of one gene reads one column.
 struct Votes {
-    /// Of each gene the value of each point, [`SLOTS`] to a choice.
+    /// Of each gene its values: of what was chosen in each choice, then of a rival in each, of the next one in each.
     columns: Vec<Vec<f32>>,
-    chosen: Vec<usize>,
+    /// A multiple of [`TOGETHER`], and 0 without votes: what fills up the last ones has no rivals.
+    choices: usize,
     /// 0 where there is a point, infinite where there is none: what misses that much is never chosen.
     blanks: Vec<f32>,
 }
 
 impl Votes {
     fn new(genes: usize, choices: &[Choice]) -> Self {
-        let slots = choices.len() * SLOTS;
-        let mut blanks = vec![f32::INFINITY; slots];
-        let mut columns = vec![vec![0.0; slots]; genes];
+        let slots = choices.iter().map(|choice| choice.points.len()).max().unwrap_or(1);
+        let count = choices.len().next_multiple_of(TOGETHER);
+        let mut blanks = vec![f32::INFINITY; slots * count];
+        let mut columns = vec![vec![0.0; slots * count]; genes];
+        blanks[..count].fill(0.0);
         for (number, choice) in choices.iter().enumerate() {
-            for (slot, point) in choice.points.iter().take(SLOTS).enumerate() {
-                let at = number * SLOTS + slot;
+            let rivals = (0..choice.points.len()).filter(|slot| *slot != choice.chosen);
+            for (slot, point) in std::iter::once(choice.chosen).chain(rivals).enumerate() {
+                let at = slot * count + number;
                 blanks[at] = 0.0;
-                columns.iter_mut().zip(point).for_each(|(column, x)| column[at] = *x);
+                columns.iter_mut().zip(&choice.points[point]).for_each(|(column, x)| column[at] = *x);
             }
         }
-        Self { columns, chosen: choices.iter().map(|choice| choice.chosen).collect(), blanks }
+        Self { columns, choices: count, blanks }
     }
 
-    /// How likely the choices are, as a logarithm, where this is missed, squared.
-    fn likelihood(&self, squares: &[f32]) -> f32 {
-        let (mut sum, mut product) = (0.0, 1.0f32);
-        for (number, (of_one, chosen)) in squares.chunks_exact(SLOTS).zip(&self.chosen).enumerate() {
-            // Differences of running sums may end below 0.
-            let missed: [f32; SLOTS] = std::array::from_fn(|slot| of_one[slot].max(0.0).sqrt());
-            let rivals = missed.map(|other| libm::expf((missed[*chosen] - other).min(60.0)));
-            product *= (1.0 - LAPSE) / rivals.iter().sum::<f32>() + LAPSE / SLOTS as f32;
-            // One logarithm for several, before they underflow.
-            if number % 8 == 7 {
-                sum += libm::logf(product);
-                product = 1.0;
+    /// How likely the choices are, as a logarithm, where this is missed, squared. `chances` is room to reckon in.
+    fn likelihood(&self, squares: &[f32], chances: &mut Chances) -> f32 {
+        if self.choices == 0 {
+            return 0.0;
+        }
+        let (chosen, rivals) = squares.split_at(self.choices);
+        let Chances { least, sums } = chances;
+        least.clear();
+        least.extend(chosen.iter().map(|square| root(*square)));
+        sums.clear();
+        sums.resize(self.choices, 1.0);
+        for rivals in rivals.chunks_exact(self.choices) {
+            for ((sum, least), square) in sums.iter_mut().zip(least.iter()).zip(rivals) {
+                *sum += exp(least - root(*square));
             }
         }
-        sum + libm::logf(product)
+        sums.iter_mut().for_each(|sum| *sum = (1.0 - LAPSE) / *sum + LAPSE / SLOTS as f32);
+        sums.chunks_exact(TOGETHER).map(|some| libm::logf(some.iter().product())).sum()
     }
+}
+
+/// Of each choice, what is missed in what was chosen, and the sum of what speaks for each alternative.
+#[derive(Default)]
+struct Chances {
+    least: Vec<f32>,
+    sums: Vec<f32>,
+}
+
+/// Differences of running sums may end below 0.
+fn root(square: f32) -> f32 {
+    if square > 0.0 { square.sqrt() } else { 0.0 }
 }
 
 /// One Markov chain.
@@ -127,6 +151,7 @@ struct Chain<'a> {
     /// The mean of the weights' logarithms.
     scale: f32,
     scratch: Vec<f32>,
+    chances: Chances,
 }
 
 impl<'a> Chain<'a> {
@@ -134,18 +159,19 @@ impl<'a> Chain<'a> {
     fn start(prior: &'a Prior, votes: &'a Votes, mut dice: Dice) -> Self {
         let genes = prior.genes();
         let scale = expected_scale(genes);
+        let mut chances = Chances::default();
         let best = (0..STARTS).map(|_| {
             let component = prior.any(&mut dice);
             let at = (0..genes).map(|gene| prior.draw(component, gene, &mut dice)).collect();
             let weights = (0..genes).map(|_| libm::expf(scale + 0.5 * dice.normal())).collect();
             let ideal = Ideal { at, weights, component };
             let squares = all_squares(prior, votes, &ideal);
-            (votes.likelihood(&squares), squares, ideal)
+            (votes.likelihood(&squares, &mut chances), squares, ideal)
         });
         let best = best.reduce(|best, one| if one.0 > best.0 { one } else { best });
         let (likelihood, squares, ideal) = best.unwrap_or_else(|| unreachable!("there are starts"));
         let scratch = vec![0.0; squares.len()];
-        Self { prior, votes, dice, ideal, squares, likelihood, scale, scratch }
+        Self { prior, votes, dice, ideal, squares, likelihood, scale, scratch, chances }
     }
 
     fn run(mut self) -> Vec<Ideal> {
@@ -163,8 +189,9 @@ impl<'a> Chain<'a> {
     fn sweep(&mut self) {
         // Running sums drift.
         self.squares = all_squares(self.prior, self.votes, &self.ideal);
-        self.likelihood = self.votes.likelihood(&self.squares);
-        for _ in 0..JUMPS {
+        self.likelihood = self.votes.likelihood(&self.squares, &mut self.chances);
+        let jumps = if self.prior.is_one() { 1 } else { JUMPS };
+        for _ in 0..jumps {
             self.jump();
         }
         for gene in 0..self.prior.genes() {
@@ -183,7 +210,7 @@ impl<'a> Chain<'a> {
             other.at[gene] = self.prior.draw(component, gene, &mut self.dice);
         }
         let squares = all_squares(self.prior, self.votes, &other);
-        let likelihood = self.votes.likelihood(&squares);
+        let likelihood = self.votes.likelihood(&squares, &mut self.chances);
         if self.accepts(likelihood - self.likelihood) {
             (self.ideal, self.squares, self.likelihood) = (other, squares, likelihood);
         }
@@ -217,10 +244,17 @@ impl<'a> Chain<'a> {
         let (old_at, old_weight) = (self.ideal.at[gene], self.ideal.weights[gene]);
         let is_choice = self.prior.is_choice(gene);
         let column = &self.votes.columns[gene];
-        for ((new, old), x) in self.scratch.iter_mut().zip(&self.squares).zip(column) {
-            *new = old + weight * squared(is_choice, *x, at) - old_weight * squared(is_choice, *x, old_at);
+        let all = self.scratch.iter_mut().zip(&self.squares).zip(column);
+        // Told apart here, each is a loop of vectors.
+        match is_choice {
+            true => all.for_each(|((new, old), x)| {
+                *new = old + weight * squared(true, *x, at) - old_weight * squared(true, *x, old_at);
+            }),
+            false => all.for_each(|((new, old), x)| {
+                *new = old + weight * squared(false, *x, at) - old_weight * squared(false, *x, old_at);
+            }),
         }
-        let likelihood = self.votes.likelihood(&self.scratch);
+        let likelihood = self.votes.likelihood(&self.scratch, &mut self.chances);
         if self.accepts(likelihood - self.likelihood + prior) {
             std::mem::swap(&mut self.squares, &mut self.scratch);
             self.likelihood = likelihood;
@@ -239,7 +273,7 @@ impl<'a> Chain<'a> {
         let shift = 0.3 * self.dice.normal();
         let factor = libm::expf(shift);
         self.scratch.iter_mut().zip(&self.squares).for_each(|(new, old)| *new = old * factor);
-        let likelihood = self.votes.likelihood(&self.scratch);
+        let likelihood = self.votes.likelihood(&self.scratch, &mut self.chances);
         let density = |scale: f32| -0.5 * (scale - expected) * (scale - expected) / spread;
         if self.accepts(likelihood - self.likelihood + density(self.scale + shift) - density(self.scale)) {
             std::mem::swap(&mut self.squares, &mut self.scratch);
