@@ -238,6 +238,9 @@ pub enum Command {
         /// What part of a bake the cache has already from one bred generation to the next, instead.
         #[arg(long, conflicts_with = "breeding")]
         reuse: bool,
+        /// How much each gene is seen in members of each kind, as JSON for `phenotype/visibility.json`, instead; takes minutes.
+        #[arg(long, conflicts_with_all = ["breeding", "reuse"])]
+        visibility: bool,
         /// How many generations.
         #[arg(long, value_name = "N", default_value_t = 50, requires = "reuse")]
         generations: u32,

@@ -102,6 +102,7 @@ fn dispatch(cli: &Cli) -> Result<()> {
         Command::Bench { reuse: true, generations, .. } => {
             bench::reuse::reuse(*generations, &pool(run.threads)?)
         }
+        Command::Bench { visibility: true, .. } => bench::visibility::visibility(&pool(run.threads)?),
         Command::Bench { runs, .. } => bench::bench(*runs, &pool(run.threads)?, run.size),
         Command::Completions { shell } => manual::completions(*shell),
         Command::Man { folder } => manual::man(folder.as_deref()),

@@ -6,6 +6,7 @@ mod cma_es;
 pub mod person;
 pub mod preprocessing;
 pub mod reuse;
+pub mod visibility;
 
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;

@@ -3,6 +3,7 @@
 
 use genescape_schema::{Category, Genome, INDIVIDUALS, Population, Space, Votes};
 
+use crate::phenotype::Phenotype;
 use crate::seed::Dice;
 
 /// How a landscape is judged.
@@ -12,7 +13,7 @@ pub enum Taste {
     Separable,
     /// Pairs of genes together: what is too much of one may be made good by the other.
     Coupled,
-    /// What is seen: smooth functions of several genes each.
+    /// What is seen: the traits of a phenotype or, of a made space, smooth functions of several genes each.
     Seen,
 }
 
@@ -27,13 +28,17 @@ impl Taste {
 /// The part of the genes that matters most, and how much it matters together.
 const MATTERING: f32 = 0.3;
 const MATTERS: f32 = 0.7;
-/// What is seen in each category, and of how many genes each is made.
+/// How far apart two landscapes are in what is seen that were drawn by chance: as far as in their genes.
+const APART: f32 = 0.33;
+/// What is seen in each category of a made space, and of how many genes each is made.
 const SEEN: usize = 12;
 const GENES_SEEN: usize = 4;
 
 pub struct Person<'a> {
     space: &'a Space,
     wants: &'a Genome,
+    /// What that looks like, for somebody who judges by it.
+    looks: Option<Phenotype>,
     taste: Taste,
     /// Noise of choices: distances that differ by this much are told apart in e of e + 1 cases. 0 never errs.
     temperature: f32,
@@ -55,11 +60,17 @@ impl<'a> Person<'a> {
     pub fn new(space: &'a Space, wants: &'a Genome, taste: Taste, temperature: f32, seed: u64) -> Self {
         let mut dice = Dice::new(seed, "person", 0);
         let judges = Category::ALL.map(|category| Judge::new(space.traits(category).count(), &mut dice));
-        Self { space, wants, taste, temperature, judges, dice }
+        let looks = (taste == Taste::Seen).then(|| Phenotype::of(space, wants).ok()).flatten();
+        Self { space, wants, looks, taste, temperature, judges, dice }
     }
 
-    /// How far a genome is from what is wanted, of each category: root mean square by weight, of genes 0 … 1.
+    /// How far a genome is from what is wanted, of each category: root mean square by weight, of genes 0 … 1, or of what is
+    /// seen.
     pub fn distances(&self, genome: &Genome) -> [f32; 3] {
+        let looks = |wanted| Some((wanted, Phenotype::of(self.space, genome).ok()?));
+        if let Some((wanted, shown)) = self.looks.as_ref().and_then(looks) {
+            return Category::ALL.map(|category| APART * shown.distance_in(wanted, category));
+        }
         Category::ALL.map(|category| {
             let genes = self.space.traits(category);
             let point: Vec<f32> = genes.map(|gene| gene.part(genome.code(gene))).collect();

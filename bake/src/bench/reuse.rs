@@ -31,22 +31,35 @@ const ROWS: [Row; 5] = [
 /// of the stages was there.
 pub fn reuse(generations: u32, pool: &rayon::ThreadPool) -> Result<()> {
     let resolution = Resolution::of_side(SIDE).map_err(anyhow::Error::msg)?;
-    say!("{:<26}{:>8}{:>10}   stages that were there, over {generations} generations", "", "stages", "there");
+    say!(
+        "stages over {generations} generations: what four landscapes need one by one, what they share or was baked before"
+    );
+    say!("{:<26}{:>8}{:>10}; of those that differ {:>8}{:>10}", "", "needed", "reused", "stages", "reused");
     for row in ROWS {
-        let (stages, built) = measure(row, generations, pool, resolution)?;
-        let share = 100.0 * (1.0 - built as f64 / stages.max(1) as f64);
-        say!("{:<26}{stages:>8}{share:>8.0} %", row.0);
+        let Counts { needed, stages, built } = measure(row, generations, pool, resolution)?;
+        let reused = |of: usize| 100.0 * (1.0 - built as f64 / of.max(1) as f64);
+        say!("{:<26}{needed:>8}{:>8.0} %{stages:>28}{:>8.0} %", row.0, reused(needed), reused(stages));
     }
     Ok(())
 }
 
-/// Stages of all generations but the first, and those of them that had to be built.
+/// Stages of all generations but the first.
+#[derive(Default)]
+struct Counts {
+    /// Of each landscape for itself.
+    needed: usize,
+    /// Those that several landscapes of a generation share counted once.
+    stages: usize,
+    /// Those that were not in the cache.
+    built: usize,
+}
+
 fn measure(
     (_, strategy, locked): Row,
     generations: u32,
     pool: &rayon::ThreadPool,
     resolution: Resolution,
-) -> Result<(usize, usize)> {
+) -> Result<Counts> {
     let space = Space::builtin();
     let (kinds, _) = Kinds::shipped(&space);
     let drawn = |seed| random::population(&space, &kinds, &[], seed, 0).context("kinds that ship");
@@ -57,13 +70,15 @@ fn measure(
     let folder = tempfile::tempdir()?;
     let cache = Cache::open(folder.path())?;
     bake(&space, &now, resolution, &cache, pool, &Stages::default())?;
-    let (mut past, mut all, mut built) = (Vec::new(), 0, 0);
+    let (mut past, mut counts) = (Vec::new(), Counts::default());
     for next in 1..=generations {
         now.votes = Some(person.vote(&now));
         let children = Breeder::new(&space, &kinds, strategy, &past, &now)?.bred(next, now.seed);
         past.push(std::mem::replace(&mut now, children));
-        all += Plan::new(&space, &now, resolution)?.nodes.len();
-        built += bake(&space, &now, resolution, &cache, pool, &Stages::default())?.1;
+        let nodes = Plan::new(&space, &now, resolution)?.nodes;
+        counts.stages += nodes.len();
+        counts.needed += nodes.iter().map(|node| node.scenes.len()).sum::<usize>();
+        counts.built += bake(&space, &now, resolution, &cache, pool, &Stages::default())?.1;
     }
-    Ok((all, built))
+    Ok(counts)
 }

@@ -14,15 +14,24 @@ use super::Chosen;
 use super::descent::{self, Origin};
 use super::evidence::{Evidence, point};
 use super::locked;
+use super::pairing::pair;
 use super::prior::Prior;
 use super::spread::{Mean, Spread};
 use super::taste::{Ideal, ideals};
 use super::variety::Varied;
 use crate::kinds::{Company, Home};
+use crate::phenotype::visibility::Visibility;
 use crate::seed::Dice;
 
 /// Of what is like no kind, the best guess is shown once in so many generations.
 const GUESSES_EVERY: u32 = 5;
+
+/// Votes after which new chromosomes cost something: before, who has seen little sees as much as there is.
+const SETTLING: usize = 6;
+/// What a new chromosome of each category must tell, in nats, to be shown instead of the best guess: 0.04 for each stage that
+/// runs for it, which are textures and templates of trees, the land and its mesh, the sky's light and pictures, and about two
+/// of those that read several categories. More makes later guesses worse, less bakes more.
+const NEW_COSTS: [f32; 3] = [0.32, 0.16, 0.16];
 
 /// What is known of somebody who voted so.
 pub struct Learned<'a> {
@@ -52,7 +61,9 @@ impl Taste {
         let evidence = Evidence::of(space, kinds, category, populations);
         let prior = Prior::of(space, kinds, category, &evidence);
         let Evidence { choices, chosen, .. } = evidence;
-        let ideals = plausible(&prior, ideals(&prior, &choices));
+        let kind = chosen.last().and_then(|one| Home::of(space, kinds, category, one).main());
+        let seen = Visibility::shipped().log_weights(space, category, kind.map(|kind| kind.id.as_str()));
+        let ideals = plausible(&prior, ideals(&prior, &choices, &seen));
         let means = Mean::all(&prior, &ideals);
         Self { prior, ideals, means, votes: choices.len(), chosen }
     }
@@ -78,7 +89,7 @@ impl<'a> Learned<'a> {
     /// Generation `next`, where chance depends on `seed`.
     pub fn bred(&self, next: u32, seed: u64) -> Population {
         let mut parts: [Vec<Chromosome>; 3] = Category::ALL.map(|category| self.part(category, next, seed));
-        self.pair(&mut parts);
+        pair(self.space, self.kinds, &mut parts);
         let individuals = std::array::from_fn(|child| {
             let chromosomes = parts.each_ref().map(|part| part[child].clone());
             self.individual(child, chromosomes)
@@ -134,10 +145,25 @@ impl<'a> Learned<'a> {
             _ if self.asks(category, next) => Vec::new(),
             _ => vec![spread.best(&known, &is_like)],
         };
-        let others = spread.others(&four, &mut dice);
+        let mut others = spread.others(&four, &mut dice);
         let variety = self.parents.variety.unwrap_or(Variety::USUAL);
+        let is_settling = taste.votes >= SETTLING && variety == Variety::USUAL && !taste.prior.is_wild();
+        if let Some(best) = four.first().filter(|_| is_settling) {
+            others = spread.sparing(best, others, NEW_COSTS[category as usize], self.least_new());
+        }
         four.extend(Varied { spread: &spread, kind: &kind }.others(variety, &four, others, &mut dice));
-        four.iter().map(|one| self.chromosome(category, one, &mut dice)).collect()
+        let mut made: Vec<Chromosome> = Vec::new();
+        for one in &four {
+            let same = four.iter().zip(&made).find(|(other, _)| *other == one).map(|(_, made)| made.clone());
+            made.push(same.unwrap_or_else(|| self.chromosome(category, one, &mut dice)));
+        }
+        made
+    }
+
+    /// How many of the four have something new of each category, at least: three in all differ from the first.
+    fn least_new(&self) -> usize {
+        let locked = Category::ALL.iter().filter(|one| self.parents.locked.contains(one.name())).count();
+        (INDIVIDUALS - 1).div_ceil(Category::ALL.len().saturating_sub(locked).max(1))
     }
 
     /// Whether all four are for asking: not where close variations are wanted. Kinds say so much of what may be wanted that
@@ -198,36 +224,6 @@ impl<'a> Learned<'a> {
                 new.set_code(gene, favourite.code(gene));
             }
         }
-    }
-
-    /// Of the ways to make landscapes of these parts that in which most go together. Of the first, the best guess, all
-    /// parts stay together.
-    fn pair(&self, parts: &mut [Vec<Chromosome>; 3]) {
-        const ORDERS: [[usize; 3]; 6] = [[1, 2, 3], [1, 3, 2], [2, 1, 3], [2, 3, 1], [3, 1, 2], [3, 2, 1]];
-        let discord = |trees: &[usize; 3], skies: &[usize; 3]| -> usize {
-            let of = |land: usize| {
-                self.discord([&parts[0][trees[land]], &parts[1][land + 1], &parts[2][skies[land]]])
-            };
-            (0..3).map(of).sum()
-        };
-        let all = ORDERS.iter().flat_map(|trees| ORDERS.iter().map(move |skies| (trees, skies)));
-        let Some((trees, skies)) = all.min_by_key(|(trees, skies)| discord(trees, skies)) else { return };
-        for (part, order) in [(0, trees), (2, skies)] {
-            let before = parts[part].clone();
-            for (at, from) in order.iter().enumerate() {
-                parts[part][at + 1] = before[*from].clone();
-            }
-        }
-    }
-
-    /// How many of a landscape's kinds do not go with its other parts.
-    fn discord(&self, parts: [&Chromosome; 3]) -> usize {
-        let homes = self.homes(parts);
-        let disagrees = |category: Category| {
-            let company = Company::beside(self.space, category, parts, homes);
-            homes[category as usize].kinds().any(|kind| !company.suits(kind))
-        };
-        Category::ALL.into_iter().filter(|category| disagrees(*category)).count()
     }
 
     fn homes(&self, parts: [&Chromosome; 3]) -> [Home<'a>; 3] {

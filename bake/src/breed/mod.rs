@@ -8,7 +8,9 @@ mod cross;
 mod descent;
 mod evidence;
 mod learned;
+mod likelihood;
 mod locked;
+mod pairing;
 mod prior;
 mod spread;
 mod step;
@@ -16,6 +18,7 @@ mod taste;
 #[cfg(test)]
 mod tests;
 mod variety;
+mod weights;
 
 use genescape_schema::{Category, Kinds, Parent, Population, Space, Strategy, Votes};
 

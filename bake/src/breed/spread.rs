@@ -125,6 +125,40 @@ impl Spread<'_> {
         set.into_iter().map(|one| one.at).collect()
     }
 
+    /// Of three others than `best` those that tell what showing something new costs, in nats, and at least so many; in place of
+    /// each other one there is `best` again.
+    pub fn sparing(
+        &self,
+        best: &[f32],
+        mut others: Vec<Vec<f32>>,
+        cost: f32,
+        least_new: usize,
+    ) -> Vec<Vec<f32>> {
+        let units: Vec<f32> = self.ideals.iter().map(Ideal::unit).collect();
+        let own = self.missed(best);
+        let mut rows: Vec<Vec<f32>> = others.iter().map(|one| self.missed(one)).collect();
+        let worth = |rows: &[Vec<f32>]| {
+            let four: Vec<&[f32]> = std::iter::once(&own).chain(rows).map(Vec::as_slice).collect();
+            worth(&four, &units)
+        };
+        let mut new: Vec<usize> = (0..others.len()).collect();
+        while new.len() > least_new {
+            let all = worth(&rows);
+            let without = |at: usize| {
+                let mut rows = rows.clone();
+                rows[at].clone_from(&own);
+                worth(&rows)
+            };
+            let costs = new.iter().map(|at| (all - without(*at), *at));
+            let least = costs.reduce(|least, one| if one.0 < least.0 { one } else { least });
+            let Some((_, at)) = least.filter(|(lost, _)| *lost < cost) else { break };
+            new.retain(|one| *one != at);
+            rows[at].clone_from(&own);
+            others[at] = best.to_vec();
+        }
+        others
+    }
+
     /// What each sample misses in a point.
     fn missed(&self, point: &[f32]) -> Vec<f32> {
         self.ideals.iter().map(|ideal| ideal.missed(self.prior, point)).collect()

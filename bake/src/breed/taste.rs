@@ -9,18 +9,12 @@
 
 use rayon::prelude::*;
 
-use super::evidence::{Choice, SLOTS};
+use super::evidence::Choice;
+use super::likelihood::{Chances, Votes};
 use super::prior::Prior;
-use crate::math::exp;
+use super::weights::Weights;
 use crate::seed::Dice;
 
-/// The chance that a vote means nothing: a slip, or a change of mind.
-const LAPSE: f32 = 0.01;
-/// What two landscapes that can just be told apart differ by, root mean square over genes of range 0 … 1.
-const JUST_SEEN: f32 = 0.02;
-/// How unsure that is, and by how much weights of genes differ: standard deviations of logarithms.
-const SCALE_SPREAD: f32 = 1.5;
-const WEIGHT_SPREAD: f32 = 0.8;
 /// The squared difference of two values of a gene whose values are names.
 const OTHER_CHOICE: f32 = 0.15;
 
@@ -64,79 +58,15 @@ fn squared(is_choice: bool, x: f32, t: f32) -> f32 {
     }
 }
 
-/// Samples of what a person wants who chose so: the same for the same choices.
-pub fn ideals(prior: &Prior, choices: &[Choice]) -> Vec<Ideal> {
+/// Samples of what a person wants who chose so: the same for the same choices. `seen` says how much each gene is seen.
+pub fn ideals(prior: &Prior, choices: &[Choice], seen: &[f32]) -> Vec<Ideal> {
     let genes = prior.genes();
     let votes = Votes::new(genes, choices);
     let chains = (0..CHAINS).into_par_iter().map(|chain| {
         let dice = Dice::new(0u32, "taste", chain as u64);
-        Chain::start(prior, &votes, dice).run()
+        Chain::start(prior, &votes, Weights::new(seen), dice).run()
     });
     chains.collect::<Vec<_>>().concat()
-}
-
-/// Choices whose chances are multiplied before a logarithm is taken: more could underflow.
-const TOGETHER: usize = 8;
-
-/// Choices, by gene: a change of one gene reads one column.
-struct Votes {
-    /// Of each gene its values: of what was chosen in each choice, then of a rival in each, of the next one in each.
-    columns: Vec<Vec<f32>>,
-    /// A multiple of [`TOGETHER`], and 0 without votes: what fills up the last ones has no rivals.
-    choices: usize,
-    /// 0 where there is a point, infinite where there is none: what misses that much is never chosen.
-    blanks: Vec<f32>,
-}
-
-impl Votes {
-    fn new(genes: usize, choices: &[Choice]) -> Self {
-        let slots = choices.iter().map(|choice| choice.points.len()).max().unwrap_or(1);
-        let count = choices.len().next_multiple_of(TOGETHER);
-        let mut blanks = vec![f32::INFINITY; slots * count];
-        let mut columns = vec![vec![0.0; slots * count]; genes];
-        blanks[..count].fill(0.0);
-        for (number, choice) in choices.iter().enumerate() {
-            let rivals = (0..choice.points.len()).filter(|slot| *slot != choice.chosen);
-            for (slot, point) in std::iter::once(choice.chosen).chain(rivals).enumerate() {
-                let at = slot * count + number;
-                blanks[at] = 0.0;
-                columns.iter_mut().zip(&choice.points[point]).for_each(|(column, x)| column[at] = *x);
-            }
-        }
-        Self { columns, choices: count, blanks }
-    }
-
-    /// How likely the choices are, as a logarithm, where this is missed, squared. `chances` is room to reckon in.
-    fn likelihood(&self, squares: &[f32], chances: &mut Chances) -> f32 {
-        if self.choices == 0 {
-            return 0.0;
-        }
-        let (chosen, rivals) = squares.split_at(self.choices);
-        let Chances { least, sums } = chances;
-        least.clear();
-        least.extend(chosen.iter().map(|square| root(*square)));
-        sums.clear();
-        sums.resize(self.choices, 1.0);
-        for rivals in rivals.chunks_exact(self.choices) {
-            for ((sum, least), square) in sums.iter_mut().zip(least.iter()).zip(rivals) {
-                *sum += exp(least - root(*square));
-            }
-        }
-        sums.iter_mut().for_each(|sum| *sum = (1.0 - LAPSE) / *sum + LAPSE / SLOTS as f32);
-        sums.chunks_exact(TOGETHER).map(|some| libm::logf(some.iter().product())).sum()
-    }
-}
-
-/// Of each choice, what is missed in what was chosen, and the sum of what speaks for each alternative.
-#[derive(Default)]
-struct Chances {
-    least: Vec<f32>,
-    sums: Vec<f32>,
-}
-
-/// Differences of running sums may end below 0.
-fn root(square: f32) -> f32 {
-    if square > 0.0 { square.sqrt() } else { 0.0 }
 }
 
 /// One Markov chain.
@@ -148,22 +78,21 @@ struct Chain<'a> {
     /// What is missed in each point, squared.
     squares: Vec<f32>,
     likelihood: f32,
-    /// The mean of the weights' logarithms.
-    scale: f32,
+    /// What weights are before any vote.
+    weights: Weights<'a>,
     scratch: Vec<f32>,
     chances: Chances,
 }
 
 impl<'a> Chain<'a> {
     /// Begins at the likeliest of some that the prior gives.
-    fn start(prior: &'a Prior, votes: &'a Votes, mut dice: Dice) -> Self {
+    fn start(prior: &'a Prior, votes: &'a Votes, weights: Weights<'a>, mut dice: Dice) -> Self {
         let genes = prior.genes();
-        let scale = expected_scale(genes);
         let mut chances = Chances::default();
         let best = (0..STARTS).map(|_| {
             let component = prior.any(&mut dice);
             let at = (0..genes).map(|gene| prior.draw(component, gene, &mut dice)).collect();
-            let weights = (0..genes).map(|_| libm::expf(scale + 0.5 * dice.normal())).collect();
+            let weights = (0..genes).map(|gene| libm::expf(weights.draw(gene, &mut dice))).collect();
             let ideal = Ideal { at, weights, component };
             let squares = all_squares(prior, votes, &ideal);
             (votes.likelihood(&squares, &mut chances), squares, ideal)
@@ -171,7 +100,7 @@ impl<'a> Chain<'a> {
         let best = best.reduce(|best, one| if one.0 > best.0 { one } else { best });
         let (likelihood, squares, ideal) = best.unwrap_or_else(|| unreachable!("there are starts"));
         let scratch = vec![0.0; squares.len()];
-        Self { prior, votes, dice, ideal, squares, likelihood, scale, scratch, chances }
+        Self { prior, votes, dice, ideal, squares, likelihood, weights, scratch, chances }
     }
 
     fn run(mut self) -> Vec<Ideal> {
@@ -234,8 +163,7 @@ impl<'a> Chain<'a> {
         const STEP: f32 = 0.9;
         let (at, from) = (self.ideal.at[gene], libm::logf(self.ideal.weights[gene]));
         let to = from + STEP * self.dice.normal();
-        let density =
-            |log: f32| -0.5 * ((log - self.scale) / WEIGHT_SPREAD) * ((log - self.scale) / WEIGHT_SPREAD);
+        let density = |log: f32| self.weights.log_density(gene, log);
         self.change(gene, at, libm::expf(to), density(to) - density(from));
     }
 
@@ -262,23 +190,20 @@ impl<'a> Chain<'a> {
         }
     }
 
-    /// The scale of all weights: first given these weights, then together with them.
+    /// What is so of all weights: first given these weights, then their scale together with them.
     fn rescale(&mut self) {
-        let genes = self.prior.genes() as f32;
-        let (expected, spread) = (expected_scale(self.prior.genes()), SCALE_SPREAD * SCALE_SPREAD);
-        let mean = self.ideal.weights.iter().map(|weight| libm::logf(*weight)).sum::<f32>() / genes;
-        let (before, now) = (1.0 / spread, genes / (WEIGHT_SPREAD * WEIGHT_SPREAD));
-        self.scale =
-            (expected * before + mean * now) / (before + now) + self.dice.normal() / (before + now).sqrt();
+        let logs: Vec<f32> = self.ideal.weights.iter().map(|weight| libm::logf(*weight)).collect();
+        self.weights.redraw(&logs, &mut self.dice);
         let shift = 0.3 * self.dice.normal();
         let factor = libm::expf(shift);
         self.scratch.iter_mut().zip(&self.squares).for_each(|(new, old)| *new = old * factor);
         let likelihood = self.votes.likelihood(&self.scratch, &mut self.chances);
-        let density = |scale: f32| -0.5 * (scale - expected) * (scale - expected) / spread;
-        if self.accepts(likelihood - self.likelihood + density(self.scale + shift) - density(self.scale)) {
+        let shifted = self.weights.shifted(shift);
+        let prior = shifted.scale_log_density() - self.weights.scale_log_density();
+        if self.accepts(likelihood - self.likelihood + prior) {
             std::mem::swap(&mut self.squares, &mut self.scratch);
             self.likelihood = likelihood;
-            self.scale += shift;
+            self.weights = shifted;
             self.ideal.weights.iter_mut().for_each(|weight| *weight *= factor);
         }
     }
@@ -295,11 +220,6 @@ fn all_squares(prior: &Prior, votes: &Votes, ideal: &Ideal) -> Vec<f32> {
         squares.iter_mut().zip(column).for_each(|(sum, x)| *sum += weight * squared(is_choice, *x, at));
     }
     squares
-}
-
-/// The mean logarithm of weights of somebody who can just tell apart what differs by [`JUST_SEEN`].
-fn expected_scale(genes: usize) -> f32 {
-    -libm::logf(JUST_SEEN * JUST_SEEN * genes as f32)
 }
 
 /// Back into 0 … 1 from beyond its ends.

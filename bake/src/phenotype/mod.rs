@@ -11,6 +11,7 @@ mod sky;
 #[cfg(test)]
 mod tests;
 mod tree;
+pub mod visibility;
 
 use genescape_schema::{Category, Genome, GenomeError, Space};
 
@@ -37,6 +38,16 @@ impl Phenotype {
     pub fn of(space: &Space, genome: &Genome) -> Result<Self, GenomeError> {
         let of = |category| part(space, category, genome);
         Ok(Self { traits: [of(Category::Tree)?, of(Category::Terrain)?, of(Category::Sky)?] })
+    }
+
+    /// Of one category alone: nothing is seen of the others.
+    ///
+    /// # Errors
+    /// A gene that `space` does not declare.
+    pub fn of_category(space: &Space, category: Category, genome: &Genome) -> Result<Self, GenomeError> {
+        let mut traits = [const { Vec::new() }; 3];
+        traits[category as usize] = part(space, category, genome)?;
+        Ok(Self { traits })
     }
 
     /// How different two landscapes look in one category: 0 where they are alike, about 1 for two that were drawn by chance.

@@ -31,9 +31,7 @@ impl Members<'_> {
     fn traits(&self, chromosome: &Chromosome) -> Phenotype {
         let mut genome = self.base.clone();
         *genome.chromosome_mut(self.category) = chromosome.clone();
-        let mut traits = [const { Vec::new() }; 3];
-        traits[self.category as usize] = part(&SPACE, self.category, &genome).expect("complete");
-        Phenotype { traits }
+        Phenotype::of_category(&SPACE, self.category, &genome).expect("complete")
     }
 
     fn distance(&self, a: &Phenotype, b: &Phenotype) -> f32 {

@@ -1,6 +1,6 @@
 //! Breeding by a model of what the person wants.
 
-use genescape_schema::{Chromosome, Parent, Strategy};
+use genescape_schema::{Parent, Strategy};
 use proptest::prelude::*;
 
 use super::*;
@@ -136,6 +136,47 @@ fn what_a_person_set_outside_its_kind_stays() {
     assert!(seen > 20, "{seen}");
 }
 
+/// How many different chromosomes of a category there are in a generation.
+fn different(population: &Population, category: Category) -> usize {
+    let mut all = population.individuals.each_ref().map(|one| one.genome.chromosome(category)).to_vec();
+    all.sort_unstable();
+    all.dedup();
+    all.len()
+}
+
+#[test]
+fn who_has_settled_sees_what_is_known_beside_what_is_new_and_never_two_alike() {
+    const ROUNDS: u32 = 16;
+    let space = Space::builtin();
+    let (kinds, _) = Kinds::shipped(&space);
+    let (mut early, mut late) = (0, 0);
+    for seed in 40..43 {
+        let target = drawn(&space, &kinds, seed + 1000, 0).individuals[0].genome.clone();
+        let mut person = Person::new(&space, &target, Taste::Separable, 0.0, seed);
+        let mut history = vec![drawn(&space, &kinds, seed, 0)];
+        for next in 1..=ROUNDS {
+            let (now, past) = history.split_last_mut().expect("a first one");
+            now.votes = Some(person.vote(now));
+            let children = breed(&space, &kinds, past, now, next);
+            for (number, one) in children.individuals.iter().enumerate() {
+                let same = children.individuals[..number].iter().any(|other| other.genome == one.genome);
+                assert!(!same, "seed {seed}, generation {next}: {}", one.descent);
+            }
+            let all = Category::ALL.map(|category| different(&children, category));
+            assert!(all.iter().all(|count| *count > 1), "there is a choice of each: {all:?}");
+            match next {
+                ..5 => early += all.iter().sum::<usize>(),
+                12.. => late += all.iter().sum::<usize>(),
+                _ => {}
+            }
+            history.push(children);
+        }
+    }
+    // Of 12 chromosomes each: 4 and 5 generations of three persons.
+    assert!(early > 11 * 12, "{early} of 144");
+    assert!(late < 9 * 15, "{late} of 180");
+}
+
 #[test]
 fn an_account_names_the_kind_that_was_always_chosen() {
     let space = Space::builtin();
@@ -203,10 +244,7 @@ proptest! {
             prop_assert_eq!(child.genome.chromosome(Category::Sky), liked.chromosome(Category::Sky));
         }
         for category in [Category::Tree, Category::Terrain] {
-            let mut all: Vec<&Chromosome> = children.individuals.iter().map(|one| one.genome.chromosome(category)).collect();
-            all.sort_unstable();
-            all.dedup();
-            prop_assert_eq!(all.len(), INDIVIDUALS, "{} repeats", category);
+            prop_assert_eq!(different(&children, category), INDIVIDUALS, "{} repeats", category);
         }
         // What it wrote, it can read.
         let text = children.to_ron(&space);
