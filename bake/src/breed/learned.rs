@@ -149,7 +149,7 @@ impl<'a> Learned<'a> {
         let variety = self.parents.variety.unwrap_or(Variety::USUAL);
         let is_settling = taste.votes >= SETTLING && variety == Variety::USUAL && !taste.prior.is_wild();
         if let Some(best) = four.first().filter(|_| is_settling) {
-            others = spread.sparing(best, others, NEW_COSTS[category as usize], self.least_new());
+            others = spread.sparing(best, others, NEW_COSTS[category as usize], self.least_new(category));
         }
         four.extend(Varied { spread: &spread, kind: &kind }.others(variety, &four, others, &mut dice));
         let mut made: Vec<Chromosome> = Vec::new();
@@ -160,10 +160,13 @@ impl<'a> Learned<'a> {
         made
     }
 
-    /// How many of the four have something new of each category, at least: three in all differ from the first.
-    fn least_new(&self) -> usize {
-        let locked = Category::ALL.iter().filter(|one| self.parents.locked.contains(one.name())).count();
-        (INDIVIDUALS - 1).div_ceil(Category::ALL.len().saturating_sub(locked).max(1))
+    /// How many new ones of a category there are, at least. Three in all differ from the first landscape: what is locked, the
+    /// category makes up for that costs least.
+    fn least_new(&self, category: Category) -> usize {
+        let mut open: Vec<Category> = Category::ALL.to_vec();
+        open.retain(|one| !self.parents.locked.contains(one.name()));
+        let is_cheapest = open.last() == Some(&category);
+        if is_cheapest { INDIVIDUALS - open.len() } else { 1 }
     }
 
     /// Whether all four are for asking: not where close variations are wanted. Kinds say so much of what may be wanted that

@@ -144,6 +144,29 @@ fn different(population: &Population, category: Category) -> usize {
     all.len()
 }
 
+fn has_two_alike(population: &Population) -> bool {
+    let genomes = population.individuals.each_ref().map(|one| &one.genome);
+    (0..INDIVIDUALS).any(|number| genomes[..number].contains(&genomes[number]))
+}
+
+#[test]
+fn whatever_is_locked_no_two_are_alike() {
+    let space = Space::builtin();
+    let (kinds, _) = Kinds::shipped(&space);
+    for (seed, locked) in [(60, &["tree"][..]), (61, &["terrain"]), (62, &["sky"]), (63, &["tree", "sky"])] {
+        let mut first = voted(&space, &kinds, seed, 0, [Some(0); 3]);
+        first.locked = locked.iter().map(|one| (*one).to_owned()).collect();
+        let mut history = vec![first];
+        for next in 1..12 {
+            let (now, past) = history.split_last().expect("a first one");
+            let mut children = breed(&space, &kinds, past, now, next);
+            assert!(!has_two_alike(&children), "{locked:?} are locked, generation {next}");
+            children.votes = Some(Votes { tree: Some(0), terrain: Some(0), sky: Some(0) });
+            history.push(children);
+        }
+    }
+}
+
 #[test]
 fn who_has_settled_sees_what_is_known_beside_what_is_new_and_never_two_alike() {
     const ROUNDS: u32 = 16;
@@ -158,10 +181,7 @@ fn who_has_settled_sees_what_is_known_beside_what_is_new_and_never_two_alike() {
             let (now, past) = history.split_last_mut().expect("a first one");
             now.votes = Some(person.vote(now));
             let children = breed(&space, &kinds, past, now, next);
-            for (number, one) in children.individuals.iter().enumerate() {
-                let same = children.individuals[..number].iter().any(|other| other.genome == one.genome);
-                assert!(!same, "seed {seed}, generation {next}: {}", one.descent);
-            }
+            assert!(!has_two_alike(&children), "seed {seed}, generation {next}");
             let all = Category::ALL.map(|category| different(&children, category));
             assert!(all.iter().all(|count| *count > 1), "there is a choice of each: {all:?}");
             match next {
