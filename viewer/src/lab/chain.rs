@@ -20,6 +20,8 @@ const SIDE_PX: u32 = 240;
 const FOV_Y_RAD: f32 = 0.2;
 /// Radius that is seen, over that of the sphere around all levels, whose corners are mostly empty.
 const MARGIN: f32 = 0.85;
+/// Errors of levels are larger by this, so that none but the full tree is fine enough to cast a shadow.
+const EXAGGERATED: f32 = 1000.0;
 /// A channel that differs by more belongs to the tree.
 const SEEN: u8 = 2;
 /// What each level is to keep: coverage within this of that of the full tree, vertices within this of half of those before.
@@ -41,14 +43,15 @@ pub struct Shown {
 /// All levels of a template, drawn.
 pub fn chain(headless: &Headless, scene: &Scene, tree: Instance, template: &Template) -> Result<Vec<Shown>> {
     let mut alone = scene.clone();
-    // Pictures would take over from coarse levels.
-    let meshes =
-        Template { impostor: None, blob: format!("{} of meshes alone", template.blob), ..template.clone() };
+    // Pictures would take over from coarse levels, and coarse levels cast shadows on the others.
+    let blob = format!("{} of meshes alone", template.blob);
+    let mut meshes = Template { impostor: None, blob, ..template.clone() };
+    meshes.levels.iter_mut().for_each(|level| level.error_m *= EXAGGERATED);
     alone.trees.templates = vec![Arc::new(meshes)];
     alone.trees.instances = Arc::new([Instance { template: 0, ..tree }]);
     let mut view = headless.view(headless.upload(&alone)?, [SIDE_PX, SIDE_PX]);
     let (camera, away_m) = before(scene, &tree, template);
-    let error_px_per_m = camera.focal_px(SIDE_PX as f32) * tree.max_scale() / away_m;
+    let error_px_per_m = EXAGGERATED * camera.focal_px(SIDE_PX as f32) * tree.max_scale() / away_m;
     let usual = Options {
         tree_lod: TreeLodMode::Discrete,
         draw_terrain: false,

@@ -17,12 +17,23 @@ pub fn alike(template: &Template) -> Option<Template> {
         let first = range.first as usize;
         template.indices.get(first..first + range.count as usize).unwrap_or_default()
     };
+    let are_leaves = |at: &usize| *at > 0 && !template.materials[*at].clusters;
+    let leaves = || (0..full.ranges.len()).filter(are_leaves);
+    let all_leaves: u32 = leaves().map(|at| full.ranges[at].count / 3).sum();
+    // Triangles of clusters stand for leaves, so leaves get them.
+    let wanted = |level: &Level, at: usize| {
+        let of_clusters = (0..level.ranges.len()).filter(|&at| template.materials[at].clusters);
+        let shared: u32 = of_clusters.map(|at| level.ranges[at].count / 3).sum();
+        let share =
+            if are_leaves(&at) { shared * (full.ranges[at].count / 3) / all_leaves.max(1) } else { 0 };
+        level.ranges[at].count as usize + 3 * share as usize
+    };
     let mut indices = Vec::new();
     let mut levels = Vec::new();
     for level in &template.levels {
         let mut ranges = Vec::new();
-        for (range, wanted) in full.ranges.iter().zip(&level.ranges) {
-            let (count, first) = (wanted.count as usize, indices.len() as u32);
+        for (at, range) in full.ranges.iter().enumerate() {
+            let (count, first) = (wanted(level, at), indices.len() as u32);
             // Leaves are pieces of their own: without pruning none would ever go.
             let options = SimplifyOptions::Prune | SimplifyOptions::Permissive;
             let simple = match part(range) {
