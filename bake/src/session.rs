@@ -3,12 +3,12 @@
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 use anyhow::Result;
 use genescape_cache::{BlobRef, Cache, Digest, How};
-use genescape_schema::{Kinds, Population, Space, Strategy};
+use genescape_schema::{Kinds, Population, Report, Space, Strategy};
 use genescape_world::{PopulationFile, World, WorldKinds, names};
 
 use crate::audition::{self, Auditioned};
@@ -23,6 +23,8 @@ use crate::run::{self, RunError, Runner};
 pub struct Session {
     world: World,
     space: Space,
+    /// Kinds that ship, as read with this space.
+    shipped: OnceLock<(Kinds, Vec<Report>)>,
     /// Genes that the world's `space.ron` lacks.
     notices: Vec<String>,
     cache: Cache,
@@ -64,7 +66,7 @@ impl Session {
     pub fn new(world: World, pool: rayon::ThreadPool, resolution: Resolution) -> Result<Self> {
         let (space, notices) = world.space()?;
         let cache = Cache::open(world.baked())?;
-        Ok(Self { world, space, notices, cache, pool, resolution })
+        Ok(Self { world, space, shipped: OnceLock::new(), notices, cache, pool, resolution })
     }
 
     pub fn world(&self) -> &World {
@@ -85,6 +87,7 @@ impl Session {
     /// A file that cannot be read or is wrong; the space stays as it was.
     pub fn reload_space(&mut self) -> Result<()> {
         (self.space, self.notices) = self.world.space()?;
+        self.shipped = OnceLock::new();
         Ok(())
     }
 
@@ -132,7 +135,9 @@ impl Session {
 
     /// The kinds that landscapes are drawn and bred from. What is wrong with a file of a kind is told, and it is left out.
     pub fn kinds(&self, listener: &dyn Listener) -> Kinds {
-        let WorldKinds { kinds, faults } = self.world.kinds(&self.space);
+        // Read for each vote, they would be a quarter of the wait for children that were guessed.
+        let shipped = self.shipped.get_or_init(|| Kinds::shipped(&self.space)).clone();
+        let WorldKinds { kinds, faults } = self.world.kinds_beside(shipped, &self.space);
         for fault in faults {
             listener.tell(&Event::Notice { message: format!("a kind is left out: {fault}") });
         }

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::PathBuf;
 
-use genescape_schema::{Category, Kind, Kinds, SHIPPED, Space};
+use genescape_schema::{Category, Kind, Kinds, Report, SHIPPED, Space};
 
 use crate::folder::{list, read};
 use crate::{World, WorldError, atomic_write, names};
@@ -20,7 +20,12 @@ pub struct WorldKinds {
 impl World {
     /// The kinds that ship and those in the world's folders; a file of the same name takes the place of one that ships.
     pub fn kinds(&self, space: &Space) -> WorldKinds {
-        let (kinds, faults) = Kinds::shipped(space);
+        self.kinds_beside(Kinds::shipped(space), space)
+    }
+
+    /// The same for those who have read the ones that ship before, by [`Kinds::shipped`] with that space.
+    pub fn kinds_beside(&self, shipped: (Kinds, Vec<Report>), space: &Space) -> WorldKinds {
+        let (kinds, faults) = shipped;
         let mut found = WorldKinds { kinds, faults: faults.into_iter().map(WorldError::from).collect() };
         for category in Category::ALL {
             let folder = self.root().join(names::KINDS).join(category.name());

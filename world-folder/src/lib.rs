@@ -34,6 +34,6 @@ pub use error::WorldError;
 pub use folder::{MAX_TEXT_BYTES, PopulationFile, STARTER_RON, World};
 pub use kinds::WorldKinds;
 pub use named_files::{MAX_MODEL_BYTES, NamedFiles};
-pub use snapshot::{Change, Scope, Snapshot};
+pub use snapshot::{Change, Scope, Snapshot, Stamp};
 pub use source::Source;
 pub use watch::Watch;

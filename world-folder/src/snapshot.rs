@@ -58,7 +58,7 @@ pub struct Snapshot {
 
 /// Identifies one saved state of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
-struct Stamp {
+pub struct Stamp {
     /// By the file system's clock. Saving a file as it was counts, too: it asks for its bake.
     saved: Option<SystemTime>,
     /// Of a small file the digest: two saves may fall within one tick of that clock. Of a scene, which is always
@@ -66,6 +66,18 @@ struct Stamp {
     digest: Option<blake3::Hash>,
     length: u64,
     inode: u64,
+}
+
+impl Stamp {
+    /// What the system knows of a file; `None` if it is not there. Links are followed.
+    pub fn of(path: &Path) -> Option<Self> {
+        let data = fs::metadata(path).ok().filter(|data| data.is_file())?;
+        #[cfg(unix)]
+        let inode = std::os::unix::fs::MetadataExt::ino(&data);
+        #[cfg(not(unix))]
+        let inode = 0;
+        Some(Self { saved: data.modified().ok(), digest: None, length: data.len(), inode })
+    }
 }
 
 impl Scope {
@@ -90,7 +102,7 @@ impl Snapshot {
         }
         for (number, path) in files.iter().enumerate() {
             now.add_folder_of(path);
-            now.files.extend(stamp(path).map(|stamp| (number, stamp)));
+            now.files.extend(Stamp::of(path).map(|stamp| (number, stamp)));
         }
         if let Some(folder) = shaders {
             let is_shader = |name: &str| name.ends_with(".wgsl").then(|| folder.join(name));
@@ -119,7 +131,7 @@ impl Snapshot {
             }
         }
         if scenes {
-            self.current = stamp(&root.join(names::CURRENT));
+            self.current = Stamp::of(&root.join(names::CURRENT));
             self.add_scenes(world);
         }
     }
@@ -153,7 +165,7 @@ impl Snapshot {
         for generation in list(&baked, names::baked_generation).unwrap_or_default() {
             for index in 0..INDIVIDUALS {
                 let path = world.scene_path(generation, index);
-                self.scenes.extend(stamp(&path).map(|stamp| ((generation, index), stamp)));
+                self.scenes.extend(Stamp::of(&path).map(|stamp| ((generation, index), stamp)));
                 // Its own folder and that of the generation.
                 for folder in path.ancestors().skip(1).take(2) {
                     self.add_folder(folder.to_owned());
@@ -217,20 +229,10 @@ fn lineage(path: &Path, bytes: &[u8]) -> Option<Lineage> {
     Some(Lineage { generation: names::generation_of(path).unwrap_or(stated.generation), ..stated })
 }
 
-/// What the system knows of a file; `None` if it is not there. Links are followed.
-fn stamp(path: &Path) -> Option<Stamp> {
-    let data = fs::metadata(path).ok().filter(|data| data.is_file())?;
-    #[cfg(unix)]
-    let inode = std::os::unix::fs::MetadataExt::ino(&data);
-    #[cfg(not(unix))]
-    let inode = 0;
-    Some(Stamp { saved: data.modified().ok(), digest: None, length: data.len(), inode })
-}
-
 /// The stamp of a small file, and its bytes; none while it cannot be read.
 fn read(path: &Path) -> Option<(Stamp, Vec<u8>)> {
     // The time first: a save in between is then found by the next look.
-    let saved = stamp(path)?.saved;
+    let saved = Stamp::of(path)?.saved;
     match regular_file::read(path, MAX_TEXT_BYTES) {
         Ok(bytes) => {
             let digest = Some(blake3::hash(&bytes));

@@ -18,7 +18,7 @@ use notify_debouncer_full::{DebounceEventResult, Debouncer, NoCache, new_debounc
 use crate::snapshot::{Change, Scope, Snapshot};
 
 /// An editor's save is several events; they are gathered for this long, and never longer.
-const SETTLE: Duration = Duration::from_millis(40);
+const SETTLE: Duration = Duration::from_millis(20);
 /// How often a folder that sends no events is looked at.
 const POLL: Duration = Duration::from_millis(300);
 /// How often one is looked at that should send events: some systems lose them without a word.

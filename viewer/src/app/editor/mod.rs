@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use genescape_schema::{Genome, INDIVIDUALS, Parent, Population, Space};
-use genescape_world::{Change, Source, World, names};
+use genescape_world::{Change, Source, Stamp, World, names};
 
 use crate::baker;
 use crate::ballots::Ballots;
@@ -76,6 +76,8 @@ pub struct Editor {
     loaded: [bool; INDIVIDUALS],
     /// Views whose scene of that generation is being read.
     asked: [bool; INDIVIDUALS],
+    /// The state of the world's file that was asked for last; none of one that cannot be shown.
+    read: [Option<Stamp>; INDIVIDUALS],
     faults: BTreeMap<Fault, FileError>,
     pub(super) bake: BakeProgress,
     /// Remarks on files that were reported and still hold: a file is read again for many reasons.
@@ -106,6 +108,7 @@ impl Editor {
             follows: true,
             loaded: [false; INDIVIDUALS],
             asked: [false; INDIVIDUALS],
+            read: Default::default(),
             faults: BTreeMap::new(),
             bake: BakeProgress::default(),
             noticed: BTreeSet::new(),
@@ -217,7 +220,7 @@ impl Editor {
         self.follows = self.generations.last() == Some(&generation);
         (self.population, self.bred) = (None, None);
         self.ballots = self.steps.ballots(generation);
-        (self.loaded, self.asked) = Default::default();
+        (self.loaded, self.asked, self.read) = Default::default();
         self.faults.retain(|fault, _| !matches!(fault, Fault::Scene(_)));
         self.read_population();
         let names = |parent: &Parent| {
@@ -241,10 +244,17 @@ impl Editor {
             Source::World(_) => self.world.scene_path(self.generation, view),
             Source::Scenes(paths) => paths[view].clone(),
         };
-        if path.is_file() || self.world().is_none() {
-            self.asked[view] = true;
-            self.tasks.push(Task::Load { view, generation: self.generation, path });
+        if self.world().is_some() {
+            // A file that has come is found here and reported besides.
+            let stamp = Stamp::of(&path);
+            let is_news = stamp.is_some() && stamp != self.read[view];
+            self.read[view] = stamp;
+            if !is_news {
+                return;
+            }
         }
+        self.asked[view] = true;
+        self.tasks.push(Task::Load { view, generation: self.generation, path });
     }
 
     /// A view has got a landscape, or has not; `true` if it is the one that is wanted.
@@ -259,6 +269,7 @@ impl Editor {
                 self.faults.remove(&Fault::Scene(view));
             }
             Err(error) => {
+                self.read[view] = None;
                 let what = match self.world() {
                     Some(_) => format!("landscape {} cannot be shown", view + 1),
                     None => "the file cannot be shown".to_owned(),

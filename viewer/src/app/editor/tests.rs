@@ -5,6 +5,7 @@ use crate::ballots::Ballot;
 use crate::input::Command;
 use crate::ui::model::ViewState;
 use genescape_schema::{Category, Genome, Parent, Variety, Votes};
+use genescape_world::atomic_write;
 
 /// A world with the starter landscapes in `root`, an editor of it, and its population file.
 fn starter(root: &Path) -> (Editor, PathBuf) {
@@ -287,6 +288,30 @@ fn a_landscape_waits_grows_loads_and_is_ready_and_never_falls_back() {
     editor.baked(stage("sky", &[0, 1]));
     editor.visit(0);
     assert_eq!(states(&editor), [ViewState::Loading, ViewState::Waiting]);
+}
+
+#[test]
+fn a_scene_that_came_is_read_once() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (mut editor, _) = starter(folder.path());
+    let path = editor.world.scene_path(0, 0);
+    std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+    let mut tasks_after = |text: &str, told: Result<(), &str>| {
+        atomic_write::replace(&path, text).expect("written");
+        let change = Change::Scene { generation: 0, index: 0 };
+        editor.take_tasks();
+        editor.changed(change);
+        let tasks = editor.take_tasks();
+        editor.changed(change);
+        assert_eq!(editor.take_tasks(), [], "while it is read");
+        editor.loaded(0, 0, told).then(|| editor.changed(change));
+        assert_eq!(editor.take_tasks(), [], "when it is on show");
+        tasks.len()
+    };
+    assert_eq!(tasks_after("{}", Ok(())), 1);
+    assert_eq!(tasks_after("{ }", Err("a blob is damaged")), 1, "another was written");
+    editor.changed(Change::Scene { generation: 0, index: 0 });
+    assert_eq!(editor.take_tasks().len(), 1, "somebody has mended what it is made of");
 }
 
 #[test]
