@@ -99,6 +99,17 @@ pub fn bless(what: Blessing) -> Result<()> {
     execute(test.env("GENESCAPE_BLESS", "1"))
 }
 
+/// Measures how long a person waits for the children of a vote, in the release build.
+pub fn waits(rounds: u32) -> Result<()> {
+    setup::window()?;
+    let name = "waits::children_of_a_vote_come_one_by_one_and_once";
+    let mut test =
+        cargo(&["test", "--release", "--quiet", "--package", "genescape-viewer", "--test", "viewer"]);
+    test.args(["--", "--ignored", "--exact", name, "--nocapture"])
+        .env("GENESCAPE_ROUNDS", rounds.to_string());
+    execute(in_a_session(&mut test))
+}
+
 fn formatting() -> Result<()> {
     execute(&mut cargo(&["fmt", "--all", "--check"]))
 }
@@ -140,9 +151,13 @@ const PROPTEST_SEED: &str = "20261122";
 /// Tests of the workspace. Of one package alone, dependencies would have other features and be compiled again.
 fn test(arguments: &[&str]) -> Command {
     let mut command = cargo(&["test", "--quiet", "--workspace", "--no-fail-fast"]);
-    command.args(arguments);
+    in_a_session(command.args(arguments));
+    command
+}
+
+/// Gives windows the folder that they complain about the lack of.
+fn in_a_session(command: &mut Command) -> &mut Command {
     if cfg!(target_os = "linux") && std::env::var_os("XDG_RUNTIME_DIR").is_none() {
-        // Otherwise each window complains.
         command.env("XDG_RUNTIME_DIR", root().join("target"));
     }
     command

@@ -48,6 +48,13 @@ enum Chore {
         #[arg(long, default_value_t = 3)]
         runs: u32,
     },
+    /// Vote in a window as a person does, and time how long the next landscapes take to come. Minutes, best on a machine
+    /// that does nothing else.
+    Waits {
+        /// Generations.
+        #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
+        rounds: u32,
+    },
     /// Contact sheets of random landscapes as they come, and of generations bred by random votes.
     Gallery(gallery::Options),
     /// Bake the starters and render all four with Blender into docs/pictures/starters.jpg.
@@ -64,6 +71,7 @@ fn main() -> ExitCode {
         Chore::Bless { what } => check::bless(what).map(|()| true),
         Chore::Lines { largest } => lines::run(largest).map(|()| true),
         Chore::Bench { runs } => bench::bench(runs).map(|()| true),
+        Chore::Waits { rounds } => check::waits(rounds).map(|()| true),
         Chore::Gallery(options) => gallery::run(&options).map(|()| true),
         Chore::Setup => setup::all().map(|()| true),
         Chore::Pictures { samples } => pictures::run(samples).map(|()| true),

@@ -25,7 +25,8 @@ pub mod keys {
     keys! {
         ESCAPE = 1, E = 18, U = 22, Y = 21, ENTER = 28, CTRL = 29, A = 30, F = 33, G = 34, Z = 44, N = 49, DOT = 52, W = 17, S = 31, F5 = 63,
         F12 = 88,
-        TAB = 15, PAGE_UP = 104, PAGE_DOWN = 109,
+        TAB = 15, PAGE_UP = 104, PAGE_DOWN = 109, I = 23, O = 24, P = 25, J = 36, K = 37, L = 38, SEMICOLON = 39, M = 50,
+        COMMA = 51, SLASH = 53,
     }
 
     /// The key of a digit.

@@ -20,6 +20,7 @@ mod program;
 mod shaders;
 mod shadows;
 mod sky;
+mod waits;
 mod water;
 mod window;
 mod window_file;
