@@ -28,10 +28,10 @@ const GUESSES_EVERY: u32 = 5;
 
 /// Votes after which new chromosomes cost something: before, who has seen little sees as much as there is.
 const SETTLING: usize = 6;
-/// What a new chromosome of each category must tell, in nats, to be shown instead of the best guess: 0.04 for each stage that
+/// What a new chromosome of each category must tell, in nats, to be shown instead of the best guess: 0.05 for each stage that
 /// runs for it, which are textures and templates of trees, the land and its mesh, the sky's light and pictures, and about two
 /// of those that read several categories. More makes later guesses worse, less bakes more.
-const NEW_COSTS: [f32; 3] = [0.32, 0.16, 0.16];
+const NEW_COSTS: [f32; 3] = [0.4, 0.2, 0.2];
 
 /// What is known of somebody who voted so.
 pub struct Learned<'a> {

@@ -8,8 +8,9 @@ use crate::kinds::{Company, Home};
 const ORDERS: [[usize; INDIVIDUALS]; 6] =
     [[0, 1, 2, 3], [0, 1, 3, 2], [0, 2, 1, 3], [0, 2, 3, 1], [0, 3, 1, 2], [0, 3, 2, 1]];
 
-/// Trees and skies in the order in which no two landscapes are alike, most parts go together and most landscapes have the
-/// land and trees of the first, whose light alone is to be baked. All parts of the first, the best guess, stay together.
+/// Trees and skies in the order in which no two landscapes are alike, fewest differ in one part alone, which hardly makes
+/// another place, most parts go together, and most have the land and trees of the first, whose light alone is to be baked. All
+/// parts of the first, the best guess, stay together.
 pub fn pair(space: &Space, kinds: &Kinds, parts: &mut [Vec<Chromosome>; 3]) {
     let homes: Vec<Vec<Home<'_>>> = Category::ALL
         .into_iter()
@@ -28,10 +29,11 @@ pub fn pair(space: &Space, kinds: &Kinds, parts: &mut [Vec<Chromosome>; 3]) {
             discord(space, landscape(number), homes)
         };
         let all: [[&Chromosome; 3]; INDIVIDUALS] = std::array::from_fn(landscape);
-        let alike = (0..INDIVIDUALS).flat_map(|a| (0..a).map(move |b| (a, b)));
-        let alike = alike.filter(|(a, b)| all[*a] == all[*b]).count();
+        let pairs = || (0..INDIVIDUALS).flat_map(|a| (0..a).map(move |b| (a, b)));
+        let differ_in = |(a, b): (usize, usize)| all[a].iter().zip(&all[b]).filter(|(a, b)| a != b).count();
+        let with = |parts: usize| pairs().filter(|pair| differ_in(*pair) == parts).count();
         let planted = all.iter().filter(|one| one[..2] != all[0][..2]).count();
-        (alike, (1..INDIVIDUALS).map(discord).sum::<usize>(), planted)
+        (with(0), with(1), (1..INDIVIDUALS).map(discord).sum::<usize>(), planted)
     };
     let all = ORDERS.iter().flat_map(|trees| ORDERS.iter().map(move |skies| (trees, skies)));
     let Some((trees, skies)) = all.min_by_key(|(trees, skies)| rank(trees, skies)) else { return };

@@ -126,7 +126,8 @@ impl Spread<'_> {
     }
 
     /// Of three others than `best` those that tell what showing something new costs, in nats, and at least so many; in place of
-    /// each other one there is `best` again.
+    /// each other one there is `best` again, or, where a single one is new, that once more: two of a category, each shown twice,
+    /// make four landscapes of which each differs from each in two categories.
     pub fn sparing(
         &self,
         best: &[f32],
@@ -155,6 +156,10 @@ impl Spread<'_> {
             new.retain(|one| *one != at);
             rows[at].clone_from(&own);
             others[at] = best.to_vec();
+        }
+        if let [only] = new[..] {
+            let again = if only + 1 < others.len() { only + 1 } else { 0 };
+            others[again] = others[only].clone();
         }
         others
     }

@@ -144,6 +144,17 @@ fn different(population: &Population, category: Category) -> usize {
     all.len()
 }
 
+/// Pairs of landscapes that differ in two categories at least.
+fn pairs_of_places(population: &Population) -> usize {
+    let genomes = population.individuals.each_ref().map(|one| &one.genome);
+    let differ_in = |a: usize, b: usize| {
+        let differs =
+            |category: &Category| genomes[a].chromosome(*category) != genomes[b].chromosome(*category);
+        Category::ALL.iter().filter(|category| differs(category)).count()
+    };
+    (0..INDIVIDUALS).flat_map(|a| (0..a).map(move |b| (a, b))).filter(|(a, b)| differ_in(*a, *b) > 1).count()
+}
+
 fn has_two_alike(population: &Population) -> bool {
     let genomes = population.individuals.each_ref().map(|one| &one.genome);
     (0..INDIVIDUALS).any(|number| genomes[..number].contains(&genomes[number]))
@@ -172,7 +183,7 @@ fn who_has_settled_sees_what_is_known_beside_what_is_new_and_never_two_alike() {
     const ROUNDS: u32 = 16;
     let space = Space::builtin();
     let (kinds, _) = Kinds::shipped(&space);
-    let (mut early, mut late) = (0, 0);
+    let (mut early, mut late, mut places) = (0, 0, 0);
     for seed in 40..43 {
         let target = drawn(&space, &kinds, seed + 1000, 0).individuals[0].genome.clone();
         let mut person = Person::new(&space, &target, Taste::Separable, 0.0, seed);
@@ -186,7 +197,10 @@ fn who_has_settled_sees_what_is_known_beside_what_is_new_and_never_two_alike() {
             assert!(all.iter().all(|count| *count > 1), "there is a choice of each: {all:?}");
             match next {
                 ..5 => early += all.iter().sum::<usize>(),
-                12.. => late += all.iter().sum::<usize>(),
+                12.. => {
+                    late += all.iter().sum::<usize>();
+                    places += pairs_of_places(&children);
+                }
                 _ => {}
             }
             history.push(children);
@@ -195,6 +209,8 @@ fn who_has_settled_sees_what_is_known_beside_what_is_new_and_never_two_alike() {
     // Of 12 chromosomes each: 4 and 5 generations of three persons.
     assert!(early > 11 * 12, "{early} of 144");
     assert!(late < 9 * 15, "{late} of 180");
+    // Of 6 pairs each; with what is known shown as often as can be it would be half of them.
+    assert!(places > 5 * 15, "{places} of 90 pairs are different places");
 }
 
 #[test]
