@@ -9,7 +9,7 @@ use clap::ValueEnum;
 
 use crate::setup;
 use crate::tools::{
-    cargo, files, fresh, is_installed, program, python, release, root, run as execute, script,
+    cargo, files, fresh, in_a_session, is_installed, program, python, release, root, run as execute, script,
 };
 
 /// A step by its name.
@@ -99,17 +99,6 @@ pub fn bless(what: Blessing) -> Result<()> {
     execute(test.env("GENESCAPE_BLESS", "1"))
 }
 
-/// Measures how long a person waits for the children of a vote, in the release build.
-pub fn waits(rounds: u32) -> Result<()> {
-    setup::window()?;
-    let name = "waits::children_of_a_vote_come_one_by_one_and_once";
-    let mut test =
-        cargo(&["test", "--release", "--quiet", "--package", "genescape-viewer", "--test", "viewer"]);
-    test.args(["--", "--ignored", "--exact", name, "--nocapture"])
-        .env("GENESCAPE_ROUNDS", rounds.to_string());
-    execute(in_a_session(&mut test))
-}
-
 fn formatting() -> Result<()> {
     execute(&mut cargo(&["fmt", "--all", "--check"]))
 }
@@ -152,14 +141,6 @@ const PROPTEST_SEED: &str = "20261122";
 fn test(arguments: &[&str]) -> Command {
     let mut command = cargo(&["test", "--quiet", "--workspace", "--no-fail-fast"]);
     in_a_session(command.args(arguments));
-    command
-}
-
-/// Gives windows the folder that they complain about the lack of.
-fn in_a_session(command: &mut Command) -> &mut Command {
-    if cfg!(target_os = "linux") && std::env::var_os("XDG_RUNTIME_DIR").is_none() {
-        command.env("XDG_RUNTIME_DIR", root().join("target"));
-    }
     command
 }
 

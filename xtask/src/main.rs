@@ -1,6 +1,7 @@
 //! A developer's chores: the whole check (`test`) and what it compares with (`bless`), lines of code (`lines`), times
-//! beside those of a peer (`bench`), set-up of the programs that these need (`setup`), contact sheets of landscapes
-//! (`gallery`), and the picture in the README (`pictures`). Knows nothing of landscapes: it runs other programs and reports.
+//! beside those of a peer (`bench`), the wait after a vote (`waits`), set-up of the programs that these need (`setup`),
+//! contact sheets of landscapes (`gallery`), and the picture in the README (`pictures`). Knows nothing of landscapes: it runs
+//! other programs and reports.
 #![expect(clippy::print_stdout, reason = "a command line program")]
 
 mod bench;
@@ -13,6 +14,7 @@ mod source;
 #[cfg(test)]
 mod tidy;
 mod tools;
+mod waits;
 
 use std::process::ExitCode;
 
@@ -71,7 +73,7 @@ fn main() -> ExitCode {
         Chore::Bless { what } => check::bless(what).map(|()| true),
         Chore::Lines { largest } => lines::run(largest).map(|()| true),
         Chore::Bench { runs } => bench::bench(runs).map(|()| true),
-        Chore::Waits { rounds } => check::waits(rounds).map(|()| true),
+        Chore::Waits { rounds } => waits::waits(rounds).map(|()| true),
         Chore::Gallery(options) => gallery::run(&options).map(|()| true),
         Chore::Setup => setup::all().map(|()| true),
         Chore::Pictures { samples } => pictures::run(samples).map(|()| true),

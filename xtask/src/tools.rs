@@ -46,6 +46,14 @@ pub fn program(name: impl AsRef<std::ffi::OsStr>) -> Command {
     command
 }
 
+/// Gives windows the folder that they complain about the lack of.
+pub fn in_a_session(command: &mut Command) -> &mut Command {
+    if cfg!(target_os = "linux") && std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        command.env("XDG_RUNTIME_DIR", root().join("target"));
+    }
+    command
+}
+
 /// Runs a command, its output going to ours; an error unless it succeeds.
 pub fn run(command: &mut Command) -> Result<()> {
     let status = command.status().with_context(|| format!("cannot start {:?}", command.get_program()))?;

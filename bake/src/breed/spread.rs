@@ -158,7 +158,7 @@ impl Spread<'_> {
             others[at] = best.to_vec();
         }
         if let [only] = new[..] {
-            let again = if only + 1 < others.len() { only + 1 } else { 0 };
+            let again = (only + 1) % others.len();
             others[again] = others[only].clone();
         }
         others
