@@ -95,6 +95,12 @@ hazes = {m.name: sum(n.type == "GROUP" and n.node_tree.name.endswith(" haze") fo
          and any(n.type == "BSDF_PRINCIPLED" for n in m.node_tree.nodes) and m.name != "Material"}
 result["hazes"] = hazes
 check(hazes and set(hazes.values()) == {1}, f"not every material has one haze: {hazes}")
+leaves = {m.name: sum(n.type == "BSDF_TRANSLUCENT" for n in m.node_tree.nodes) for m in bpy.data.materials
+          if m.users and m.name.split(".")[0] in ("leaf", "blossom", "clusters")}
+result["leaves"] = leaves
+check(set(leaves.values()) <= {1}, f"not every leaf lets light through once: {leaves}")
+told = {m["name"] for m in gltf["materials"] if "KHR_materials_diffuse_transmission" in m.get("extensions", {})}
+check(not told or leaves, f"of {told} no material arrived")
 check_picture("set up by the script", (0.15, 0.7), os.path.join(folder, "script.png"))
 if "--render" in sys.argv:
     path, size, samples = sys.argv[sys.argv.index("--render") + 1:][:3]

@@ -32,6 +32,7 @@ def main():
     set_sun(objects)
     set_sky()
     for material in {m for o in objects | kinds_of_trees() if o.type == "MESH" for m in o.data.materials if m}:
+        let_light_through(material)
         add_haze(material)
     set_view()
     print(f"{TITLE}: {count} trees of {len(SETTINGS['kinds'])} kinds; camera, sun and sky are set")
@@ -181,6 +182,37 @@ def set_sky():
         node.location = (300 * i, 0)
     if hasattr(world, "sun_threshold"):
         world.sun_threshold = 0.0  # Eevee would take the glow around the sun for a second one
+
+
+# ---- leaves ----
+
+def let_light_through(material):
+    """What the file says of light through leaves (KHR_materials_diffuse_transmission), which Blender's importer leaves out."""
+    told = material.get("light_through")
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    shader = next((n for n in nodes if n.type == "BSDF_PRINCIPLED"), None)
+    if not told or not shader or any(n.type == "BSDF_TRANSLUCENT" for n in nodes):
+        return
+    tint, through = nodes.new("ShaderNodeMixRGB"), nodes.new("ShaderNodeBsdfTranslucent")
+    clear, cut_out, both = (nodes.new(kind) for kind in ("ShaderNodeBsdfTransparent", "ShaderNodeMixShader", "ShaderNodeMixShader"))
+    tint.blend_type, tint.inputs["Fac"].default_value = "MULTIPLY", 1.0
+    tint.inputs["Color2"].default_value = (*told["tint"], 1.0)
+    for source, target in ((shader.inputs["Base Color"], tint.inputs["Color1"]), (shader.inputs["Normal"], through.inputs["Normal"]),
+                           (shader.inputs["Alpha"], cut_out.inputs[0])):
+        if source.links:
+            links.new(source.links[0].from_socket, target)
+        elif source.name != "Normal":
+            target.default_value = source.default_value
+    links.new(tint.outputs["Color"], through.inputs["Color"])
+    links.new(clear.outputs[0], cut_out.inputs[1])
+    links.new(through.outputs[0], cut_out.inputs[2])
+    both.inputs[0].default_value = told["part"]
+    for link in list(shader.outputs["BSDF"].links):
+        links.new(both.outputs[0], link.to_socket)
+    links.new(shader.outputs["BSDF"], both.inputs[1])
+    links.new(cut_out.outputs[0], both.inputs[2])
+    for i, node in enumerate((tint, through, clear, cut_out, both)):
+        node.location = (shader.location.x + 60 * i, shader.location.y - 420 - 120 * i)
 
 
 # ---- haze ----

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use super::names::Names;
 use super::source::{self, list};
+use crate::gltf::KHR_MATERIALS_DIFFUSE_TRANSMISSION;
 
 /// The script, but for its settings.
 const SCRIPT: &str = include_str!("blender.py");
@@ -61,8 +62,8 @@ pub fn script(scene: &Value, names: &Names) -> Result<String> {
     Ok(SCRIPT.replacen(SETTINGS, &settings, 1))
 }
 
-/// Marks what stands in the scene as this landscape's, and adds a second scene with each kind of tree, finest and as
-/// proxy.
+/// Marks what stands in the scene as this landscape's, adds a second scene with each kind of tree, finest and as proxy, and
+/// tells of light through leaves where Blender's importer finds it.
 ///
 /// # Errors
 /// A scene without trees of ours.
@@ -74,6 +75,13 @@ pub fn prepare(root: &mut Value, names: &Names) -> Result<()> {
         .collect();
     for node in shown {
         root["nodes"][node]["extras"]["landscape"] = names.stem.as_str().into();
+    }
+    for material in root["materials"].as_array_mut().into_iter().flatten() {
+        let transmission = &material["extensions"][KHR_MATERIALS_DIFFUSE_TRANSMISSION];
+        if let Some(part) = transmission["diffuseTransmissionFactor"].as_f64() {
+            let tint = transmission["diffuseTransmissionColorFactor"].clone();
+            material["extras"]["light_through"] = json!({ "part": part, "tint": tint });
+        }
     }
     let mut kinds = Vec::new();
     for (template, tree) in source::instances(root)?.templates.iter().enumerate() {

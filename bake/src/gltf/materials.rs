@@ -13,6 +13,11 @@ pub const REPEATING: (u32, u32) = (9987, 10497);
 /// Trilinear filtering, clamped to the edge.
 pub const CLAMPED: (u32, u32) = (9987, 33071);
 
+/// What lets light through, as leaves do.
+pub const KHR_MATERIALS_DIFFUSE_TRANSMISSION: &str = "KHR_materials_diffuse_transmission";
+/// The part of a leaf's diffuse light that leaves it on the other side: broad leaves reflect and transmit about as much.
+const TRANSMISSION: f64 = 0.45;
+
 /// A sampler's JSON from minification filter and wrap mode.
 pub fn sampler((minify, wrap): (u32, u32)) -> Value {
     json!({ "magFilter": 9729, "minFilter": minify, "wrapS": wrap, "wrapT": wrap })
@@ -79,6 +84,15 @@ impl<'a> MaterialSet<'a> {
                     "metallicFactor": 0, "roughnessFactor": roughness },
                 "alphaMode": "MASK", "alphaCutoff": alpha_cutoff, "doubleSided": true }),
         )
+    }
+
+    /// Lets light through the cards of that material, which is tinted on the way; the picture colours it, too.
+    pub(super) fn add_transmission(&mut self, material: usize, tint: [f64; 3]) {
+        let colors = self.materials[material]["pbrMetallicRoughness"]["baseColorTexture"].clone();
+        self.materials[material]["extensions"][KHR_MATERIALS_DIFFUSE_TRANSMISSION] = json!({
+            "diffuseTransmissionFactor": TRANSMISSION,
+            "diffuseTransmissionColorFactor": tint,
+            "diffuseTransmissionColorTexture": colors });
     }
 
     /// Gives the material of that number, made of cards, a picture of normals.

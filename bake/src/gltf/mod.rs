@@ -35,7 +35,7 @@ pub(crate) use document::for_each_object;
 pub use foreground::foreground_glb;
 pub(crate) use glb::split_glb;
 pub use levels::levelled_glb;
-pub use materials::{MaterialSet, Picture};
+pub use materials::{KHR_MATERIALS_DIFFUSE_TRANSMISSION, MaterialSet, Picture};
 pub use scene::scene_gltf;
 pub use scene_parts::{Blob, GlbBlob, SceneParts};
 pub use single::single_glb;

@@ -10,6 +10,10 @@ use super::materials::{MaterialSet, Picture, REPEATING, sampler};
 use super::png;
 use crate::model::{Clusters, Image8, Impostor, LevelledMesh, Material, TreeTextures};
 
+/// How light is tinted on its way through a leaf, where chlorophyll takes red and blue, and through a petal.
+const THROUGH_LEAVES: [f64; 3] = [0.75, 0.9, 0.3];
+const THROUGH_PETALS: [f64; 3] = [0.9; 3];
+
 /// Bark, leaf and blossom as glTF materials; cards only as far as `used` says that parts have them.
 pub fn tree_materials<'a>(
     textures: &TreeTextures<Picture<'a>>,
@@ -31,11 +35,15 @@ pub fn tree_materials<'a>(
             ("bark normals".into(), textures.bark_normal.clone()),
         ],
     };
-    let cards = [(Material::Leaf, "leaf", &textures.leaf), (Material::Blossom, "blossom", &textures.blossom)];
-    for (slot, name, levels) in cards {
+    let cards = [
+        (Material::Leaf, "leaf", &textures.leaf, THROUGH_LEAVES),
+        (Material::Blossom, "blossom", &textures.blossom, THROUGH_PETALS),
+    ];
+    for (slot, name, levels, tint) in cards {
         let Some(picture) = card_picture(levels).filter(|_| used(slot)) else { continue };
         set.slots.push(slot);
-        set.add_cards(name, picture, textures.alpha_cutoff, 0.65);
+        let number = set.add_cards(name, picture, textures.alpha_cutoff, 0.65);
+        set.add_transmission(number, tint);
     }
     set
 }
@@ -73,6 +81,7 @@ pub fn add_clusters<'a>(
 ) -> usize {
     let number = set.add_cards(CLUSTERS, colors, alpha_cutoff, 0.65);
     set.add_normals(number, CLUSTER_NORMALS, normals);
+    set.add_transmission(number, THROUGH_LEAVES);
     number
 }
 

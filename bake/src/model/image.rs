@@ -52,7 +52,7 @@ pub struct AlphaMask {
 }
 
 impl Default for AlphaMask {
-    /// Opaque everywhere.
+    /// Nothing is cut away.
     fn default() -> Self {
         Self { rows: [u32::MAX; MASK_SIDE] }
     }
@@ -72,9 +72,26 @@ impl AlphaMask {
         mask
     }
 
-    /// Whether the texture is opaque at texture coordinates, which are clamped to [0, 1].
+    /// Whether the texture is opaque at texture coordinates; it is nowhere outside of [0, 1], but for rounding.
     pub fn is_opaque(&self, uv: [f32; 2]) -> bool {
+        const ROUNDING: f32 = 1e-3;
         let [x, y] = uv.map(|t| ((t * MASK_SIDE as f32).max(0.0) as usize).min(MASK_SIDE - 1));
-        self.rows[y] >> x & 1 == 1
+        self.rows[y] >> x & 1 == 1 && uv.iter().all(|t| (-ROUNDING..=1.0 + ROUNDING).contains(t))
+    }
+
+    /// Whether nothing of the texture is cut away.
+    pub fn is_full(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Texture coordinates of the corners of the first and the last opaque texel of each row: all of the texture's convex
+    /// hull is among them.
+    pub fn outline(&self) -> impl Iterator<Item = [f32; 2]> {
+        let of_row = |(y, row): (usize, &u32)| {
+            let ends = [row.trailing_zeros(), 32 - row.leading_zeros()];
+            ends.map(|x| [y, y + 1].map(|y| [x as f32, y as f32].map(|t| t / MASK_SIDE as f32)))
+        };
+        let rows = self.rows.iter().enumerate().filter(|(_, row)| **row != 0);
+        rows.flat_map(of_row).flatten()
     }
 }

@@ -21,7 +21,11 @@ struct Surface {
     // 1 if it is so.
     unlit: f32,
     has_normal: f32,
-    unused: vec2f,
+    // The part of diffuse light that comes through, its colour, and 1 if the map of colours tints it, too.
+    transmission: f32,
+    transmission_textured: f32,
+    transmission_tint: vec3f,
+    unused: f32,
     // Of colour, metal and roughness, normals, occlusion, glow.
     uv_maps: array<UvMap, 5>,
 }
@@ -132,6 +136,8 @@ fn mirrored_part(roughness: f32, facing: f32) -> vec2f {
 
 struct Point {
     albedo: vec3f,
+    // The same of light from behind.
+    through: vec3f,
     // Reflectance of a mirror at right angles.
     mirror: vec3f,
     normal: vec3f,
@@ -154,7 +160,8 @@ fn sunlight(point: Point, light: Light) -> vec3f {
     let fresnel = point.mirror + (1.0 - point.mirror) * graze;
     // Where the room's camera sees a mirror of the sun it is bright, and no brighter than can be shown.
     let gloss = min(spread * max(shade, 0.0), 200.0);
-    return (point.albedo / PI * (1.0 - fresnel) + fresnel * gloss) * light.irradiance.xyz * sun;
+    let behind = max(-dot(point.normal, to_sun), 0.0) * point.through / PI;
+    return ((point.albedo / PI * (1.0 - fresnel) + fresnel * gloss) * sun + behind) * light.irradiance.xyz;
 }
 
 fn bumped(in: Out, normal: vec3f, uv: vec2f) -> vec3f {
@@ -182,7 +189,8 @@ fn shade(in: Out, front: bool) -> vec4f {
     let bumps = bumped(in, normal, uv_of(surface.uv_maps[2], in.uvs));
     normal = select(normal, bumps, surface.has_normal > 0.5);
 
-    var base = surface.color * in.color * textureSample(color_map, color_sampler, uv_of(surface.uv_maps[0], in.uvs));
+    let texel = textureSample(color_map, color_sampler, uv_of(surface.uv_maps[0], in.uvs));
+    var base = surface.color * in.color * texel;
     let metal = textureSample(metal_map, metal_sampler, uv_of(surface.uv_maps[1], in.uvs));
     let occluded = textureSample(occlusion_map, occlusion_sampler, uv_of(surface.uv_maps[3], in.uvs)).r;
     let glow = textureSample(emissive_map, emissive_sampler, uv_of(surface.uv_maps[4], in.uvs)).rgb;
@@ -192,7 +200,10 @@ fn shade(in: Out, front: bool) -> vec4f {
     let open = mix(1.0, occluded, surface.occlusion_strength);
 
     var point: Point;
-    point.albedo = base.rgb * (1.0 - metallic);
+    let transmission = surface.transmission * (1.0 - metallic);
+    let tint = surface.transmission_tint * mix(vec3f(1.0), texel.rgb, surface.transmission_textured);
+    point.albedo = base.rgb * (1.0 - metallic) * (1.0 - transmission);
+    point.through = transmission * select(tint, base.rgb, tinted);
     point.mirror = mix(vec3f(0.04), base.rgb, metallic);
     point.normal = normal;
     point.to_eye = to_eye;
@@ -205,7 +216,8 @@ fn shade(in: Out, front: bool) -> vec4f {
     let mirrored = (point.mirror * mirror.x + mirror.y) * again;
     // Rough mirrors hardly see what is far from their normal: no lobe is wider than that of a wall.
     let seen = room(reflect(-to_eye, normal), 0.5 / (a * a) + 1.6);
-    var radiance = (point.albedo * room(normal, WALL) * (1.0 - mirrored) + mirrored * seen) * open * studio.room;
+    let diffuse = point.albedo * room(normal, WALL) + point.through * room(-normal, WALL);
+    var radiance = (diffuse * (1.0 - mirrored) + mirrored * seen) * open * studio.room;
     radiance += sunlight(point, studio.lights[0]) + sunlight(point, studio.lights[1]);
     radiance += surface.emissive * select(glow, vec3f(0.0), tinted);
     return vec4f(select(radiance, unlit(base.rgb), surface.unlit > 0.5), base.a);

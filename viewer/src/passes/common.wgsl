@@ -146,6 +146,11 @@ fn is_shown(pixel: vec2f, shown: vec2f) -> bool {
     return number >= shown.x && (number < shown.y || shown.y == 1.0);
 }
 
+// Whether a card shows its picture there: a triangle that holds all of it reaches beyond.
+fn is_on_picture(uv: vec2f) -> bool {
+    return all(uv == saturate(uv));
+}
+
 // 1 where the sun reaches a point, 0 in shadow; a soft edge a texel wide.
 fn sun_visibility(world: vec3f, bias_m: f32) -> f32 {
     let lifted = world + view.sun_direction * bias_m;

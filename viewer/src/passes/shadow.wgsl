@@ -24,7 +24,7 @@ fn tree(
 
 @fragment
 fn leaf(in: Out) {
-    if (textureSample(color_map, clamped, in.uv).a < material.alpha_cutoff) {
+    if (textureSample(color_map, clamped, in.uv).a < material.alpha_cutoff || !is_on_picture(in.uv)) {
         discard;
     }
 }

@@ -110,7 +110,7 @@ fn leaf_light(in: Out, albedo: vec3f, normal: vec3f, bias_m: f32) -> vec4f {
 
 fn card_albedo(in: Out) -> vec3f {
     let albedo = vec4f(in.color, 1.0) * material.factor * textureSample(color_map, clamped, in.uv);
-    if (albedo.a < material.alpha_cutoff || !is_shown(in.clip.xy, in.shown)) {
+    if (albedo.a < material.alpha_cutoff || !is_on_picture(in.uv) || !is_shown(in.clip.xy, in.shown)) {
         discard;
     }
     return albedo.rgb;

@@ -118,6 +118,8 @@ pub struct Surface {
     pub double_sided: bool,
     /// Its colour is not lit.
     pub unlit: bool,
+    /// How much of the diffuse light comes out on the other side.
+    pub transmission: Transmission,
     /// By [`Slot`].
     pub textures: [Option<Texture>; 5],
 }
@@ -136,6 +138,17 @@ pub enum Slot {
 impl Slot {
     pub const ALL: [Self; 5] =
         [Self::Color, Self::MetallicRoughness, Self::Normal, Self::Occlusion, Self::Emissive];
+}
+
+/// Light that comes through, as through a leaf.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Transmission {
+    /// Its part of all diffuse light.
+    pub part: f32,
+    /// Its colour, linear.
+    pub tint: [f32; 3],
+    /// Whether the picture of the base colour tints it, too.
+    pub textured: bool,
 }
 
 /// What alpha means.
@@ -198,6 +211,7 @@ impl Default for Surface {
             alpha: Alpha::Opaque,
             double_sided: false,
             unlit: false,
+            transmission: Transmission::default(),
             textures: Default::default(),
         }
     }

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 pub use asset::{
     Alpha, Asset, AssetVertex, DirectionalLight, Facts, Part, Sampling, Shape, ShapeLevel, Slot, Staging,
-    Surface, Texture, Wrap,
+    Surface, Texture, Transmission, Wrap,
 };
 pub use genescape_schema::scene::{
     GroundDetail, GroundSurface, Heightfield, Instance, Lookout, Lookouts, StartView, TerrainLod,

@@ -88,7 +88,10 @@ pub struct SurfaceUniform {
     pub occlusion_strength: f32,
     pub unlit: f32,
     pub has_normal: f32,
-    pub unused: [f32; 2],
+    pub transmission: f32,
+    pub transmission_textured: f32,
+    pub transmission_tint: [f32; 3],
+    pub unused: f32,
     pub uv_maps: [UvMap; 5],
 }
 
@@ -278,7 +281,10 @@ fn surface_uniform(surface: &Surface) -> SurfaceUniform {
         occlusion_strength: surface.occlusion_strength,
         unlit: flag(surface.unlit),
         has_normal: flag(surface.textures[Slot::Normal as usize].is_some()),
-        unused: [0.0; 2],
+        transmission: surface.transmission.part,
+        transmission_textured: flag(surface.transmission.textured),
+        transmission_tint: surface.transmission.tint,
+        unused: 0.0,
         uv_maps: Slot::ALL.map(uv_map),
     }
 }

@@ -12,7 +12,7 @@ use std::ops::Range;
 use glam::{Vec2, Vec3};
 
 use super::sun::Sun;
-use crate::model::{Material, Mesh};
+use crate::model::{Mesh, Part, PartKind};
 
 /// Part of the light that a leaf card holds back: cards are about half empty.
 const LEAF_OPACITY: f32 = 0.55;
@@ -38,7 +38,7 @@ impl Crown {
     pub fn of(mesh: &Mesh) -> Self {
         let (mut area, mut height, mut spread, mut plan) = (0.0_f32, 0.0, 0.0, 0.0);
         for part in &mesh.parts {
-            let opacity = opacity(part.material);
+            let opacity = opacity(mesh, part);
             for triangle in &part.triangles {
                 let [a, b, c] = triangle.map(|v| Vec3::from_array(mesh.positions[v as usize]));
                 let (middle, normal) = ((a + b + c) / 3.0, (b - a).cross(c - a) * 0.5);
@@ -59,8 +59,19 @@ impl Crown {
     }
 }
 
-fn opacity(material: Material) -> f32 {
-    if material.is_card() { LEAF_OPACITY } else { 1.0 }
+/// The part of the light that a part's triangles hold back. Where each shows a whole card, and reaches beyond its picture, it is
+/// as much in all as the card's.
+fn opacity(mesh: &Mesh, part: &Part) -> f32 {
+    if !part.material.is_card() {
+        return 1.0;
+    }
+    let is_whole = matches!(part.kind, PartKind::Aggregate { triangles: 1, .. });
+    let cards = part.triangles.first().filter(|_| is_whole).map_or(1.0, |triangle| {
+        let [a, b, c] =
+            triangle.map(|v| mesh.uvs.get(v as usize).copied().map_or(Vec2::ZERO, Vec2::from_array));
+        0.5 * (b - a).perp_dot(c - a).abs()
+    });
+    (LEAF_OPACITY / cards.max(LEAF_OPACITY)).min(1.0)
 }
 
 /// A tree's shadow.
@@ -125,7 +136,7 @@ impl Shadow {
     fn slab(&self, mesh: &Mesh, grid: &[Vec2], range: [f32; 2], layer: &mut [f32]) -> Option<Range<usize>> {
         let mut drawn: Option<Range<usize>> = None;
         for part in &mesh.parts {
-            let left = 1.0 - opacity(part.material);
+            let left = 1.0 - opacity(mesh, part);
             for triangle in &part.triangles {
                 let heights = triangle.map(|v| mesh.positions[v as usize][1]);
                 let middle = (heights[0] + heights[1] + heights[2]) / 3.0;

@@ -7,16 +7,17 @@
 
 use glam::Vec3;
 
-use super::flattening::{self, Step};
+use super::flattening::{self, Change, Step};
 use super::log::Vertex;
 use super::state::{PartSpan, State};
+use crate::model::AlphaMask;
 
 /// No part keeps fewer elements than this.
 const MIN_ELEMENTS: usize = 6;
 /// An element may grow to this part of the extent of all.
 const MAX_GROWN: f32 = 0.3;
 /// Metres of error for each metre by which flattening moves a texel.
-const FLATTEN_WEIGHT: f64 = 0.2;
+const FLATTEN_WEIGHT: f64 = 0.5;
 /// Flattening that moves texels by at most this part of an element's radius comes before any element goes.
 const SLIGHT: f64 = 0.25;
 /// Aggregates of fewer elements keep the outer ones.
@@ -33,7 +34,7 @@ pub struct Aggregate {
     order: Vec<u32>,
     removable: usize,
     removed: usize,
-    /// Error in metres per unit of growth.
+    /// Error in metres of removing all of them.
     weight_m: f64,
     /// Mean radius of an element.
     radius_m: f64,
@@ -42,15 +43,15 @@ pub struct Aggregate {
 
 /// What an aggregate loses next.
 pub enum Loss {
-    /// An inner vertex of an element.
-    Vertex { element: u32, step: Step },
+    /// A vertex of an element.
+    Vertex { element: u32, change: Change },
     /// An element.
     Element(u32),
 }
 
 impl Aggregate {
     /// Plans how a part's elements lose vertices and go; `None` for surfaces and for empty parts.
-    pub fn new(state: &State, part: usize, weight: f32) -> Option<Self> {
+    pub fn new(state: &State, part: usize, weight: f32, mask: &AlphaMask) -> Option<Self> {
         let span = &state.parts[part];
         let places = places(state, span)?;
         let count = places.len();
@@ -60,7 +61,7 @@ impl Aggregate {
         });
         let extent = (high - low).max_element();
         let (order, removable) = removal_order(&places, (low + high) * 0.5);
-        let mut steps = if state.attributes.uvs { flattening::plan(state, span) } else { Vec::new() };
+        let mut steps = if state.attributes.uvs { flattening::plan(state, span, mask) } else { Vec::new() };
         steps.reverse();
         Some(Self {
             part,
@@ -94,23 +95,23 @@ impl Aggregate {
             self.flat = self.flat.max(self.removed);
             return Some(Loss::Element(element));
         }
-        let step = self.steps.last()?.clone();
+        let change = self.steps.last()?.change.clone();
         let element = self.order[self.flat];
         self.flat += 1;
         if self.flat == self.order.len() {
             self.steps.pop();
             self.flat = self.removed;
         }
-        Some(Loss::Vertex { element, step })
+        Some(Loss::Vertex { element, change })
     }
 
     /// Whether the next loss flattens, and its cost in metres. Elements are flattened before any goes as long as their
-    /// picture hardly changes. Removal costs by how much elements will have grown to keep the area.
+    /// picture hardly changes. Removal costs by the part that has gone.
     fn next(&self) -> Option<(bool, f64)> {
         let flatten = self.steps.last().map(|step| (true, FLATTEN_WEIGHT * step.error_m));
         let remove = (self.removed < self.removable).then(|| {
-            let ratio = self.order.len() as f64 / (self.living() - 1) as f64;
-            (false, self.weight_m * (ratio.sqrt() - 1.0))
+            let part = (self.living() - 1) as f64 / self.order.len() as f64;
+            (false, self.weight_m * (1.0 - part))
         });
         let slight = |&(_, cost_m): &(bool, f64)| cost_m <= FLATTEN_WEIGHT * SLIGHT * self.radius_m;
         match (flatten, remove) {

@@ -10,10 +10,11 @@ use super::state::State;
 use crate::math::matching;
 use crate::model::AlphaMask;
 
-/// Pixels a side of the views in which leaves are counted, with the twigs among them, and of those of bare twigs, which are
-/// thin.
-const LEAVES_PX: usize = 128;
-const TWIGS_PX: usize = 320;
+/// Pixels a side of the views in which many leaves are counted, with the twigs among them, and of those of fewer, as a palm's,
+/// or of bare twigs, which are thin.
+const MANY_PX: usize = 128;
+const FEW_PX: usize = 320;
+const MANY: usize = 1000;
 /// Twigs may grow by this part of the mesh's diagonal.
 const MAX_OFFSET: f32 = 0.0015;
 /// Elements may shrink to this part of their scale: flat ones cover more than bent ones.
@@ -39,9 +40,25 @@ pub struct Calibration {
     /// At how many more levels elements are counted.
     counted: u32,
     last: Sizes,
-    /// For each aggregate, the scales that were found over those that give the elements their whole area: at the last two
-    /// levels, the latest first. They fall evenly, as elements come to hide each other, so the next one can be guessed.
-    found: Vec<[f32; 2]>,
+    /// For each aggregate what was found at the last two levels, the latest first.
+    found: Vec<[Found; 2]>,
+}
+
+/// A scale at which elements cover what they did, beside one that gives them their whole area.
+#[derive(Clone, Copy, Debug)]
+struct Found {
+    living: f32,
+    /// The one over the other.
+    ratio: f32,
+}
+
+impl Found {
+    /// The ratio for fewer elements: a power of their number, for they come to hide each other less.
+    fn next(&[last, before]: &[Self; 2], living: f32) -> f32 {
+        let power = libm::logf(last.ratio / before.ratio) / libm::logf(last.living / before.living);
+        let power = if power.is_finite() { power.clamp(-1.0, 1.0) } else { 0.0 };
+        last.ratio * libm::powf(living / last.living, power)
+    }
 }
 
 impl Calibration {
@@ -53,16 +70,20 @@ impl Calibration {
         options: &LodOptions,
     ) -> Self {
         let thickens = options.thickens;
+        let elements: usize = aggregates.iter().map(Aggregate::living).sum();
         let diagonal_m = (high - low).max(Vec3::ZERO).length();
         let mut calibration = Self {
-            camera: Camera::of([low, high], if aggregates.is_empty() { TWIGS_PX } else { LEAVES_PX }),
+            camera: Camera::of([low, high], if elements < MANY { FEW_PX } else { MANY_PX }),
             masks: options.masks.clone(),
             full_elements: Vec::new(),
             full: 0,
             max_offset_m: if thickens { MAX_OFFSET * diagonal_m } else { 0.0 },
             counted: options.counted_levels,
             last: Sizes { scales: vec![1.0; aggregates.len()], offset_m: 0.0 },
-            found: vec![[1.0; 2]; aggregates.len()],
+            found: aggregates
+                .iter()
+                .map(|all| [Found { living: all.living() as f32, ratio: 1.0 }; 2])
+                .collect(),
         };
         let elements = calibration.elements(state, aggregates);
         let covered = |elements: &Elements| elements.covered(&calibration.camera, 1.0);
@@ -84,8 +105,8 @@ impl Calibration {
         for (index, (elements, aggregate)) in elements.iter().zip(aggregates).enumerate() {
             let scale = sizes.scales[index];
             let range = MIN_SHRUNK * scale..aggregate.max_scale(scale);
-            let [last, before] = self.found[index];
-            let guess = aggregate.same_area_scale() * last * last / before;
+            let living = aggregate.living() as f32;
+            let guess = aggregate.same_area_scale() * Found::next(&self.found[index], living);
             let covered = |scale: f32| elements.covered(&self.camera, scale);
             let scale = if counts {
                 matching(self.full_elements[index], range, guess, covered)
@@ -93,7 +114,8 @@ impl Calibration {
                 guess.clamp(range.start, range.end)
             };
             sizes.scales[index] = scale;
-            self.found[index] = [scale / aggregate.same_area_scale(), last];
+            let found = Found { living, ratio: scale / aggregate.same_area_scale() };
+            self.found[index] = [found, self.found[index][0]];
         }
         if self.max_offset_m > 0.0 {
             let canvas = self.draw(&elements, &sizes);

@@ -1,33 +1,48 @@
 //! The elements of an aggregate → how their inner vertices go, for all elements alike: a bent card becomes a flat one,
-//! whose picture hardly differs, before whole cards go.
+//! whose picture hardly differs, and that a triangle, before whole cards go.
 //!
 //! Half-edge collapses that leave the element's outline in texture space as it is. Their error is how far the place of a
 //! removed vertex's texel moves, in metres, on average over the elements.
 
 use glam::{Vec2, Vec3};
 
+use super::fitting;
 use super::state::{PartSpan, State};
+use crate::model::AlphaMask;
 
 /// Elements that errors are averaged over.
 const SAMPLES: usize = 64;
 /// The outline in texture space may change by this part of its area.
 const AREA_TOLERANCE: f32 = 1e-3;
 
-/// One vertex of every element merges into another; ids count from the element's first vertex or triangle.
+/// What is done to all elements, one after the other.
 #[derive(Clone, Debug)]
 pub struct Step {
-    pub vertex: u32,
-    pub into: u32,
     /// How far texels have moved once this and all steps before are done, in metres.
     pub error_m: f64,
+    pub change: Change,
+}
+
+#[derive(Clone, Debug)]
+pub enum Change {
+    Merge(Merge),
+    /// A flat card becomes a triangle with these texture coordinates.
+    Fit([Vec2; 3]),
+}
+
+/// One vertex of an element merges into another; ids count from the element's first vertex or triangle.
+#[derive(Clone, Debug)]
+pub struct Merge {
+    pub vertex: u32,
+    pub into: u32,
     /// Triangles that go.
     pub removed: Vec<u32>,
     /// Corners (3·triangle + 0…2) that get the other vertex.
     pub corners: Vec<u32>,
 }
 
-/// The steps that flatten a part's elements, in order.
-pub fn plan(state: &State, span: &PartSpan) -> Vec<Step> {
+/// The steps that flatten a part's elements, whose texture leaves so much of them opaque, in order.
+pub fn plan(state: &State, span: &PartSpan, mask: &AlphaMask) -> Vec<Step> {
     let Some((elements, vertices, _)) = span.elements().filter(|&(elements, ..)| elements > 0) else {
         return Vec::new();
     };
@@ -48,16 +63,23 @@ pub fn plan(state: &State, span: &PartSpan) -> Vec<Step> {
     let area = element.area();
     let mut steps: Vec<Step> = Vec::new();
     // The first vertex stays: that it lives says that the element does.
-    while let Some(mut step) = (1..vertices).filter_map(|v| element.best_step(v, area)).min_by(by_error) {
-        step.error_m = steps.last().map_or(0.0, |last| last.error_m).max(step.error_m);
-        element.take(&step);
-        steps.push(step);
+    while let Some((error_m, merge)) = (1..vertices).filter_map(|v| element.best(v, area)).min_by(by_error) {
+        element.take(&merge);
+        steps.push(Step { error_m, change: Change::Merge(merge) });
+    }
+    if let Some((error_m, triangle)) = element.fitted(state, span, mask) {
+        steps.push(Step { error_m, change: Change::Fit(triangle) });
+    }
+    let mut worst_m = 0.0_f64;
+    for step in &mut steps {
+        worst_m = worst_m.max(step.error_m);
+        step.error_m = worst_m;
     }
     steps
 }
 
-fn by_error(p: &Step, q: &Step) -> std::cmp::Ordering {
-    p.error_m.total_cmp(&q.error_m).then(p.vertex.cmp(&q.vertex))
+fn by_error(p: &(f64, Merge), q: &(f64, Merge)) -> std::cmp::Ordering {
+    p.0.total_cmp(&q.0).then(p.1.vertex.cmp(&q.1.vertex))
 }
 
 /// What all elements have in common, and where the vertices of some lie.
@@ -80,22 +102,22 @@ impl Element {
     }
 
     /// The neighbour that a vertex may best merge into.
-    fn best_step(&self, vertex: u32, area: f32) -> Option<Step> {
+    fn best(&self, vertex: u32, area: f32) -> Option<(f64, Merge)> {
         let around = self.triangles.iter().flatten().filter(|t| t.contains(&vertex));
         let mut others: Vec<u32> = around.flatten().copied().filter(|&v| v != vertex).collect();
         others.sort_unstable();
         others.dedup();
-        others.into_iter().filter_map(|into| self.step(vertex, into, area)).min_by(by_error)
+        others.into_iter().filter_map(|into| self.merge(vertex, into, area)).min_by(by_error)
     }
 
-    /// Merging one vertex into another, if no triangle turns over and the outline stays.
-    fn step(&self, vertex: u32, into: u32, area: f32) -> Option<Step> {
-        let mut step = Step { vertex, into, error_m: 0.0, removed: Vec::new(), corners: Vec::new() };
+    /// Merging one vertex into another, if no triangle turns over and the outline stays; with its error in metres.
+    fn merge(&self, vertex: u32, into: u32, area: f32) -> Option<(f64, Merge)> {
+        let mut merge = Merge { vertex, into, removed: Vec::new(), corners: Vec::new() };
         let living = (0_u32..).zip(&self.triangles).filter_map(|(t, triangle)| Some((t, (*triangle)?)));
         for (t, triangle) in living {
             let Some(corner) = triangle.iter().position(|&v| v == vertex) else { continue };
             if triangle.contains(&into) {
-                step.removed.push(t);
+                merge.removed.push(t);
                 continue;
             }
             let mut after = triangle;
@@ -103,25 +125,45 @@ impl Element {
             if self.signed_area(&after) * self.signed_area(&triangle) <= 0.0 {
                 return None;
             }
-            step.corners.push(3 * t + corner as u32);
+            merge.corners.push(3 * t + corner as u32);
         }
         let mut after = self.clone();
-        after.take(&step);
+        after.take(&merge);
         let keeps_outline = (after.area() - area).abs() <= AREA_TOLERANCE * area;
-        step.error_m = if keeps_outline { after.error_m()? } else { return None };
-        Some(step)
+        if !keeps_outline {
+            return None;
+        }
+        Some((after.error_m()?, merge))
     }
 
-    fn take(&mut self, step: &Step) {
-        for &t in &step.removed {
+    fn take(&mut self, merge: &Merge) {
+        for &t in &merge.removed {
             self.triangles[t as usize] = None;
         }
-        for &corner in &step.corners {
+        for &corner in &merge.corners {
             if let Some(triangle) = &mut self.triangles[corner as usize / 3] {
-                triangle[corner as usize % 3] = step.into;
+                triangle[corner as usize % 3] = merge.into;
             }
         }
-        self.gone.push(step.vertex);
+        self.gone.push(merge.vertex);
+    }
+
+    /// The triangle for elements that have become flat cards, and how far their vertices lie from it on average, in metres.
+    fn fitted(&self, state: &State, span: &PartSpan, mask: &AlphaMask) -> Option<(f64, [Vec2; 3])> {
+        let living: Vec<usize> = (0..self.uvs.len()).filter(|&v| !self.gone.contains(&(v as u32))).collect();
+        if living.len() != 4 || self.triangles.iter().flatten().count() != 2 {
+            return None;
+        }
+        let triangle = fitting::triangle(mask)?;
+        let (elements, ..) = span.elements()?;
+        let step = (elements as usize / SAMPLES).max(1);
+        let mut errors_m = Vec::new();
+        for element in (0..elements).step_by(step) {
+            let first = span.element(element)[0].start;
+            let card: Vec<_> = living.iter().map(|v| state.vertices[first + v]).collect();
+            errors_m.push(f64::from(fitting::error_m(&card)?));
+        }
+        Some((errors_m.iter().sum::<f64>() / errors_m.len() as f64, triangle))
     }
 
     /// The mean distance from where removed vertices were to where their texels now are, of the vertex that moved most.

@@ -67,6 +67,8 @@ pub fn build(
     ended(Step::ProgressiveMesh);
     let mut levels = with_morphs(snapshots, &sequence.state, ended);
     let found = finish.map(|finish| finish(&mut levels));
+    marks.truncate(levels.len());
+    levels.iter_mut().skip(marks.len() - 1).for_each(|last| last.morph = None);
     set_errors(&mut marks, found, error_half_way_m as f32, (bounds.max - bounds.min).length());
     levels.iter_mut().zip(&marks).for_each(|(level, mark)| level.error_m = mark.error_m);
     ended(Step::Finish);
@@ -172,7 +174,7 @@ mod tests {
     fn what_finishes_levels_says_how_far_they_are_and_errors_grow_all_the_same() {
         let mesh = sphere(32, 30);
         let mut finish =
-            |levels: &mut [Level]| (1..levels.len()).map(|i| [0.5, 1.0, 0.2][i.min(3) - 1]).collect();
+            |levels: &mut Vec<Level>| (1..levels.len()).map(|i| [0.5, 1.0, 0.2][i.min(3) - 1]).collect();
         let made = levels_finished(&mesh, &LodOptions::default(), &mut finish, &mut |_| ());
         let errors: Vec<f32> = made.levels.iter().map(|level| level.error_m).collect();
         assert_eq!(errors[..3], [0.25, 0.5, 1.0], "D_0 goes on in a straight line");

@@ -7,7 +7,7 @@
 //! Planck, Ryu 2007). One cost in metres orders both.
 //!
 //! Read `repair`, `state` and `log` (the mesh being simplified), `topology`, `quadric`, `edge`, `merge` and
-//! `collapse` (one edge), `flattening` and `aggregate` (leaf cards), `coverage` and `calibration` (as many pixels at
+//! `collapse` (one edge), `flattening`, `fitting` and `aggregate` (leaf cards), `coverage` and `calibration` (as many pixels at
 //! every level), `sequence` (the order of all steps), `levels`, `progressive` (the file format) and `strip`.
 
 mod aggregate;
@@ -15,6 +15,7 @@ mod calibration;
 mod collapse;
 mod coverage;
 mod edge;
+mod fitting;
 mod flattening;
 mod levels;
 mod log;
@@ -55,7 +56,8 @@ pub struct LodOptions {
     pub max_levels: u32,
     /// No level gets fewer vertices than this.
     pub min_vertices: u32,
-    /// Metres of error for each metre by which an aggregate's elements grow: less removes leaves before bark.
+    /// The error of removing all elements of an aggregate, as a part of their radius; that of removing some is in
+    /// proportion. Less removes leaves before bark.
     pub aggregate_weight: f32,
     /// Metres of error for each metre of thickness of a whole piece (a twig) that is removed: less removes twigs
     /// sooner.
@@ -76,7 +78,7 @@ impl Default for LodOptions {
             placement: Placement::default(),
             max_levels: 8,
             min_vertices: 100,
-            aggregate_weight: 0.25,
+            aggregate_weight: 0.3,
             piece_weight: 1.0,
             masks: Vec::new(),
             counted_levels: u32::MAX,
@@ -99,8 +101,9 @@ pub fn levels(mesh: &Mesh, options: &LodOptions) -> LevelledMesh {
 }
 
 /// Finishes levels that have no errors yet: gives the errors of all but the first, in metres. Before, it may put something
-/// else in the place of any part of any level but the first; the payload knows nothing of that.
-pub type Finish<'a> = dyn FnMut(&mut [Level]) -> Vec<f32> + 'a;
+/// else in the place of any part of any level but the first, of which the payload knows nothing, and take the last levels
+/// away.
+pub type Finish<'a> = dyn FnMut(&mut Vec<Level>) -> Vec<f32> + 'a;
 
 /// The same with the errors that `finish` finds, as far as they grow from level to level; tells when each part of the work
 /// has ended.

@@ -11,6 +11,8 @@ use super::LodOptions;
 use super::aggregate::{Aggregate, Loss};
 use super::calibration::Calibration;
 use super::collapse::Surface;
+use super::fitting;
+use super::flattening::Change;
 use super::state::{NONE, State};
 
 /// No step may cost more than this part of the mesh's diagonal.
@@ -54,7 +56,10 @@ impl Sequence {
     pub fn new(state: State, options: &LodOptions) -> Self {
         let surface = Surface::new(&state, options.placement);
         let bounds = bounds(&state);
-        let aggregate = |part: usize| Aggregate::new(&state, part, options.aggregate_weight);
+        let aggregate = |part: usize| {
+            let mask = options.masks.get(part).copied().unwrap_or_default();
+            Aggregate::new(&state, part, options.aggregate_weight, &mask)
+        };
         let aggregates: Vec<_> = (0..state.parts.len()).filter_map(aggregate).collect();
         let diagonal_m = (bounds[1] - bounds[0]).max(Vec3::ZERO).length();
         let calibration = Calibration::new(&state, &aggregates, bounds, options);
@@ -238,7 +243,11 @@ impl Sequence {
         let Some(loss) = aggregate.take_next() else { return };
         let span = &self.state.parts[aggregate.part];
         match loss {
-            Loss::Vertex { element, step } => {
+            Loss::Vertex { element, change: Change::Fit(triangle) } => {
+                let span = span.clone();
+                fitting::fit(&mut self.state, &span, element, triangle);
+            }
+            Loss::Vertex { element, change: Change::Merge(step) } => {
                 let [ids, triangles] = span.element(element);
                 let (vertex, triangle) = (ids.start as u32, triangles.start as u32);
                 step.removed.iter().for_each(|t| self.state.remove_triangle(triangle + t));

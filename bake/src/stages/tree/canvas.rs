@@ -90,6 +90,16 @@ impl Canvas {
         }
     }
 
+    /// Makes the outermost pixels transparent.
+    pub fn clear_rim(&mut self) {
+        let last = self.size - 1;
+        for (i, pixel) in self.pixels.iter_mut().enumerate() {
+            if [i % self.size, i / self.size].iter().any(|&at| at == 0 || at == last) {
+                pixel[3] = 0.0;
+            }
+        }
+    }
+
     /// A straight stroke that tapers from radius `from` to `to` (units).
     pub fn stroke(&mut self, a: Vec2, b: Vec2, radii: (f32, f32), color: Vec3) {
         let scale = self.scale();

@@ -26,7 +26,7 @@ pub(super) fn paint_blossom(params: &TreeTextureParams) -> Vec<Image8> {
     }
     let mut brush = Brush::new(params, habit, Outline::petal(), 1);
     brush.flowers();
-    mips::chain(&brush.canvas)
+    brush.finished()
 }
 
 /// The leaf card.
@@ -41,7 +41,7 @@ pub(super) fn paint_leaves(params: &TreeTextureParams) -> Vec<Image8> {
         Habit::Willow => brush.willow(leaf.clamp(0.2, 0.3)),
         Habit::Broad => brush.broad(leaf),
     }
-    mips::chain(&brush.canvas)
+    brush.finished()
 }
 
 struct Brush {
@@ -77,6 +77,12 @@ impl Brush {
             hue_deg: params.leaf_hue_deg,
             pairs: [7.0, 8.0, 9.0, 8.0, 6.0, 6.0, 0.0, 0.0][params.leaf_shape.min(7) as usize],
         }
+    }
+
+    /// With a transparent rim: beyond a card's picture nothing is shown.
+    fn finished(mut self) -> Vec<Image8> {
+        self.canvas.clear_rim();
+        mips::chain(&self.canvas)
     }
 
     /// One leaf's paint: no two are quite alike; those laid on later are lighter.

@@ -2,6 +2,7 @@
 
 use super::ALPHA_CUTOFF;
 use super::clusters;
+use super::impostor::impostor_error_m;
 use super::seen::errors;
 use super::surfaces::Surfaces;
 use crate::model::{AlphaMask, Clusters, Level, LevelledMesh, Material, Mesh, Part, TreeTextures};
@@ -9,6 +10,10 @@ use crate::stages::lod::{self, LodOptions, Step};
 
 /// Triangles that are enough to cast a shadow onto a texel of a metre.
 const CASTER_TRIANGLES: usize = 2_000;
+
+/// No level follows one that has so many times the error of the tree's pictures: they show some of the tree by then, and all
+/// of it from twice their error on.
+const PAST_PICTURES: f32 = 1.2;
 
 /// A template with its levels.
 #[derive(Clone, Debug)]
@@ -23,13 +28,18 @@ pub struct Levelled {
 /// Makes the levels of a template; tells when each part of the work has ended.
 pub fn levelled<P>(mesh: &Mesh, textures: &TreeTextures<P>, ended: &mut dyn FnMut(Step)) -> Levelled {
     let (mut caster, mut pictures) = (Mesh::default(), None);
-    let mut finish = |levels: &mut [Level]| {
+    let mut finish = |levels: &mut Vec<Level>| {
         // What a shadow is cast by lets light through between its leaves, which a map of such coarse texels knows by itself.
         caster = smallest_enough(levels).clone();
         let (surfaces, found) = clusters::substitute(levels, Surfaces::of(textures));
         pictures = found;
         let meshes: Vec<&Mesh> = levels.iter().map(|level| &level.mesh).collect();
-        errors(&meshes, &surfaces)
+        let mut errors_m = errors(&meshes, &surfaces);
+        let past_m = PAST_PICTURES * impostor_error_m(meshes[0]);
+        let last = errors_m.iter().position(|&error_m| error_m >= past_m);
+        errors_m.truncate(last.map_or(errors_m.len(), |last| last + 1));
+        levels.truncate(errors_m.len() + 1);
+        errors_m
     };
     let mesh = lod::levels_finished(mesh, &options(mesh, textures), &mut finish, ended);
     Levelled { mesh, clusters: pictures, caster }

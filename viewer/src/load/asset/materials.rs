@@ -10,13 +10,12 @@ use serde_json::{Map, Value};
 use super::file::AssetFile;
 use super::notes::Notes;
 use super::pictures::Pictures;
-use crate::scene::{Alpha, Sampling, Surface, Texture, Wrap};
+use crate::scene::{Alpha, Sampling, Surface, Texture, Transmission, Wrap};
 
 /// Extensions of materials without which they look different, each with what is missing.
-const REFINEMENTS: [(&str, &str); 9] = [
+const REFINEMENTS: [(&str, &str); 8] = [
     ("KHR_materials_anisotropy", "brushed surfaces"),
     ("KHR_materials_clearcoat", "clear coats"),
-    ("KHR_materials_diffuse_transmission", "light through thin leaves and paper"),
     ("KHR_materials_iridescence", "iridescence"),
     ("KHR_materials_pbrSpecularGlossiness", "specular-glossiness materials"),
     ("KHR_materials_sheen", "the sheen of cloth"),
@@ -51,6 +50,9 @@ fn surface(file: &AssetFile, material: &Material, pictures: &mut Pictures<'_>, n
         let (extension, field) = pointer.split_once('/')?;
         others.get(extension)?.get(field)?.as_f64().map(|value| value as f32)
     };
+    let transmitted = others.get(DIFFUSE_TRANSMISSION);
+    let transmitted =
+        transmitted.map(|value| diffuse_transmission(value, material, notes)).unwrap_or_default();
     let strength = number("KHR_materials_emissive_strength/emissiveStrength").unwrap_or(1.0);
     let transmission = number("KHR_materials_transmission/transmissionFactor").unwrap_or(0.0).clamp(0.0, 1.0);
     let pbr = &material.pbr_metallic_roughness;
@@ -96,7 +98,36 @@ fn surface(file: &AssetFile, material: &Material, pictures: &mut Pictures<'_>, n
         alpha,
         double_sided: material.double_sided,
         unlit: others.contains_key("KHR_materials_unlit"),
+        transmission: transmitted,
         textures: [color, metal, normal, occlusion, glow],
+    }
+}
+
+const DIFFUSE_TRANSMISSION: &str = "KHR_materials_diffuse_transmission";
+
+/// The extension as the file has it.
+#[derive(Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+struct DiffuseTransmission {
+    diffuse_transmission_factor: f32,
+    diffuse_transmission_color_factor: Option<[f32; 3]>,
+    diffuse_transmission_texture: Option<Value>,
+    diffuse_transmission_color_texture: Option<Value>,
+}
+
+/// Its pictures are drawn only if the one of its colour is that of the base colour, as it is of leaves.
+fn diffuse_transmission(value: &Value, material: &Material, notes: &mut Notes) -> Transmission {
+    let told = DiffuseTransmission::deserialize(value).unwrap_or_default();
+    let base = material.pbr_metallic_roughness.base_color_texture.as_ref().map(|info| info.index.value());
+    let of_color = told.diffuse_transmission_color_texture.map(|info| info["index"].as_u64());
+    let textured = of_color.is_some_and(|index| index == base.map(|index| index as u64));
+    if told.diffuse_transmission_texture.is_some() || of_color.is_some() && !textured {
+        notes.add(format!("Not drawn: pictures of light that comes through ({DIFFUSE_TRANSMISSION})"));
+    }
+    Transmission {
+        part: told.diffuse_transmission_factor.clamp(0.0, 1.0),
+        tint: told.diffuse_transmission_color_factor.unwrap_or([1.0; 3]),
+        textured,
     }
 }
 

@@ -32,8 +32,8 @@ const CARD: usize = 4;
 const CLUSTER: usize = 2 * CARD;
 
 /// Sides of the impostor from which it is counted how much a level covers, and samples a side.
-const SIDES: [usize; 2] = [0, 2];
-const COVERAGE_PX: usize = 128;
+const SIDES: [usize; 4] = [0, 1, 2, 3];
+const COVERAGE_PX: usize = 96;
 /// How much smaller or larger cards may become.
 const SCALES: Range<f32> = 0.7..1.5;
 

@@ -51,6 +51,10 @@ impl Frame {
         let side = if has_cards { SIDE } else { BARE_SIDE };
         Self { foot_m: axis.with_y(axis.y - 0.5 * size_m[1]), size_m, side }
     }
+
+    fn error_m(&self) -> f32 {
+        ERROR_PX / self.side as f32 * self.size_m[0].max(self.size_m[1])
+    }
 }
 
 /// Draws a template, whose finest or next level `mesh` is, from four sides: the same bytes for any number of threads.
@@ -70,6 +74,11 @@ pub fn impostor<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> Impostor {
         axis_m: [frame.foot_m.x, frame.foot_m.z],
         low_m: frame.foot_m.y,
         size_m: frame.size_m,
-        error_m: ERROR_PX / frame.side as f32 * frame.size_m[0].max(frame.size_m[1]),
+        error_m: frame.error_m(),
     }
+}
+
+/// The error in metres that pictures of a template will have.
+pub fn impostor_error_m(mesh: &Mesh) -> f32 {
+    Frame::of(mesh).error_m()
 }

@@ -116,7 +116,9 @@ fn covered(mesh: &Mesh, masks: &dyn Fn(Material) -> AlphaMask, impostor: &Impost
                 let weights = weights.map(|weight| (weight / area) as f32);
                 let uv = [0, 1]
                     .map(|c| (0..3).map(|i| weights[i] * mesh.uvs[triangle[i] as usize][c]).sum::<f32>());
-                if weights.iter().all(|&w| w >= 0.0) && mask.is_opaque(uv) {
+                // Bark's texture repeats.
+                let shows = part.material == Material::Bark || mask.is_opaque(uv);
+                if weights.iter().all(|&w| w >= 0.0) && shows {
                     hit[y * FINE + x] = true;
                 }
             }
