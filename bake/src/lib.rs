@@ -39,5 +39,6 @@ mod raster;
 pub mod run;
 pub mod seed;
 pub mod session;
+mod silhouette;
 pub mod stages;
 pub mod watch_loop;

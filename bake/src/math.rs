@@ -133,36 +133,53 @@ pub fn triangles_between(a: &[u32], b: &[u32], along: impl Fn(u32) -> f32) -> Ve
     triangles
 }
 
-/// [`matching`]: a count is close enough to its target when off by this part.
+/// A count is close to its target when off by this part.
 const TOLERANCE: f32 = 0.003;
+/// How often [`matching`] counts at most.
+const MAX_ROUNDS: u32 = 10;
+
+/// Whether a count is so close to its target that [`matching`] ends.
+pub fn is_close(count: u32, target: u32) -> bool {
+    count.abs_diff(target) as f32 <= TOLERANCE * target as f32
+}
+
 /// Where in a range a growing function comes closest to the target: by false position, between a guess and a point beyond
 /// the target.
 pub fn matching(target: u32, range: Range<f32>, guess: f32, count: impl Fn(f32) -> u32) -> f32 {
-    let target = target as f32;
-    let off = |x: f32| count(x) as f32 - target;
-    let close = |off: f32| off.abs() <= TOLERANCE * target;
+    matching_with(target, range, guess, |x| (count(x), ())).0
+}
+
+/// The same for a function that gives something else beside each count: also what it gave there.
+pub fn matching_with<T>(
+    target: u32,
+    range: Range<f32>,
+    guess: f32,
+    count: impl Fn(f32) -> (u32, T),
+) -> (f32, T) {
     let (least, most) = (range.start, range.end.max(range.start));
     let (mut low, mut high) = ((least, f32::NEG_INFINITY), (most, f32::INFINITY));
     let mut at = guess.clamp(least, most);
     let mut min_step = 0.02 * (most - least);
-    for _ in 0..9 {
-        let here = (at, off(at));
-        let beyond = if here.1 < 0.0 { at >= most } else { at <= least };
-        if close(here.1) || beyond || high.0 - low.0 <= 1e-4 * high.0 {
-            return at;
+    let mut rounds = 0;
+    loop {
+        let (counted, beside) = count(at);
+        let off = counted as f32 - target as f32;
+        let beyond = if off < 0.0 { at >= most } else { at <= least };
+        rounds += 1;
+        if is_close(counted, target) || beyond || high.0 - low.0 <= 1e-4 * high.0 || rounds == MAX_ROUNDS {
+            return (at, beside);
         }
-        *(if here.1 < 0.0 { &mut low } else { &mut high }) = here;
+        *(if off < 0.0 { &mut low } else { &mut high }) = (at, off);
         at = if low.1.is_finite() && high.1.is_finite() {
             let part = (-low.1 / (high.1 - low.1)).clamp(0.1, 0.9);
             low.0 + (high.0 - low.0) * part
         } else {
             // About a third of what elements grow by is not hidden by others.
-            let step = (3.0 * here.1.abs() / target * at).max(min_step);
+            let step = (3.0 * off.abs() / target as f32 * at).max(min_step);
             min_step *= 8.0;
-            (at - step.copysign(here.1)).clamp(least, most)
+            (at - step.copysign(off)).clamp(least, most)
         };
     }
-    at
 }
 
 #[cfg(test)]

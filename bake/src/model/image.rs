@@ -75,7 +75,7 @@ impl AlphaMask {
     /// Whether the texture is opaque at texture coordinates; it is nowhere outside of [0, 1], but for rounding.
     pub fn is_opaque(&self, uv: [f32; 2]) -> bool {
         const ROUNDING: f32 = 1e-3;
-        let [x, y] = uv.map(|t| ((t * MASK_SIDE as f32).max(0.0) as usize).min(MASK_SIDE - 1));
+        let [x, y] = uv.map(|t| ((t * MASK_SIDE as f32).max(0.0) as i32 as usize).min(MASK_SIDE - 1));
         self.rows[y] >> x & 1 == 1 && uv.iter().all(|t| (-ROUNDING..=1.0 + ROUNDING).contains(t))
     }
 

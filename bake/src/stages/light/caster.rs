@@ -71,7 +71,7 @@ fn opacity(mesh: &Mesh, part: &Part) -> f32 {
             triangle.map(|v| mesh.uvs.get(v as usize).copied().map_or(Vec2::ZERO, Vec2::from_array));
         0.5 * (b - a).perp_dot(c - a).abs()
     });
-    (LEAF_OPACITY / cards.max(LEAF_OPACITY)).min(1.0)
+    LEAF_OPACITY / cards.max(LEAF_OPACITY)
 }
 
 /// A tree's shadow.

@@ -5,9 +5,9 @@ use glam::Vec3;
 
 use super::LodOptions;
 use super::aggregate::Aggregate;
-use super::coverage::{Camera, Canvas, Elements};
+use super::coverage::{Camera, Canvas, Elements, Surfaces};
 use super::state::State;
-use crate::math::matching;
+use crate::math::{is_close, matching, matching_with};
 use crate::model::AlphaMask;
 
 /// Pixels a side of the views in which many leaves are counted, with the twigs among them, and of those of fewer, as a palm's,
@@ -85,12 +85,15 @@ impl Calibration {
                 .map(|all| [Found { living: all.living() as f32, ratio: 1.0 }; 2])
                 .collect(),
         };
-        let elements = calibration.elements(state, aggregates);
-        let covered = |elements: &Elements| elements.covered(&calibration.camera, 1.0);
-        calibration.full_elements = elements.iter().map(covered).collect();
+        let mut all = Canvas::empty(&calibration.camera);
+        for elements in calibration.elements(state, aggregates) {
+            let canvas = elements.canvas(&calibration.camera, 1.0);
+            calibration.full_elements.push(canvas.covered());
+            all.add(&canvas);
+        }
         if thickens {
-            let canvas = calibration.draw(&elements, &calibration.last);
-            calibration.full = covered_with(state, &canvas, 0.0);
+            Surfaces::new(state, &calibration.camera).draw(0.0, &mut all);
+            calibration.full = all.covered();
         }
         calibration
     }
@@ -102,55 +105,70 @@ impl Calibration {
         let counts = self.counted > 0;
         self.counted = self.counted.saturating_sub(1);
         let elements = self.elements(state, aggregates);
+        let mut all = Canvas::empty(&self.camera);
         for (index, (elements, aggregate)) in elements.iter().zip(aggregates).enumerate() {
             let scale = sizes.scales[index];
             let range = MIN_SHRUNK * scale..aggregate.max_scale(scale);
             let living = aggregate.living() as f32;
             let guess = aggregate.same_area_scale() * Found::next(&self.found[index], living);
-            let covered = |scale: f32| elements.covered(&self.camera, scale);
-            let scale = if counts {
-                matching(self.full_elements[index], range, guess, covered)
-            } else {
-                guess.clamp(range.start, range.end)
+            let count = |scale: f32| {
+                let canvas = elements.canvas(&self.camera, scale);
+                (canvas.covered(), canvas)
             };
+            let (scale, canvas) = if counts {
+                matching_with(self.full_elements[index], range, guess, count)
+            } else {
+                let scale = guess.clamp(range.start, range.end);
+                (scale, elements.canvas(&self.camera, scale))
+            };
+            all.add(&canvas);
             sizes.scales[index] = scale;
             let found = Found { living, ratio: scale / aggregate.same_area_scale() };
             self.found[index] = [found, self.found[index][0]];
         }
         if self.max_offset_m > 0.0 {
-            let canvas = self.draw(&elements, &sizes);
             let range = 0.0..self.max_offset_m;
             let guess = sizes.offset_m + 0.1 * self.max_offset_m;
-            sizes.offset_m =
-                matching(self.full, range, guess, |offset_m| covered_with(state, &canvas, offset_m));
-            if counts {
-                self.make_up_with_elements(state, aggregates, &elements, &mut sizes);
+            let surfaces = Surfaces::new(state, &self.camera);
+            let count = |offset_m: f32| {
+                let mut canvas = all.clone();
+                surfaces.draw(offset_m, &mut canvas);
+                let covered = canvas.covered();
+                (covered, covered)
+            };
+            let covered;
+            (sizes.offset_m, covered) = matching_with(self.full, range, guess, count);
+            if counts && covered < self.full && !is_close(covered, self.full) {
+                self.make_up_with_elements(aggregates, &elements, &surfaces, covered, &mut sizes);
             }
         }
         self.last = sizes.clone();
         sizes
     }
 
-    /// Where branches that went were seen between the leaves and those that stay may not grow by enough, all elements
-    /// grow until the whole covers what it did.
+    /// Where branches that went were seen between the leaves and those that stay may not grow by enough, so that only so much
+    /// is covered, all elements grow until the whole covers what it did.
     fn make_up_with_elements(
         &self,
-        state: &State,
         aggregates: &[Aggregate],
         elements: &[Elements],
+        surfaces: &Surfaces,
+        covered: u32,
         sizes: &mut Sizes,
     ) {
-        let mut surfaces = Canvas::empty(&self.camera);
-        surfaces.draw_surfaces(state, sizes.offset_m);
-        let covered = |growth: f32| {
-            let mut canvas = surfaces.clone();
+        let mut bark = Canvas::empty(&self.camera);
+        surfaces.draw(sizes.offset_m, &mut bark);
+        let count = |growth: f32| {
+            let mut canvas = bark.clone();
             let parts = elements.iter().zip(&sizes.scales);
             parts.for_each(|(part, scale)| part.draw(growth * scale, &mut canvas));
             canvas.covered()
         };
         let room = |(aggregate, &scale): (&Aggregate, &f32)| aggregate.max_scale(scale) / scale;
         let most = aggregates.iter().zip(&sizes.scales).map(room).fold(1.0, f32::max);
-        let growth = matching(self.full, 1.0..most, 1.0, covered);
+        // About a third of what elements grow by is not hidden by others.
+        let guess = 1.0 + 3.0 * (self.full - covered) as f32 / self.full as f32;
+        let growth = matching(self.full, 1.0..most, guess, count);
         for (aggregate, scale) in aggregates.iter().zip(&mut sizes.scales) {
             *scale = (growth * *scale).min(aggregate.max_scale(*scale));
         }
@@ -163,17 +181,4 @@ impl Calibration {
         };
         aggregates.iter().map(project).collect()
     }
-
-    fn draw(&self, elements: &[Elements], sizes: &Sizes) -> Canvas {
-        let mut canvas = Canvas::empty(&self.camera);
-        elements.iter().zip(&sizes.scales).for_each(|(part, &scale)| part.draw(scale, &mut canvas));
-        canvas
-    }
-}
-
-/// Pixels that surfaces grown by `offset_m` cover together with what is drawn.
-fn covered_with(state: &State, drawn: &Canvas, offset_m: f32) -> u32 {
-    let mut canvas = drawn.clone();
-    canvas.draw_surfaces(state, offset_m);
-    canvas.covered()
 }

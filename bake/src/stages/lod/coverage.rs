@@ -1,15 +1,13 @@
-//! How many pixels a mesh covers when seen from the sides: rows of bits, filled triangle by triangle; elements of
-//! aggregates are cut out by their texture's alpha.
-//!
-//! Orthographic views of square pixels; a pixel counts when its centre is inside a triangle and opaque there.
+//! How many pixels a mesh covers when seen from the sides, orthographically; elements of aggregates are cut out by their
+//! texture's alpha.
 
-use std::cell::LazyCell;
 use std::f32::consts::FRAC_1_SQRT_2;
 
 use glam::{Vec2, Vec3};
 
 use super::state::{PartSpan, State};
 use crate::model::AlphaMask;
+use crate::silhouette::Silhouette;
 
 /// Unit vectors to the right in each view, all round, and how far each looks from below or above: the tangent of its
 /// elevation.
@@ -25,7 +23,7 @@ const VIEWS: [(Vec3, f32); 4] = [
 pub struct Camera {
     middle: Vec3,
     pixels_per_m: f32,
-    /// Pixels a side, a multiple of 64.
+    /// Pixels a side.
     side: usize,
 }
 
@@ -50,30 +48,64 @@ impl Camera {
 /// Which pixels are covered in each view.
 #[derive(Clone)]
 pub struct Canvas {
-    camera: Camera,
-    /// Rows of 64 pixels a word, from the bottom.
-    views: [Vec<u64>; VIEWS.len()],
+    /// Rows from the bottom.
+    views: [Silhouette; VIEWS.len()],
 }
 
 impl Canvas {
     pub fn empty(camera: &Camera) -> Self {
-        Self { camera: *camera, views: VIEWS.map(|_| vec![0; camera.side * camera.side / 64]) }
+        Self { views: VIEWS.map(|_| Silhouette::empty(camera.side)) }
     }
 
     pub fn covered(&self) -> u32 {
-        self.views.iter().flatten().map(|word| word.count_ones()).sum()
+        self.views.iter().map(Silhouette::covered).sum()
     }
 
-    /// Draws what lives of the surface parts, grown by `offset_m` along its normals.
-    pub fn draw_surfaces(&mut self, state: &State, offset_m: f32) {
-        let grown = |v: u32| Vec3::from_array(state.grown(v as usize, offset_m));
+    /// Covers what another canvas of the same camera covers.
+    pub fn add(&mut self, other: &Self) {
+        self.views.iter_mut().zip(&other.views).for_each(|(view, other)| view.add(other));
+    }
+}
+
+/// What lives of the surface parts as seen from the sides.
+pub struct Surfaces {
+    /// Of each triangle in each view, where its corners are, in pixels, and how they move for each metre by which the
+    /// surface grows.
+    triangles: Vec<[[Growing; 3]; VIEWS.len()]>,
+}
+
+#[derive(Clone, Copy)]
+struct Growing {
+    at: Vec2,
+    per_m: Vec2,
+}
+
+impl Surfaces {
+    /// Projects all of them.
+    pub fn new(state: &State, camera: &Camera) -> Self {
         let surfaces = state.parts.iter().filter(|span| span.elements().is_none());
         let living = surfaces.flat_map(PartSpan::range).filter(|&t| state.triangle_lives[t]);
-        let triangles: Vec<[Vec3; 3]> = living.map(|t| state.triangles[t].map(grown)).collect();
-        let camera = self.camera;
-        for (pixels, view) in self.views.iter_mut().zip(VIEWS) {
-            let flat = |corner: Vec3| camera.place(view, corner);
-            triangles.iter().for_each(|corners| fill(pixels, camera.side, corners.map(flat), |_, _| true));
+        let project = |t: usize| {
+            let corners = state.triangles[t].map(|v| {
+                let vertex = &state.vertices[v as usize];
+                (Vec3::from_array(vertex.position), vertex.outward())
+            });
+            VIEWS.map(|view| {
+                corners.map(|(position, out)| Growing {
+                    at: camera.place(view, position),
+                    per_m: camera.offset(view, out),
+                })
+            })
+        };
+        Self { triangles: living.map(project).collect() }
+    }
+
+    /// Draws them, grown by `offset_m` along their normals.
+    pub fn draw(&self, offset_m: f32, canvas: &mut Canvas) {
+        for (view, pixels) in canvas.views.iter_mut().enumerate() {
+            for triangle in &self.triangles {
+                pixels.fill(triangle[view].map(|corner| corner.at + corner.per_m * offset_m));
+            }
         }
     }
 }
@@ -116,82 +148,15 @@ impl Elements {
         for (view, pixels) in canvas.views.iter_mut().enumerate() {
             for triangle in &self.triangles {
                 let corners = triangle.corners[view].map(|by| triangle.centres[view] + by * scale);
-                // Most small triangles show nothing that is not covered yet, so their texture is placed only when it counts.
-                let texture = LazyCell::new(|| Affine::through(corners, triangle.uvs));
-                fill(pixels, canvas.camera.side, corners, |x, y| {
-                    texture.as_ref().is_some_and(|texture| self.mask.is_opaque(texture.at(x, y).into()))
-                });
+                pixels.fill_cut_out(corners, triangle.uvs, |uv| self.mask.is_opaque(uv.into()));
             }
         }
     }
 
-    /// Pixels that the elements alone cover.
-    pub fn covered(&self, camera: &Camera, scale: f32) -> u32 {
+    /// What the elements alone cover.
+    pub fn canvas(&self, camera: &Camera, scale: f32) -> Canvas {
         let mut canvas = Canvas::empty(camera);
         self.draw(scale, &mut canvas);
-        canvas.covered()
+        canvas
     }
-}
-
-/// Texture coordinates as a function of the place in a picture.
-struct Affine {
-    origin: Vec2,
-    along_x: Vec2,
-    along_y: Vec2,
-}
-
-impl Affine {
-    fn through([a, b, c]: [Vec2; 3], [at_a, at_b, at_c]: [Vec2; 3]) -> Option<Self> {
-        let (p, q) = (b - a, c - a);
-        let area = p.perp_dot(q);
-        let (u, v) = (at_b - at_a, at_c - at_a);
-        let along_x = (u * q.y - v * p.y) / area;
-        let along_y = (v * p.x - u * q.x) / area;
-        let origin = at_a - along_x * a.x - along_y * a.y;
-        origin.is_finite().then_some(Self { origin, along_x, along_y })
-    }
-
-    fn at(&self, x: f32, y: f32) -> Vec2 {
-        self.origin + self.along_x * x + self.along_y * y
-    }
-}
-
-/// Sets the bits of pixels whose centres lie in a triangle and are opaque.
-fn fill(pixels: &mut [u64], side: usize, [a, b, c]: [Vec2; 3], opaque: impl Fn(f32, f32) -> bool) {
-    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-    let first = (low.y - 0.5).max(-1.0).ceil() as i32;
-    let last = (high.y - 0.5).min(side as f32).floor() as i32;
-    if first > last || whole(low.x) == whole(high.x) {
-        return;
-    }
-    let slopes = [(a, b), (b, c), (c, a)].map(|(p, q)| (q.x - p.x) / (q.y - p.y));
-    for row in first.max(0)..=last.min(side as i32 - 1) {
-        let y = row as f32 + 0.5;
-        let (mut left, mut right) = (f32::MAX, f32::MIN);
-        for ((p, q), slope) in [(a, b), (b, c), (c, a)].into_iter().zip(slopes) {
-            if (p.y <= y) != (q.y <= y) {
-                let x = p.x + (y - p.y) * slope;
-                left = left.min(x);
-                right = right.max(x);
-            }
-        }
-        let (start, end) = (whole(left), whole(right).min(side));
-        let line = &mut pixels[row as usize * side / 64..][..side / 64];
-        for (word, covered) in line.iter_mut().enumerate().take(end.div_ceil(64)).skip(start / 64) {
-            let (from, to) = (start.max(64 * word) % 64, end.min(64 * word + 64) - 64 * word);
-            let mut bare = !*covered & u64::MAX << from & u64::MAX >> (64 - to);
-            while bare != 0 {
-                let bit = bare & bare.wrapping_neg();
-                bare ^= bit;
-                if opaque((64 * word) as f32 + bit.trailing_zeros() as f32 + 0.5, y) {
-                    *covered |= bit;
-                }
-            }
-        }
-    }
-}
-
-/// The first pixel whose centre is not left of a place: without a call, since this is the bake's innermost loop but one.
-fn whole(place: f32) -> usize {
-    (place + 0.5).max(0.0) as usize
 }

@@ -7,13 +7,16 @@
 use glam::{Vec2, Vec3};
 
 use super::fitting;
+use super::repair::repaired;
 use super::state::{PartSpan, State};
-use crate::model::AlphaMask;
+use crate::model::{AlphaMask, Mesh};
 
 /// Elements that errors are averaged over.
 const SAMPLES: usize = 64;
 /// The outline in texture space may change by this part of its area.
 const AREA_TOLERANCE: f32 = 1e-3;
+/// Cards whose vertices lie this far out of a plane on average, in metres, are flat.
+const FLAT_M: f64 = 1e-3;
 
 /// What is done to all elements, one after the other.
 #[derive(Clone, Debug)]
@@ -76,6 +79,24 @@ pub fn plan(state: &State, span: &PartSpan, mask: &AlphaMask) -> Vec<Step> {
         step.error_m = worst_m;
     }
     steps
+}
+
+/// The same mesh with triangles in the place of flat cards: it shows the same, and is drawn in less time.
+pub fn fitted(mesh: &Mesh, masks: &[AlphaMask]) -> Mesh {
+    let mut state = State::new(&repaired(mesh.clone()));
+    for (part, mask) in masks.iter().enumerate().take(state.parts.len()) {
+        let span = state.parts[part].clone();
+        let [Step { error_m, change: Change::Fit(triangle) }] = plan(&state, &span, mask)[..] else {
+            continue;
+        };
+        if error_m <= FLAT_M {
+            let elements = span.elements().map_or(0, |(elements, ..)| elements);
+            (0..elements).for_each(|element| fitting::fit(&mut state, &span, element, triangle));
+        }
+    }
+    let unchanged: Vec<f32> =
+        state.parts.iter().map(|span| f32::from(u8::from(span.elements().is_some()))).collect();
+    state.to_mesh(&unchanged).0
 }
 
 fn by_error(p: &(f64, Merge), q: &(f64, Merge)) -> std::cmp::Ordering {

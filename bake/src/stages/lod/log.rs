@@ -1,6 +1,7 @@
 //! Changes of a mesh → the log of a simplification: for each step, what undoes it.
 
 use bytemuck::NoUninit;
+use glam::Vec3;
 
 /// All that a vertex carries; attributes that the mesh lacks are zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, NoUninit)]
@@ -10,6 +11,13 @@ pub struct Vertex {
     pub normal: [f32; 3],
     pub uv: [f32; 2],
     pub color: [u8; 4],
+}
+
+impl Vertex {
+    /// The unit vector along its normal; zero without one.
+    pub fn outward(&self) -> Vec3 {
+        Vec3::from_array(self.normal).normalize_or_zero()
+    }
 }
 
 /// What undoes one step: a vertex split, or a piece that appears whole.

@@ -34,6 +34,7 @@ mod shapes;
 mod tests;
 
 use crate::model::{AlphaMask, Level, LevelledMesh, Mesh};
+pub use flattening::fitted;
 
 /// Where the new vertex of a collapsed edge goes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]

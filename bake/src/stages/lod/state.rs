@@ -158,12 +158,11 @@ impl State {
 
     /// Where a vertex lies once its surface has grown along its normals, in metres.
     pub fn grown(&self, id: usize, offset_m: f32) -> [f32; 3] {
-        let Vertex { position, normal, .. } = self.vertices[id];
+        let position = self.vertices[id].position;
         if offset_m == 0.0 {
             return position;
         }
-        let out = Vec3::from_array(normal).normalize_or_zero();
-        (Vec3::from_array(position) + out * offset_m).to_array()
+        (Vec3::from_array(position) + self.vertices[id].outward() * offset_m).to_array()
     }
 
     /// What lives, in the original order, with each part's size: aggregates' elements scaled about their centres,

@@ -250,7 +250,7 @@ fn leaves_keep_covering_the_sky() {
 
 #[test]
 fn leaves_that_are_not_counted_go_on_growing() {
-    let mesh = tree(30, 10, 3000);
+    let mesh = tree(30, 10, 2800);
     let made = |counted_levels| levels(&mesh, &LodOptions { counted_levels, ..LodOptions::default() }).levels;
     let (all, two) = (made(u32::MAX), made(2));
     assert!(all[..=2].iter().zip(&two).all(|(a, b)| a.mesh == b.mesh), "the same where they are counted");
@@ -260,9 +260,11 @@ fn leaves_that_are_not_counted_go_on_growing() {
     };
     for (counted, guessed) in all.iter().zip(&two).skip(3) {
         let ratio = sum(guessed) as f32 / sum(counted) as f32;
-        assert!((0.85..1.15).contains(&ratio), "{ratio}: not near to what would be counted");
+        assert!(
+            ratio != 1.0 && (0.85..1.15).contains(&ratio),
+            "{ratio}: near to what would be counted, but a guess"
+        );
     }
-    assert!(all.iter().zip(&two).any(|(a, b)| a.mesh != b.mesh), "none of them was a guess");
 }
 
 #[test]

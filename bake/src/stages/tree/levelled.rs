@@ -28,20 +28,23 @@ pub struct Levelled {
 /// Makes the levels of a template; tells when each part of the work has ended.
 pub fn levelled<P>(mesh: &Mesh, textures: &TreeTextures<P>, ended: &mut dyn FnMut(Step)) -> Levelled {
     let (mut caster, mut pictures) = (Mesh::default(), None);
+    let options = options(mesh, textures);
+    let full = lod::fitted(mesh, &options.masks);
     let mut finish = |levels: &mut Vec<Level>| {
         // What a shadow is cast by lets light through between its leaves, which a map of such coarse texels knows by itself.
         caster = smallest_enough(levels).clone();
-        let (surfaces, found) = clusters::substitute(levels, Surfaces::of(textures));
+        let (surfaces, found) = clusters::substitute(&full, levels, Surfaces::of(textures));
         pictures = found;
-        let meshes: Vec<&Mesh> = levels.iter().map(|level| &level.mesh).collect();
+        let coarser = levels.iter().skip(1).map(|level| &level.mesh);
+        let meshes: Vec<&Mesh> = std::iter::once(&full).chain(coarser).collect();
         let mut errors_m = errors(&meshes, &surfaces);
-        let past_m = PAST_PICTURES * impostor_error_m(meshes[0]);
+        let past_m = PAST_PICTURES * impostor_error_m(mesh);
         let last = errors_m.iter().position(|&error_m| error_m >= past_m);
         errors_m.truncate(last.map_or(errors_m.len(), |last| last + 1));
         levels.truncate(errors_m.len() + 1);
         errors_m
     };
-    let mesh = lod::levels_finished(mesh, &options(mesh, textures), &mut finish, ended);
+    let mesh = lod::levels_finished(mesh, &options, &mut finish, ended);
     Levelled { mesh, clusters: pictures, caster }
 }
 
@@ -62,10 +65,4 @@ fn options<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> LodOptions {
 fn smallest_enough(levels: &[Level]) -> &Mesh {
     let small = |level: &&Level| level.mesh.triangle_count() <= CASTER_TRIANGLES;
     &levels.iter().find(small).unwrap_or(&levels[levels.len() - 1]).mesh
-}
-
-/// The level of which pictures are drawn: with half of the leaves, which cover as much, in half of the time; a leaf is less
-/// than a pixel of them. A bare tree has no leaf to spare.
-pub fn drawn_from_afar(levels: &[Level]) -> &Mesh {
-    &levels[usize::from(levels[0].mesh.has_cards() && levels.len() > 1)].mesh
 }

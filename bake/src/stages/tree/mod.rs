@@ -39,8 +39,8 @@ use budget::Budget;
 pub use stage::{TreeFiles, TreeStage, TreeTexturesStage};
 
 pub use crease::crease_normals;
-pub use impostor::impostor;
-pub use levelled::{Levelled, drawn_from_afar, levelled};
+pub use impostor::{drawn_from_afar, impostor};
+pub use levelled::{Levelled, levelled};
 pub use measure::{TreeMeasures, measure};
 pub use params::{TreeParams, TreeTextureParams};
 

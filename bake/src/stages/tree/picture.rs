@@ -1,5 +1,7 @@
 //! Samples of a tree, or of some of its leaves, from one side → a picture: averaged, bled, and with an alpha that keeps the area at the cutoff.
 
+use std::cmp::Reverse;
+
 use glam::Vec3;
 
 use super::mips::Encoder;
@@ -76,14 +78,19 @@ impl Picture {
 /// Fills pixels in which nothing is from those around them.
 fn bled(mut pixels: Vec<Option<Pixel>>, side: usize) -> Vec<Pixel> {
     let mean = Pixel::mean(pixels.iter().flatten().copied()).unwrap_or_default();
-    let mut rim: Vec<usize> = (0..pixels.len()).filter(|&i| pixels[i].is_some()).collect();
+    // Those in which nothing is, but beside them.
+    let is_rim = |pixels: &[Option<Pixel>], i: usize| {
+        pixels[i].is_none() && around(i, side).any(|j| pixels[j].is_some())
+    };
+    let mut rim: Vec<usize> = (0..pixels.len()).filter(|&i| is_rim(&pixels, i)).collect();
+    let mut is_listed = vec![false; pixels.len()];
     for _ in 0..BLED_PX {
-        rim = rim.into_iter().flat_map(|i| around(i, side)).filter(|&i| pixels[i].is_none()).collect();
-        rim.sort_unstable();
-        rim.dedup();
         let fill = |&i: &usize| Pixel::mean(around(i, side).filter_map(|j| pixels[j]));
         let filled: Vec<_> = rim.iter().map(fill).collect();
         rim.iter().zip(filled).for_each(|(&i, pixel)| pixels[i] = pixel);
+        let beside = rim.iter().flat_map(|&i| around(i, side));
+        rim =
+            beside.filter(|&i| pixels[i].is_none() && !std::mem::replace(&mut is_listed[i], true)).collect();
     }
     pixels.into_iter().map(|pixel| pixel.unwrap_or(mean)).collect()
 }
@@ -101,20 +108,26 @@ fn around(i: usize, side: usize) -> impl Iterator<Item = usize> {
 /// A few samples give few different values, so that often hundreds of pixels are equally near to the cutoff; of these, the
 /// ones with more around them pass.
 fn alpha(covered: &[u32], side: usize, all: u32) -> Vec<u8> {
-    let wanted = ((covered.iter().sum::<u32>() + all / 2) / all) as usize;
-    let mut order: Vec<(u32, u32, usize)> = (0..covered.len())
-        .filter(|&i| covered[i] > 0)
-        .map(|i| (covered[i], around(i, side).map(|j| covered[j]).sum(), i))
-        .collect();
-    order.sort_unstable_by(|a, b| b.cmp(a));
-    let lowest = wanted.checked_sub(1).and_then(|last| order.get(last)).map_or(all, |kept| kept.0);
-    let scale = Impostor::ALPHA_CUTOFF / lowest as f32;
-    let mut alpha = vec![0; covered.len()];
-    for (place, &(count, _, i)) in order.iter().enumerate() {
-        let byte = unit_to_byte(count as f32 * scale);
-        alpha[i] = if place < wanted { byte.max(KEPT) } else { byte.min(KEPT - 1) };
+    let mut wanted = ((covered.iter().sum::<u32>() + all / 2) / all) as usize;
+    let mut pixels_with = vec![0; all as usize + 1];
+    covered.iter().for_each(|&count| pixels_with[count as usize] += 1);
+    // All pixels with more samples than the lowest that is kept pass, and as many of those with just so many as are wanted yet.
+    let mut lowest = all;
+    while lowest > 1 && wanted > pixels_with[lowest as usize] {
+        wanted -= pixels_with[lowest as usize];
+        lowest -= 1;
     }
-    alpha
+    let around_it = |&i: &usize| around(i, side).map(|j| covered[j]).sum::<u32>();
+    let mut equal: Vec<usize> = (0..covered.len()).filter(|&i| covered[i] == lowest).collect();
+    equal.sort_by_cached_key(|i| Reverse((around_it(i), *i)));
+    let mut passes: Vec<bool> = covered.iter().map(|&count| count > lowest).collect();
+    equal.iter().take(wanted).for_each(|&i| passes[i] = true);
+    let scale = Impostor::ALPHA_CUTOFF / lowest as f32;
+    let byte = |(&count, passes): (&u32, bool)| match (unit_to_byte(count as f32 * scale), passes) {
+        (byte, true) => byte.max(KEPT),
+        (byte, false) => byte.min(KEPT - 1),
+    };
+    covered.iter().zip(passes).map(byte).collect()
 }
 
 /// Colours with alpha, and relief, as files hold them.

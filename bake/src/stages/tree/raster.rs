@@ -1,5 +1,7 @@
 //! A mesh → what is seen of it from one side, orthographically, by a z-buffer.
 
+use std::cell::LazyCell;
+
 use glam::{Vec2, Vec3};
 
 use super::surfaces::{Surface, Surfaces};
@@ -7,6 +9,8 @@ use crate::model::{Impostor, Mesh};
 
 /// Samples a side of a tile.
 const TILE: usize = 8;
+/// Fewer triangles are drawn in the order of the mesh.
+const MANY: usize = 256;
 /// How often it is noted in which tiles nothing more can show, and after how many triangles at the earliest.
 const ROUNDS: usize = 24;
 const MIN_ROUND: usize = 1024;
@@ -44,7 +48,7 @@ impl Look {
     }
 
     /// Place in samples from the upper left corner, and metres before the axis.
-    fn project(&self, position: [f32; 3]) -> Vec3 {
+    pub fn project(&self, position: [f32; 3]) -> Vec3 {
         let p = Vec3::from_array(position) - self.foot_m;
         let x = 0.5 * self.size as f32 + p.dot(self.right) * self.samples_per_m.x;
         Vec3::new(x, self.size as f32 - p.dot(self.up) * self.samples_per_m.y, p.dot(self.eye))
@@ -68,7 +72,7 @@ pub(super) struct Sample {
 
 /// What is nearest at each sample, rows from the top.
 pub(super) struct Drawing<'a> {
-    /// Those that were not hidden when it was their turn.
+    /// Those that were seen when it was their turn.
     triangles: Vec<Triangle<'a>>,
     /// Metres before the axis; −∞ where nothing is.
     depths_m: Vec<f32>,
@@ -87,13 +91,21 @@ impl<'a> Drawing<'a> {
         drawing
     }
 
-    /// Draws the nearest triangles first, since most of what comes later is then hidden. Where two are equally near, the
-    /// one that comes first in the mesh is drawn.
+    /// Draws the nearest triangles first, where they are many, since most of what comes later is then hidden. Where two are
+    /// equally near, the one that comes first in the mesh is drawn.
     fn draw(&mut self, mesh: &Mesh, surfaces: &'a Surfaces, look: &Look) {
         let places: Vec<Vec3> = mesh.positions.iter().map(|&p| look.project(p)).collect();
         let corners = |triangle: [u32; 3]| triangle.map(|i| places[i as usize]);
         let parts = mesh.parts.iter().map(|part| (surfaces.of_part(part.material), &part.triangles));
         let all: Vec<_> = parts.flat_map(|(surface, part)| part.iter().map(move |&t| (surface, t))).collect();
+        if all.len() < MANY {
+            for (surface, vertices) in all {
+                if let Some(outline) = Outline::new(corners(vertices)) {
+                    self.add(mesh, vertices, &outline, surface);
+                }
+            }
+            return;
+        }
         let nearest_m = |t: [u32; 3]| corners(t).iter().map(|c| c.z).fold(f32::MIN, f32::max);
         let shown = (0..).zip(&all).filter(|(_, (_, t))| self.holds_a_sample(corners(*t)));
         let mut order: Vec<u64> =
@@ -108,8 +120,8 @@ impl<'a> Drawing<'a> {
                 if self.tiles_around(corners).all(|tile| farthest_m[tile] >= nearest_m) {
                     continue;
                 }
-                if let Some(triangle) = Triangle::new(mesh, vertices, corners, surface) {
-                    self.add(triangle);
+                if let Some(outline) = Outline::new(corners) {
+                    self.add(mesh, vertices, &outline, surface);
                 }
             }
         }
@@ -120,31 +132,21 @@ impl<'a> Drawing<'a> {
         self.size
     }
 
-    /// Samples at which anything is seen, or in another drawing of the same size.
-    pub fn covered_with(&self, other: &Self) -> u32 {
-        let is_seen = |(a, b): (&f32, &f32)| u32::from(a.max(*b) > f32::NEG_INFINITY);
-        self.depths_m.iter().zip(&other.depths_m).map(is_seen).sum()
-    }
-
-    fn add(&mut self, triangle: Triangle<'a>) {
-        match triangle.surface {
-            Surface::Wood(_) => self.fill(&triangle, |_| |_| true),
-            Surface::Card(card) => {
-                let [u, v] = &triangle.uv;
-                self.fill(&triangle, |y| {
-                    let (u, v) = (u.row(y), v.row(y));
-                    move |x| card.mask.is_opaque([u.at(x), v.at(x)])
-                });
-            }
-            Surface::Atlas(atlas) => {
-                let [u, v] = &triangle.uv;
-                self.fill(&triangle, |y| {
-                    let (u, v) = (u.row(y), v.row(y));
-                    move |x| atlas.is_opaque(u.at(x), v.at(x))
-                });
-            }
+    fn add(&mut self, mesh: &Mesh, vertices: [u32; 3], outline: &Outline, surface: Surface<'a>) {
+        // Most triangles show nothing in the end, so their texture is placed only when it counts.
+        let uv = LazyCell::new(|| outline.uv(mesh, vertices));
+        let at = |x: f32, y: f32| [0, 1].map(|axis: usize| uv[axis].at(x, y));
+        let shows = match surface {
+            Surface::Wood(_) => self.fill(outline, |_, _| true),
+            Surface::Card(card) => self.fill(outline, |x, y| card.mask.is_opaque(at(x, y))),
+            Surface::Atlas(atlas) => self.fill(outline, |x, y| {
+                let [u, v] = at(x, y);
+                atlas.is_opaque(u, v)
+            }),
+        };
+        if shows {
+            self.triangles.push(Triangle::new(mesh, vertices, outline, surface));
         }
-        self.triangles.push(triangle);
     }
 
     /// Whether there is any sample in the rectangle around a triangle: in that of a small one, often none is.
@@ -176,28 +178,31 @@ impl<'a> Drawing<'a> {
         tiles
     }
 
-    /// Puts a triangle where it is the nearest so far, and there in a row.
+    /// Puts the next triangle where it is the nearest so far, and there; whether it is anywhere.
     #[inline]
-    fn fill<Row: Fn(f32) -> bool>(&mut self, triangle: &Triangle<'_>, row_at: impl Fn(f32) -> Row) {
+    fn fill(&mut self, outline: &Outline, is_there: impl Fn(f32, f32) -> bool) -> bool {
         let index = self.triangles.len() as u32;
-        let [a, b, c] = triangle.corners.map(|corner| corner.y);
+        let [a, b, c] = outline.corners.map(|corner| corner.y);
         let size = self.size;
+        let mut shows = false;
         for row in first(a.min(b).min(c), size)..first(a.max(b).max(c), size) {
             let y = row as f32 + 0.5;
-            let (left, right) = triangle.span(y);
+            let (left, right) = outline.span(y);
             let start = first(left - EDGE, size);
             let columns = start..first(right + EDGE, size).max(start);
             let line = row * size + columns.start..row * size + columns.end;
             let depths_m = self.depths_m[line.clone()].iter_mut().zip(&mut self.nearest[line]);
-            let (row_m, is_there) = (triangle.depth_m.row(y), row_at(y));
+            let row_m = outline.depth_m.origin + outline.depth_m.per_y * y;
             for (column, (depth_m, nearest)) in columns.zip(depths_m) {
                 let x = column as f32 + 0.5;
-                let here_m = row_m.at(x);
-                if here_m > *depth_m && is_there(x) {
+                let here_m = row_m + outline.depth_m.per_x * x;
+                if here_m > *depth_m && is_there(x, y) {
                     (*depth_m, *nearest) = (here_m, index);
+                    shows = true;
                 }
             }
         }
+        shows
     }
 
     /// What is seen at a sample, if anything is.
@@ -208,14 +213,14 @@ impl<'a> Drawing<'a> {
         }
         let triangle = &self.triangles[self.nearest[row * self.size + column] as usize];
         let (x, y) = (column as f32 + 0.5, row as f32 + 0.5);
-        let [u, v] = &triangle.uv;
+        let [u, v] = [0, 1].map(|axis: usize| triangle.uv[axis].at(x, y));
         let normal = triangle.normal;
         let sunlit = normal.dot(SUN).max(0.0);
         let (color, sunlit, leaf) = match triangle.surface {
             Surface::Wood(color) => (color, sunlit, false),
-            Surface::Card(card) => (card.at(u.row(y).at(x), v.row(y).at(x)), sunlit, true),
+            Surface::Card(card) => (card.at(u, v), sunlit, true),
             Surface::Atlas(atlas) => {
-                let (color, sunlit) = atlas.at(u.row(y).at(x), v.row(y).at(x));
+                let (color, sunlit) = atlas.at(u, v);
                 (color, sunlit, true)
             }
         };
@@ -230,39 +235,11 @@ struct Plane {
     per_y: f32,
 }
 
-/// The same along a row.
-#[derive(Clone, Copy)]
-struct Row {
-    origin: f32,
-    per_x: f32,
-}
-
 impl Plane {
     #[inline]
-    fn row(&self, y: f32) -> Row {
-        Row { origin: self.origin + self.per_y * y, per_x: self.per_x }
+    fn at(&self, x: f32, y: f32) -> f32 {
+        self.origin + self.per_y * y + self.per_x * x
     }
-}
-
-impl Row {
-    #[inline]
-    fn at(&self, x: f32) -> f32 {
-        self.origin + self.per_x * x
-    }
-}
-
-/// A triangle on the screen.
-struct Triangle<'a> {
-    /// x, y in samples and metres before the axis.
-    corners: [Vec3; 3],
-    /// Samples to the right a row, along the edge from each corner to the next.
-    slopes: [f32; 3],
-    surface: Surface<'a>,
-    depth_m: Plane,
-    uv: [Plane; 2],
-    /// Linear factor on the surface's colour, the mean of the corners'.
-    tint: Vec3,
-    normal: Vec3,
 }
 
 /// Triangles with less than this area in samples are seen from their edge.
@@ -270,41 +247,41 @@ const MIN_AREA: f32 = 1e-6;
 /// Samples this far outside of an edge are inside of both its triangles, so that rounding leaves no hole between them.
 const EDGE: f32 = 1e-3;
 
-impl<'a> Triangle<'a> {
-    fn new(mesh: &Mesh, vertices: [u32; 3], corners: [Vec3; 3], surface: Surface<'a>) -> Option<Self> {
-        let vertices = vertices.map(|i| i as usize);
+/// Where a triangle is on the screen.
+struct Outline {
+    /// x, y in samples and metres before the axis.
+    corners: [Vec3; 3],
+    /// Samples to the right a row, along the edge from each corner to the next.
+    slopes: [f32; 3],
+    /// From the first corner to the two others, over twice the area.
+    edges: [Vec2; 2],
+    depth_m: Plane,
+}
+
+impl Outline {
+    /// `None` of what is seen from its edge.
+    #[inline]
+    fn new(corners: [Vec3; 3]) -> Option<Self> {
         let [a, b, c] = corners;
-        let (ab, ac) = (b - a, c - a);
-        let area = ab.truncate().perp_dot(ac.truncate());
+        let [ab, ac] = [b - a, c - a].map(Vec3::truncate);
+        let area = ab.perp_dot(ac);
         if area.abs() < MIN_AREA {
             return None;
         }
-        let (ab_over, ac_over) = (ab / area, ac / area);
-        let plane = |values: [f32; 3]| {
-            let (db, dc) = (values[1] - values[0], values[2] - values[0]);
-            let (per_x, per_y) = (db * ac_over.y - dc * ab_over.y, dc * ab_over.x - db * ac_over.x);
-            Plane { origin: values[0] - per_x * a.x - per_y * a.y, per_x, per_y }
-        };
-        let uvs = vertices.map(|i| mesh.uvs.get(i).copied().unwrap_or_default());
-        let tint = |&i: &usize| {
-            mesh.colors
-                .get(i)
-                .map_or(Vec3::ONE, |&[r, g, b, _]| Vec3::from_array([r, g, b].map(f32::from)) / 255.0)
-        };
-        let normals = vertices.iter().filter_map(|&i| mesh.normals.get(i));
         let slope = |(p, q): (Vec3, Vec3)| (q.x - p.x) / (q.y - p.y);
-        Some(Self {
-            corners,
-            slopes: [(a, b), (b, c), (c, a)].map(slope),
-            surface,
-            normal: normals.map(|&normal| Vec3::from_array(normal)).sum::<Vec3>().normalize_or_zero(),
-            depth_m: plane(corners.map(|corner| corner.z)),
-            uv: [0, 1].map(|axis| plane(uvs.map(|uv| uv[axis]))),
-            tint: vertices.iter().map(tint).sum::<Vec3>() / 3.0,
-        })
+        let slopes = [(a, b), (b, c), (c, a)].map(slope);
+        let edges = [ab / area, ac / area];
+        Some(Self { corners, slopes, edges, depth_m: plane(a, edges, corners.map(|corner| corner.z)) })
+    }
+
+    /// Texture coordinates.
+    fn uv(&self, mesh: &Mesh, vertices: [u32; 3]) -> [Plane; 2] {
+        let uvs = vertices.map(|i| mesh.uvs.get(i as usize).copied().unwrap_or_default());
+        [0, 1].map(|axis| plane(self.corners[0], self.edges, uvs.map(|uv| uv[axis])))
     }
 
     /// Where a horizontal line enters and leaves it.
+    #[inline]
     fn span(&self, y: f32) -> (f32, f32) {
         let (mut left, mut right) = (f32::MAX, f32::MIN);
         for k in 0..3 {
@@ -318,10 +295,43 @@ impl<'a> Triangle<'a> {
     }
 }
 
+/// Through these values at the corners of a triangle that has its first corner there.
+#[inline]
+fn plane(first: Vec3, [ab, ac]: [Vec2; 2], values: [f32; 3]) -> Plane {
+    let (db, dc) = (values[1] - values[0], values[2] - values[0]);
+    let (per_x, per_y) = (db * ac.y - dc * ab.y, dc * ab.x - db * ac.x);
+    Plane { origin: values[0] - per_x * first.x - per_y * first.y, per_x, per_y }
+}
+
+/// What a triangle looks like.
+struct Triangle<'a> {
+    surface: Surface<'a>,
+    uv: [Plane; 2],
+    /// Linear factor on the surface's colour, the mean of the corners'.
+    tint: Vec3,
+    normal: Vec3,
+}
+
+impl<'a> Triangle<'a> {
+    fn new(mesh: &Mesh, vertices: [u32; 3], outline: &Outline, surface: Surface<'a>) -> Self {
+        let tint = |i: u32| {
+            let color = mesh.colors.get(i as usize);
+            color.map_or(Vec3::ONE, |&[r, g, b, _]| Vec3::from_array([r, g, b].map(f32::from)) / 255.0)
+        };
+        let normals = vertices.iter().filter_map(|&i| mesh.normals.get(i as usize));
+        Self {
+            surface,
+            uv: outline.uv(mesh, vertices),
+            tint: vertices.map(tint).iter().sum::<Vec3>() / 3.0,
+            normal: normals.map(|&normal| Vec3::from_array(normal)).sum::<Vec3>().normalize_or_zero(),
+        }
+    }
+}
+
 /// The first of `size` samples whose middle is not before a place.
 #[inline]
 fn first(place: f32, size: usize) -> usize {
-    ((place + 0.5).max(0.0) as usize).min(size)
+    ((place + 0.5).max(0.0) as i32 as usize).min(size)
 }
 
 /// A key by which the farther of two depths comes later: equal for equal ones.

@@ -44,7 +44,7 @@ impl Texels {
 
     /// Which texel is at texture coordinates, which are clamped to [0, 1].
     fn index(&self, u: f32, v: f32) -> usize {
-        let index = |t: f32, count: usize| ((t * count as f32).max(0.0) as usize).min(count - 1);
+        let index = |t: f32, count: usize| ((t * count as f32).max(0.0) as i32 as usize).min(count - 1);
         index(v, self.height) * self.width + index(u, self.width)
     }
 }

@@ -12,13 +12,14 @@ mod groups;
 
 use std::ops::Range;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
-use super::raster::{Drawing, Look};
+use super::raster::Look;
 use super::seen::frame;
-use super::surfaces::Surfaces;
+use super::surfaces::{Surface, Surfaces};
 use crate::math::matching;
 use crate::model::{Clusters, Level, Material, Mesh, Morph, Part, PartKind};
+use crate::silhouette::Silhouette;
 use atlas::Subject;
 use card::Card;
 use groups::Place;
@@ -50,9 +51,9 @@ pub fn first_level(full: &Mesh) -> Option<usize> {
     (elements.peek().is_some() && elements.all(pays)).then_some(FIRST)
 }
 
-/// Puts clusters in the place of leaves and gives their pictures; `None` where all levels stay as they are.
-pub fn substitute(levels: &mut [Level], surfaces: Surfaces) -> (Surfaces, Option<Clusters>) {
-    let Some(full) = levels.first().map(|level| &level.mesh) else { return (surfaces, None) };
+/// Puts clusters of the full tree's leaves in the place of leaves and gives their pictures; `None` where all levels stay as
+/// they are. Of the full tree it is drawn what shows the same, with as many leaves in as many parts.
+pub fn substitute(full: &Mesh, levels: &mut [Level], surfaces: Surfaces) -> (Surfaces, Option<Clusters>) {
     let foliage: Vec<Foliage<'_>> =
         (0..full.parts.len()).filter_map(|part| Foliage::of(full, part)).collect();
     let pays = |level: &Level| foliage.iter().all(|leaves| leaves.pays_in(level));
@@ -75,8 +76,13 @@ pub fn substitute(levels: &mut [Level], surfaces: Surfaces) -> (Surfaces, Option
     let canvas = Canvas::new(full, &surfaces);
     let mut scale = 1.0;
     let dress = |(level, owned): (&Level, &Vec<Owned>)| {
-        let bark = canvas.of(&without(&level.mesh, owned));
-        let covered = |scale: f32| canvas.covered(&bark, &wardrobe.cards_of(owned, scale));
+        let mut rest = Canvas::empty();
+        canvas.draw(&level.mesh, |index| owned.iter().all(|(part, _)| *part != index), &mut rest);
+        let covered = |scale: f32| {
+            let mut covered = rest.clone();
+            canvas.draw(&wardrobe.cards_of(owned, scale), |_| true, &mut covered);
+            count(&covered)
+        };
         scale = matching(canvas.full, SCALES, scale, covered);
         wardrobe.dressed(level, owned, scale)
     };
@@ -286,18 +292,7 @@ fn hold_still(level: &mut Level, part: usize) {
     }
 }
 
-/// A mesh without some of its parts.
-fn without(mesh: &Mesh, owned: &[Owned]) -> Mesh {
-    let parts = mesh.parts.iter().enumerate();
-    let kept = parts.filter(|(index, _)| owned.iter().all(|(part, _)| part != index));
-    Mesh {
-        positions: mesh.positions.clone(),
-        parts: kept.map(|(_, part)| part.clone()).collect(),
-        ..Mesh::default()
-    }
-}
-
-/// Sides from which it is counted how much of them a mesh covers.
+/// Sides from which it is counted how much of them meshes cover.
 struct Canvas<'a> {
     looks: [Look; SIDES.len()],
     surfaces: &'a Surfaces,
@@ -305,24 +300,51 @@ struct Canvas<'a> {
     full: u32,
 }
 
+/// What is covered, seen from each of the sides.
+type Covered = [Silhouette; SIDES.len()];
+
 impl<'a> Canvas<'a> {
     fn new(full: &Mesh, surfaces: &'a Surfaces) -> Self {
         let (foot_m, side_m) = frame(&[full]);
         let looks = SIDES.map(|k| Look::new(k, foot_m, [side_m; 2], COVERAGE_PX));
         let mut canvas = Self { looks, surfaces, full: 0 };
-        let nothing = canvas.of(&Mesh::default());
-        canvas.full = canvas.covered(&nothing, full);
+        let mut covered = Self::empty();
+        canvas.draw(full, |_| true, &mut covered);
+        canvas.full = count(&covered);
         canvas
     }
 
-    fn of(&self, mesh: &Mesh) -> [Drawing<'a>; SIDES.len()] {
-        self.looks.each_ref().map(|look| Drawing::new(mesh, self.surfaces, look))
+    fn empty() -> Covered {
+        SIDES.map(|_| Silhouette::empty(COVERAGE_PX))
     }
 
-    /// What a mesh covers together with what is drawn.
-    fn covered(&self, drawn: &[Drawing<'_>; SIDES.len()], mesh: &Mesh) -> u32 {
-        self.of(mesh).iter().zip(drawn).map(|(one, other)| one.covered_with(other)).sum()
+    /// Draws those of a mesh's parts whose index is asked for.
+    fn draw(&self, mesh: &Mesh, is_drawn: impl Fn(usize) -> bool, covered: &mut Covered) {
+        for (look, silhouette) in self.looks.iter().zip(covered) {
+            let places: Vec<Vec2> = mesh.positions.iter().map(|&p| look.project(p).truncate()).collect();
+            for (_, part) in mesh.parts.iter().enumerate().filter(|(index, _)| is_drawn(*index)) {
+                let surface = self.surfaces.of_part(part.material);
+                for triangle in &part.triangles {
+                    let corners = triangle.map(|v| places[v as usize]);
+                    let uv = |v: u32| mesh.uvs.get(v as usize).copied().unwrap_or_default();
+                    let uvs = || triangle.map(|v| Vec2::from_array(uv(v)));
+                    match surface {
+                        Surface::Wood(_) => silhouette.fill(corners),
+                        Surface::Card(card) => {
+                            silhouette.fill_cut_out(corners, uvs(), |uv| card.mask.is_opaque(uv.into()));
+                        }
+                        Surface::Atlas(atlas) => {
+                            silhouette.fill_cut_out(corners, uvs(), |uv| atlas.is_opaque(uv.x, uv.y));
+                        }
+                    }
+                }
+            }
+        }
     }
+}
+
+fn count(covered: &Covered) -> u32 {
+    covered.iter().map(Silhouette::covered).sum()
 }
 
 #[cfg(test)]

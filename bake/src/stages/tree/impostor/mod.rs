@@ -10,7 +10,7 @@ use super::mips::Encoder;
 use super::picture::{self, Picture};
 use super::raster::{Drawing, Look};
 use super::surfaces::Surfaces;
-use crate::model::{Impostor, Mesh, TreeTextures};
+use crate::model::{Impostor, Level, Mesh, TreeTextures};
 
 /// Pixels a side of one picture, of a tree with leaves and of a bare one, whose twigs need more.
 const SIDE: usize = 128;
@@ -81,4 +81,10 @@ pub fn impostor<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> Impostor {
 /// The error in metres that pictures of a template will have.
 pub fn impostor_error_m(mesh: &Mesh) -> f32 {
     Frame::of(mesh).error_m()
+}
+
+/// The level of which pictures are drawn: with half of the leaves, which cover as much, in half of the time; a leaf is less
+/// than a pixel of them. A bare tree has no leaf to spare.
+pub fn drawn_from_afar(levels: &[Level]) -> &Mesh {
+    &levels[usize::from(levels[0].mesh.has_cards() && levels.len() > 1)].mesh
 }

@@ -1,0 +1,165 @@
+//! Triangles in pixels → which pixels they cover: rows of bits, from which it is counted how much of something is seen.
+//!
+//! A pixel counts when its centre is inside a triangle and, if that is cut out by a texture, opaque there.
+
+use std::cell::LazyCell;
+use std::ops::Range;
+
+use glam::Vec2;
+
+/// Pixels in a word.
+const WORD: usize = u64::BITS as usize;
+
+/// Which of a square of pixels are covered.
+#[derive(Clone)]
+pub struct Silhouette {
+    /// Pixels a side.
+    side: usize,
+    /// Rows of pixels, each begins with a new word.
+    words: Vec<u64>,
+}
+
+impl Silhouette {
+    pub fn empty(side: usize) -> Self {
+        Self { side, words: vec![0; side * side.div_ceil(WORD)] }
+    }
+
+    /// Pixels that are covered.
+    pub fn covered(&self) -> u32 {
+        self.words.iter().map(|word| word.count_ones()).sum()
+    }
+
+    /// Covers a triangle.
+    pub fn fill(&mut self, corners: [Vec2; 3]) {
+        self.fill_where(corners, |_, _| true);
+    }
+
+    /// Covers what is opaque of a triangle with these texture coordinates at its corners.
+    pub fn fill_cut_out(&mut self, corners: [Vec2; 3], uvs: [Vec2; 3], is_opaque: impl Fn(Vec2) -> bool) {
+        // Most small triangles show nothing that is not covered yet, so their texture is placed only when it counts.
+        let texture = LazyCell::new(|| Affine::through(corners, uvs));
+        self.fill_where(corners, |x, y| texture.as_ref().is_some_and(|texture| is_opaque(texture.at(x, y))));
+    }
+
+    /// Covers what another one of the same size covers.
+    pub fn add(&mut self, other: &Self) {
+        self.words.iter_mut().zip(&other.words).for_each(|(word, other)| *word |= other);
+    }
+
+    /// Words in a row.
+    fn across(&self) -> usize {
+        self.side.div_ceil(WORD)
+    }
+
+    /// Whether any pixel in some columns of a row, at least one, is not covered.
+    #[inline]
+    fn has_bare(&self, row: usize, columns: Range<usize>) -> bool {
+        let first = row * self.across();
+        (columns.start / WORD..columns.end.div_ceil(WORD))
+            .any(|word| !self.words[first + word] & bits(&columns, word) != 0)
+    }
+
+    #[inline]
+    fn fill_where(&mut self, [a, b, c]: [Vec2; 3], is_opaque: impl Fn(f32, f32) -> bool) {
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        let rows = whole(low.y)..whole(high.y).min(self.side);
+        let columns = whole(low.x)..whole(high.x).min(self.side);
+        // Most triangles are small, and most of what they might cover is covered when it is their turn.
+        if columns.is_empty() || !rows.clone().any(|row| self.has_bare(row, columns.clone())) {
+            return;
+        }
+        let slopes = [(a, b), (b, c), (c, a)].map(|(p, q)| (q.x - p.x) / (q.y - p.y));
+        let across = self.across();
+        for row in rows {
+            let y = row as f32 + 0.5;
+            let (mut left, mut right) = (f32::MAX, f32::MIN);
+            for ((p, q), slope) in [(a, b), (b, c), (c, a)].into_iter().zip(slopes) {
+                if (p.y < y) != (q.y < y) {
+                    let x = p.x + (y - p.y) * slope;
+                    left = left.min(x);
+                    right = right.max(x);
+                }
+            }
+            let columns = whole(left)..whole(right).min(self.side);
+            let line = &mut self.words[row * across..][..across];
+            let words = columns.start / WORD..columns.end.div_ceil(WORD);
+            for (word, covered) in line.iter_mut().enumerate().take(words.end).skip(words.start) {
+                let mut bare = !*covered & bits(&columns, word);
+                while bare != 0 {
+                    let bit = bare & bare.wrapping_neg();
+                    bare ^= bit;
+                    if is_opaque((WORD * word) as f32 + bit.trailing_zeros() as f32 + 0.5, y) {
+                        *covered |= bit;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Those bits of a row's nth word that are in a range of columns which reaches into it.
+#[inline]
+fn bits(columns: &Range<usize>, word: usize) -> u64 {
+    let first = WORD * word;
+    let (from, to) = (columns.start.max(first) - first, columns.end.min(first + WORD) - first);
+    u64::MAX << from & u64::MAX >> (WORD - to)
+}
+
+/// The first pixel whose centre is not before a place: without a call, since this is the bake's innermost loop but one.
+#[inline]
+fn whole(place: f32) -> usize {
+    (place + 0.5).max(0.0) as i32 as usize
+}
+
+/// Texture coordinates as a function of the place in a picture.
+struct Affine {
+    origin: Vec2,
+    along_x: Vec2,
+    along_y: Vec2,
+}
+
+impl Affine {
+    fn through([a, b, c]: [Vec2; 3], [at_a, at_b, at_c]: [Vec2; 3]) -> Option<Self> {
+        let (p, q) = (b - a, c - a);
+        let area = p.perp_dot(q);
+        let (u, v) = (at_b - at_a, at_c - at_a);
+        let along_x = (u * q.y - v * p.y) / area;
+        let along_y = (v * p.x - u * q.x) / area;
+        let origin = at_a - along_x * a.x - along_y * a.y;
+        origin.is_finite().then_some(Self { origin, along_x, along_y })
+    }
+
+    fn at(&self, x: f32, y: f32) -> Vec2 {
+        self.origin + self.along_x * x + self.along_y * y
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn triangles_that_share_an_edge_cover_each_pixel_once_and_none_beyond() {
+        let [a, b, c, d] = [[3.2, 4.1], [80.7, 9.9], [75.3, 60.2], [10.8, 55.5]].map(Vec2::from_array);
+        let of = |triangles: &[[Vec2; 3]]| {
+            let mut silhouette = Silhouette::empty(96);
+            triangles.iter().for_each(|&triangle| silhouette.fill(triangle));
+            silhouette.covered()
+        };
+        let (one, other) = (of(&[[a, b, c]]), of(&[[a, c, d]]));
+        assert_eq!(of(&[[a, b, c], [a, c, d]]), one + other, "no pixel is in both");
+        let area = 0.5 * ((b - a).perp_dot(c - a) + (c - a).perp_dot(d - a));
+        assert!((f64::from(one + other) - f64::from(area)).abs() < 0.01 * f64::from(area));
+        assert_eq!(of(&[[a - 500.0, b - 500.0, c - 500.0]]), 0);
+        assert_eq!(of(&[[Vec2::splat(-900.0), Vec2::new(3000.0, -900.0), Vec2::new(48.0, 5000.0)]]), 96 * 96);
+    }
+
+    #[test]
+    fn what_a_texture_leaves_transparent_is_not_covered() {
+        let corners = [[0.0, 0.0], [64.0, 0.0], [0.0, 64.0]].map(Vec2::from_array);
+        let mut silhouette = Silhouette::empty(64);
+        silhouette.fill_cut_out(corners, corners.map(|p| p / 64.0), |uv| uv.x < 0.25);
+        // 16 columns of 64 to 49 pixels, some of them on the edge.
+        assert!((silhouette.covered() as i32 - (16 * 56 + 8)).abs() <= 16, "{}", silhouette.covered());
+    }
+}
