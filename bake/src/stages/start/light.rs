@@ -21,7 +21,7 @@ const LOW: f32 = 0.2;
 
 /// What a look loses that shows nothing but shade, where the sun gives most of the light: meadows in the shade of a wood are
 /// dark, and dull.
-const IN_SHADE: f32 = 0.7;
+const IN_SHADE: f32 = 0.8;
 
 pub(super) struct Sun {
     towards: Vec3,
