@@ -193,14 +193,16 @@ fn the_sun_is_not_in_the_eyes_and_lights_the_ground() {
 }
 
 #[test]
-fn a_crown_that_fills_the_picture_spoils_it_and_the_same_farther_away_does_not() {
+fn crowns_that_fill_the_picture_spoil_it_and_the_same_farther_away_do_not() {
     let (land, light) = (land(|_, _| 0.0, None), light(40.0, 130.0));
-    let lookout = Lookout::all().nth(Lookout::HEADINGS * 136).expect("of 256 places");
-    let place = lookout.place_m(land.field.extent_m());
+    let first = Lookout::HEADINGS * 136;
+    let headings: Vec<Lookout> = Lookout::all().skip(first).take(Lookout::HEADINGS).collect();
+    let place = headings[0].place_m(land.field.extent_m());
     let huge = TreeFootprint { height_m: 28.0, crown_radius_m: 8.0, clear_trunk: 0.0, ..TREE };
     let score = |distance_m: f32| {
-        let trees = trees([place + distance_m * lookout.ahead()]);
-        looks(&land, &trees, &[huge], &light, 1)[Lookout::HEADINGS * 136].term(Want::Trees)
+        // Before the eyes, and 30 degrees to both sides.
+        let trees = trees([22, 0, 2].map(|heading| place + distance_m * headings[heading].ahead()));
+        looks(&land, &trees, &[huge], &light, 1)[first].term(Want::Trees)
     };
     assert!(score(11.0) < 0.6 * score(36.0), "{} {}", score(11.0), score(36.0));
 }
