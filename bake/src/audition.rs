@@ -6,14 +6,13 @@
 
 use std::fmt;
 
-use genescape_schema::{Genome, GenomeError, Kind, Kinds, Population, Space};
+use genescape_schema::{Category, Genome, GenomeError, Kind, Kinds, Population, Space};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::breed::Breeder;
 use crate::events::{Event, Listener};
 use crate::model::{Instance, Landform, SkyLight, TreeFootprint};
-use crate::one_view::is_same_kind_of_land;
 use crate::random::{self, Drawn};
 use crate::stages::ground::snow_map;
 use crate::stages::placement::{PlacementParams, clear_around, place};
@@ -174,6 +173,19 @@ pub fn redrawn(space: &Space, draw: impl Fn(u32) -> Population, population: &Pop
         Some(Redrawn { landscape, lacked: lacking(&appraisal)? })
     };
     again.filter_map(why).collect()
+}
+
+/// Whether a genome is another but for its land's seed.
+pub fn is_same_kind_of_land(space: &Space, genome: &Genome, other: &Genome) -> bool {
+    let seedless = |genome: &Genome| {
+        let mut genome = genome.clone();
+        space
+            .category(Category::Terrain)
+            .filter(|gene| gene.is_seed())
+            .for_each(|gene| genome.set_code(gene, 0));
+        genome
+    };
+    seedless(genome) == seedless(other)
 }
 
 fn lacking(appraisal: &Option<Appraisal>) -> Option<Want> {

@@ -39,19 +39,6 @@ pub fn suited(space: &Space, mut population: Population) -> Population {
     population
 }
 
-/// Whether a genome is another but for its land's seed.
-pub fn is_same_kind_of_land(space: &Space, genome: &Genome, other: &Genome) -> bool {
-    let seedless = |genome: &Genome| {
-        let mut genome = genome.clone();
-        space
-            .category(Category::Terrain)
-            .filter(|gene| gene.is_seed())
-            .for_each(|gene| genome.set_code(gene, 0));
-        genome
-    };
-    seedless(genome) == seedless(other)
-}
-
 /// The numbers of the lands that are best seen from one place.
 fn chosen_lands(space: &Space, population: &Population) -> Option<[u32; INDIVIDUALS]> {
     let lights = population.individuals.par_iter().map(|one| Ok(sky::light(&one.genome.read(space)?)));
@@ -118,6 +105,7 @@ fn other_land(space: &Space, genome: &Genome, number: u32) -> Genome {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::audition::is_same_kind_of_land;
     use crate::kinds::testing::{drawn, kinds};
 
     fn worst(space: &Space, population: &Population) -> f32 {
