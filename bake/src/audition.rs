@@ -6,17 +6,17 @@
 
 use std::fmt;
 
-use genescape_schema::{Genome, GenomeError, Kind, Kinds, Population, Space};
+use genescape_schema::{Category, Genome, GenomeError, Kind, Kinds, Population, Space};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::breed::Breeder;
 use crate::events::{Event, Listener};
-use crate::model::TreeFootprint;
+use crate::model::{Instance, Landform, SkyLight, TreeFootprint};
 use crate::random::{self, Drawn};
 use crate::stages::ground::snow_map;
 use crate::stages::placement::{PlacementParams, clear_around, place};
-use crate::stages::start::{Appraisal, Want, any_good_look};
+use crate::stages::start::{Appraisal, Want, any_good_look, looks};
 use crate::stages::{land, sky};
 
 /// How often a landscape is drawn again at most; then the best of those drawn is taken.
@@ -58,14 +58,43 @@ pub fn is_worth_a_look(appraisal: &Appraisal) -> Result<f32, Want> {
 /// # Errors
 /// A gene that `space` does not declare.
 pub fn appraise(space: &Space, genome: &Genome) -> Result<Appraisal, GenomeError> {
-    let land = land::sketch(&genome.read(space)?);
-    let footprint = genome.read::<Stature>(space)?.footprint();
-    let placement: PlacementParams = genome.read(space)?;
-    let snow = snow_map(placement.terrain_seed, &land);
-    let mut trees = place(&placement, &land, snow.as_ref(), &[footprint]);
-    clear_around(&land, &mut trees);
-    let light = sky::light(&genome.read(space)?);
+    let Sketch { land, footprint, trees, light } = Sketch::of(space, genome)?;
     Ok(any_good_look(&land, &trees, &[footprint], &light, BOUND))
+}
+
+/// A landscape drawn with a broad brush, to judge it before it is baked.
+pub struct Sketch {
+    land: Landform,
+    footprint: TreeFootprint,
+    trees: Vec<Instance>,
+    light: SkyLight,
+}
+
+impl Sketch {
+    /// # Errors
+    /// A gene that `space` does not declare.
+    pub fn of(space: &Space, genome: &Genome) -> Result<Self, GenomeError> {
+        Self::under(sky::light(&genome.read(space)?), space, genome)
+    }
+
+    /// The same where the light is known already.
+    ///
+    /// # Errors
+    /// A gene that `space` does not declare.
+    pub fn under(light: SkyLight, space: &Space, genome: &Genome) -> Result<Self, GenomeError> {
+        let land = land::sketch(&genome.read(space)?);
+        let footprint = genome.read::<Stature>(space)?.footprint();
+        let placement: PlacementParams = genome.read(space)?;
+        let snow = snow_map(placement.terrain_seed, &land);
+        let mut trees = place(&placement, &land, snow.as_ref(), &[footprint]);
+        clear_around(&land, &mut trees);
+        Ok(Self { land, footprint, trees, light })
+    }
+
+    /// How good the looks are from one in so many of the places that there are.
+    pub fn looks(&self, one_in: usize) -> Vec<Appraisal> {
+        looks(&self.land, &self.trees, &[self.footprint], &self.light, one_in)
+    }
 }
 
 /// The genes that say most about a tree's size and where its crown is.
@@ -130,15 +159,33 @@ pub fn next_generation(breeder: &Breeder<'_>, next: u32) -> Auditioned {
 /// repeatable, so nobody has to keep notes.
 pub fn redrawn(space: &Space, draw: impl Fn(u32) -> Population, population: &Population) -> Vec<Redrawn> {
     let draws: Vec<Population> = (0..=REDRAWS).map(draw).collect();
-    let is_drawn =
-        |k: usize, draw: &Population| draw.individuals[k].genome == population.individuals[k].genome;
-    let later = |k: &usize| !is_drawn(*k, &draws[0]) && draws.iter().any(|draw| is_drawn(*k, draw));
+    let later = |&k: &usize| {
+        let genome = &population.individuals[k].genome;
+        let drawn = draws.iter().map(|draw| &draw.individuals[k].genome);
+        // Its land may be another for the sake of the view.
+        let mut first = drawn.clone().position(|one| one == genome);
+        first = first.or_else(|| drawn.clone().position(|one| is_same_kind_of_land(space, one, genome)));
+        first.is_some_and(|attempt| attempt > 0)
+    };
     let again = (0..population.individuals.len()).filter(later);
     let why = |landscape: usize| {
         let appraisal = appraise(space, &draws[0].individuals[landscape].genome).ok();
         Some(Redrawn { landscape, lacked: lacking(&appraisal)? })
     };
     again.filter_map(why).collect()
+}
+
+/// Whether a genome is another but for its land's seed.
+pub fn is_same_kind_of_land(space: &Space, genome: &Genome, other: &Genome) -> bool {
+    let seedless = |genome: &Genome| {
+        let mut genome = genome.clone();
+        space
+            .category(Category::Terrain)
+            .filter(|gene| gene.is_seed())
+            .for_each(|gene| genome.set_code(gene, 0));
+        genome
+    };
+    seedless(genome) == seedless(other)
 }
 
 fn lacking(appraisal: &Option<Appraisal>) -> Option<Want> {

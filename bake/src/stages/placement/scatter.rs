@@ -14,9 +14,9 @@ use super::{MAX_TREES, PlacementParams, TreeFootprint};
 
 /// Cells a side of the map of weights.
 const MAP_SIDE: u32 = 128;
-/// With fewer trees, scenes could not be told apart: where little land bears trees, they stand closer than asked, up
-/// to `CROWDED_PER_HA`.
-const MIN_TREES: f32 = 320.0;
+/// With fewer trees, scenes could not be told apart, and from most places one would see a lonely shrub or none: where little
+/// land bears trees, they stand closer than asked, up to `CROWDED_PER_HA`.
+const MIN_TREES: f32 = 700.0;
 const CROWDED_PER_HA: f32 = 100.0;
 /// Spacing of saturated dart throwing times √density (covering 0.547 of the plane), and how much of it we ask for.
 const SATURATED: f32 = 0.834;

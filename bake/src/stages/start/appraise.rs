@@ -119,10 +119,12 @@ impl Picture<'_> {
         let (near, good, far) = (between(0.0, 10.0), between(10.0, 60.0), between(60.0, 1e4));
         let none_near = 0.2 + 0.8 * ramp(0.2, 0.04, near);
         let not_all = 0.4 + 0.6 * ramp(0.7, 0.4, near + good + far);
+        // One crown may fill as much of a picture as a wall.
+        let not_in_the_way = 0.3 + 0.7 * ramp(0.5, 0.25, near + between(10.0, 30.0));
         // Those at the edge alone are half as good.
         let good = 0.5 * (good + self.middle_share_between(10.0..60.0, |kind| kind == Kind::Tree));
         let some = 0.08 + 0.92 * ramp(0.0, 0.2, good + 0.3 * far);
-        some * none_near * not_all
+        some * none_near * not_all * not_in_the_way
     }
 
     fn water(&self) -> f32 {

@@ -19,6 +19,10 @@ const ABOVE: f32 = 0.5;
 /// The same below which its colour is worth having at the picture's edge.
 const LOW: f32 = 0.2;
 
+/// What a look loses that shows nothing but shade, where the sun gives most of the light: meadows in the shade of a wood are
+/// dark, and dull.
+const IN_SHADE: f32 = 0.8;
+
 pub(super) struct Sun {
     towards: Vec3,
     /// Part of the light on level ground that is the sun's.
@@ -39,7 +43,7 @@ impl Sun {
         let weight = ramp(0.05, 0.5, self.part);
         // A sun that is dim still blinds.
         let glare = 0.4 + 0.6 * weight;
-        1.0 - glare * (1.0 - self.side(along)) - weight * 0.5 * (1.0 - lit)
+        (1.0 - glare * (1.0 - self.side(along))) * (1.0 - weight * IN_SHADE * (1.0 - lit))
     }
 
     /// Part of the ground ahead that the sun reaches.

@@ -68,6 +68,20 @@ pub fn first_look(
     FirstLook { view: best.on(&land.field, land.water_level_m), appraisal, exposure, lookouts }
 }
 
+/// How good the looks are from all lookouts, in their order, at one in so many of the places.
+pub fn looks(
+    land: &Landform,
+    trees: &[Instance],
+    footprints: &[TreeFootprint],
+    light: &SkyLight,
+    one_in: usize,
+) -> Vec<Appraisal> {
+    let (scene, sun) = (Surroundings::new(land, trees, footprints), Sun::of(light));
+    let all: Vec<Lookout> = Lookout::all().collect();
+    let places = all.par_chunks(Lookout::HEADINGS).step_by(one_in.max(1));
+    places.flat_map_iter(|lookouts| at_place(&scene, &sun, lookouts)).collect()
+}
+
 /// A look that scores at least `enough`, of the first few places all over the land that have one; if none has, the best of
 /// all. Far quicker than [`first_look`] where landscapes are good.
 pub fn any_good_look(

@@ -5,7 +5,7 @@ use genescape_schema::scene::{Lookout, Lookouts, SharedView};
 use genescape_schema::{Genome, Kinds, Space};
 use glam::{Vec2, Vec3};
 
-use super::{FirstLook, Want, first_look};
+use super::{FirstLook, Want, first_look, looks};
 use crate::export::film;
 use crate::model::TreeFootprint;
 use crate::model::{Heightfield, Instance, Landform, SkyLight, StartView};
@@ -190,6 +190,34 @@ fn the_sun_is_not_in_the_eyes_and_lights_the_ground() {
         });
         assert!(!shaded, "{azimuth_deg}°");
     }
+}
+
+#[test]
+fn crowns_that_fill_the_picture_spoil_it_and_the_same_farther_away_do_not() {
+    let (land, light) = (land(|_, _| 0.0, None), light(40.0, 130.0));
+    let first = Lookout::HEADINGS * 136;
+    let headings: Vec<Lookout> = Lookout::all().skip(first).take(Lookout::HEADINGS).collect();
+    let place = headings[0].place_m(land.field.extent_m());
+    let huge = TreeFootprint { height_m: 28.0, crown_radius_m: 8.0, clear_trunk: 0.0, ..TREE };
+    let score = |distance_m: f32| {
+        // Before the eyes, and 30 degrees to both sides.
+        let trees = trees([22, 0, 2].map(|heading| place + distance_m * headings[heading].ahead()));
+        looks(&land, &trees, &[huge], &light, 1)[first].term(Want::Trees)
+    };
+    assert!(score(11.0) < 0.6 * score(36.0), "{} {}", score(11.0), score(36.0));
+}
+
+#[test]
+fn a_look_into_shade_is_worth_little_where_the_sun_shines() {
+    let light = light(15.0, 90.0);
+    let term = |wall_m: f32| {
+        // A wall east of the middle, along which one looks north.
+        let land = land(|x, _| if (60.0..200.0).contains(&x) { wall_m } else { 0.0 }, None);
+        let middle = Lookout::nearest(Vec2::new(20.0, 0.0), Vec2::NEG_Y, land.field.extent_m());
+        let number = Lookout::all().position(|one| one == middle).expect("one of all");
+        looks(&land, &[], &[TREE], &light, 1)[number].term(Want::Light)
+    };
+    assert!(term(0.0) > 0.95 && term(60.0) < 0.5, "{} {}", term(0.0), term(60.0));
 }
 
 #[test]
