@@ -4,3 +4,4 @@ mod distance;
 mod docs;
 mod round;
 mod strips;
+mod wood;

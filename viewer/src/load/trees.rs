@@ -12,9 +12,11 @@ use rayon::prelude::*;
 
 use super::bounds::{is_placed, is_tree_sized};
 use super::document::Document;
-use super::octahedral::octahedral;
+use super::octahedral::{direction, octahedral};
 use super::{Result, images};
-use crate::scene::{Crown, Image, Impostor, Level, Material, Range, Template, TreeVertex, Trees};
+use crate::scene::{
+    Crown, Image, Impostor, LEAVES, LeafSide, Level, Material, Range, Template, TreeVertex, Trees,
+};
 
 /// The trees; none if the scene has none.
 pub(super) fn read(document: &Document) -> Result<Trees> {
@@ -157,19 +159,48 @@ fn impostor(document: &Document, value: &serde_json::Value, template: &Template)
         return Err(wrong("that are not four squares side by side, of one size with their relief"));
     }
     let alpha_cutoff = alpha_cutoff.unwrap_or(0.5);
-    let crown = Crown::around(leaves(template));
-    Ok(Impostor { color, relief, alpha_cutoff, axis_m, low_m, size_m, error_m, crown })
+    let places = leaf_vertices(template).map(|vertex| Vec3::from(vertex.position_m));
+    let crown = Crown::around(places);
+    let leaves = some_leaves(template);
+    Ok(Impostor { color, relief, alpha_cutoff, axis_m, low_m, size_m, error_m, crown, leaves })
 }
 
-/// The places of all leaves of D_0.
-fn leaves(template: &Template) -> impl Iterator<Item = Vec3> + Clone {
+/// The corners of the triangles of all leaves of D_0.
+fn leaf_vertices(template: &Template) -> impl Iterator<Item = &TreeVertex> + Clone {
     let finest = template.levels.first();
     let parts = finest.into_iter().flat_map(|level| level.ranges.iter().zip(&template.materials));
     let masked = parts.filter(|(_, material)| material.alpha_cutoff.is_some());
     let base = finest.map_or(0, |level| level.base_vertex as usize);
     masked
         .flat_map(|(range, _)| &template.indices[range.first as usize..][..range.count as usize])
-        .map(move |&vertex| Vec3::from(template.vertices[base + vertex as usize].position_m))
+        .map(move |&vertex| &template.vertices[base + vertex as usize])
+}
+
+/// Leaves of D_0 that are evenly spread over all their area.
+fn some_leaves(template: &Template) -> [LeafSide; LEAVES] {
+    let corners: Vec<&TreeVertex> = leaf_vertices(template).collect();
+    let (triangles, _) = corners.as_chunks::<3>();
+    let twice_area_m2 = |corners: &[&TreeVertex; 3]| {
+        let [a, b, c] = corners.map(|corner| Vec3::from(corner.position_m));
+        (b - a).cross(c - a)
+    };
+    let sums_m2: Vec<f32> = triangles
+        .iter()
+        .scan(0.0, |sum_m2, corners| {
+            *sum_m2 += twice_area_m2(corners).length();
+            Some(*sum_m2)
+        })
+        .collect();
+    let Some(&all_m2) = sums_m2.last() else { return [LeafSide::default(); LEAVES] };
+    std::array::from_fn(|leaf| {
+        let at_m2 = (leaf as f32 + 0.5) / LEAVES as f32 * all_m2;
+        let triangle = &triangles[sums_m2.partition_point(|&sum_m2| sum_m2 < at_m2).min(triangles.len() - 1)];
+        // Nearer now to the one corner, now to another.
+        let near = triangle.iter().cycle().skip(leaf % 3).zip([0.6, 0.2, 0.2]);
+        let normal: Vec3 = near.map(|(corner, part)| part * direction(corner.normal_oct)).sum();
+        let face = twice_area_m2(triangle);
+        LeafSide { normal: normal.normalize_or_zero().into(), face: face.normalize_or_zero().into() }
+    })
 }
 
 fn check(document: &Document, template: &Template) -> Result<()> {

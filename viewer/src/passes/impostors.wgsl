@@ -1,6 +1,8 @@
 // Trees that are far away: a rectangle around the tree's axis turns to the eye and shows the picture from the nearest of eight
 // sides (`GSC_impostor`), lit as its leaves and branches are on average.
 
+// Leaves whose normals are known of each template.
+override LEAVES: u32;
 // The number by which tints know pictures from meshes.
 override PICTURES_LEVEL: f32;
 
@@ -17,6 +19,9 @@ struct Frame {
     low: f32,
     crown_half: vec3f,
     alpha_cutoff: f32,
+    // Of as many leaves as `LEAVES` in Rust: by which they are lit, and by which the eye sees more or less of them.
+    leaf_normals: array<vec4f, 32>,
+    leaf_faces: array<vec4f, 32>,
 }
 
 struct Out {
@@ -33,20 +38,48 @@ struct Out {
     @location(6) @interpolate(flat) template_index: u32,
     // Which of its pixels are drawn.
     @location(7) @interpolate(flat) shown: vec2f,
+    // Of the leaves that the eye sees, on average: how much sun falls on the side that it sees and on the other one, and how
+    // far they face upwards.
+    @location(8) @interpolate(flat) leaf_light: vec3f,
+}
+
+// What `leaf` of `trees.wgsl` makes of the sun and of normals, averaged over leaves by how much of each the eye sees. Directions
+// are in the template's space.
+fn leaf_light(template_index: u32, to_eye: vec3f, to_sun: vec3f) -> vec3f {
+    var sum = vec3f(0.0);
+    var seen = 1e-6;
+    for (var leaf = 0u; leaf < LEAVES; leaf++) {
+        let normal = frames[template_index].leaf_normals[leaf].xyz;
+        let toward_eye = dot(normal, to_eye);
+        let toward_sun = dot(normal, to_sun);
+        let lit = abs(toward_sun) * 0.75 + 0.25;
+        let sides = select(vec2f(0.0, lit), vec2f(lit, 0.0), toward_sun * toward_eye > 0.0);
+        let share = abs(dot(frames[template_index].leaf_faces[leaf].xyz, to_eye));
+        sum += share * vec3f(sides, 0.5 + 0.5 * abs(normal.y));
+        seen += share;
+    }
+    return sum / seen;
+}
+
+// The rows of the linear part, weighted, are its transpose: for what is turned and scaled alike, the way back.
+fn way_to_template(rows: array<vec4f, 3>, way: vec3f) -> vec3f {
+    return rows[0].xyz * way.x + rows[1].xyz * way.y + rows[2].xyz * way.z;
 }
 
 @vertex
 fn vertex(@location(8) tree: u32, @location(10) shown: vec2f, @builtin(vertex_index) index: u32) -> Out {
     let rows = trees[tree].rows;
-    let frame = frames[trees[tree].template_index];
+    let template_index = trees[tree].template_index;
+    let axis = frames[template_index].axis;
+    let size = frames[template_index].size;
+    let low = frames[template_index].low;
     let corner = vec2f(f32(index & 1u), f32(index >> 1u));
-    let middle = vec3f(frame.axis.x, frame.low + 0.5 * frame.size.y, frame.axis.y);
+    let middle = vec3f(axis.x, low + 0.5 * size.y, axis.y);
     let to_eye = view.eye - from_template(rows, middle);
-    // The rows of the linear part, weighted, are its transpose: for what is turned and scaled alike, the way back.
-    let back = rows[0].xyz * to_eye.x + rows[1].xyz * to_eye.y + rows[2].xyz * to_eye.z;
+    let back = way_to_template(rows, to_eye);
     let ahead = normalize(back.xz + vec2f(0.0, 1e-6));
-    let across = vec3f(ahead.y, 0.0, -ahead.x) * ((corner.x - 0.5) * frame.size.x);
-    let local = vec3f(frame.axis.x, frame.low + corner.y * frame.size.y, frame.axis.y) + across;
+    let across = vec3f(ahead.y, 0.0, -ahead.x) * ((corner.x - 0.5) * size.x);
+    let local = vec3f(axis.x, low + corner.y * size.y, axis.y) + across;
     var out: Out;
     out.world = from_template(rows, local);
     out.clip = view.clip_from_world * vec4f(out.world, 1.0);
@@ -55,8 +88,9 @@ fn vertex(@location(8) tree: u32, @location(10) shown: vec2f, @builtin(vertex_in
     out.ahead = ahead;
     out.toward = way_from_template(rows, vec3f(ahead.x, 0.0, ahead.y));
     out.turn = fract(atan2(ahead.x, ahead.y) / (2.0 * PI) + 1.0) * 8.0;
-    out.template_index = trees[tree].template_index;
+    out.template_index = template_index;
     out.shown = shown;
+    out.leaf_light = leaf_light(template_index, normalize(back), normalize(way_to_template(rows, view.sun_direction)));
     return out;
 }
 
@@ -68,7 +102,11 @@ fn scattered(cell: vec2f) -> f32 {
 }
 
 // The relief of a pixel is a mean: so far before it are the outermost leaves, which are not in their own shade.
-const SHADOW_BIAS_M = 1.2;
+const SHADOW_BIAS_M = 1.1;
+
+// Leaves are as open as their corners are on average, which reach farther out than a pixel's mean; and those that are more open
+// than others have more sun, too. By so much farther out a leaf would be that is as bright as all of them.
+const OUTWARD = 1.08;
 
 // Of the light that falls on a matt surface in all directions, what an eye sees of it receives so much on average; the cosine
 // is that of the angle between light and eye.
@@ -101,30 +139,28 @@ fn pixel(in: Out, is_kept: bool) -> Pixel {
     let along_y = dpdy(in.uv) * vec2f(0.25, 1.0);
     let seen = textureSampleGrad(colors, clamped, at, in.template_index, along_x, along_y);
     let relief = textureSampleGrad(reliefs, clamped, at, in.template_index, along_x, along_y).rgb;
-    let frame = frames[in.template_index];
     // Twigs are thinner than pixels.
     let twigs = samples_of(relief.b, scattered(floor(in.uv * 256.0)));
-    let samples = select(twigs, select(0u, 15u, seen.a >= frame.alpha_cutoff), relief.g > 0.5);
+    let samples = select(twigs, select(0u, 15u, seen.a >= frames[in.template_index].alpha_cutoff), relief.g > 0.5);
     if (samples == 0u || !is_kept) {
         discard;
     }
-    let before = (relief.r - 0.5) * frame.size.x;
+    let before = (relief.r - 0.5) * frames[in.template_index].size.x;
     let local = in.local + vec3f(in.ahead.x, 0.0, in.ahead.y) * before;
     let world = in.world + in.toward * before;
     let albedo = select(seen.rgb, level_tint(PICTURES_LEVEL) * 0.5, view.tint_levels != 0u);
 
     let to_eye = normalize(view.eye - in.world);
     let cosine = dot(to_eye, view.sun_direction);
-    let open = openness((local - frame.crown_middle) / frame.crown_half);
-    // As `leaf` and `bark` of `trees.wgsl`, averaged over all directions that face the eye.
+    let in_crown = (local - frames[in.template_index].crown_middle) / frames[in.template_index].crown_half;
+    let open = openness(OUTWARD * in_crown);
+    // As `leaf` and `bark` of `trees.wgsl`; bark averaged over all directions that face the eye.
     let through = albedo * vec3f(0.75, 0.9, 0.3);
-    let same = 0.75 * phase(cosine) + 0.125 * (1.0 + cosine);
-    let other = 0.75 * phase(-cosine) + 0.125 * (1.0 - cosine);
     let facing = max(-cosine, 0.0);
     let glow = 0.6 * facing * facing * facing * facing * facing * facing;
-    let leaf_sun = (albedo * 0.8 * same + through * (0.6 * other + glow)) * smoothstep(0.0, 0.7, open);
+    let leaf_sun = (albedo * 0.8 * in.leaf_light.x + through * (0.6 * in.leaf_light.y + glow)) * smoothstep(0.0, 0.7, open);
     let sun = mix(albedo * phase(cosine), leaf_sun, relief.g) * sun_visibility(world, SHADOW_BIAS_M);
-    let up = mix(0.5, 0.5 + 0.5 * (phase(to_eye.y) + phase(-to_eye.y)), relief.g);
+    let up = mix(0.5, in.leaf_light.z, relief.g);
     let ambient = ambient_light(up) * mix(0.8, 0.15 + 0.75 * open * open, relief.g);
     let radiance = (albedo * ambient + view.sun_irradiance * sun) / PI;
     return Pixel(vec4f(aerial_perspective(radiance, distance(in.world, view.eye)), 1.0), samples);

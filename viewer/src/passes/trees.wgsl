@@ -122,7 +122,7 @@ fn leaf(in: Out) -> @location(0) vec4f {
 }
 
 // So far before a card are the outermost of the leaves that it shows, which are not in their own shade.
-const CLUSTER_BIAS_M = 0.8;
+const CLUSTER_BIAS_M = 0.45;
 
 @fragment
 fn cluster(in: Out) -> @location(0) vec4f {

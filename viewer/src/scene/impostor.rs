@@ -4,6 +4,9 @@ use glam::Vec3;
 
 use super::Image;
 
+/// Leaves that are kept as [`LeafSide`]s.
+pub const LEAVES: usize = 32;
+
 /// The pictures of a template and where they stand; metres in its space.
 #[derive(Clone, Debug)]
 pub struct Impostor {
@@ -24,6 +27,17 @@ pub struct Impostor {
     pub error_m: f32,
     /// The ellipsoid around the leaves.
     pub crown: Crown,
+    /// Some leaves, evenly spread over all their area, for the light that leaves get on average; zero where there are none.
+    pub leaves: [LeafSide; LEAVES],
+}
+
+/// How a leaf lies; unit vectors in the template's space, on either side.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LeafSide {
+    /// The normal by which it is lit.
+    pub normal: [f32; 3],
+    /// That of its triangle, by which an eye sees more or less of it.
+    pub face: [f32; 3],
 }
 
 /// The ellipsoid around the leaves of a tree; metres in the template's space.

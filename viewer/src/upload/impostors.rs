@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{DrawCommand, ImageUse, Uploader};
-use crate::scene::{Impostor, Template};
+use crate::scene::{Impostor, LEAVES, Template};
 
 /// Mip levels end where a picture of a strip has so many pixels a side.
 const MIN_PX: u32 = 8 * genescape_schema::scene::IMPOSTOR_PICTURES;
@@ -24,6 +24,10 @@ pub struct ImpostorData {
     pub crown_half: [f32; 3],
     /// Below this alpha nothing is drawn.
     pub alpha_cutoff: f32,
+    /// Of some leaves, those by which they are lit and those of their triangles; the fourth number is unused.
+    pub leaf_normals: [[f32; 4]; LEAVES],
+    /// Likewise.
+    pub leaf_faces: [[f32; 4]; LEAVES],
 }
 
 /// The pictures of all templates.
@@ -77,6 +81,10 @@ impl Uploader {
     }
 }
 
+fn padded([x, y, z]: [f32; 3]) -> [f32; 4] {
+    [x, y, z, 0.0]
+}
+
 fn frame(pictures: &Impostor) -> ImpostorData {
     ImpostorData {
         axis: pictures.axis_m,
@@ -85,5 +93,7 @@ fn frame(pictures: &Impostor) -> ImpostorData {
         low: pictures.low_m,
         crown_half: pictures.crown.half_m,
         alpha_cutoff: pictures.alpha_cutoff,
+        leaf_normals: pictures.leaves.map(|leaf| padded(leaf.normal)),
+        leaf_faces: pictures.leaves.map(|leaf| padded(leaf.face)),
     }
 }

@@ -143,7 +143,11 @@ fn elements_of_buffers_are_laid_out_alike() {
             pad
         }
     );
-    same!(["impostors"], "Frame", ImpostorData { axis, size, crown_middle, low, crown_half, alpha_cutoff });
+    same!(
+        ["impostors"],
+        "Frame",
+        ImpostorData { axis, size, crown_middle, low, crown_half, alpha_cutoff, leaf_normals, leaf_faces }
+    );
     same!(["cull"], "Command", DrawCommand { indices, instances, first_index, base_vertex, first_instance });
     // What one pass writes as `Visible` the next reads as attributes.
     agree("cull", "Visible", 12, &[("tree", 0), ("lambda", 4), ("shown", 8)]);
