@@ -16,7 +16,7 @@ const MANY_PX: usize = 128;
 const FEW_PX: usize = 320;
 const MANY: usize = 1000;
 /// Twigs may grow by this part of the mesh's diagonal.
-const MAX_OFFSET: f32 = 0.0015;
+const MAX_OFFSET: f32 = 0.0025;
 /// Elements may shrink to this part of their scale: flat ones cover more than bent ones.
 const MIN_SHRUNK: f32 = 0.7;
 
