@@ -90,7 +90,7 @@ const RULES: &[Rule] = &[
 
 /// What stages may use of their crate; the files that bind them to the graph may use anything.
 const STAGES: &str = "bake/src/stages/";
-const OF_STAGES: [&str; 5] = ["math", "model", "noise", "raster", "seed"];
+const OF_STAGES: [&str; 6] = ["math", "model", "noise", "raster", "seed", "silhouette"];
 const BINDINGS: [&str; 4] = ["/stage.rs", "/levelled.rs", "/scene.rs", "/start.rs"];
 
 #[test]
