@@ -81,7 +81,7 @@ pub fn plan(state: &State, span: &PartSpan, mask: &AlphaMask) -> Vec<Step> {
     steps
 }
 
-/// The same mesh with triangles in the place of flat cards: it shows the same, and is drawn in less time.
+/// The same mesh with triangles in the place of flat cards: it shows nearly the same, and is drawn in less time.
 pub fn fitted(mesh: &Mesh, masks: &[AlphaMask]) -> Mesh {
     let mut state = State::new(&repaired(mesh.clone()));
     for (part, mask) in masks.iter().enumerate().take(state.parts.len()) {
