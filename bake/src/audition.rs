@@ -1,22 +1,23 @@
 //! Genomes → whether somebody would want to look at the landscape, before it is baked; and populations without those that
 //! nobody would: a landscape of which no good view exists is drawn again.
 //!
-//! What is asked is what the stage `start` asks, of coarser land and of trees known only by their height, so that it takes
-//! a fraction of a second. A person's own genomes are never asked.
+//! What is asked is what the stage `start` asks, of coarser land and of trees that are all like the first, so that it takes a
+//! fraction of a second. A person's own genomes are never asked.
 
 use std::fmt;
 
 use genescape_schema::{Category, Genome, GenomeError, Kind, Kinds, Population, Space};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
 use crate::breed::Breeder;
 use crate::events::{Event, Listener};
 use crate::model::{Instance, Landform, SkyLight, TreeFootprint};
 use crate::random::{self, Drawn};
 use crate::stages::ground::snow_map;
+use crate::stages::land::Brush;
 use crate::stages::placement::{PlacementParams, clear_around, place};
 use crate::stages::start::{Appraisal, Want, any_good_look, looks};
+use crate::stages::tree::{TreeMeasures, TreeParams, measure};
 use crate::stages::{land, sky};
 
 /// How often a landscape is drawn again at most; then the best of those drawn is taken.
@@ -58,11 +59,12 @@ pub fn is_worth_a_look(appraisal: &Appraisal) -> Result<f32, Want> {
 /// # Errors
 /// A gene that `space` does not declare.
 pub fn appraise(space: &Space, genome: &Genome) -> Result<Appraisal, GenomeError> {
-    let Sketch { land, footprint, trees, light } = Sketch::of(space, genome)?;
+    let light = sky::light(&genome.read(space)?);
+    let Sketch { land, footprint, trees, light } = Sketch::under(light, space, genome, Brush::Broad)?;
     Ok(any_good_look(&land, &trees, &[footprint], &light, BOUND))
 }
 
-/// A landscape drawn with a broad brush, to judge it before it is baked.
+/// A landscape as far as it has to be drawn to judge it before it is baked.
 pub struct Sketch {
     land: Landform,
     footprint: TreeFootprint,
@@ -71,19 +73,13 @@ pub struct Sketch {
 }
 
 impl Sketch {
-    /// # Errors
-    /// A gene that `space` does not declare.
-    pub fn of(space: &Space, genome: &Genome) -> Result<Self, GenomeError> {
-        Self::under(sky::light(&genome.read(space)?), space, genome)
-    }
-
-    /// The same where the light is known already.
+    /// One in that light, which is to be the genome's.
     ///
     /// # Errors
     /// A gene that `space` does not declare.
-    pub fn under(light: SkyLight, space: &Space, genome: &Genome) -> Result<Self, GenomeError> {
-        let land = land::sketch(&genome.read(space)?);
-        let footprint = genome.read::<Stature>(space)?.footprint();
+    pub fn under(light: SkyLight, space: &Space, genome: &Genome, brush: Brush) -> Result<Self, GenomeError> {
+        let land = land::sketch(&genome.read(space)?, brush);
+        let footprint = footprint(&genome.read(space)?);
         let placement: PlacementParams = genome.read(space)?;
         let snow = snow_map(placement.terrain_seed, &land);
         let mut trees = place(&placement, &land, snow.as_ref(), &[footprint]);
@@ -91,30 +87,22 @@ impl Sketch {
         Ok(Self { land, footprint, trees, light })
     }
 
-    /// How good the looks are from one in so many of the places that there are.
-    pub fn looks(&self, one_in: usize) -> Vec<Appraisal> {
-        looks(&self.land, &self.trees, &[self.footprint], &self.light, one_in)
+    /// How good the looks are from one in so many of the places that there are, but for those where one stands so badly that
+    /// none can score `least`.
+    pub fn looks(&self, one_in: usize, least: f32) -> Vec<Appraisal> {
+        looks(&self.land, &self.trees, &[self.footprint], &self.light, one_in, least)
     }
 }
 
-/// The genes that say most about a tree's size and where its crown is.
-#[derive(Serialize, Deserialize)]
-struct Stature {
-    height_m: f32,
-    levels: u32,
-    clear_trunk: f32,
-}
-
-impl Stature {
-    fn footprint(&self) -> TreeFootprint {
-        let Self { height_m, levels, clear_trunk } = *self;
-        TreeFootprint {
-            height_m,
-            trunk_radius_m: 0.02 * height_m,
-            crown_radius_m: 0.25 * height_m,
-            root_depth_m: 0.02 * height_m,
-            clear_trunk: TreeFootprint::clear_trunk(levels, clear_trunk),
-        }
+/// The first of a genome's trees, which the others are like.
+fn footprint(params: &TreeParams) -> TreeFootprint {
+    let TreeMeasures { height_m, crown_radius_m, trunk_radius_m, .. } = measure(params);
+    TreeFootprint {
+        height_m,
+        trunk_radius_m,
+        crown_radius_m,
+        root_depth_m: 0.02 * height_m,
+        clear_trunk: TreeFootprint::clear_trunk(params.levels, params.clear_trunk),
     }
 }
 

@@ -13,6 +13,7 @@ use rayon::prelude::*;
 
 use crate::audition::Sketch;
 use crate::model::SkyLight;
+use crate::stages::land::Brush;
 use crate::stages::sky;
 use crate::stages::start::Appraisal;
 
@@ -22,10 +23,12 @@ const LANDS: u32 = 5;
 const STEP: u32 = 37;
 /// Of the places that a landscape may be looked at from, one in so many is asked about.
 const ONE_IN: usize = 2;
+/// Of places that score less in one landscape, none is wanted for the four.
+const LEAST: f32 = 0.4;
 /// Places that one may hope to find as good in the landscapes themselves.
-const PLACES: usize = 6;
+const PLACES: usize = 3;
 /// Their score from which no better ones are looked for.
-const ENOUGH: f32 = 0.65;
+const ENOUGH: f32 = 0.7;
 
 /// For each of four lands, how good it looks from each lookout that is asked about.
 type Lands = [Vec<f32>; INDIVIDUALS];
@@ -48,7 +51,7 @@ fn chosen_lands(space: &Space, population: &Population) -> Option<[u32; INDIVIDU
             numbers.flat_map(|number| (0..INDIVIDUALS).map(move |k| (number, k))).collect();
         let scores = lands.par_iter().map(|&(number, k)| {
             let genome = other_land(space, &population.individuals[k].genome, number);
-            Some(scores(&Sketch::under(lights[k].clone(), space, &genome).ok()?))
+            Some(scores(&Sketch::under(lights[k].clone(), space, &genome, Brush::Fine).ok()?))
         });
         let scores = scores.collect::<Option<Vec<_>>>()?;
         scores.chunks_exact(INDIVIDUALS).map(|four| four.to_vec().try_into().ok()).collect()
@@ -62,7 +65,7 @@ fn chosen_lands(space: &Space, population: &Population) -> Option<[u32; INDIVIDU
 }
 
 /// Of the ways to give each of four landscapes one of its lands, the best, and how good the places are that suit the worst of
-/// the four best there: trees will stand elsewhere than in a sketch, so that one place is no promise.
+/// the four best there: a sketch leaves gullies out, so that one place alone is no promise.
 fn best(lands: &[Lands]) -> (f32, [u32; INDIVIDUALS]) {
     let ways = lands.len().pow(INDIVIDUALS as u32);
     let way = |way: usize| -> [u32; INDIVIDUALS] {
@@ -89,7 +92,7 @@ fn shared(four: [&[f32]; INDIVIDUALS]) -> f32 {
 
 /// How good a landscape looks from each lookout that is asked about.
 fn scores(sketch: &Sketch) -> Vec<f32> {
-    sketch.looks(ONE_IN).iter().map(Appraisal::score).collect()
+    sketch.looks(ONE_IN, LEAST).iter().map(Appraisal::score).collect()
 }
 
 /// The genome with another land of its kind; number 0 is its own.
@@ -109,7 +112,8 @@ mod tests {
     use crate::kinds::testing::{drawn, kinds};
 
     fn worst(space: &Space, population: &Population) -> f32 {
-        let sketch = |genome| Sketch::of(space, genome).expect("valid");
+        let light = |genome: &Genome| sky::light(&genome.read(space).expect("valid"));
+        let sketch = |genome| Sketch::under(light(genome), space, genome, Brush::Fine).expect("valid");
         let four = population.individuals.each_ref().map(|one| scores(&sketch(&one.genome)));
         best(&[four]).0
     }

@@ -14,6 +14,9 @@ const STEP: f32 = 0.16;
 const OUTSIDE_M: f32 = 400.0;
 /// Part of a hollow's depth that sediment fills in one step.
 const FILLING: f32 = 0.25;
+/// Square metres that drain into a place where water begins to gather: four cells of the finest grid of rivers, and no more on
+/// coarser ones, so that a sketch is as wet as the land.
+const SPRING_M2: f32 = 64.0;
 /// Buckets of the flood's queue: heights within one are drained in order of arrival.
 const BUCKETS: usize = 4096;
 /// The eight neighbours as (east, south) steps; odd entries are diagonal.
@@ -42,11 +45,10 @@ pub(super) fn carve_valleys(land: &mut Grid, loose: &mut Grid, params: &LandPara
 /// Drained area of every sample of the land at `side`, log-scaled to [0, 1].
 pub(super) fn flow(land: &Grid, side: u32) -> Grid {
     let coarse = land.resized(side);
-    let cell = coarse.spacing_m * coarse.spacing_m;
     let areas = Drainage::new(&coarse, 0).spread_areas(&coarse);
-    let greatest = areas.iter().fold(cell, |a, &b| a.max(b));
-    let scale = 1.0 / libm::logf(greatest / (4.0 * cell)).max(1.0);
-    let values = areas.iter().map(|a| (libm::logf((a / (4.0 * cell)).max(1.0)) * scale).min(1.0)).collect();
+    let greatest = areas.iter().fold(SPRING_M2, |a, &b| a.max(b));
+    let scale = 1.0 / libm::logf(greatest / SPRING_M2).max(1.0);
+    let values = areas.iter().map(|a| (libm::logf((a / SPRING_M2).max(1.0)) * scale).min(1.0)).collect();
     Grid { values, ..coarse }.smoothed()
 }
 

@@ -1,12 +1,18 @@
 //! Weights → points that keep their distance, each with its tree.
 //!
-//! Darts are drawn from a coarse map of the weights, so that a dart costs the same whether trees grow everywhere or
-//! in one valley, and are then weighed where they fall. A tree claims a circle of three quarters of its crown, and
-//! at least so much that trees spread evenly (about 0.7 of the widest spacing that dart throwing reaches).
+//! Each cell of a coarse map of the weights has darts of its own, the more often the more it weighs, so that a dart costs
+//! the same whether trees grow everywhere or in one valley; they are then weighed where they fall. What a cell's n-th dart
+//! is, depends on nothing else: land that is only a little different, as a sketch is, has nearly the same trees in the same
+//! places, where one sequence of darts for all cells would give it another forest. A tree claims a circle of three quarters
+//! of its crown, and at least so much that trees spread evenly (about 0.7 of the widest spacing that dart throwing reaches).
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 use crate::model::Instance;
+use crate::noise::hash01;
 use crate::raster::square;
-use crate::seed::Dice;
+use crate::seed::{Dice, noise_seed};
 
 use super::site::Site;
 use super::stand::{self, TRUNK_RESERVE_M};
@@ -37,12 +43,12 @@ pub(super) fn scatter(params: &PlacementParams, site: &Site, trees: &[TreeFootpr
     let even_m = 0.5 * EVENNESS * SATURATED * (map.area_m2 / wanted as f32).sqrt();
     let largest = trees.iter().map(|tree| claim_m(tree, stand::MAX_SCALE)).fold(even_m, f32::max);
     let mut taken = Taken::new(site.half_m, 2.0 * largest);
-    let mut dice = Dice::new(params.tree_seed, "placement", 0);
+    let mut darts = Darts::new(&map, params.tree_seed);
     let mut instances = Vec::with_capacity(wanted as usize);
     let mut misses = 0;
     while instances.len() < wanted as usize && misses < PATIENCE {
         misses += 1;
-        let (x, z, weight) = map.dart(&mut dice);
+        let Some(Dart { x, z, weight, mut dice }) = darts.next() else { break };
         let keep = dice.unit();
         let Some(spot) = site.at(x, z).filter(|spot| spot.weight > keep * weight) else { continue };
         let template = ((dice.unit() * trees.len() as f32) as usize).min(trees.len() - 1);
@@ -75,13 +81,11 @@ fn claim_m(tree: &TreeFootprint, scale: f32) -> f32 {
     (CROWN_CLAIM * tree.crown_radius_m * scale).max(stand::trunk_reach_m(tree, scale) + TRUNK_RESERVE_M)
 }
 
-/// Weights on a coarse grid, summed up so that a cell can be drawn by its weight.
+/// Weights on a coarse grid.
 struct WeightMap {
     half_m: f32,
     cell_m: f32,
     weights: Vec<f32>,
-    /// Sum of weights up to and including each cell; f64, since 16,384 small numbers add up.
-    sums: Vec<f64>,
     /// The area in square metres, weighted.
     area_m2: f32,
 }
@@ -93,24 +97,61 @@ impl WeightMap {
         let centre = |k: usize| (k as f32 + 0.5) * cell_m - half_m;
         let weight = |i: usize, j: usize| site.at(centre(i), centre(j)).map_or(0.0, |spot| spot.weight);
         let weights = square(MAP_SIDE as usize, weight);
-        let mut sum = 0.0;
-        let add = |&weight: &f32| {
-            sum += f64::from(weight);
-            sum
-        };
-        let sums = weights.iter().map(add).collect();
-        Self { half_m, cell_m, weights, sums, area_m2: sum as f32 * cell_m * cell_m }
+        // f64, since 16,384 small numbers add up.
+        let sum: f64 = weights.iter().map(|&weight| f64::from(weight)).sum();
+        Self { half_m, cell_m, weights, area_m2: sum as f32 * cell_m * cell_m }
+    }
+}
+
+/// A place where a tree may stand, its cell's weight, and the dice for all that is left to chance about it.
+struct Dart {
+    x: f32,
+    z: f32,
+    weight: f32,
+    dice: Dice,
+}
+
+/// The darts of all cells, as if in each one fell after every so many moments, fewer of them where it weighs more.
+struct Darts<'a> {
+    map: &'a WeightMap,
+    tree_seed: u32,
+    seed: u32,
+    /// The moment when the next one falls, as the bits of a number that is not negative, in which cell, and which one of
+    /// its cell it is.
+    next: BinaryHeap<Reverse<[u32; 3]>>,
+}
+
+impl<'a> Darts<'a> {
+    fn new(map: &'a WeightMap, tree_seed: u32) -> Self {
+        let seed = noise_seed(tree_seed.into(), "placement/darts", 0);
+        let mut darts = Self { map, tree_seed, seed, next: BinaryHeap::new() };
+        let cells = (0..map.weights.len()).filter(|&cell| map.weights[cell] > 0.0);
+        darts.next = cells.map(|cell| darts.falls(cell as u32, 0)).collect();
+        darts
     }
 
-    /// A point drawn by weight, and its cell's weight.
-    fn dart(&self, dice: &mut Dice) -> (f32, f32, f32) {
-        let total = self.sums.last().copied().unwrap_or(0.0);
-        let drawn = f64::from(dice.unit()) * total;
-        let cell = self.sums.partition_point(|&sum| sum <= drawn).min(self.sums.len() - 1);
-        let (i, j) = (cell as u32 % MAP_SIDE, cell as u32 / MAP_SIDE);
-        let x = (i as f32 + dice.unit()) * self.cell_m - self.half_m;
-        let z = (j as f32 + dice.unit()) * self.cell_m - self.half_m;
-        (x, z, self.weights[cell])
+    /// When a cell's `number`-th dart falls.
+    fn falls(&self, cell: u32, number: u32) -> Reverse<[u32; 3]> {
+        let chance = hash01(self.seed, cell as i32, number as i32, 0);
+        let moment = (number as f32 + chance) / self.map.weights[cell as usize];
+        Reverse([moment.to_bits(), cell, number])
+    }
+}
+
+impl Iterator for Darts<'_> {
+    type Item = Dart;
+
+    /// Never the last, unless there is no cell.
+    fn next(&mut self) -> Option<Dart> {
+        let Reverse([_, cell, number]) = *self.next.peek()?;
+        let after = self.falls(cell, number + 1);
+        *self.next.peek_mut()? = after;
+        let mut dice = Dice::new(self.tree_seed, "placement", u64::from(cell) << 32 | u64::from(number));
+        let WeightMap { half_m, cell_m, weights, .. } = self.map;
+        let place = |k: u32, part: f32| (k as f32 + part) * cell_m - half_m;
+        let x = place(cell % MAP_SIDE, dice.unit());
+        let z = place(cell / MAP_SIDE, dice.unit());
+        Some(Dart { x, z, weight: weights[cell as usize], dice })
     }
 }
 

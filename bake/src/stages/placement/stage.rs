@@ -25,7 +25,7 @@ pub struct PlacementFiles {
 
 impl Stage for PlacementStage {
     const NAME: &'static str = "placement";
-    const VERSION: u32 = 7;
+    const VERSION: u32 = 8;
     type Output = PlacementFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<PlacementFiles, StageError> {

@@ -59,7 +59,7 @@ pub fn first_look(
 ) -> FirstLook {
     let (scene, sun) = (Surroundings::new(land, trees, footprints), Sun::of(light));
     let all: Vec<Lookout> = Lookout::all().collect();
-    let at_place = |lookouts: &[Lookout]| at_place(&scene, &sun, lookouts);
+    let at_place = |lookouts: &[Lookout]| at_place(&scene, &sun, lookouts, 0.0);
     let appraisals: Vec<Appraisal> = all.par_chunks(Lookout::HEADINGS).flat_map_iter(at_place).collect();
     let lookouts = Lookouts::new(appraisals.iter().map(prospect).collect()).expect("one for each");
     let best = Lookouts::shared(&[&lookouts]).expect("one landscape");
@@ -68,18 +68,20 @@ pub fn first_look(
     FirstLook { view: best.on(&land.field, land.water_level_m), appraisal, exposure, lookouts }
 }
 
-/// How good the looks are from all lookouts, in their order, at one in so many of the places.
+/// How good the looks are from all lookouts, in their order, at one in so many of the places; those that cannot score `least`
+/// because one stands badly there may count as nothing.
 pub fn looks(
     land: &Landform,
     trees: &[Instance],
     footprints: &[TreeFootprint],
     light: &SkyLight,
     one_in: usize,
+    least: f32,
 ) -> Vec<Appraisal> {
     let (scene, sun) = (Surroundings::new(land, trees, footprints), Sun::of(light));
     let all: Vec<Lookout> = Lookout::all().collect();
     let places = all.par_chunks(Lookout::HEADINGS).step_by(one_in.max(1));
-    places.flat_map_iter(|lookouts| at_place(&scene, &sun, lookouts)).collect()
+    places.flat_map_iter(|lookouts| at_place(&scene, &sun, lookouts, least)).collect()
 }
 
 /// A look that scores at least `enough`, of the first few places all over the land that have one; if none has, the best of
@@ -98,7 +100,7 @@ pub fn any_good_look(
     let mut best = Appraisal::default();
     for few in scattered.chunks(FEW) {
         let looks: Vec<Appraisal> =
-            few.par_iter().flat_map_iter(|&k| at_place(&scene, &sun, places[k])).collect();
+            few.par_iter().flat_map_iter(|&k| at_place(&scene, &sun, places[k], 0.0)).collect();
         best = looks.into_iter().fold(best, |a, b| if b.score() > a.score() { b } else { a });
         if best.score() >= enough {
             break;
@@ -135,12 +137,12 @@ fn metered(scene: &Surroundings<'_>, sun: &Sun, light: &SkyLight, lookouts: &[Lo
     libm::exp2f(stops.iter().sum::<f32>() / stops.len().max(1) as f32)
 }
 
-/// All headings at one place.
-fn at_place(scene: &Surroundings<'_>, sun: &Sun, lookouts: &[Lookout]) -> Vec<Appraisal> {
+/// All headings at one place, unless its footing alone keeps them below `least`.
+fn at_place(scene: &Surroundings<'_>, sun: &Sun, lookouts: &[Lookout], least: f32) -> Vec<Appraisal> {
     let place = lookouts[0].place_m(scene.land.field.extent_m());
     let footing = footing(scene, place);
-    if footing <= 0.0 {
-        // Nobody can stand there: what might be seen is not worth the time.
+    if footing <= 0.0 || footing < least * least {
+        // Nobody can stand there, or would: what might be seen is not worth the time.
         return vec![Appraisal::default(); lookouts.len()];
     }
     let panorama = Panorama::new(scene, place);
