@@ -1,8 +1,7 @@
 //! Genomes → whether somebody would want to look at the landscape, before it is baked; and populations without those that
 //! nobody would: a landscape of which no good view exists is drawn again.
 //!
-//! What is asked is what the stage `start` asks, of coarser land and of trees that are all like the first, so that it takes a
-//! fraction of a second. A person's own genomes are never asked.
+//! What is asked is what the stage `start` asks, of sketches, so that it takes a fraction of a second. A person's own genomes are never asked.
 
 use std::fmt;
 
@@ -11,14 +10,12 @@ use rayon::prelude::*;
 
 use crate::breed::Breeder;
 use crate::events::{Event, Listener};
-use crate::model::{Instance, Landform, SkyLight, TreeFootprint};
+use crate::one_view::{self, Effort};
 use crate::random::{self, Drawn};
-use crate::stages::ground::snow_map;
+use crate::sketch::Sketch;
 use crate::stages::land::Brush;
-use crate::stages::placement::{PlacementParams, clear_around, place};
-use crate::stages::start::{Appraisal, Want, any_good_look, looks};
-use crate::stages::tree::{TreeMeasures, TreeParams, measure};
-use crate::stages::{land, sky};
+use crate::stages::sky;
+use crate::stages::start::{Appraisal, Want};
 
 /// How often a landscape is drawn again at most; then the best of those drawn is taken.
 const REDRAWS: u32 = 4;
@@ -60,50 +57,7 @@ pub fn is_worth_a_look(appraisal: &Appraisal) -> Result<f32, Want> {
 /// A gene that `space` does not declare.
 pub fn appraise(space: &Space, genome: &Genome) -> Result<Appraisal, GenomeError> {
     let light = sky::light(&genome.read(space)?);
-    let Sketch { land, footprint, trees, light } = Sketch::under(light, space, genome, Brush::Broad)?;
-    Ok(any_good_look(&land, &trees, &[footprint], &light, BOUND))
-}
-
-/// A landscape as far as it has to be drawn to judge it before it is baked.
-pub struct Sketch {
-    land: Landform,
-    footprint: TreeFootprint,
-    trees: Vec<Instance>,
-    light: SkyLight,
-}
-
-impl Sketch {
-    /// One in that light, which is to be the genome's.
-    ///
-    /// # Errors
-    /// A gene that `space` does not declare.
-    pub fn under(light: SkyLight, space: &Space, genome: &Genome, brush: Brush) -> Result<Self, GenomeError> {
-        let land = land::sketch(&genome.read(space)?, brush);
-        let footprint = footprint(&genome.read(space)?);
-        let placement: PlacementParams = genome.read(space)?;
-        let snow = snow_map(placement.terrain_seed, &land);
-        let mut trees = place(&placement, &land, snow.as_ref(), &[footprint]);
-        clear_around(&land, &mut trees);
-        Ok(Self { land, footprint, trees, light })
-    }
-
-    /// How good the looks are from one in so many of the places that there are, but for those where one stands so badly that
-    /// none can score `least`.
-    pub fn looks(&self, one_in: usize, least: f32) -> Vec<Appraisal> {
-        looks(&self.land, &self.trees, &[self.footprint], &self.light, one_in, least)
-    }
-}
-
-/// The first of a genome's trees, which the others are like.
-fn footprint(params: &TreeParams) -> TreeFootprint {
-    let TreeMeasures { height_m, crown_radius_m, trunk_radius_m, .. } = measure(params);
-    TreeFootprint {
-        height_m,
-        trunk_radius_m,
-        crown_radius_m,
-        root_depth_m: 0.02 * height_m,
-        clear_trunk: TreeFootprint::clear_trunk(params.levels, params.clear_trunk),
-    }
+    Ok(Sketch::under(light, space, genome, Brush::Broad)?.any_good_look(BOUND))
 }
 
 /// A population of landscapes that somebody would look at, and which of them had to be drawn again for it.
@@ -138,9 +92,14 @@ pub fn audition(space: &Space, draw: impl Fn(u32) -> Population) -> Auditioned {
     Auditioned { population, redrawn }
 }
 
-/// Generation `next`, bred again where nobody would look at a child.
+/// Generation `next`, bred again where nobody would look at a child; of lands that nobody has seen yet, those are taken that are
+/// well seen from where the others are.
 pub fn next_generation(breeder: &Breeder<'_>, next: u32) -> Auditioned {
-    audition(breeder.space(), |attempt| bred(breeder, next, attempt))
+    let Auditioned { population, redrawn } =
+        audition(breeder.space(), |attempt| bred(breeder, next, attempt));
+    let new = breeder.new_lands(&population);
+    let population = one_view::suited(breeder.space(), population, new, Effort::LITTLE);
+    Auditioned { population, redrawn }
 }
 
 /// Which landscapes of a population that [`audition`] took from `draw` were drawn again, and why. Drawing is

@@ -41,5 +41,6 @@ pub mod run;
 pub mod seed;
 pub mod session;
 mod silhouette;
+pub mod sketch;
 pub mod stages;
 pub mod watch_loop;

@@ -11,18 +11,14 @@ use genescape_schema::scene::Lookout;
 use genescape_schema::{Category, Genome, GenomeError, INDIVIDUALS, Population, Space};
 use rayon::prelude::*;
 
-use crate::audition::Sketch;
 use crate::model::SkyLight;
+use crate::sketch::Sketch;
 use crate::stages::land::Brush;
 use crate::stages::sky;
 use crate::stages::start::Appraisal;
 
-/// Lands of each landscape among which one is chosen.
-const LANDS: u32 = 5;
 /// From one land's seed to the next: prime to the number of seeds, and far from a simple part of it.
 const STEP: u32 = 37;
-/// Of the places that a landscape may be looked at from, one in so many is asked about.
-const ONE_IN: usize = 2;
 /// Of places that score less in one landscape, none is wanted for the four.
 const LEAST: f32 = 0.4;
 /// Places that one may hope to find as good in the landscapes themselves.
@@ -30,12 +26,35 @@ const PLACES: usize = 3;
 /// Their score from which no better ones are looked for.
 const ENOUGH: f32 = 0.7;
 
-/// For each of four lands, how good it looks from each lookout that is asked about.
-type Lands = [Vec<f32>; INDIVIDUALS];
+/// How much is done for a view.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Lands of each landscape among which one is chosen.
+    lands: u32,
+    /// Of the places that a landscape may be looked at from, one in so many is asked about.
+    one_in: usize,
+    brush: Brush,
+}
 
-/// The population with such lands; as it is if one view suits it well, or a genome cannot be read, which others tell.
-pub fn suited(space: &Space, mut population: Population) -> Population {
-    let lands = chosen_lands(space, &population).unwrap_or_default();
+impl Effort {
+    /// For four new landscapes.
+    pub const MUCH: Self = Self { lands: 5, one_in: 2, brush: Brush::Fine };
+    /// For children, whom a person waits for.
+    pub const LITTLE: Self = Self { lands: 4, one_in: 4, brush: Brush::Broad };
+}
+
+/// For each land of a landscape, how good it looks from each lookout that is asked about.
+type Lands = Vec<Vec<f32>>;
+
+/// The population with such lands for those of its landscapes that are `open`; as it is if one view suits it well, or a genome
+/// cannot be read, which others tell.
+pub fn suited(
+    space: &Space,
+    mut population: Population,
+    open: [bool; INDIVIDUALS],
+    effort: Effort,
+) -> Population {
+    let lands = chosen_lands(space, &population, open, effort).unwrap_or_default();
     for (one, number) in population.individuals.iter_mut().zip(lands) {
         one.genome = other_land(space, &one.genome, number);
     }
@@ -43,35 +62,51 @@ pub fn suited(space: &Space, mut population: Population) -> Population {
 }
 
 /// The numbers of the lands that are best seen from one place.
-fn chosen_lands(space: &Space, population: &Population) -> Option<[u32; INDIVIDUALS]> {
-    let lights = population.individuals.par_iter().map(|one| Ok(sky::light(&one.genome.read(space)?)));
-    let lights = lights.collect::<Result<Vec<SkyLight>, GenomeError>>().ok()?;
-    let scores = |numbers: Range<u32>| -> Option<Vec<Lands>> {
-        let lands: Vec<(u32, usize)> =
-            numbers.flat_map(|number| (0..INDIVIDUALS).map(move |k| (number, k))).collect();
-        let scores = lands.par_iter().map(|&(number, k)| {
-            let genome = other_land(space, &population.individuals[k].genome, number);
-            Some(scores(&Sketch::under(lights[k].clone(), space, &genome, Brush::Fine).ok()?))
-        });
-        let scores = scores.collect::<Option<Vec<_>>>()?;
-        scores.chunks_exact(INDIVIDUALS).map(|four| four.to_vec().try_into().ok()).collect()
-    };
-    let mut lands = scores(0..1)?;
-    if best(&lands).0 >= ENOUGH {
+fn chosen_lands(
+    space: &Space,
+    population: &Population,
+    open: [bool; INDIVIDUALS],
+    effort: Effort,
+) -> Option<[u32; INDIVIDUALS]> {
+    if !open.contains(&true) {
         return None;
     }
-    lands.extend(scores(1..LANDS)?);
-    Some(best(&lands).1)
+    let lights = population.individuals.par_iter().map(|one| Ok(sky::light(&one.genome.read(space)?)));
+    let lights = lights.collect::<Result<Vec<SkyLight>, GenomeError>>().ok()?;
+    let add = |four: &mut [Lands; INDIVIDUALS], numbers: Range<u32>| {
+        let is_asked = |&(number, k): &(u32, usize)| number == 0 || open[k];
+        let asked: Vec<(u32, usize)> =
+            numbers.flat_map(|number| (0..INDIVIDUALS).map(move |k| (number, k))).filter(is_asked).collect();
+        let scores = asked.par_iter().map(|&(number, k)| {
+            let genome = other_land(space, &population.individuals[k].genome, number);
+            let sketch = Sketch::under(lights[k].clone(), space, &genome, effort.brush).ok()?;
+            Some(scores(&sketch, effort.one_in))
+        });
+        let scores = scores.collect::<Option<Vec<_>>>()?;
+        asked.iter().zip(scores).for_each(|(&(_, k), scores)| four[k].push(scores));
+        Some(())
+    };
+    let mut four = [const { Lands::new() }; INDIVIDUALS];
+    add(&mut four, 0..1)?;
+    if best(&four).0 >= ENOUGH {
+        return None;
+    }
+    add(&mut four, 1..effort.lands)?;
+    Some(best(&four).1)
 }
 
 /// Of the ways to give each of four landscapes one of its lands, the best, and how good the places are that suit the worst of
 /// the four best there: a sketch leaves gullies out, so that one place alone is no promise.
-fn best(lands: &[Lands]) -> (f32, [u32; INDIVIDUALS]) {
-    let ways = lands.len().pow(INDIVIDUALS as u32);
-    let way = |way: usize| -> [u32; INDIVIDUALS] {
-        std::array::from_fn(|k| (way / lands.len().pow(k as u32) % lands.len()) as u32)
+fn best(four: &[Lands; INDIVIDUALS]) -> (f32, [u32; INDIVIDUALS]) {
+    let ways = four.iter().map(Vec::len).product();
+    let way = |mut way: usize| -> [u32; INDIVIDUALS] {
+        four.each_ref().map(|lands| {
+            let number = way % lands.len();
+            way /= lands.len();
+            number as u32
+        })
     };
-    let score = |way: [u32; INDIVIDUALS]| shared(std::array::from_fn(|k| &lands[way[k] as usize][k][..]));
+    let score = |way: [u32; INDIVIDUALS]| shared(std::array::from_fn(|k| &four[k][way[k] as usize][..]));
     let scored = (0..ways).into_par_iter().map(|number| (score(way(number)), number));
     // Of equal ones the first, so that lands stay as they are if that is as good.
     let best = scored.reduce_with(|a, b| if b.0 > a.0 || b.0 == a.0 && b.1 < a.1 { b } else { a });
@@ -91,8 +126,8 @@ fn shared(four: [&[f32]; INDIVIDUALS]) -> f32 {
 }
 
 /// How good a landscape looks from each lookout that is asked about.
-fn scores(sketch: &Sketch) -> Vec<f32> {
-    sketch.looks(ONE_IN, LEAST).iter().map(Appraisal::score).collect()
+fn scores(sketch: &Sketch, one_in: usize) -> Vec<f32> {
+    sketch.looks(one_in, LEAST).iter().map(Appraisal::score).collect()
 }
 
 /// The genome with another land of its kind; number 0 is its own.
@@ -114,8 +149,8 @@ mod tests {
     fn worst(space: &Space, population: &Population) -> f32 {
         let light = |genome: &Genome| sky::light(&genome.read(space).expect("valid"));
         let sketch = |genome| Sketch::under(light(genome), space, genome, Brush::Fine).expect("valid");
-        let four = population.individuals.each_ref().map(|one| scores(&sketch(&one.genome)));
-        best(&[four]).0
+        let four = population.individuals.each_ref().map(|one| vec![scores(&sketch(&one.genome), 2)]);
+        best(&four).0
     }
 
     #[test]
@@ -125,7 +160,7 @@ mod tests {
         let (mut before, mut after) = (0.0, 0.0);
         for seed in 0..3 {
             let population = drawn(&space, &kinds, seed, 0);
-            let suited = suited(&space, population.clone());
+            let suited = suited(&space, population.clone(), [true; INDIVIDUALS], Effort::MUCH);
             let (was, is) = (worst(&space, &population), worst(&space, &suited));
             assert!(is >= was, "seed {seed}: {is} after {was}");
             (before, after) = (before + was, after + is);
@@ -141,10 +176,22 @@ mod tests {
     fn lands_are_chosen_for_the_worst_of_four() {
         // Two places, each with the same score for all headings.
         let at = |scores: [f32; 2]| scores.map(|score| [score; Lookout::HEADINGS]).as_flattened().to_vec();
-        let four = |a: [f32; 2], b: [f32; 2]| [at(a), at(b), at([0.9; 2]), at([0.9; 2])];
         // What is best for each of the first two is the other's worst.
-        let lands = [four([0.8, 0.2], [0.1, 0.7]), four([0.5, 0.6], [0.15, 0.5])];
-        assert_eq!(best(&lands).1, [1, 0, 0, 0]);
-        assert_eq!(best(&lands[..1]).1, [0; INDIVIDUALS]);
+        let (first, second) = ([[0.8, 0.2], [0.5, 0.6]].map(at), [[0.1, 0.7], [0.15, 0.5]].map(at));
+        let well = || vec![at([0.9; 2])];
+        assert_eq!(best(&[first.to_vec(), second.to_vec(), well(), well()]).1, [1, 0, 0, 0]);
+        assert_eq!(best(&[first[..1].to_vec(), second.to_vec(), well(), well()]).1, [0; INDIVIDUALS]);
+    }
+
+    #[test]
+    fn lands_that_are_not_open_stay() {
+        let space = Space::builtin();
+        let population = drawn(&space, &kinds(&space), 1, 0);
+        let open = [false, true, false, false];
+        let suited = suited(&space, population.clone(), open, Effort::LITTLE);
+        for ((one, other), open) in population.individuals.iter().zip(&suited.individuals).zip(open) {
+            assert!(open || one == other);
+        }
+        assert_eq!(chosen_lands(&space, &population, [false; INDIVIDUALS], Effort::LITTLE), None);
     }
 }
