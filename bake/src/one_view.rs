@@ -40,7 +40,7 @@ impl Effort {
     /// For four new landscapes.
     pub const MUCH: Self = Self { lands: 5, one_in: 2, brush: Brush::Fine };
     /// For children, whom a person waits for.
-    pub const LITTLE: Self = Self { lands: 4, one_in: 4, brush: Brush::Broad };
+    pub const LITTLE: Self = Self { lands: 3, one_in: 4, brush: Brush::Broad };
 }
 
 /// For each land of a landscape, how good it looks from each lookout that is asked about.
@@ -180,7 +180,7 @@ mod tests {
         let (first, second) = ([[0.8, 0.2], [0.5, 0.6]].map(at), [[0.1, 0.7], [0.15, 0.5]].map(at));
         let well = || vec![at([0.9; 2])];
         assert_eq!(best(&[first.to_vec(), second.to_vec(), well(), well()]).1, [1, 0, 0, 0]);
-        assert_eq!(best(&[first[..1].to_vec(), second.to_vec(), well(), well()]).1, [0; INDIVIDUALS]);
+        assert_eq!(best(&[first[..1].to_vec(), second[..1].to_vec(), well(), well()]).1, [0; INDIVIDUALS]);
     }
 
     #[test]

@@ -56,3 +56,55 @@ fn footprint(params: &TreeParams) -> TreeFootprint {
         clear_trunk: TreeFootprint::clear_trunk(params.levels, params.clear_trunk),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinds::testing::{drawn, kinds};
+    use crate::stages::sky;
+    use crate::stages::tree::template;
+
+    /// Correlation (Pearson) of the scores of the same looks.
+    fn agreement(pairs: &[(f32, f32)]) -> f32 {
+        let mean = |of: &dyn Fn(&(f32, f32)) -> f32| pairs.iter().map(of).sum::<f32>() / pairs.len() as f32;
+        let (a, b) = (mean(&|pair| pair.0), mean(&|pair| pair.1));
+        let covariance = mean(&|pair| (pair.0 - a) * (pair.1 - b));
+        let [of_a, of_b] =
+            [mean(&|pair| (pair.0 - a) * (pair.0 - a)), mean(&|pair| (pair.1 - b) * (pair.1 - b))];
+        covariance / (of_a * of_b).sqrt()
+    }
+
+    #[test]
+    fn looks_are_as_good_as_in_the_landscape_itself() {
+        let space = Space::builtin();
+        for one in drawn(&space, &kinds(&space), 4, 0).individuals {
+            let (space, genome) = (&space, &one.genome);
+            let light = sky::light(&genome.read(space).expect("valid"));
+            let params: TreeParams = genome.read(space).expect("valid");
+            let clear_trunk = TreeFootprint::clear_trunk(params.levels, params.clear_trunk);
+            let footprints = [0, 1, 2, 3, 4].map(|index| {
+                let template = template(&params, index);
+                TreeFootprint {
+                    height_m: template.bounds.max.y,
+                    trunk_radius_m: template.trunk_radius_m,
+                    crown_radius_m: template.crown_radius_m,
+                    root_depth_m: -template.bounds.min.y,
+                    clear_trunk,
+                }
+            });
+            let land = land::landform(&genome.read(space).expect("valid"), 513);
+            let placement: PlacementParams = genome.read(space).expect("valid");
+            let snow = snow_map(placement.terrain_seed, &land);
+            let mut trees = place(&placement, &land, snow.as_ref(), &footprints);
+            clear_around(&land, &mut trees);
+            let itself = looks(&land, &trees, &footprints, &light, 4, 0.0);
+            for (brush, least) in [(Brush::Broad, 0.6), (Brush::Fine, 0.9)] {
+                let sketch = Sketch::under(light.clone(), space, genome, brush).expect("valid");
+                let scores = sketch.looks(4, 0.0).into_iter().zip(&itself);
+                let scores: Vec<_> = scores.map(|(one, other)| (one.score(), other.score())).collect();
+                let agreement = agreement(&scores);
+                assert!(agreement > least, "{} with a {brush:?} brush: {agreement}", one.name);
+            }
+        }
+    }
+}

@@ -188,6 +188,18 @@ proptest! {
     }
 }
 
+#[test]
+fn land_that_is_a_little_different_has_nearly_the_same_trees() {
+    let feet = |land: &Landform| {
+        let made = place(&PlacementParams { clustering: 0.3, ..usual() }, land, None, &[OAK]);
+        made.iter().map(|tree| origin(tree).with_y(0.0)).collect::<Vec<Vec3>>()
+    };
+    let (coarse, fine) = (feet(&land(3, 60.0, 0.1, 129)), feet(&land(3, 60.0, 0.1, 513)));
+    let is_there = |foot: &&Vec3| fine.iter().any(|other| other.distance(**foot) < 0.1);
+    let shared = coarse.iter().filter(is_there).count();
+    assert!(shared * 10 > coarse.len() * 7, "{shared} of {} and {}", coarse.len(), fine.len());
+}
+
 const OAK: TreeFootprint = TreeFootprint {
     height_m: 12.0,
     trunk_radius_m: 0.3,

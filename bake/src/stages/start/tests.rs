@@ -202,7 +202,7 @@ fn crowns_that_fill_the_picture_spoil_it_and_the_same_farther_away_do_not() {
     let score = |distance_m: f32| {
         // Before the eyes, and 30 degrees to both sides.
         let trees = trees([22, 0, 2].map(|heading| place + distance_m * headings[heading].ahead()));
-        looks(&land, &trees, &[huge], &light, 1)[first].term(Want::Trees)
+        looks(&land, &trees, &[huge], &light, 1, 0.0)[first].term(Want::Trees)
     };
     assert!(score(11.0) < 0.6 * score(36.0), "{} {}", score(11.0), score(36.0));
 }
@@ -215,7 +215,7 @@ fn a_look_into_shade_is_worth_little_where_the_sun_shines() {
         let land = land(|x, _| if (60.0..200.0).contains(&x) { wall_m } else { 0.0 }, None);
         let middle = Lookout::nearest(Vec2::new(20.0, 0.0), Vec2::NEG_Y, land.field.extent_m());
         let number = Lookout::all().position(|one| one == middle).expect("one of all");
-        looks(&land, &[], &[TREE], &light, 1)[number].term(Want::Light)
+        looks(&land, &[], &[TREE], &light, 1, 0.0)[number].term(Want::Light)
     };
     assert!(term(0.0) > 0.95 && term(60.0) < 0.5, "{} {}", term(0.0), term(60.0));
 }
