@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use crate::breed::Breeder;
 use crate::events::{Event, Listener};
-use crate::one_view::{self, Effort};
+use crate::one_view;
 use crate::random::{self, Drawn};
 use crate::sketch::Sketch;
 use crate::stages::land::Brush;
@@ -98,7 +98,7 @@ pub fn next_generation(breeder: &Breeder<'_>, next: u32) -> Auditioned {
     let Auditioned { population, redrawn } =
         audition(breeder.space(), |attempt| bred(breeder, next, attempt));
     let new = breeder.new_lands(&population);
-    let population = one_view::suited(breeder.space(), population, new, Effort::LITTLE);
+    let population = one_view::suited_children(breeder.space(), population, new);
     Auditioned { population, redrawn }
 }
 

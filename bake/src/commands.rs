@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result};
-use genescape_schema::{INDIVIDUALS, Kinds, Population, Space, Strategy, Variety};
+use genescape_schema::{Kinds, Population, Space, Strategy, Variety};
 use genescape_world::output::BadOutput;
 use genescape_world::{World, WorldError, file_limit};
 use signal_hook::consts::SIGINT;
@@ -245,7 +245,7 @@ fn random(seed: Option<u64>, wanted: &[String], uniform: bool, args: &RunArgs) -
         let Auditioned { population, redrawn } =
             audition::audition(space, |attempt| draw(attempt).population);
         audition::tell(&*listener, &redrawn);
-        Ok::<_, WorldError>(one_view::suited(space, population, [true; INDIVIDUALS], one_view::Effort::MUCH))
+        Ok::<_, WorldError>(one_view::suited(space, population))
     };
     let path = session.world().create_next_population(space, make)?;
     listener.end();

@@ -28,7 +28,7 @@ const ENOUGH: f32 = 0.7;
 
 /// How much is done for a view.
 #[derive(Clone, Copy, Debug)]
-pub struct Effort {
+struct Effort {
     /// Lands of each landscape among which one is chosen.
     lands: u32,
     /// Of the places that a landscape may be looked at from, one in so many is asked about.
@@ -38,17 +38,25 @@ pub struct Effort {
 
 impl Effort {
     /// For four new landscapes.
-    pub const MUCH: Self = Self { lands: 5, one_in: 2, brush: Brush::Fine };
+    const MUCH: Self = Self { lands: 5, one_in: 2, brush: Brush::Fine };
     /// For children, whom a person waits for.
-    pub const LITTLE: Self = Self { lands: 3, one_in: 4, brush: Brush::Broad };
+    const LITTLE: Self = Self { lands: 3, one_in: 4, brush: Brush::Broad };
 }
 
 /// For each land of a landscape, how good it looks from each lookout that is asked about.
 type Lands = Vec<Vec<f32>>;
 
-/// The population with such lands for those of its landscapes that are `open`; as it is if one view suits it well, or a genome
-/// cannot be read, which others tell.
-pub fn suited(
+/// The population with such lands; as it is if one view suits it well, or a genome cannot be read, which others tell.
+pub fn suited(space: &Space, population: Population) -> Population {
+    with_lands(space, population, [true; INDIVIDUALS], Effort::MUCH)
+}
+
+/// The same of children, of which only those get another land that are `open`.
+pub fn suited_children(space: &Space, population: Population, open: [bool; INDIVIDUALS]) -> Population {
+    with_lands(space, population, open, Effort::LITTLE)
+}
+
+fn with_lands(
     space: &Space,
     mut population: Population,
     open: [bool; INDIVIDUALS],
@@ -160,7 +168,7 @@ mod tests {
         let (mut before, mut after) = (0.0, 0.0);
         for seed in 0..3 {
             let population = drawn(&space, &kinds, seed, 0);
-            let suited = suited(&space, population.clone(), [true; INDIVIDUALS], Effort::MUCH);
+            let suited = suited(&space, population.clone());
             let (was, is) = (worst(&space, &population), worst(&space, &suited));
             assert!(is >= was, "seed {seed}: {is} after {was}");
             (before, after) = (before + was, after + is);
@@ -188,7 +196,7 @@ mod tests {
         let space = Space::builtin();
         let population = drawn(&space, &kinds(&space), 1, 0);
         let open = [false, true, false, false];
-        let suited = suited(&space, population.clone(), open, Effort::LITTLE);
+        let suited = suited_children(&space, population.clone(), open);
         for ((one, other), open) in population.individuals.iter().zip(&suited.individuals).zip(open) {
             assert!(open || one == other);
         }

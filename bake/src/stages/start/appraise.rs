@@ -123,7 +123,7 @@ impl Picture<'_> {
         let not_in_the_way = 0.3 + 0.7 * ramp(0.5, 0.25, near + between(10.0, 30.0));
         // Those at the edge alone are half as good.
         let good = 0.5 * (good + self.middle_share_between(10.0..60.0, |kind| kind == Kind::Tree));
-        let some = 0.08 + 0.92 * ramp(0.0, 0.2, good + 0.3 * far);
+        let some = 0.08 + 0.92 * ramp(0.0, 0.2, good + 0.2 * far);
         some * none_near * not_all * not_in_the_way
     }
 

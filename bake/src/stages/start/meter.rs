@@ -21,8 +21,8 @@ const MUCH_SNOW: f32 = 0.4;
 const LIMITS: [f32; 2] = [0.25, 6.0];
 /// The foreground's log-average, in shade as in the sun, that a picture is to show at least: of display luminance it is 8 %,
 /// in which grass and trunks are still told apart. And the greatest factor by which a picture is lifted for it: dusk stays dusk.
-const FOREGROUND: f32 = 0.1;
-const MAX_LIFT: f32 = 2.4;
+const FOREGROUND: f32 = 0.125;
+const MAX_LIFT: f32 = 2.7;
 /// No more of the ground counts as lit by the sun: who walks on comes into shade.
 const MAX_LIT: f32 = 0.5;
 /// Metres up to which land and trees are foreground.
