@@ -19,7 +19,7 @@ const SNOW_EV: f32 = 1.0;
 const MUCH_SNOW: f32 = 0.4;
 /// No picture is dimmed or lifted by more than these factors.
 const LIMITS: [f32; 2] = [0.25, 6.0];
-/// The foreground's log-average, in shade as in the sun, that a picture is to show at least: of display luminance it is 8 %,
+/// The foreground's log-average, in shade as in the sun, that a picture is to show at least: of display luminance it is a tenth,
 /// in which grass and trunks are still told apart. And the greatest factor by which a picture is lifted for it: dusk stays dusk.
 const FOREGROUND: f32 = 0.125;
 const MAX_LIFT: f32 = 2.7;
