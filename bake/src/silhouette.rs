@@ -29,6 +29,22 @@ impl Silhouette {
         self.words.iter().map(|word| word.count_ones()).sum()
     }
 
+    /// The share that is covered of each square of `block` × `block` pixels, rows from the top; the side is a multiple of it.
+    pub fn shares(&self, block: usize) -> Vec<f32> {
+        let blocks = self.side / block;
+        let share = |i: usize| {
+            let columns = i % blocks * block..(i % blocks + 1) * block;
+            let words = columns.start / WORD..columns.end.div_ceil(WORD);
+            let in_row = |row: usize| -> u32 {
+                let line = &self.words[row * self.across()..][..self.across()];
+                words.clone().map(|word| (line[word] & bits(&columns, word)).count_ones()).sum()
+            };
+            let covered: u32 = (0..block).map(|row| in_row(i / blocks * block + row)).sum();
+            covered as f32 / (block * block) as f32
+        };
+        (0..blocks * blocks).map(share).collect()
+    }
+
     /// Covers a triangle.
     pub fn fill(&mut self, corners: [Vec2; 3]) {
         self.fill_where(corners, |_, _| true);
@@ -152,6 +168,24 @@ mod tests {
         assert!((f64::from(one + other) - f64::from(area)).abs() < 0.01 * f64::from(area));
         assert_eq!(of(&[[a - 500.0, b - 500.0, c - 500.0]]), 0);
         assert_eq!(of(&[[Vec2::splat(-900.0), Vec2::new(3000.0, -900.0), Vec2::new(48.0, 5000.0)]]), 96 * 96);
+    }
+
+    #[test]
+    fn shares_of_squares_are_what_is_covered_of_them() {
+        let corners = [[3.0, 5.0], [90.0, 20.0], [40.0, 92.0]].map(Vec2::from_array);
+        let mut silhouette = Silhouette::empty(96);
+        silhouette.fill(corners);
+        for block in [1, 12, 48, 96] {
+            let shares = silhouette.shares(block);
+            assert_eq!(shares.len(), (96 / block).pow(2));
+            let sum = shares.iter().sum::<f32>() * (block * block) as f32;
+            assert!((sum - silhouette.covered() as f32).abs() < 0.5, "{block}: {sum}");
+        }
+        silhouette = Silhouette::empty(96);
+        silhouette.fill([[72.0, 24.0], [84.0, 24.0], [72.0, 48.0]].map(Vec2::from_array));
+        let shares = silhouette.shares(12);
+        let covered: Vec<usize> = (0..64).filter(|&i| shares[i] > 0.0).collect();
+        assert_eq!(covered, [2 * 8 + 6, 3 * 8 + 6]);
     }
 
     #[test]

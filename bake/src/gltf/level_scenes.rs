@@ -26,15 +26,15 @@ pub struct Rung {
 }
 
 impl Rung {
-    /// Of D_i, which is mesh i of the file.
-    pub fn level((i, level): (usize, &&Level)) -> Self {
+    /// Of D_i, which is mesh i of the file, and whose error counts `weight` times.
+    pub fn level(i: usize, level: &Level, weight: f32) -> Self {
         let bounds = level.mesh.bounds();
         Self {
             name: format!("D{i}"),
             mesh: i,
             width_m: bounds.max.x - bounds.min.x,
             size_m: bounds.max.distance(bounds.min),
-            error_m: level.error_m,
+            error_m: weight * level.error_m,
         }
     }
 

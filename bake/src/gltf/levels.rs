@@ -2,7 +2,9 @@
 //! distinguished mesh side by side, each D_i with a core morph target that is its geomorph to D_{i+1}, and everything
 //! in `GSC_progressive_mesh` besides. Of a tree, pictures from four sides come last.
 
-use genescape_schema::scene::{GSC_PROGRESSIVE_MESH, ProgressiveLevel, ProgressiveMeshExtension};
+use genescape_schema::scene::{
+    GSC_PROGRESSIVE_MESH, ProgressiveLevel, ProgressiveMeshExtension, error_weight,
+};
 use serde_json::json;
 
 use super::ExportError;
@@ -83,11 +85,14 @@ pub fn levelled_glb(
         let buffer_view = document.view(&mesh.progressive, None, None);
         let has_clusters = |level: &Level| level.mesh.parts.iter().any(|p| p.material == Material::Cluster);
         let clusters = levels.iter().position(|level| has_clusters(level));
-        let extension = ProgressiveMeshExtension { buffer_view, levels: records, clusters };
+        let extension =
+            ProgressiveMeshExtension { buffer_view, levels: records, clusters, coverage: mesh.coverage };
         document.meshes[0]["extensions"] = json!({ GSC_PROGRESSIVE_MESH: extension });
         document.extensions_used.insert(GSC_PROGRESSIVE_MESH.into());
     }
-    let mut rungs: Vec<_> = levels.iter().enumerate().map(Rung::level).collect();
+    let weight = error_weight(mesh.coverage);
+    let mut rungs: Vec<_> =
+        levels.iter().enumerate().map(|(i, level)| Rung::level(i, level, weight)).collect();
     if let Some(cards) = cards {
         rungs.push(Rung::cards(cards.add_mesh(&mut document, name)?, cards.impostor));
     }

@@ -147,6 +147,7 @@ pub fn tree(still: bool) -> LevelledMesh {
     LevelledMesh {
         levels: vec![level(d0, Some(morph), 0.01), level(d1, None, 0.1)],
         progressive: (0..101).collect(),
+        coverage: Some(0.25),
     }
 }
 

@@ -288,7 +288,7 @@ fn bad_input_is_an_error() {
     let good = tree(false);
     let pictures = tree_images();
     let glb = |tree: &LevelledMesh| tree_glb("tree", tree, &images(&pictures), &TreePictures::default());
-    let empty = LevelledMesh { levels: Vec::new(), progressive: Vec::new() };
+    let empty = LevelledMesh { levels: Vec::new(), progressive: Vec::new(), coverage: None };
     assert!(matches!(glb(&empty), Err(ExportError::Empty(_))));
     let mut nan = good.clone();
     nan.levels[0].mesh.positions[3][1] = f32::NAN;
@@ -323,7 +323,7 @@ fn foreign_materials_pass_through() {
         ..Mesh::default()
     };
     let level = crate::model::Level { mesh: triangle, morph: None, error_m: 0.0, strips: Vec::new() };
-    let mesh = LevelledMesh { levels: vec![level], progressive: Vec::new() };
+    let mesh = LevelledMesh { levels: vec![level], progressive: Vec::new(), coverage: None };
     let set = MaterialSet {
         slots: vec![Material::Foreign(0), Material::Foreign(1)],
         materials: vec![

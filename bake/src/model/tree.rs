@@ -146,6 +146,8 @@ pub struct LevelledMesh {
     pub levels: Vec<Level>,
     /// The payload of `GSC_progressive_mesh`: the coarsest mesh and the vertex splits that lead back to D_0.
     pub progressive: Vec<u8>,
+    /// The share of the pictures by which errors were measured that D_0 covers; none where errors are of shape.
+    pub coverage: Option<f32>,
 }
 
 /// All trees of a scene, in a fixed order.

@@ -36,7 +36,7 @@ pub use instances::{
 };
 pub use lookouts::{GSC_LOOKOUTS, Lookout, Lookouts, LookoutsError, LookoutsExtension, Prospect, SharedView};
 pub use plants::{DensityMap, GroundPlants, Plant, PlantKind, PlantShape, ground_m};
-pub use progressive_mesh::{GSC_PROGRESSIVE_MESH, ProgressiveLevel, ProgressiveMeshExtension};
+pub use progressive_mesh::{GSC_PROGRESSIVE_MESH, ProgressiveLevel, ProgressiveMeshExtension, error_weight};
 pub use resource::Resource;
 pub use sky::{CloudLayer, GSC_SKY, SkyExtension, SkyImages, SkyLight};
 pub use view::{START_NODE, StartView, rotation_from_z};

@@ -16,6 +16,21 @@ pub struct ProgressiveMeshExtension {
     /// The first level in which clusters stand for single leaves; none if there is no such level.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub clusters: Option<usize>,
+    /// The share (0 … 1) of the pictures by which errors were measured that D_0 covers; none where errors are of shape.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coverage: Option<f32>,
+}
+
+/// Trees cover so much of their pictures at least, but for bare ones and palms.
+const USUAL_COVERAGE: f32 = 0.13;
+/// Errors of nothing count so many times at most.
+const MAX_WEIGHT: f32 = 2.5;
+
+/// How many times the errors of a mesh with that `coverage` count for the eye, 1 … 2.5: a picture that is mostly sky differs
+/// little from another, and yet everybody sees that a bare tree has half of its twigs. So what differs counts as a part of
+/// what there is to be seen, where that is less than usual.
+pub fn error_weight(coverage: Option<f32>) -> f32 {
+    coverage.map_or(1.0, |coverage| (USUAL_COVERAGE / coverage).clamp(1.0, MAX_WEIGHT))
 }
 
 /// One distinguished mesh.
@@ -39,4 +54,16 @@ pub struct ProgressiveLevel {
     /// triangles, over the primitive's vertices; the same triangles as the primitive's indices.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub strips: Vec<usize>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_covers_little_counts_more_but_not_without_end() {
+        assert_eq!([None, Some(0.3), Some(1.0)].map(error_weight), [1.0; 3]);
+        assert!((error_weight(Some(0.065)) - 2.0).abs() < 1e-6);
+        assert_eq!([Some(0.0), Some(1e-9)].map(error_weight), [2.5; 2]);
+    }
 }

@@ -54,7 +54,7 @@ pub fn measure(bench: &Bench, root: &Path, seeds: u64) -> Result<Vec<TreeLevel>>
             level,
             triangles: shown.triangles,
             vertices: shown.vertices,
-            relative_error: f64::from(shown.error_m / template.radius_m),
+            relative_error: f64::from(shown.error_m / template.error_weight / template.radius_m),
             coverage: shown.coverage,
             flip: shown.flip,
         }));

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use genescape_schema::scene::{
     GSC_IMPOSTOR, IMPOSTOR_PICTURES, ImpostorExtension, InstancesExtension, ProgressiveMeshExtension,
-    Resource, read_instances,
+    Resource, error_weight, read_instances,
 };
 use glam::Vec3;
 use gltf::Semantic;
@@ -73,8 +73,14 @@ fn build(
     extension: &ProgressiveMeshExtension,
 ) -> Result<Template> {
     let clusters = extension.clusters.map(|level| level as u32);
-    let mut template =
-        Template { name: name.to_owned(), blob: blob.to_owned(), clusters, ..Default::default() };
+    let error_weight = error_weight(extension.coverage);
+    let mut template = Template {
+        name: name.to_owned(),
+        blob: blob.to_owned(),
+        clusters,
+        error_weight,
+        ..Default::default()
+    };
     // Numbers of the materials in the file, in the order of the finest level.
     let mut materials: Vec<usize> = Vec::new();
     for (number, level) in extension.levels.iter().enumerate() {
@@ -117,7 +123,8 @@ fn build(
             }
         }
         let ranges = lists.into_iter().map(|list| add(&mut template.indices, list.into_iter())).collect();
-        template.levels.push(Level { error_m: level.error_m, base_vertex, ranges, strips });
+        let error_m = error_weight * level.error_m;
+        template.levels.push(Level { error_m, base_vertex, ranges, strips });
     }
     let parts = materials.len();
     for level in &mut template.levels {

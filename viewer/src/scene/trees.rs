@@ -34,6 +34,8 @@ pub struct Template {
     pub center_m: [f32; 3],
     /// Its radius.
     pub radius_m: f32,
+    /// How many times its levels' errors in the file count, as they do in theirs.
+    pub error_weight: f32,
     /// The first level in which clusters stand for single leaves, if there is one.
     pub clusters: Option<u32>,
     /// Pictures of it, if the file has any.

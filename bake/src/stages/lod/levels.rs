@@ -74,7 +74,7 @@ pub fn build(
     ended(Step::Finish);
     let progressive = progressive::encode(&sequence.state, &marks);
     ended(Step::Records);
-    LevelledMesh { levels, progressive }
+    LevelledMesh { levels, progressive, coverage: None }
 }
 
 /// Of a mesh of that diagonal; `found` for all levels but the first.

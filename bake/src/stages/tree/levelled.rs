@@ -1,9 +1,11 @@
 //! A template → its levels of detail, as its file has them: with clusters, errors of pictures, and what casts its shadow.
 
+use genescape_schema::scene::error_weight;
+
 use super::ALPHA_CUTOFF;
 use super::clusters;
 use super::impostor::impostor_error_m;
-use super::seen::errors;
+use super::seen::{Compared, compare};
 use super::surfaces::Surfaces;
 use crate::model::{AlphaMask, Clusters, Level, LevelledMesh, Material, Mesh, Part, TreeTextures};
 use crate::stages::lod::{self, LodOptions, Step};
@@ -31,7 +33,7 @@ pub struct Levelled {
 
 /// Makes the levels of a template; tells when each part of the work has ended.
 pub fn levelled<P>(mesh: &Mesh, textures: &TreeTextures<P>, ended: &mut dyn FnMut(Step)) -> Levelled {
-    let (mut caster, mut pictures) = (Mesh::default(), None);
+    let (mut caster, mut pictures, mut coverage) = (Mesh::default(), None, None);
     let options = options(mesh, textures);
     let full = lod::fitted(mesh, &options.masks);
     let mut finish = |levels: &mut Vec<Level>| {
@@ -40,15 +42,17 @@ pub fn levelled<P>(mesh: &Mesh, textures: &TreeTextures<P>, ended: &mut dyn FnMu
         let (surfaces, found) = clusters::substitute(&full, levels, Surfaces::of(textures));
         pictures = found;
         let coarser = levels.iter().skip(1).map(|level| &level.mesh);
-        let meshes: Vec<&Mesh> = std::iter::once(&full).chain(coarser).collect();
-        let mut errors_m = errors(&meshes, &surfaces);
-        let past_m = PAST_PICTURES * impostor_error_m(mesh);
+        let meshes: Vec<&Mesh> = std::iter::once(mesh).chain(coarser).collect();
+        let Compared { mut errors_m, coverage: covered } = compare(&meshes, &surfaces);
+        coverage = covered;
+        let past_m = PAST_PICTURES * impostor_error_m(mesh) / error_weight(coverage);
         let last = errors_m.iter().position(|&error_m| error_m >= past_m);
         errors_m.truncate(last.map_or(errors_m.len(), |last| last + 1));
         levels.truncate(errors_m.len() + 1);
         errors_m
     };
     let mesh = lod::levels_finished(mesh, &options, &mut finish, ended);
+    let mesh = LevelledMesh { coverage, ..mesh };
     Levelled { mesh, clusters: pictures, caster }
 }
 
@@ -89,7 +93,7 @@ mod tests {
             let full = lod::fitted(&tree.mesh, &options(&tree.mesh, &textures).masks);
             fitted += usize::from(full.triangle_count() < tree.mesh.triangle_count());
             let levels = levelled(&tree.mesh, &textures, &mut |_| ()).mesh.levels;
-            let found = errors(&[&tree.mesh, &full, &levels[1].mesh], &Surfaces::of(&textures));
+            let found = compare(&[&tree.mesh, &full, &levels[1].mesh], &Surfaces::of(&textures)).errors_m;
             assert!(found[0] < 0.25 * found[1], "{name}: {} m off, D_1 is {} m", found[0], found[1]);
         }
         assert!(fitted > 2, "hardly any tree has flat cards");

@@ -20,6 +20,7 @@ mod leaf_texture;
 mod levelled;
 mod measure;
 mod mips;
+mod outline;
 mod params;
 mod picture;
 mod raster;

@@ -1,114 +1,143 @@
 //! Levels of detail of a tree → how far each is from the full tree to the eye, as errors in metres.
 //!
 //! Each level is drawn as the full tree is, cut out by the alpha of its leaves, with its colours in the light of a sun, from
-//! two sides, in square pictures around the sphere that holds all levels. Pixels are averaged to a 16th, an 8th and a 4th of
-//! the sphere's radius R and brought to what the eye makes of them: the square root of linear light, which is near to L* of
-//! CIELAB. Δ is the mean absolute difference of two such pictures over channels, pixels, sizes of pixels and sides.
+//! two sides, in square pictures that just hold the tree. Pixels are averaged to a 32nd and a 16th of the
+//! picture's side. In each the two differ by the share of the pixel that one covers and the other doesn't, as a black tree
+//! before white sky would; in those of a 16th also by half of the mean difference of their channels in the square root of
+//! linear light, which is near to L* of CIELAB. An outline stands out whatever is behind the tree, colours hardly change. Δ is
+//! the power mean of that over pixels, sizes of pixels and sides, of exponent 0.7: that of FLIP (Andersson et al. 2020, section
+//! 4), by which much that differs a little counts more than little that differs much.
 //!
-//! The error is 2RΔ, the mean width in metres of what differs in a row of the picture, black for white counting in full: where
-//! a pixel is as large, a row differs by one pixel in all. An outline that lies ε off on either side has an error of 2ε times
-//! its contrast; leaves that are moved a little differ less the larger the pixels are, leaves that are missed do not.
-//!
-//! Where little is seen of the tree at all, its twigs in winter, Δ of a level from which half of them are gone is small, and
-//! yet everybody sees it. So Δ counts more, by the square root of how much less is seen of the tree than of one with leaves:
-//! half way from what differs in the picture to what differs of the tree.
+//! The error is Δ times the tree's height: of trees that are drawn equally large, errors are ordered as FLIP is.
 
 use glam::Vec3;
+use libm::powf;
 use rayon::prelude::*;
 
+use super::outline::cover;
 use super::raster::{Drawing, Look, Sample};
 use super::surfaces::Surfaces;
-use crate::model::Mesh;
+use crate::model::{Impostor, Mesh};
+use crate::silhouette::Silhouette;
 
 /// Which of the impostor's sides the tree is drawn from: one beside the other.
 const SIDES: [usize; 2] = [1, 3];
-/// Pixels a side of the finest pictures that are compared, and how many sizes of pixels there are, each twice the last.
+/// Pixels a side of the pictures in which outlines alone are compared; those with colours have half as many.
 const PIXELS: usize = 32;
-const SIZES: usize = 3;
-/// Samples along each side of a pixel.
-const SAMPLES: usize = 6;
+/// Samples along each side of the first's pixels, and of the second's: leaves are small beside pixels, and what is seen of them
+/// by chance must not pass for a difference.
+const OUTLINE_SAMPLES: usize = 10;
+const COLOR_SAMPLES: usize = 8;
+/// The square is wider than the full tree by this factor, for levels may reach a little further.
+const MARGIN: f32 = 1.04;
 /// Behind the tree: the sky, linear.
 const SKY: Vec3 = Vec3::new(0.45, 0.6, 0.8);
 /// Light of the sun, and that from all around.
 const SUNLIGHT: f32 = 0.7;
 const SKYLIGHT: f32 = 0.3;
-/// Δ of a tree with leaves from the sky alone, and how much more a level's Δ counts at most where less is seen of a tree.
-const USUALLY_SEEN: f32 = 0.1;
-const MAX_SPARSE: f32 = 2.5;
+/// How much a difference of colour counts beside one of coverage.
+const COLOR: f32 = 0.5;
+/// The exponent of the mean.
+const POWER: f32 = 0.7;
 
-/// The errors in metres of all levels but the first, which is the full tree: the same for any number of threads.
-pub(super) fn errors(levels: &[&Mesh], surfaces: &Surfaces) -> Vec<f32> {
-    let (foot_m, side_m) = frame(levels);
-    let draw = |&(level, k): &(usize, usize)| {
-        let look = Look::new(k, foot_m, [side_m; 2], PIXELS * SAMPLES);
-        Picture::of(&Drawing::new(levels[level], surfaces, &look))
+/// What comes out of it.
+pub(super) struct Compared {
+    /// Of all levels but the first, which is the full tree.
+    pub errors_m: Vec<f32>,
+    /// The share of its pictures that the full tree covers; none without one.
+    pub coverage: Option<f32>,
+}
+
+/// Compares levels with the first, which is the full tree: the same for any number of threads.
+pub(super) fn compare(levels: &[&Mesh], surfaces: &Surfaces) -> Compared {
+    let Some((full, _)) = levels.split_first() else {
+        return Compared { errors_m: Vec::new(), coverage: None };
     };
+    let frame = frame(full);
     let sides = SIDES.len();
-    let all: Vec<_> = (0..levels.len()).flat_map(|level| SIDES.map(move |k| (level, k))).collect();
-    let pictures: Vec<Picture> = all.par_iter().map(draw).collect();
-    let (full, coarser) = pictures.split_at(sides.min(pictures.len()));
-    let differs =
-        |other: &[Picture]| full.iter().zip(other).map(|(a, b)| a.difference(b)).sum::<f32>() / sides as f32;
-    let seen = differs(&SIDES.map(|_| Picture::of_sky()));
-    let sparse = (USUALLY_SEEN / seen.max(f32::MIN_POSITIVE)).sqrt().clamp(1.0, MAX_SPARSE);
-    coarser.chunks(sides).map(|level| side_m * sparse * differs(level)).collect()
+    let all: Vec<_> = levels.iter().flat_map(|level| SIDES.map(move |k| (level, k))).collect();
+    let pictures: Vec<Picture> =
+        all.par_iter().map(|(level, k)| Picture::of(level, surfaces, *k, frame)).collect();
+    let (full, coarser) = pictures.split_at(sides);
+    let height_m = height_m(levels[0]);
+    let error_m = |level: &[Picture]| {
+        let sum: f32 = full.iter().zip(level).map(|(a, b)| a.difference(b)).sum();
+        height_m * powf(sum / sides as f32, 1.0 / POWER)
+    };
+    let coverage = full.iter().map(Picture::coverage).sum::<f32>() / sides as f32;
+    Compared { errors_m: coarser.chunks(sides).map(error_m).collect(), coverage: Some(coverage) }
 }
 
-/// The square around the sphere that holds all levels: the middle of its lower edge, and its side in metres.
-pub(super) fn frame(levels: &[&Mesh]) -> (Vec3, f32) {
-    let points = || levels.iter().flat_map(|level| &level.positions).map(|&p| Vec3::from_array(p));
-    let (low, high) = points().fold((Vec3::MAX, Vec3::MIN), |(low, high), p| (low.min(p), high.max(p)));
-    let center = 0.5 * (low + high);
-    let radius_m = points().map(|p| p.distance_squared(center)).fold(0.0, f32::max).sqrt();
-    (center - radius_m * Vec3::Y, 2.0 * radius_m)
+/// The square that holds a mesh as it is seen from each of an impostor's sides: the middle of its lower edge, and its side in
+/// metres.
+pub(super) fn frame(mesh: &Mesh) -> (Vec3, f32) {
+    let bounds = mesh.bounds();
+    let axis = 0.5 * (bounds.min + bounds.max);
+    let rights = [0, 1, 2, 3].map(|k| Impostor::eye_and_right(k)[1]);
+    let beside_m = |p: &[f32; 3]| {
+        let from_axis = Vec3::from_array(*p) - axis;
+        rights.map(|right| from_axis.dot(right).abs()).into_iter().fold(0.0, f32::max)
+    };
+    let reach_m = mesh.positions.iter().map(beside_m).fold(0.0, f32::max);
+    let side_m = MARGIN * height_m(mesh).max(2.0 * reach_m);
+    (axis - 0.5 * side_m * Vec3::Y, side_m)
 }
 
-/// What the eye makes of a side of a tree before the sky, for each size of pixels.
-struct Picture([Vec<Vec3>; SIZES]);
+fn height_m(mesh: &Mesh) -> f32 {
+    let bounds = mesh.bounds();
+    bounds.max.y - bounds.min.y
+}
+
+/// What is seen of a side of a tree, rows from the top.
+struct Picture {
+    /// The share of each pixel that is covered.
+    covered: Vec<f32>,
+    /// The same of pixels twice as large.
+    covered_coarsely: Vec<f32>,
+    /// Their colours before the sky, as the eye has them.
+    colors: Vec<Vec3>,
+}
 
 impl Picture {
-    fn of(drawing: &Drawing<'_>) -> Self {
-        const ALL: usize = SAMPLES * SAMPLES;
-        let pixel = |i: usize| {
-            let (x, y) = (i % PIXELS * SAMPLES, i / PIXELS * SAMPLES);
-            let sample = |k: usize| drawing.sample(x + k % SAMPLES, y + k / SAMPLES).map_or(SKY, lit);
-            (0..ALL).map(sample).sum::<Vec3>() / ALL as f32
-        };
-        let mut linear: Vec<Vec3> = (0..PIXELS * PIXELS).map(pixel).collect();
-        Self(std::array::from_fn(|_| {
-            let halved = halved(&linear);
-            std::mem::replace(&mut linear, halved).into_iter().map(|color| color.map(f32::sqrt)).collect()
-        }))
+    fn of(mesh: &Mesh, surfaces: &Surfaces, side: usize, (foot_m, side_m): (Vec3, f32)) -> Self {
+        let look = |samples: usize| Look::new(side, foot_m, [side_m; 2], samples);
+        let mut outline = Silhouette::empty(PIXELS * OUTLINE_SAMPLES);
+        cover(mesh, |_| true, surfaces, &look(PIXELS * OUTLINE_SAMPLES), &mut outline);
+        let colors = Drawing::new(mesh, surfaces, &look(PIXELS / 2 * COLOR_SAMPLES));
+        Self {
+            covered: outline.shares(OUTLINE_SAMPLES),
+            covered_coarsely: outline.shares(2 * OUTLINE_SAMPLES),
+            colors: (0..(PIXELS / 2).pow(2)).map(|i| color(&colors, i)).collect(),
+        }
     }
 
-    /// Nothing but sky.
-    fn of_sky() -> Self {
-        let sky = SKY.map(f32::sqrt);
-        Self(std::array::from_fn(|size| vec![sky; (PIXELS >> size).pow(2)]))
+    fn coverage(&self) -> f32 {
+        self.covered.iter().sum::<f32>() / self.covered.len() as f32
     }
 
-    /// Mean over channels, pixels and their sizes.
+    /// The mean over pixels and their sizes of what differs, to the power of [`POWER`].
     fn difference(&self, other: &Self) -> f32 {
-        let of_size = |(a, b): (&Vec<Vec3>, &Vec<Vec3>)| {
-            let sum: f32 = a.iter().zip(b).map(|(a, b)| (a - b).abs().element_sum()).sum();
-            sum / (3 * a.len()) as f32
-        };
-        self.0.iter().zip(&other.0).map(of_size).sum::<f32>() / SIZES as f32
+        let outline = |a: &f32, b: &f32| (a - b).abs();
+        let fine: f32 =
+            self.covered.iter().zip(&other.covered).map(|(a, b)| powf(outline(a, b), POWER)).sum();
+        let colors =
+            self.colors.iter().zip(&other.colors).map(|(a, b)| COLOR / 3.0 * (a - b).abs().element_sum());
+        let outlines = self.covered_coarsely.iter().zip(&other.covered_coarsely).map(|(a, b)| outline(a, b));
+        let coarse: f32 = outlines.zip(colors).map(|(outline, color)| powf(outline + color, POWER)).sum();
+        0.5 * (fine / self.covered.len() as f32 + coarse / self.colors.len() as f32)
     }
+}
+
+/// What the eye makes of a pixel's mean colour.
+fn color(drawing: &Drawing<'_>, pixel: usize) -> Vec3 {
+    const ALL: usize = COLOR_SAMPLES * COLOR_SAMPLES;
+    let (x, y) = (pixel % (PIXELS / 2) * COLOR_SAMPLES, pixel / (PIXELS / 2) * COLOR_SAMPLES);
+    let sample = |k: usize| drawing.sample(x + k % COLOR_SAMPLES, y + k / COLOR_SAMPLES).map_or(SKY, lit);
+    ((0..ALL).map(sample).sum::<Vec3>() / ALL as f32).map(f32::sqrt)
 }
 
 fn lit(sample: Sample) -> Vec3 {
     sample.color * (SKYLIGHT + SUNLIGHT * sample.sunlit)
-}
-
-/// A square picture with pixels twice as large.
-fn halved(pixels: &[Vec3]) -> Vec<Vec3> {
-    let side = pixels.len().isqrt();
-    let pixel = |i: usize| {
-        let first = 2 * (i / (side / 2) * side + i % (side / 2));
-        [0, 1, side, side + 1].map(|offset| pixels[first + offset]).iter().sum::<Vec3>() / 4.0
-    };
-    (0..pixels.len() / 4).map(pixel).collect()
 }
 
 #[cfg(test)]
@@ -120,6 +149,10 @@ mod tests {
     use crate::stages::tree::{levelled, template, textures};
 
     const BARK: [f32; 3] = [0.1; 3];
+
+    fn errors(levels: &[&Mesh], surfaces: &Surfaces) -> Vec<f32> {
+        compare(levels, surfaces).errors_m
+    }
 
     /// A column of upright squares, one on the other.
     fn column(height: usize, side_m: f32, color: [u8; 4]) -> Mesh {
@@ -177,23 +210,6 @@ mod tests {
         assert_eq!(one.clusters, four.clusters);
         let stored: Vec<f32> = one.mesh.levels.iter().skip(1).map(|level| level.error_m).collect();
         assert!(stored.is_sorted_by(|a, b| a < b), "{stored:?}");
-    }
-
-    #[test]
-    fn what_a_slender_tree_loses_counts_more() {
-        let errors_of = |width: f32| {
-            let narrow = |height: usize| {
-                let mut mesh = column(height, 1.0, [255; 4]);
-                mesh.positions.iter_mut().for_each(|p| (p[0], p[2]) = (width * p[0], width * p[2]));
-                mesh
-            };
-            errors(&[8, 7, 4].map(narrow).each_ref(), &Surfaces::of(&plain(BARK)))
-        };
-        let (wide, slender) = (errors_of(3.0), errors_of(0.75));
-        for (wide, slender) in wide.iter().zip(&slender) {
-            let part = slender / wide;
-            assert!(0.3 < part && part < 0.8, "a quarter as wide: {part}, between a quarter and all");
-        }
     }
 
     #[test]

@@ -3,7 +3,9 @@
 
 use std::collections::BTreeSet;
 
-use genescape_schema::scene::{GSC_PROGRESSIVE_MESH, ProgressiveLevel, ProgressiveMeshExtension};
+use genescape_schema::scene::{
+    GSC_PROGRESSIVE_MESH, ProgressiveLevel, ProgressiveMeshExtension, error_weight,
+};
 use glam::DAffine3;
 use gltf::json::scene::Node;
 use gltf::json::{Mesh, extensions};
@@ -60,7 +62,9 @@ pub(super) enum Change {
 pub(super) fn progressive(file: &AssetFile, mesh: &Mesh, notes: &mut Notes) -> Option<Vec<LevelPlan>> {
     let extensions::mesh::Mesh { others } = mesh.extensions.as_ref()?;
     let value = others.get(GSC_PROGRESSIVE_MESH)?;
-    let levels = ProgressiveMeshExtension::deserialize(value).ok().map(|extension| extension.levels);
+    let extension = ProgressiveMeshExtension::deserialize(value).ok();
+    let weight = error_weight(extension.as_ref().and_then(|extension| extension.coverage));
+    let levels = extension.map(|extension| extension.levels);
     let is_sound = |levels: &Vec<ProgressiveLevel>| {
         !levels.is_empty()
             && levels.iter().all(|level| level.mesh < file.root.meshes.len())
@@ -74,7 +78,7 @@ pub(super) fn progressive(file: &AssetFile, mesh: &Mesh, notes: &mut Notes) -> O
     let last = levels.len() - 1;
     let plan = |(number, level): (usize, ProgressiveLevel)| LevelPlan {
         meshes: vec![(level.mesh, DAffine3::IDENTITY)],
-        change: Change::Error(level.error_m),
+        change: Change::Error(weight * level.error_m),
         morph: (number < last).then_some(level.texcoord_deltas),
     };
     Some(levels.into_iter().enumerate().map(plan).collect())

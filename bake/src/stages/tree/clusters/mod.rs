@@ -12,11 +12,12 @@ mod groups;
 
 use std::ops::Range;
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
+use super::outline::cover;
 use super::raster::Look;
 use super::seen::frame;
-use super::surfaces::{Surface, Surfaces};
+use super::surfaces::Surfaces;
 use crate::math::matching;
 use crate::model::{Clusters, Level, Material, Mesh, Morph, Part, PartKind};
 use crate::silhouette::Silhouette;
@@ -305,7 +306,7 @@ type Covered = [Silhouette; SIDES.len()];
 
 impl<'a> Canvas<'a> {
     fn new(full: &Mesh, surfaces: &'a Surfaces) -> Self {
-        let (foot_m, side_m) = frame(&[full]);
+        let (foot_m, side_m) = frame(full);
         let looks = SIDES.map(|k| Look::new(k, foot_m, [side_m; 2], COVERAGE_PX));
         let mut canvas = Self { looks, surfaces, full: 0 };
         let mut covered = Self::empty();
@@ -321,24 +322,7 @@ impl<'a> Canvas<'a> {
     /// Draws those of a mesh's parts whose index is asked for.
     fn draw(&self, mesh: &Mesh, is_drawn: impl Fn(usize) -> bool, covered: &mut Covered) {
         for (look, silhouette) in self.looks.iter().zip(covered) {
-            let places: Vec<Vec2> = mesh.positions.iter().map(|&p| look.project(p).truncate()).collect();
-            for (_, part) in mesh.parts.iter().enumerate().filter(|(index, _)| is_drawn(*index)) {
-                let surface = self.surfaces.of_part(part.material);
-                for triangle in &part.triangles {
-                    let corners = triangle.map(|v| places[v as usize]);
-                    let uv = |v: u32| mesh.uvs.get(v as usize).copied().unwrap_or_default();
-                    let uvs = || triangle.map(|v| Vec2::from_array(uv(v)));
-                    match surface {
-                        Surface::Wood(_) => silhouette.fill(corners),
-                        Surface::Card(card) => {
-                            silhouette.fill_cut_out(corners, uvs(), |uv| card.mask.is_opaque(uv.into()));
-                        }
-                        Surface::Atlas(atlas) => {
-                            silhouette.fill_cut_out(corners, uvs(), |uv| atlas.is_opaque(uv.x, uv.y));
-                        }
-                    }
-                }
-            }
+            cover(mesh, &is_drawn, self.surfaces, look, silhouette);
         }
     }
 }
