@@ -63,6 +63,8 @@ pub struct LodOptions {
     /// Metres of error for each metre of thickness of a whole piece (a twig) that is removed: less removes twigs
     /// sooner.
     pub piece_weight: f32,
+    /// How many times the metres of an edge collapse count beside those of what leaves lose: more keeps bark longer.
+    pub surface_weight: f32,
     /// What the texture of each part's elements leaves opaque; all of it for parts beyond the list.
     pub masks: Vec<AlphaMask>,
     /// Up to this level, elements are scaled until they cover as many pixels as in D_0. Beyond it, where something else is
@@ -78,6 +80,7 @@ impl Default for LodOptions {
         Self {
             placement: Placement::default(),
             max_levels: 8,
+            surface_weight: 1.0,
             min_vertices: 100,
             aggregate_weight: 0.3,
             piece_weight: 1.0,

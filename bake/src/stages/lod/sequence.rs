@@ -39,6 +39,7 @@ pub struct Sequence {
     refused: Vec<(u32, u32, u32)>,
     retry_above_m: f64,
     max_cost_m: f64,
+    surface_weight: f64,
     /// Pieces by falling cost, and those put off because they are too large for the level.
     pieces: Vec<(f64, u32)>,
     put_off: Vec<(f64, u32)>,
@@ -77,6 +78,7 @@ impl Sequence {
             queue: BinaryHeap::new(),
             refused: Vec::new(),
             retry_above_m: 0.0,
+            surface_weight: f64::from(options.surface_weight),
             max_cost_m: MAX_COST * f64::from(diagonal_m),
             error_m: 0.0,
             aggregates,
@@ -134,8 +136,8 @@ impl Sequence {
     }
 
     fn next(&self) -> Option<(Next, f64)> {
-        let edge =
-            self.queue.peek().map(|&Reverse((bits, ..))| (Next::Edge, f64::from(f32::from_bits(bits))));
+        let weighed = |bits| self.surface_weight * f64::from(f32::from_bits(bits));
+        let edge = self.queue.peek().map(|&Reverse((bits, ..))| (Next::Edge, weighed(bits)));
         let piece = self.pieces.last().map(|&(cost, _)| (Next::Piece, cost));
         let elements = self.aggregates.iter().enumerate();
         let elements = elements.filter_map(|(index, part)| Some((Next::Loss(index), part.next_cost_m()?)));
