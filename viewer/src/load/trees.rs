@@ -165,7 +165,8 @@ fn impostor(document: &Document, value: &serde_json::Value, template: &Template)
     if !is_strip || (relief.width_px, relief.height_px) != (color.width_px, color.height_px) {
         return Err(wrong("that are not four squares side by side, of one size with their relief"));
     }
-    let alpha_cutoff = alpha_cutoff.unwrap_or(0.5);
+    // Fronds are seen one by one as far as the tree is.
+    let alpha_cutoff = template.clusters.map_or(0.0, |_| alpha_cutoff.unwrap_or(0.5));
     let places = leaf_vertices(template).map(|vertex| Vec3::from(vertex.position_m));
     let crown = Crown::around(places);
     let leaves = some_leaves(template);

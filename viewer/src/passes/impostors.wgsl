@@ -18,6 +18,7 @@ struct Frame {
     crown_middle: vec3f,
     low: f32,
     crown_half: vec3f,
+    // Below it there is no leaf; 0 where leaves are seen one by one and cover pixels in part.
     alpha_cutoff: f32,
     // Of as many leaves as `LEAVES` in Rust: by which they are lit, and by which the eye sees more or less of them.
     leaf_normals: array<vec4f, 32>,
@@ -139,9 +140,10 @@ fn pixel(in: Out, is_kept: bool) -> Pixel {
     let along_y = dpdy(in.uv) * vec2f(0.25, 1.0);
     let seen = textureSampleGrad(colors, clamped, at, in.template_index, along_x, along_y);
     let relief = textureSampleGrad(reliefs, clamped, at, in.template_index, along_x, along_y).rgb;
-    // Twigs are thinner than pixels.
-    let twigs = samples_of(relief.b, scattered(floor(in.uv * 256.0)));
-    let samples = select(twigs, select(0u, 15u, seen.a >= frames[in.template_index].alpha_cutoff), relief.g > 0.5);
+    // Twigs are thinner than pixels, and so are fronds; of small leaves most pixels are full, and none is better in part.
+    let thin = samples_of(relief.b, scattered(floor(in.uv * 256.0)));
+    let cutoff = frames[in.template_index].alpha_cutoff;
+    let samples = select(thin, select(0u, 15u, seen.a >= cutoff), relief.g > 0.5 && cutoff > 0.0);
     if (samples == 0u || !is_kept) {
         discard;
     }
