@@ -134,6 +134,8 @@ fn limits(landscape: &str, stage: &str) -> (f64, f64) {
     match (landscape.split(' ').next(), stage) {
         // Openness is known at a frond's corners alone, of which a level has fewer.
         (Some("Palms"), "D2") => (0.05, 0.11),
+        // Fewer, thicker twigs; farther away than D_2 once was, and a pixel counts in whole.
+        (Some("Bare"), "D2") => (0.09, 0.08),
         // Where they begin, more twigs pass than there are.
         (Some("Bare"), "pictures") => (0.16, 0.08),
         _ => (0.05, 0.08),

@@ -138,6 +138,7 @@ pub fn template(name: &str, errors_m: &[f32]) -> Template {
         levels.push(Level { error_m, base_vertex, ranges: vec![range], strips: Vec::new() });
     }
     Template {
+        error_weight: 1.0,
         name: name.to_owned(),
         blob: name.to_owned(),
         vertices,
