@@ -1,7 +1,8 @@
 //! Genomes → whether somebody would want to look at the landscape, before it is baked; and populations without those that
 //! nobody would: a landscape of which no good view exists is drawn again.
 //!
-//! What is asked is what the stage `start` asks, of sketches, so that it takes a fraction of a second. A person's own genomes are never asked.
+//! What is asked is what the stage `start` asks, of sketches, so that it takes a fraction of a second. A person's own genomes
+//! are never asked.
 
 use std::fmt;
 

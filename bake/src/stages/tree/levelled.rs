@@ -69,13 +69,13 @@ fn options<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> LodOptions {
     };
     let masks = mesh.parts.iter().map(mask).collect();
     // Where leaves stay to the end, they are counted to the end.
-    let counted_levels = clusters::first_level(mesh).map_or(u32::MAX, |first| first as u32 - 1);
+    let clusters_from = clusters::first_level(mesh);
+    let counted_levels = clusters_from.map_or(u32::MAX, |first| first as u32 - 1);
     let mut options = LodOptions { masks, counted_levels, thickens: true, ..LodOptions::default() };
-    if mesh.has_cards() && clusters::first_level(mesh).is_none() {
-        options.surface_weight = FROND_SURFACE_WEIGHT;
-    }
-    if !mesh.has_cards() {
-        options.piece_weight = BARE_PIECE_WEIGHT;
+    match (mesh.has_cards(), clusters_from) {
+        (false, _) => options.piece_weight = BARE_PIECE_WEIGHT,
+        (true, None) => options.surface_weight = FROND_SURFACE_WEIGHT,
+        (true, Some(_)) => {}
     }
     options
 }

@@ -1,10 +1,10 @@
 //! Levels of detail of a tree → how far each is from the full tree to the eye, as errors in metres.
 //!
 //! Each level is drawn as the full tree is, cut out by the alpha of its leaves, with its colours in the light of a sun, from
-//! two sides, in square pictures that just hold the tree. Pixels are averaged to a 32nd and a 16th of the
-//! picture's side. In each the two differ by the share of the pixel that one covers and the other doesn't, as a black tree
-//! before white sky would; in those of a 16th also by half of the mean difference of their channels in the square root of
-//! linear light, which is near to L* of CIELAB. An outline stands out whatever is behind the tree, colours hardly change. Δ is
+//! two sides, in square pictures that just hold the tree. Pixels are averaged to a 32nd and a 16th of the picture's side. In
+//! each the two differ by the share of the pixel that one covers and the other doesn't, as a black tree before white sky
+//! would; in those of a 16th also by half of the mean difference of their channels in the square root of linear light, which
+//! is near to L* of CIELAB. An outline stands out whatever is behind the tree, colours hardly change. Δ is
 //! the power mean of that over pixels, sizes of pixels and sides, of exponent 0.7: that of FLIP (Andersson et al. 2020, section
 //! 4), by which much that differs a little counts more than little that differs much.
 //!
@@ -53,13 +53,12 @@ pub(super) fn compare(levels: &[&Mesh], surfaces: &Surfaces) -> Compared {
     let Some((full, _)) = levels.split_first() else {
         return Compared { errors_m: Vec::new(), coverage: None };
     };
-    let frame = frame(full);
+    let (frame, height_m) = (frame(full), height_m(full));
     let sides = SIDES.len();
     let all: Vec<_> = levels.iter().flat_map(|level| SIDES.map(move |k| (level, k))).collect();
     let pictures: Vec<Picture> =
         all.par_iter().map(|(level, k)| Picture::of(level, surfaces, *k, frame)).collect();
     let (full, coarser) = pictures.split_at(sides);
-    let height_m = height_m(levels[0]);
     let error_m = |level: &[Picture]| {
         let sum: f32 = full.iter().zip(level).map(|(a, b)| a.difference(b)).sum();
         height_m * powf(sum / sides as f32, 1.0 / POWER)
