@@ -20,11 +20,15 @@ use super::spread::{Mean, Spread};
 use super::taste::{Ideal, ideals};
 use super::variety::Varied;
 use crate::kinds::{Company, Home};
-use crate::phenotype::visibility::Visibility;
+use crate::phenotype::visibility::{Seen, Visibility};
 use crate::seed::Dice;
 
 /// Of what is like no kind, the best guess is shown once in so many generations.
 const GUESSES_EVERY: u32 = 5;
+
+/// From here on two of a category look clearly different, where 1 is what two landscapes by chance differ by. Relatives are 0.1 to 0.4
+/// apart, members of different kinds mostly 0.7 and more.
+const CLEARLY_DIFFERENT: f32 = 1.0;
 
 /// Votes after which new chromosomes cost something: before, who has seen little sees as much as there is.
 const SETTLING: usize = 6;
@@ -89,7 +93,16 @@ impl<'a> Learned<'a> {
     /// Generation `next`, where chance depends on `seed`.
     pub fn bred(&self, next: u32, seed: u64) -> Population {
         let mut parts: [Vec<Chromosome>; 3] = Category::ALL.map(|category| self.part(category, next, seed));
-        pair(self.space, self.kinds, &mut parts);
+        for (category, part) in Category::ALL.into_iter().zip(&mut parts) {
+            part.iter_mut().enumerate().for_each(|(child, one)| self.keep_locked(category, child, one));
+        }
+        let stands_out = |category, a: &_, b: &_| {
+            let [at_a, at_b] = [a, b].map(|one| point(self.space, category, one));
+            let [a, b] =
+                [(a, &at_a), (b, &at_b)].map(|(one, at)| Seen { at, kind: self.kind(category, one) });
+            self.stands_out(category, a, b)
+        };
+        pair(self.space, self.kinds, &mut parts, &stands_out);
         let individuals = std::array::from_fn(|child| {
             let chromosomes = parts.each_ref().map(|part| part[child].clone());
             self.individual(child, chromosomes)
@@ -139,10 +152,17 @@ impl<'a> Learned<'a> {
         let item = u64::from(next) << 2 | category as u64;
         let mut dice = Dice::new(seed, "spread", item);
         let legal = |component: usize, at: &mut Vec<f32>| self.legalise(category, component, at);
-        let spread =
-            Spread { prior: &taste.prior, ideals: &taste.ideals, means: &taste.means, legal: &legal };
         let known: Vec<Vec<f32>> = taste.chosen.iter().map(|one| point(self.space, category, one)).collect();
         let kind = |at: &[f32]| self.kind(category, &self.encoded(category, at));
+        let stands_out = |a: Seen<'_>, b: Seen<'_>| self.stands_out(category, a, b);
+        let spread = Spread {
+            prior: &taste.prior,
+            ideals: &taste.ideals,
+            means: &taste.means,
+            legal: &legal,
+            kind: &kind,
+            stands_out: &stands_out,
+        };
         let favourite = known.last().map(|one| kind(one));
         let is_like = |at: &[f32]| Some(kind(at)) == favourite;
         let mut four = match (self.chosen, known.last()) {
@@ -156,7 +176,7 @@ impl<'a> Learned<'a> {
         if let Some(best) = four.first().filter(|_| is_settling) {
             others = spread.sparing(best, others, NEW_COSTS[category as usize], self.least_new(category));
         }
-        four.extend(Varied { spread: &spread, kind: &kind }.others(variety, &four, others, &mut dice));
+        four.extend(Varied { spread: &spread }.others(variety, &four, others, &mut dice));
         let mut made: Vec<Chromosome> = Vec::new();
         for one in &four {
             let same = four.iter().zip(&made).find(|(other, _)| *other == one).map(|(_, made)| made.clone());
@@ -224,6 +244,10 @@ impl<'a> Learned<'a> {
         Home::of(self.space, self.kinds, category, chromosome).main().map(|kind| kind.id.as_str())
     }
 
+    fn stands_out(&self, category: Category, a: Seen<'_>, b: Seen<'_>) -> bool {
+        Visibility::shipped().distance(self.space, category, a, b) > CLEARLY_DIFFERENT
+    }
+
     /// Genes that the favourite has outside its kind: a person set them.
     fn keep_what_was_meant(&self, category: Category, favourite: &Chromosome, new: &mut Chromosome) {
         let Some(bounds) = Home::of(self.space, self.kinds, category, favourite).bounds() else { return };
@@ -244,8 +268,7 @@ impl<'a> Learned<'a> {
             self.reconcile(&mut parts);
         }
         for (category, part) in Category::ALL.into_iter().zip(&mut parts) {
-            let from = locked::source(self.votes, category, child);
-            locked::keep(self.space, self.parents, category, from, part);
+            self.keep_locked(category, child, part);
         }
         let homes = self.homes(parts.each_ref());
         let origins = Category::ALL.map(|category| self.origin(category, &parts[category as usize], homes));
@@ -257,6 +280,11 @@ impl<'a> Learned<'a> {
             descent: descent::descent(parents, origins),
             genome: Genome { chromosomes: parts },
         }
+    }
+
+    fn keep_locked(&self, category: Category, child: usize, part: &mut Chromosome) {
+        let from = locked::source(self.votes, category, child);
+        locked::keep(self.space, self.parents, category, from, part);
     }
 
     /// Moves genes to what the other parts go with, as far as their kinds may be that.

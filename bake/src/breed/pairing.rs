@@ -8,15 +8,24 @@ use crate::kinds::{Company, Home};
 const ORDERS: [[usize; INDIVIDUALS]; 6] =
     [[0, 1, 2, 3], [0, 1, 3, 2], [0, 2, 1, 3], [0, 2, 3, 1], [0, 3, 1, 2], [0, 3, 2, 1]];
 
-/// Trees and skies in the order in which no two landscapes are alike, fewest differ in one part alone, which hardly makes
-/// another place, most parts go together, and most have the land and trees of the first, whose light alone is to be baked. All
-/// parts of the first, the best guess, stay together.
-pub fn pair(space: &Space, kinds: &Kinds, parts: &mut [Vec<Chromosome>; 3]) {
+/// Trees and skies in the order in which no two landscapes are alike, most look different in two parts at least, for one alone
+/// hardly makes another place, most parts go together, and most have the land and trees of the first, whose light alone is to
+/// be baked. All parts of the first, the best guess, stay together.
+pub fn pair(
+    space: &Space,
+    kinds: &Kinds,
+    parts: &mut [Vec<Chromosome>; 3],
+    stands_out: &dyn Fn(Category, &Chromosome, &Chromosome) -> bool,
+) {
     let homes: Vec<Vec<Home<'_>>> = Category::ALL
         .into_iter()
         .zip(parts.iter())
         .map(|(category, all)| all.iter().map(|one| Home::of(space, kinds, category, one)).collect())
         .collect();
+    let looks_different: [[[bool; INDIVIDUALS]; INDIVIDUALS]; 3] = Category::ALL.map(|category| {
+        let all = &parts[category as usize];
+        std::array::from_fn(|a| std::array::from_fn(|b| a != b && stands_out(category, &all[a], &all[b])))
+    });
     let rank = |trees: &[usize; INDIVIDUALS], skies: &[usize; INDIVIDUALS]| {
         let place = |landscape: usize| [trees[landscape], landscape, skies[landscape]];
         let landscape = |number: usize| {
@@ -30,10 +39,14 @@ pub fn pair(space: &Space, kinds: &Kinds, parts: &mut [Vec<Chromosome>; 3]) {
         };
         let all: [[&Chromosome; 3]; INDIVIDUALS] = std::array::from_fn(landscape);
         let pairs = || (0..INDIVIDUALS).flat_map(|a| (0..a).map(move |b| (a, b)));
-        let differ_in = |(a, b): (usize, usize)| all[a].iter().zip(&all[b]).filter(|(a, b)| a != b).count();
+        let alike = pairs().filter(|(a, b)| all[*a] == all[*b]).count();
+        let differ_in = |(a, b): (usize, usize)| {
+            let (a, b) = (place(a), place(b));
+            (0..3).filter(|category| looks_different[*category][a[*category]][b[*category]]).count()
+        };
         let with = |parts: usize| pairs().filter(|pair| differ_in(*pair) == parts).count();
         let planted = all.iter().filter(|one| one[..2] != all[0][..2]).count();
-        (with(0), with(1), (1..INDIVIDUALS).map(discord).sum::<usize>(), planted)
+        (alike, with(0), with(1), (1..INDIVIDUALS).map(discord).sum::<usize>(), planted)
     };
     let all = ORDERS.iter().flat_map(|trees| ORDERS.iter().map(move |skies| (trees, skies)));
     let Some((trees, skies)) = all.min_by_key(|(trees, skies)| rank(trees, skies)) else { return };

@@ -29,6 +29,8 @@ pub struct Prior {
 
 /// A kind, a blend of two, or what is wild.
 pub struct Component {
+    /// The kind, or the first of the two.
+    pub kind: Option<String>,
     /// `None` for what is wild.
     pub bounds: Option<Bounds>,
     log_share: f32,
@@ -112,6 +114,7 @@ impl Prior {
         let rejected = |kind: &Kind| if evidence.rejected.contains(&kind.id) { REJECTED } else { 1.0 };
         let sum: f32 = all.iter().map(|kind| rejected(kind)).sum();
         let mut components = vec![Component {
+            kind: None,
             bounds: None,
             log_share: libm::logf(wild),
             genes: genes.iter().map(|_| Density::flat()).collect(),
@@ -122,6 +125,7 @@ impl Prior {
             let share = (1.0 - wild) * rejected(kind) / sum;
             let pure = if partners.is_empty() { share } else { share * (1.0 - BLENDS) };
             components.push(Component {
+                kind: Some(kind.id.clone()),
                 bounds: Some(kind.bounds.clone()),
                 log_share: libm::logf(pure),
                 genes: of(&kind.bounds),
@@ -129,6 +133,7 @@ impl Prior {
             for &other in &partners {
                 let blend = kind.bounds.blend(&all[other].bounds, BLEND_PART);
                 components.push(Component {
+                    kind: Some(kind.id.clone()),
                     log_share: libm::logf((share - pure) / partners.len() as f32),
                     genes: of(&blend),
                     bounds: Some(kind.bounds.hull(&all[other].bounds)),

@@ -14,10 +14,12 @@ use genescape_schema::INDIVIDUALS;
 use super::prior::Prior;
 use super::taste::Ideal;
 use crate::math::exp;
+use crate::phenotype::visibility::Seen;
 use crate::seed::Dice;
 
-/// Points that sets are made of at first, and changes that are tried on a set.
+/// Points that sets are made of at first: what samples want, and anything. Changes that are tried on a set.
 const POOL: usize = 150;
+const ANYTHING: usize = 60;
 const CHANGES: u32 = 500;
 /// How far towards the mean of its kind a sampled point is taken.
 const PULLS: [f32; 3] = [0.3, 0.6, 1.0];
@@ -26,6 +28,9 @@ const PULLS: [f32; 3] = [0.3, 0.6, 1.0];
 const REGRET: f32 = 3.0;
 /// What must be missed in another, as a part of what is missed in the favourite, for it to take that one's place.
 const CLEARLY: f32 = 0.92;
+/// How many of the four look clearly different from the best guess, where there is anything that does: votes that agree, be it by
+/// chance, would else make four landscapes of one place, and what is not shown cannot be chosen.
+const STRANGERS: usize = 2;
 /// The least part of the samples that a kind must have for its mean to be a guess.
 const MIN_SHARE: f32 = 0.08;
 
@@ -65,6 +70,10 @@ pub struct Spread<'a> {
     pub means: &'a [Mean],
     /// Makes a point of a component what may be shown: of its kind, suiting the rest, on whole codes.
     pub legal: &'a dyn Fn(usize, &mut Vec<f32>),
+    /// The kind that a point is like most; none of what is wild.
+    pub kind: &'a dyn Fn(&[f32]) -> Option<&'a str>,
+    /// Whether two points look clearly different.
+    pub stands_out: &'a dyn Fn(Seen<'_>, Seen<'_>) -> bool,
 }
 
 impl Spread<'_> {
@@ -91,21 +100,32 @@ impl Spread<'_> {
         }
     }
 
-    /// Others than `shown`, as many as it takes to make four.
+    /// Others than `shown`, as many as it takes to make four. Beside a best guess [`STRANGERS`] of them look different.
     pub fn others(&self, shown: &[Vec<f32>], dice: &mut Dice) -> Vec<Vec<f32>> {
         let units: Vec<f32> = self.ideals.iter().map(Ideal::unit).collect();
         let worth = |rows: &[&[f32]]| worth(rows, &units);
+        let best = shown.first().map(|best| self.seen(best));
+        let is_strange = |one: &Candidate| {
+            let kind = self.prior.component(one.component).kind.as_deref();
+            best.is_some_and(|best| (self.stands_out)(best, Seen { at: &one.at, kind }))
+        };
         let pool = self.pool(dice);
         let missed: Vec<Vec<f32>> = pool.iter().map(|one| self.missed(&one.at)).collect();
+        let strange: Vec<bool> = pool.iter().map(is_strange).collect();
+        let has_strangers = strange.contains(&true);
         let mut set: Vec<Candidate> = Vec::new();
         let mut rows: Vec<Vec<f32>> = shown.iter().map(|one| self.missed(one)).collect();
+        let mut strangers = 0;
         while rows.len() < INDIVIDUALS {
             let with = |row: &Vec<f32>| {
                 let with: Vec<&[f32]> = rows.iter().chain([row]).map(Vec::as_slice).collect();
                 worth(&with)
             };
-            let best = (0..pool.len()).max_by(|a, b| with(&missed[*a]).total_cmp(&with(&missed[*b])));
+            let must = has_strangers && INDIVIDUALS - rows.len() <= STRANGERS.saturating_sub(strangers);
+            let all = (0..pool.len()).filter(|one| !must || strange[*one]);
+            let best = all.max_by(|a, b| with(&missed[*a]).total_cmp(&with(&missed[*b])));
             let best = best.unwrap_or_default();
+            strangers += usize::from(strange[best]);
             set.push(pool[best].clone());
             rows.push(missed[best].clone());
         }
@@ -115,7 +135,8 @@ impl Spread<'_> {
             let Some(other) = self.changed(&set[at], dice) else { continue };
             let row = std::mem::replace(&mut rows[shown.len() + at], self.missed(&other.at));
             let now = worth(&slices(&rows));
-            if now > most {
+            // A stranger stays one.
+            if now > most && (!is_strange(&set[at]) || is_strange(&other)) {
                 most = now;
                 set[at] = other;
             } else {
@@ -125,9 +146,9 @@ impl Spread<'_> {
         set.into_iter().map(|one| one.at).collect()
     }
 
-    /// Of three others than `best` those that tell what showing something new costs, in nats, and at least so many; in place of
-    /// each other one there is `best` again, or, where a single one is new, that once more: two of a category, each shown twice,
-    /// make four landscapes of which each differs from each in two categories.
+    /// Of three others than `best` those that tell what showing something new costs, in nats, and at least so many. A stranger
+    /// stays, if there is one, and stands in place of those that go until there are [`STRANGERS`]; then there is `best` again. Two
+    /// of a category, each shown twice, make four landscapes of which each differs from each in two categories.
     pub fn sparing(
         &self,
         best: &[f32],
@@ -142,6 +163,8 @@ impl Spread<'_> {
             let four: Vec<&[f32]> = std::iter::once(&own).chain(rows).map(Vec::as_slice).collect();
             worth(&four, &units)
         };
+        let strange: Vec<bool> =
+            others.iter().map(|one| (self.stands_out)(self.seen(best), self.seen(one))).collect();
         let mut new: Vec<usize> = (0..others.len()).collect();
         while new.len() > least_new {
             let all = worth(&rows);
@@ -150,18 +173,33 @@ impl Spread<'_> {
                 rows[at].clone_from(&own);
                 worth(&rows)
             };
-            let costs = new.iter().map(|at| (all - without(*at), *at));
+            let is_last_stranger =
+                |at: usize| strange[at] && new.iter().filter(|one| strange[**one]).count() == 1;
+            let costs = new.iter().filter(|at| !is_last_stranger(**at)).map(|at| (all - without(*at), *at));
             let least = costs.reduce(|least, one| if one.0 < least.0 { one } else { least });
             let Some((_, at)) = least.filter(|(lost, _)| *lost < cost) else { break };
             new.retain(|one| *one != at);
             rows[at].clone_from(&own);
-            others[at] = best.to_vec();
         }
-        if let [only] = new[..] {
-            let again = (only + 1) % others.len();
-            others[again] = others[only].clone();
+        let mut strangers = new.iter().filter(|at| strange[**at]).count();
+        // Where nothing is strange, what is new is shown twice all the same.
+        let again =
+            new.iter().find(|at| strange[**at]).or_else(|| new.first().filter(|_| new.len() == 1)).copied();
+        strangers = strangers.max(usize::from(new.len() == 1));
+        for at in (0..others.len()).filter(|at| !new.contains(at)) {
+            match again.filter(|_| strangers < STRANGERS) {
+                Some(again) => {
+                    others[at] = others[again].clone();
+                    strangers += 1;
+                }
+                None => others[at] = best.to_vec(),
+            }
         }
         others
+    }
+
+    fn seen<'b>(&'b self, at: &'b [f32]) -> Seen<'b> {
+        Seen { at, kind: (self.kind)(at) }
     }
 
     /// What each sample misses in a point.
@@ -177,9 +215,13 @@ impl Spread<'_> {
         self.means.iter().find(|mean| mean.component == component).map(|mean| mean.at.as_slice())
     }
 
-    /// What samples want, and what lies between that and the mean of their kind.
+    /// What samples want, and what lies between that and the mean of their kind; and members of any kind.
     fn pool(&self, dice: &mut Dice) -> Vec<Candidate> {
         let one = |number: usize| {
+            if number >= POOL {
+                let component = self.prior.any(dice);
+                return Candidate { at: self.drawn(component, dice), component };
+            }
             let ideal = &self.ideals[dice.below(self.ideals.len() as u32) as usize];
             let (mut at, component) = (ideal.at.clone(), ideal.component);
             if let Some(mean) = self.mean(component) {
@@ -188,7 +230,16 @@ impl Spread<'_> {
             (self.legal)(component, &mut at);
             Candidate { at, component }
         };
-        (0..POOL).map(one).collect()
+        // Without kinds samples want anything anyway.
+        let anything = if self.prior.is_one() { 0 } else { ANYTHING };
+        (0..POOL + anything).map(one).collect()
+    }
+
+    /// A member of a component by chance.
+    pub fn drawn(&self, component: usize, dice: &mut Dice) -> Vec<f32> {
+        let mut at = (0..self.prior.genes()).map(|gene| self.prior.draw(component, gene, dice)).collect();
+        (self.legal)(component, &mut at);
+        at
     }
 
     fn pull(&self, at: &mut [f32], mean: &[f32], part: f32) {

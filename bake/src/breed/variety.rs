@@ -14,8 +14,6 @@ const TRIES: u32 = 24;
 /// What others are made from.
 pub struct Varied<'a> {
     pub spread: &'a Spread<'a>,
-    /// The kind that a point is like most; none of what is wild.
-    pub kind: &'a dyn Fn(&[f32]) -> Option<&'a str>,
 }
 
 impl Varied<'_> {
@@ -41,17 +39,17 @@ impl Varied<'_> {
     fn closer(&self, part: f32, best: &[f32], others: Vec<Vec<f32>>, dice: &mut Dice) -> Vec<Vec<f32>> {
         let count = others.len();
         let mut strangers = (count as f32 * part) as usize;
-        let own = (self.kind)(best);
+        let own = (self.spread.kind)(best);
         let component = self.spread.prior.component_of(best, dice);
         let mut made: Vec<Vec<f32>> = Vec::new();
         for other in others {
-            let is_kin = (self.kind)(&other) == own;
+            let is_kin = (self.spread.kind)(&other) == own;
             if !is_kin && strangers > 0 {
                 strangers -= 1;
                 made.push(other);
                 continue;
             }
-            let mut towards = if is_kin { other } else { self.drawn(component, dice) };
+            let mut towards = if is_kin { other } else { self.spread.drawn(component, dice) };
             let mut reach = MIN_REACH + (1.0 - MIN_REACH) * part;
             for _ in 0..TRIES {
                 let near = self.between(component, best, &towards, reach, dice);
@@ -62,7 +60,7 @@ impl Varied<'_> {
                 }
                 // Codes are coarse: a short step may lead nowhere.
                 reach = (1.3 * reach).min(1.0);
-                towards = self.drawn(component, dice);
+                towards = self.spread.drawn(component, dice);
             }
         }
         // A kind may be so narrow that there is nothing else.
@@ -82,12 +80,13 @@ impl Varied<'_> {
         let kept = others.len().saturating_sub(count);
         others.truncate(kept);
         for _ in 0..count {
-            let seen: Vec<Option<&str>> = shown.iter().chain(&others).map(|one| (self.kind)(one)).collect();
+            let seen: Vec<Option<&str>> =
+                shown.iter().chain(&others).map(|one| (self.spread.kind)(one)).collect();
             let mut one = Vec::new();
             for _ in 0..TRIES {
                 let component = self.spread.prior.any(dice);
-                one = self.drawn(component, dice);
-                let kind = (self.kind)(&one);
+                one = self.spread.drawn(component, dice);
+                let kind = (self.spread.kind)(&one);
                 if kind.is_none() || !seen.contains(&kind) {
                     break;
                 }
@@ -95,14 +94,6 @@ impl Varied<'_> {
             others.push(one);
         }
         others
-    }
-
-    /// A member of a component by chance.
-    fn drawn(&self, component: usize, dice: &mut Dice) -> Vec<f32> {
-        let prior = self.spread.prior;
-        let mut at = (0..prior.genes()).map(|gene| prior.draw(component, gene, dice)).collect();
-        (self.spread.legal)(component, &mut at);
-        at
     }
 
     /// So far on the way from one point to another; genes whose values are names are those of either.

@@ -28,6 +28,13 @@ pub type OfGenes = BTreeMap<String, f32>;
 /// What stands for a kind's name where something is like none.
 const WILD: &str = "*";
 
+/// A point of a category, and the kind that it is like most.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<'a> {
+    pub at: &'a [f32],
+    pub kind: Option<&'a str>,
+}
+
 /// How much genes are seen. Written and read as JSON.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Visibility {
@@ -61,11 +68,31 @@ impl Visibility {
         Ok(Self { of: Category::ALL.into_iter().map(of_category).collect::<Result<_, _>>()? })
     }
 
+    /// About how different two points of a category look, genes but seeds as parts of their ranges: 1 is about what two landscapes by
+    /// chance differ by. Of two kinds the one counts in which more is seen of what differs. A phenotype says it better, but takes
+    /// a thousand times as long.
+    pub fn distance(&self, space: &Space, category: Category, a: Seen<'_>, b: Seen<'_>) -> f32 {
+        let of = |kind: Option<&str>| {
+            let genes = self.of_kind(category, kind);
+            let terms = space.traits(category).zip(a.at.iter().zip(b.at)).map(|(gene, (a, b))| {
+                let seen = genes.and_then(|genes| genes.get(&gene.name)).copied().unwrap_or_default();
+                let change = if gene.scale == Scale::Choice { f32::from(a != b) } else { a - b };
+                seen * seen * change * change
+            });
+            terms.sum::<f32>().sqrt()
+        };
+        of(a.kind).max(of(b.kind))
+    }
+
+    fn of_kind(&self, category: Category, kind: Option<&str>) -> Option<&OfGenes> {
+        let all = self.of.get(category.name())?;
+        all.get(kind.unwrap_or(WILD)).or_else(|| all.get(WILD))
+    }
+
     /// How much each gene but seeds would weigh for somebody who judges members of a kind by what is seen alone: logarithms,
     /// 0 on average. What is hardly seen weighs a hundredth of the mean, and what the table lacks as much as the mean.
     pub fn log_weights(&self, space: &Space, category: Category, kind: Option<&str>) -> Vec<f32> {
-        let all = self.of.get(category.name());
-        let of = all.and_then(|all| all.get(kind.unwrap_or(WILD)).or_else(|| all.get(WILD)));
+        let of = self.of_kind(category, kind);
         let seen = |gene: &Parameter| of.and_then(|of| of.get(&gene.name)).map(|seen| seen * seen);
         let squares: Vec<Option<f32>> = space.traits(category).map(seen).collect();
         let known = squares.iter().flatten();
@@ -134,6 +161,43 @@ mod tests {
                 let lacks = space.traits(category).find(|gene| !all[id].contains_key(&gene.name));
                 assert_eq!(lacks.map(|gene| &gene.name), None, "{id}: see bake bench --visibility");
             }
+        }
+    }
+
+    #[test]
+    fn relatives_are_as_far_apart_as_they_look() {
+        let space = Space::builtin();
+        let (kinds, _) = Kinds::shipped(&space);
+        for category in Category::ALL {
+            let all: Vec<_> = kinds.of(category).step_by(2).collect();
+            let mut dice = Dice::new(7u32, "pairs", category as u64);
+            let pairs = all.iter().map(|kind| {
+                let mut genome = Genome::zero(&space);
+                let mut member = || {
+                    *genome.chromosome_mut(category) = draw::member(&space, &kind.bounds, &mut dice);
+                    space
+                        .category(category)
+                        .filter(|gene| gene.is_seed())
+                        .for_each(|gene| genome.set_code(gene, 0));
+                    let at: Vec<f32> =
+                        space.traits(category).map(|gene| gene.part(genome.code(gene))).collect();
+                    (at, Phenotype::of_category(&space, category, &genome).expect("complete"))
+                };
+                let [(a, seen_a), (b, seen_b)] = [member(), member()];
+                let [a, b] = [&a, &b].map(|at| Seen { at, kind: Some(&kind.id) });
+                let told = Visibility::shipped().distance(&space, category, a, b);
+                (told, seen_a.distance_in(&seen_b, category))
+            });
+            let (told, seen): (Vec<f32>, Vec<f32>) = pairs.unzip();
+            let ratio = told.iter().sum::<f32>() / seen.iter().sum::<f32>();
+            assert!((0.8..1.25).contains(&ratio), "{category}: {ratio}");
+            let mean = |all: &[f32]| all.iter().sum::<f32>() / all.len() as f32;
+            let (mean_told, mean_seen) = (mean(&told), mean(&seen));
+            let sum = |f: &dyn Fn(f32, f32) -> f32| {
+                told.iter().zip(&seen).map(|(a, b)| f(a - mean_told, b - mean_seen)).sum::<f32>()
+            };
+            let correlation = sum(&|a, b| a * b) / (sum(&|a, _| a * a) * sum(&|_, b| b * b)).sqrt();
+            assert!(correlation > 0.6, "{category}: {correlation}");
         }
     }
 

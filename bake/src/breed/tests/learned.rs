@@ -6,6 +6,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::bench::person::{Person, Taste};
 use crate::kinds::testing::kinds;
+use crate::phenotype::Phenotype;
 
 fn breed(space: &Space, kinds: &Kinds, past: &[Population], parents: &Population, next: u32) -> Population {
     let breeder = Breeder::new(space, kinds, Strategy::Learned, past, parents).expect("votes");
@@ -211,6 +212,32 @@ fn who_has_settled_sees_what_is_known_beside_what_is_new_and_never_two_alike() {
     assert!(late < 9 * 15, "{late} of 180");
     // Of 6 pairs each; with what is known shown as often as can be it would be half of them.
     assert!(places > 5 * 15, "{places} of 90 pairs are different places");
+}
+
+/// Votes by chance agree now and then. What they agree on must not become all there is to choose from.
+#[test]
+fn whatever_was_voted_four_landscapes_look_like_four_places() {
+    let space = Space::builtin();
+    let (kinds, _) = Kinds::shipped(&space);
+    for seed in 70..73 {
+        let mut history = vec![drawn(&space, &kinds, seed, 0)];
+        for next in 1..=10 {
+            let (now, past) = history.split_last_mut().expect("a first one");
+            now.votes = Some(random_votes(seed, next));
+            let children = breed(&space, &kinds, past, now, next);
+            if next > 2 {
+                let seen = children.individuals.each_ref().map(|one| Phenotype::of(&space, &one.genome));
+                let seen = seen.map(|one| one.expect("complete"));
+                for (number, a) in seen.iter().enumerate() {
+                    for b in &seen[..number] {
+                        // Measured: 0.51 at least; 0 is alike, 1 as different as two drawn by chance.
+                        assert!(a.distance(b) > 0.4, "seed {seed}, generation {next}: {}", a.distance(b));
+                    }
+                }
+            }
+            history.push(children);
+        }
+    }
 }
 
 #[test]
