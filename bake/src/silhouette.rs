@@ -5,7 +5,7 @@
 use std::cell::LazyCell;
 use std::ops::Range;
 
-use glam::Vec2;
+use glam::{Vec2, Vec4};
 
 /// Pixels in a word.
 const WORD: usize = u64::BITS as usize;
@@ -47,14 +47,24 @@ impl Silhouette {
 
     /// Covers a triangle.
     pub fn fill(&mut self, corners: [Vec2; 3]) {
-        self.fill_where(corners, |_, _| true);
+        self.fill_where(corners, |bare, _, _| bare);
     }
 
-    /// Covers what is opaque of a triangle with these texture coordinates at its corners.
-    pub fn fill_cut_out(&mut self, corners: [Vec2; 3], uvs: [Vec2; 3], is_opaque: impl Fn(Vec2) -> bool) {
+    /// Covers what is opaque of a triangle with these texture coordinates at its corners: `opaque` gives a bit for each of four
+    /// places in the texture.
+    pub fn fill_cut_out(&mut self, corners: [Vec2; 3], uvs: [Vec2; 3], opaque: impl Fn([Vec4; 2]) -> u64) {
         // Most small triangles show nothing that is not covered yet, so their texture is placed only when it counts.
         let texture = LazyCell::new(|| Affine::through(corners, uvs));
-        self.fill_where(corners, |x, y| texture.as_ref().is_some_and(|texture| is_opaque(texture.at(x, y))));
+        self.fill_where(corners, |bare, word, y| {
+            let Some(texture) = texture.as_ref() else { return 0 };
+            let (mut shown, mut rest) = (0, bare);
+            while rest != 0 {
+                let first = rest.trailing_zeros();
+                shown |= opaque(texture.at_four(middle(WORD * word + first as usize), y)) << first;
+                rest &= !(0b1111 << first);
+            }
+            shown & bare
+        });
     }
 
     /// Covers what another one of the same size covers.
@@ -69,47 +79,72 @@ impl Silhouette {
 
     /// Whether any pixel in some columns of a row, at least one, is not covered.
     #[inline]
-    fn has_bare(&self, row: usize, columns: Range<usize>) -> bool {
+    fn has_bare(&self, row: usize, columns: &Range<usize>) -> bool {
         let first = row * self.across();
         (columns.start / WORD..columns.end.div_ceil(WORD))
-            .any(|word| !self.words[first + word] & bits(&columns, word) != 0)
+            .any(|word| !self.words[first + word] & bits(columns, word) != 0)
     }
 
+    /// Covers what `opaque` gives of a triangle's pixels that are not covered yet: it gets and gives some of a row's nth word,
+    /// and the height of the row's middle.
     #[inline]
-    fn fill_where(&mut self, [a, b, c]: [Vec2; 3], is_opaque: impl Fn(f32, f32) -> bool) {
+    fn fill_where(&mut self, corners: [Vec2; 3], opaque: impl Fn(u64, usize, f32) -> u64) {
+        let [a, b, c] = corners;
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         let rows = whole(low.y)..whole(high.y).min(self.side);
-        let columns = whole(low.x)..whole(high.x).min(self.side);
-        // Most triangles are small, and most of what they might cover is covered when it is their turn.
-        if columns.is_empty() || !rows.clone().any(|row| self.has_bare(row, columns.clone())) {
+        let around = whole(low.x)..whole(high.x).min(self.side);
+        if around.is_empty() {
             return;
         }
-        let slopes = [(a, b), (b, c), (c, a)].map(|(p, q)| (q.x - p.x) / (q.y - p.y));
         let across = self.across();
-        for row in rows {
-            let y = row as f32 + 0.5;
-            let (mut left, mut right) = (f32::MAX, f32::MIN);
-            for ((p, q), slope) in [(a, b), (b, c), (c, a)].into_iter().zip(slopes) {
-                if (p.y < y) != (q.y < y) {
-                    let x = p.x + (y - p.y) * slope;
-                    left = left.min(x);
-                    right = right.max(x);
-                }
+        let edges = LazyCell::new(|| Edges::of(corners));
+        for four in rows.clone().step_by(4) {
+            let four = four..(four + 4).min(rows.end);
+            // Most triangles are small, and most of what they might cover is covered when it is their turn.
+            if !four.clone().any(|row| self.has_bare(row, &around)) {
+                continue;
             }
-            let columns = whole(left)..whole(right).min(self.side);
-            let line = &mut self.words[row * across..][..across];
-            let words = columns.start / WORD..columns.end.div_ceil(WORD);
-            for (word, covered) in line.iter_mut().enumerate().take(words.end).skip(words.start) {
-                let mut bare = !*covered & bits(&columns, word);
-                while bare != 0 {
-                    let bit = bare & bare.wrapping_neg();
-                    bare ^= bit;
-                    if is_opaque((WORD * word) as f32 + bit.trailing_zeros() as f32 + 0.5, y) {
-                        *covered |= bit;
-                    }
+            let [left, right] = edges.spans(four.start).map(|ends| ends.to_array());
+            for (k, row) in four.enumerate() {
+                let columns = whole(left[k])..whole(right[k]).min(self.side);
+                for word in columns.start / WORD..columns.end.div_ceil(WORD) {
+                    let covered = &mut self.words[row * across + word];
+                    *covered |= opaque(!*covered & bits(&columns, word), word, middle(row));
                 }
             }
         }
+    }
+}
+
+/// The edges of a triangle.
+struct Edges([Edge; 3]);
+
+/// From one corner to another.
+#[derive(Clone, Copy)]
+struct Edge {
+    from: Vec2,
+    to_y: f32,
+    /// Pixels to the right a row.
+    slope: f32,
+}
+
+impl Edges {
+    #[inline]
+    fn of([a, b, c]: [Vec2; 3]) -> Self {
+        let edge = |(p, q): (Vec2, Vec2)| Edge { from: p, to_y: q.y, slope: (q.x - p.x) / (q.y - p.y) };
+        Self([(a, b), (b, c), (c, a)].map(edge))
+    }
+
+    /// Where the middles of four rows enter and leave the triangle: from right to left where they do not.
+    #[inline]
+    fn spans(&self, first_row: usize) -> [Vec4; 2] {
+        let y = middle(first_row) + Vec4::new(0.0, 1.0, 2.0, 3.0);
+        self.0.iter().fold([Vec4::MAX, Vec4::MIN], |[left, right], edge| {
+            let crosses = Vec4::splat(edge.from.y).cmplt(y) ^ Vec4::splat(edge.to_y).cmplt(y);
+            let x = edge.from.x + (y - edge.from.y) * edge.slope;
+            let at = |nowhere: Vec4| Vec4::select(crosses, x, nowhere);
+            [left.min(at(Vec4::MAX)), right.max(at(Vec4::MIN))]
+        })
     }
 }
 
@@ -125,6 +160,12 @@ fn bits(columns: &Range<usize>, word: usize) -> u64 {
 #[inline]
 fn whole(place: f32) -> usize {
     (place + 0.5).max(0.0) as i32 as usize
+}
+
+/// Where the middle of a pixel is. Sides are short, and an `i32` is converted sooner than a `usize`.
+#[inline]
+fn middle(pixel: usize) -> f32 {
+    pixel as i32 as f32 + 0.5
 }
 
 /// Texture coordinates as a function of the place in a picture.
@@ -145,8 +186,11 @@ impl Affine {
         origin.is_finite().then_some(Self { origin, along_x, along_y })
     }
 
-    fn at(&self, x: f32, y: f32) -> Vec2 {
-        self.origin + self.along_x * x + self.along_y * y
+    /// At a place and at the three pixels to the right of it.
+    #[inline]
+    fn at_four(&self, x: f32, y: f32) -> [Vec4; 2] {
+        let x = Vec4::splat(x) + Vec4::new(0.0, 1.0, 2.0, 3.0);
+        [0, 1].map(|axis: usize| self.origin[axis] + self.along_x[axis] * x + self.along_y[axis] * y)
     }
 }
 
@@ -192,7 +236,9 @@ mod tests {
     fn what_a_texture_leaves_transparent_is_not_covered() {
         let corners = [[0.0, 0.0], [64.0, 0.0], [0.0, 64.0]].map(Vec2::from_array);
         let mut silhouette = Silhouette::empty(64);
-        silhouette.fill_cut_out(corners, corners.map(|p| p / 64.0), |uv| uv.x < 0.25);
+        silhouette.fill_cut_out(corners, corners.map(|p| p / 64.0), |[u, _]| {
+            u.cmplt(Vec4::splat(0.25)).bitmask().into()
+        });
         // 16 columns of 64 to 49 pixels, some of them on the edge.
         assert!((silhouette.covered() as i32 - (16 * 56 + 8)).abs() <= 16, "{}", silhouette.covered());
     }

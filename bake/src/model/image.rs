@@ -1,5 +1,6 @@
 //! Pictures in memory. Row 0 is the top row, as in glTF, PNG and EXR.
 
+use glam::Vec4;
 use serde::{Deserialize, Serialize};
 
 /// An 8-bit picture; `channels` is 1, 3 or 4, `data` holds width × height × channels bytes.
@@ -73,10 +74,21 @@ impl AlphaMask {
     }
 
     /// Whether the texture is opaque at texture coordinates; it is nowhere outside of [0, 1], but for rounding.
-    pub fn is_opaque(&self, uv: [f32; 2]) -> bool {
+    pub fn is_opaque(&self, [u, v]: [f32; 2]) -> bool {
+        self.opaque([u, v].map(Vec4::splat)) & 1 == 1
+    }
+
+    /// The same at four places: a bit for each.
+    #[inline]
+    pub fn opaque(&self, uv: [Vec4; 2]) -> u64 {
         const ROUNDING: f32 = 1e-3;
-        let [x, y] = uv.map(|t| ((t * MASK_SIDE as f32).max(0.0) as i32 as usize).min(MASK_SIDE - 1));
-        self.rows[y] >> x & 1 == 1 && uv.iter().all(|t| (-ROUNDING..=1.0 + ROUNDING).contains(t))
+        let inside = |t: Vec4| t.cmpge(Vec4::splat(-ROUNDING)) & t.cmple(Vec4::splat(1.0 + ROUNDING));
+        let last = Vec4::splat((MASK_SIDE - 1) as f32);
+        let texels =
+            |t: Vec4| (t * MASK_SIDE as f32).clamp(Vec4::ZERO, last).to_array().map(|t| t as i32 as usize);
+        let [x, y] = uv.map(texels);
+        let bit = |k: usize| (self.rows[y[k] % MASK_SIDE] >> x[k] & 1) << k;
+        u64::from((bit(0) | bit(1) | bit(2) | bit(3)) & (inside(uv[0]) & inside(uv[1])).bitmask())
     }
 
     /// Whether nothing of the texture is cut away.

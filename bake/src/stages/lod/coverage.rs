@@ -148,7 +148,7 @@ impl Elements {
         for (view, pixels) in canvas.views.iter_mut().enumerate() {
             for triangle in &self.triangles {
                 let corners = triangle.corners[view].map(|by| triangle.centres[view] + by * scale);
-                pixels.fill_cut_out(corners, triangle.uvs, |uv| self.mask.is_opaque(uv.into()));
+                pixels.fill_cut_out(corners, triangle.uvs, |uv| self.mask.opaque(uv));
             }
         }
     }

@@ -25,10 +25,10 @@ pub(super) fn cover(
             match surface {
                 Surface::Wood(_) => silhouette.fill(corners),
                 Surface::Card(card) => {
-                    silhouette.fill_cut_out(corners, uvs(), |uv| card.mask.is_opaque(uv.into()));
+                    silhouette.fill_cut_out(corners, uvs(), |uv| card.mask.opaque(uv));
                 }
                 Surface::Atlas(atlas) => {
-                    silhouette.fill_cut_out(corners, uvs(), |uv| atlas.is_opaque(uv.x, uv.y));
+                    silhouette.fill_cut_out(corners, uvs(), |uv| atlas.opaque(uv));
                 }
             }
         }

@@ -2,13 +2,15 @@
 
 use std::cell::LazyCell;
 
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 
 use super::surfaces::{Surface, Surfaces};
 use crate::model::{Impostor, Mesh};
 
 /// Samples a side of a tile.
 const TILE: usize = 8;
+/// Samples that are compared at once, beginning at any of a row.
+const LANES: usize = 4;
 /// Fewer triangles are drawn in the order of the mesh.
 const MANY: usize = 256;
 /// How often it is noted in which tiles nothing more can show, and after how many triangles at the earliest.
@@ -74,7 +76,7 @@ pub(super) struct Sample {
 pub(super) struct Drawing<'a> {
     /// Those that were seen when it was their turn.
     triangles: Vec<Triangle<'a>>,
-    /// Metres before the axis; −∞ where nothing is.
+    /// Metres before the axis; −∞ where nothing is. Some more follow the last row, for the lanes that reach beyond it.
     depths_m: Vec<f32>,
     /// Index into `triangles`.
     nearest: Vec<u32>,
@@ -85,7 +87,8 @@ pub(super) struct Drawing<'a> {
 impl<'a> Drawing<'a> {
     pub fn new(mesh: &Mesh, surfaces: &'a Surfaces, look: &Look) -> Self {
         let size = look.size;
-        let (depths_m, nearest) = (vec![f32::NEG_INFINITY; size * size], vec![0; size * size]);
+        let samples = size * size + LANES - 1;
+        let (depths_m, nearest) = (vec![f32::NEG_INFINITY; samples], vec![0; samples]);
         let mut drawing = Self { triangles: Vec::new(), depths_m, nearest, size };
         drawing.draw(mesh, surfaces, look);
         drawing
@@ -135,14 +138,11 @@ impl<'a> Drawing<'a> {
     fn add(&mut self, mesh: &Mesh, vertices: [u32; 3], outline: &Outline, surface: Surface<'a>) {
         // Most triangles show nothing in the end, so their texture is placed only when it counts.
         let uv = LazyCell::new(|| outline.uv(mesh, vertices));
-        let at = |x: f32, y: f32| [0, 1].map(|axis: usize| uv[axis].at(x, y));
+        let at = |x: Vec4, y: f32| [0, 1].map(|axis: usize| uv[axis].at_four(x, y));
         let shows = match surface {
-            Surface::Wood(_) => self.fill(outline, |_, _| true),
-            Surface::Card(card) => self.fill(outline, |x, y| card.mask.is_opaque(at(x, y))),
-            Surface::Atlas(atlas) => self.fill(outline, |x, y| {
-                let [u, v] = at(x, y);
-                atlas.is_opaque(u, v)
-            }),
+            Surface::Wood(_) => self.fill(outline, |_, _| u64::MAX),
+            Surface::Card(card) => self.fill(outline, |x, y| card.mask.opaque(at(x, y))),
+            Surface::Atlas(atlas) => self.fill(outline, |x, y| atlas.opaque(at(x, y))),
         };
         if shows {
             self.triangles.push(Triangle::new(mesh, vertices, outline, surface));
@@ -178,9 +178,10 @@ impl<'a> Drawing<'a> {
         tiles
     }
 
-    /// Puts the next triangle where it is the nearest so far, and there; whether it is anywhere.
+    /// Puts the next triangle where it is the nearest so far and there, for which it asks about four samples at once; whether
+    /// it is anywhere.
     #[inline]
-    fn fill(&mut self, outline: &Outline, is_there: impl Fn(f32, f32) -> bool) -> bool {
+    fn fill(&mut self, outline: &Outline, is_there: impl Fn(Vec4, f32) -> u64) -> bool {
         let index = self.triangles.len() as u32;
         let [a, b, c] = outline.corners.map(|corner| corner.y);
         let size = self.size;
@@ -188,17 +189,22 @@ impl<'a> Drawing<'a> {
         for row in first(a.min(b).min(c), size)..first(a.max(b).max(c), size) {
             let y = row as f32 + 0.5;
             let (left, right) = outline.span(y);
-            let start = first(left - EDGE, size);
-            let columns = start..first(right + EDGE, size).max(start);
-            let line = row * size + columns.start..row * size + columns.end;
-            let depths_m = self.depths_m[line.clone()].iter_mut().zip(&mut self.nearest[line]);
+            let columns = first(left - EDGE, size)..first(right + EDGE, size);
             let row_m = outline.depth_m.origin + outline.depth_m.per_y * y;
-            for (column, (depth_m, nearest)) in columns.zip(depths_m) {
-                let x = column as f32 + 0.5;
+            for column in columns.clone().step_by(LANES) {
+                let x = column as f32 + Vec4::new(0.5, 1.5, 2.5, 3.5);
                 let here_m = row_m + outline.depth_m.per_x * x;
-                if here_m > *depth_m && is_there(x, y) {
-                    (*depth_m, *nearest) = (here_m, index);
-                    shows = true;
+                let at = row * size + column;
+                let in_row = (1 << (columns.end - column).min(LANES)) - 1;
+                let mut nearer = here_m.cmpgt(Vec4::from_slice(&self.depths_m[at..])).bitmask() & in_row;
+                if nearer != 0 {
+                    nearer &= is_there(x, y) as u32;
+                    shows |= nearer != 0;
+                }
+                while nearer != 0 {
+                    let lane = nearer.trailing_zeros() as usize;
+                    (self.depths_m[at + lane], self.nearest[at + lane]) = (here_m[lane], index);
+                    nearer &= nearer - 1;
                 }
             }
         }
@@ -238,6 +244,11 @@ struct Plane {
 impl Plane {
     #[inline]
     fn at(&self, x: f32, y: f32) -> f32 {
+        self.origin + self.per_y * y + self.per_x * x
+    }
+
+    #[inline]
+    fn at_four(&self, x: Vec4, y: f32) -> Vec4 {
         self.origin + self.per_y * y + self.per_x * x
     }
 }

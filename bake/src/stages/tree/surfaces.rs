@@ -1,6 +1,6 @@
 //! What the parts of a tree look like: bark of one colour, and cards that are cut out.
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 use super::ALPHA_CUTOFF;
 use crate::math::linear_from_srgb;
@@ -69,6 +69,11 @@ impl Atlas {
 
     pub fn is_opaque(&self, u: f32, v: f32) -> bool {
         self.opaque[self.texels.index(u, v)]
+    }
+
+    /// The same at four places: a bit for each.
+    pub fn opaque(&self, [u, v]: [Vec4; 2]) -> u64 {
+        (0..4).map(|k| u64::from(self.is_opaque(u[k], v[k])) << k).sum()
     }
 
     /// Colour, and how far it is turned to the sun.
