@@ -21,18 +21,45 @@ pub fn groups(places: &[Place], count: usize) -> Vec<u32> {
     let mut order: Vec<u32> = (0..places.len() as u32).collect();
     split(&mut order, places, 0..count as u32, &mut group);
     for _ in 0..ROUNDS {
-        let middles = middles(places, &group, count);
-        let nearest = |place: &Place| {
-            let closer = |best: (f32, u32), (number, middle): (u32, &Vec3)| {
-                let square = place.at_m.distance_squared(*middle);
-                if square < best.0 { (square, number) } else { best }
-            };
-            (0..).zip(&middles).fold((f32::INFINITY, 0), closer).1
-        };
-        group = places.par_iter().map(nearest).collect();
+        let middles = Middles::of(&gathered(places, &group, count));
+        group = places.par_iter().zip(&group).map(|(place, &own)| middles.nearest(place.at_m, own)).collect();
         share_out(places, &mut group, count);
     }
     group
+}
+
+/// The middles of groups, from west to east.
+struct Middles {
+    sorted: Vec<(Vec3, u32)>,
+    /// The same by their numbers.
+    numbered: Vec<Vec3>,
+}
+
+impl Middles {
+    fn of(groups: &[Place]) -> Self {
+        let numbered: Vec<Vec3> = groups.iter().map(|group| group.at_m).collect();
+        let mut sorted: Vec<(Vec3, u32)> = numbered.iter().copied().zip(0..).collect();
+        sorted.sort_unstable_by(|p, q| p.0.x.total_cmp(&q.0.x).then(p.1.cmp(&q.1)));
+        Self { sorted, numbered }
+    }
+
+    /// The nearest, of equally near ones the first, found from one that is near: none can be nearer that lies farther to
+    /// the west or east alone.
+    fn nearest(&self, at_m: Vec3, near: u32) -> u32 {
+        let mut best = (at_m.distance_squared(self.numbered[near as usize]), near);
+        let aside = |middle: Vec3| (at_m.x - middle.x) * (at_m.x - middle.x);
+        let first = self.sorted.partition_point(|(m, _)| m.x < at_m.x && aside(*m) > best.0);
+        for &(middle, number) in &self.sorted[first..] {
+            if middle.x > at_m.x && aside(middle) > best.0 {
+                break;
+            }
+            let square = at_m.distance_squared(middle);
+            if square < best.0 || square == best.0 && number < best.1 {
+                best = (square, number);
+            }
+        }
+        best.1
+    }
 }
 
 /// Gives each group of nobody the place that is farthest from the middle of the largest.
@@ -55,15 +82,16 @@ fn share_out(places: &[Place], group: &mut [u32], count: usize) {
     }
 }
 
-/// The middle of each group; of nobody far away.
-pub fn middles(places: &[Place], group: &[u32], count: usize) -> Vec<Vec3> {
+/// The middle of each group, and what it weighs; that of nobody is far away.
+pub fn gathered(places: &[Place], group: &[u32], count: usize) -> Vec<Place> {
     let mut sums = vec![(Vec3::ZERO, 0.0f32); count];
     for (place, &group) in places.iter().zip(group) {
         let (sum, weight) = &mut sums[group as usize];
         *sum += place.at_m * place.weight;
         *weight += place.weight;
     }
-    sums.into_iter().map(|(sum, weight)| if weight > 0.0 { sum / weight } else { Vec3::MAX }).collect()
+    let middle = |sum: Vec3, weight: f32| if weight > 0.0 { sum / weight } else { Vec3::MAX };
+    sums.into_iter().map(|(sum, weight)| Place { at_m: middle(sum, weight), weight }).collect()
 }
 
 /// Gives the places these numbers, each to about as many.
@@ -103,8 +131,22 @@ mod tests {
             assert_eq!(group[i], group[i % 3], "those of one heap are together");
         }
         assert!(group[0] != group[1] && group[1] != group[2] && group[2] != group[0]);
-        let middle = middles(&places, &group, 3)[group[1] as usize];
-        assert!(middle.distance(heaps[1] + 0.45 * Vec3::ONE) < 1e-4);
+        let middle = gathered(&places, &group, 3)[group[1] as usize];
+        assert_eq!(middle.weight, 10.0);
+        assert!(middle.at_m.distance(heaps[1] + 0.45 * Vec3::ONE) < 1e-4);
+    }
+
+    #[test]
+    fn the_nearest_is_found_from_any_and_of_equals_the_first() {
+        // A grid of points, each there twice, so that many are equally near.
+        let grid = (0..54).map(|i| Vec3::new((i % 3) as f32, (i / 3 % 3) as f32, (i / 9 % 3) as f32));
+        let groups: Vec<Place> = grid.map(|at_m| Place { at_m, weight: 1.0 }).collect();
+        let middles = Middles::of(&groups);
+        for (at_m, near) in (0..40).map(|i| (0.1 * Vec3::new((i % 7) as f32, i as f32, 5.0), i)) {
+            let square = |n: &u32| groups[*n as usize].at_m.distance_squared(at_m);
+            let nearest = (0..54).min_by(|a, b| square(a).total_cmp(&square(b)).then(a.cmp(b)));
+            assert_eq!(Some(middles.nearest(at_m, near)), nearest);
+        }
     }
 
     #[test]

@@ -137,12 +137,7 @@ impl<'a> Foliage<'a> {
             let count = cards.div_ceil(2);
             let group = groups::groups(&places, count);
             place_of.iter_mut().for_each(|place| *place = group[*place as usize]);
-            let weight_of = |number: u32| {
-                let of_group = places.iter().zip(&group).filter(|(_, group)| **group == number);
-                of_group.map(|(place, _)| place.weight).sum()
-            };
-            let middles = groups::middles(&places, &group, count);
-            places = (0..).zip(middles).map(|(n, at_m)| Place { at_m, weight: weight_of(n) }).collect();
+            places = groups::gathered(&places, &group, count);
             let mut leaves = vec![Vec::new(); count];
             place_of.iter().enumerate().for_each(|(leaf, &group)| leaves[group as usize].push(leaf));
             let subject = |(n, leaves): (usize, Vec<usize>)| self.subject(&leaves, (cards - 2 * n).min(2));
