@@ -1,5 +1,6 @@
 //! What crosses the crates.
 
+mod backdrop;
 mod distance;
 mod docs;
 mod round;

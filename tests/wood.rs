@@ -4,15 +4,14 @@ use std::sync::Arc;
 
 use genescape_viewer::baker::Event;
 use genescape_viewer::camera::Camera;
-use genescape_viewer::headless::{Headless, scene_files};
+use genescape_viewer::headless::scene_files;
 use genescape_viewer::lod_mode::TreeLodMode;
 use genescape_viewer::options::{FrameInput, Options};
-use genescape_viewer::passes::Shaders;
 use genescape_viewer::scene::{Instance, Scene, Template};
-use genescape_viewer::view::View;
 use genescape_world::Source;
 use glam::{Vec2, Vec3};
 
+use crate::backdrop::{Backdrops, Matte, Stage};
 use crate::round::Round;
 
 /// Pixels a radian: those of a window 720 pixels high.
@@ -24,35 +23,17 @@ const FINER: u32 = 2;
 /// Trees of a wood, and directions from which it is seen: with the sun behind the eye, and before it.
 const TREES: u32 = 24;
 const DIRECTIONS_RAD: [f32; 2] = [0.5, 2.5];
-/// A pixel shows trees if it differs from the sky by so much in some channel.
-const SEEN: u8 = 4;
+/// By how much cover and light may differ from those of full trees.
+const MORE: f64 = 0.04;
+const BRIGHTER: f64 = 0.08;
 
-/// What is seen of a wood.
-#[derive(Debug, Default)]
-struct Seen {
-    /// Pixels that show trees, as a part of all.
-    cover: f64,
-    /// Their mean radiance, in red, green and blue, as a part of what is brightest.
-    light: [f64; 3],
-}
-
-impl Seen {
-    /// How much of the sky is hidden, as a multiple of what another hides, and by how much each channel differs as a part of the
-    /// brightest one.
-    fn beside(&self, other: &Self) -> (f64, [f64; 3]) {
-        let brightest = other.light.iter().copied().fold(0.0, f64::max);
-        (self.cover / other.cover, [0, 1, 2].map(|c| (self.light[c] - other.light[c]) / brightest))
-    }
-}
-
-/// Shaders whose pictures are roots of radiance, which can be added, instead of what a film makes of it.
-fn shaders(folder: &std::path::Path) -> Shaders {
-    let tone = include_str!("../viewer/src/passes/tone.wgsl");
-    let film = "film(linear) + grain(pixel.xy) / 255.0";
-    assert!(tone.contains(film));
-    let root = format!("sqrt(0.2 * linear) + 0.0 * ({film})");
-    std::fs::write(folder.join("tone.wgsl"), tone.replace(film, &root)).expect("written");
-    Shaders::from(Some(folder.to_owned()))
+/// How much of the sky one hides, as a multiple of what another hides that has `FINER` times as many pixels a side, and by how much
+/// each channel differs as a part of the brightest one.
+fn beside(one: &Matte, other: &Matte) -> (f64, [f64; 3]) {
+    let (light, whole) = (one.radiance(), other.radiance());
+    let brightest = whole.into_iter().fold(0.0, f64::max);
+    let cover = one.pixels / other.pixels * f64::from(FINER * FINER);
+    (cover, [0, 1, 2].map(|c| (light[c] - whole[c]) / brightest))
 }
 
 /// A wood in the middle of a landscape, of trees so close that their crowns meet, in clear air; and how far it reaches.
@@ -83,62 +64,34 @@ fn wood(scene: &Scene) -> (Scene, f32) {
     (wood, spread_m * (TREES as f32).sqrt() + wide_m)
 }
 
-fn square(x: f64) -> f64 {
-    x * x
-}
-
 fn mean(templates: &[Arc<Template>], of: impl Fn(&Template) -> f32) -> f32 {
     templates.iter().map(|tree| of(tree)).sum::<f32>() / templates.len() as f32
 }
 
 struct Look<'a> {
-    studio: &'a Headless,
-    view: View,
+    backdrops: &'a Backdrops,
+    stage: Stage,
     middle_m: Vec3,
     reach_m: f32,
     to_sun: Vec3,
 }
 
 impl Look<'_> {
-    fn see(&mut self, away_m: f32, mode: TreeLodMode, finer: u32) -> Seen {
+    fn see(&mut self, away_m: f32, mode: TreeLodMode, finer: u32) -> Matte {
         let side_px = ((2.0 * self.reach_m / away_m * FOCAL_PX) as u32).clamp(16, MAX_PX);
         let fov_y_rad = 2.0 * libm::atanf(side_px as f32 / 2.0 / FOCAL_PX);
-        self.view.resize(&self.studio.passes, [side_px * finer; 2]);
+        self.backdrops.resize(&mut self.stage, [side_px * finer; 2]);
         let options = Options { tree_lod: mode, draw_terrain: false, grass: false, ..Options::default() };
-        let (mut seen, mut shown, mut all) = (Seen::default(), 0.0, 0.0);
+        let frame = FrameInput { options, ..FrameInput::default() };
+        let mut seen = Matte::default();
         for direction_rad in DIRECTIONS_RAD {
             let yaw_rad = libm::atan2f(self.to_sun.x, self.to_sun.z) + direction_rad;
             let pitch_rad = -0.08;
             let look = Camera { position_m: Vec3::ZERO, yaw_rad, pitch_rad, fov_y_rad };
             let camera = Camera { position_m: self.middle_m - away_m * look.forward(), ..look };
-            let mut shoot = |draw_trees: bool| {
-                let options = Options { draw_trees, ..options };
-                let frame = FrameInput { options, ..FrameInput::default() };
-                self.studio.shoot(&mut self.view, &frame, &camera, &camera).expect("drawn")
-            };
-            let (with, without) = (shoot(true), shoot(false));
-            all += f64::from(with.width() * with.height());
-            for (with, without) in with.pixels().zip(without.pixels()) {
-                if with.0.iter().zip(without.0).any(|(a, b)| a.abs_diff(b) > SEEN) {
-                    shown += 1.0;
-                    (0..3).for_each(|c| seen.light[c] += square(f64::from(with.0[c]) / 255.0));
-                }
-            }
+            seen += self.backdrops.look(&mut self.stage, &frame, &camera);
         }
-        Seen { cover: shown / all, light: seen.light.map(|sum| sum / shown) }
-    }
-}
-
-/// By how much cover and light may differ from those of full trees.
-fn limits(landscape: &str, stage: &str) -> (f64, f64) {
-    match (landscape.split(' ').next(), stage) {
-        // Openness is known at a frond's corners alone, of which a level has fewer.
-        (Some("Palms"), "D2") => (0.05, 0.11),
-        // Fewer, thicker twigs; farther away than D_2 once was, and a pixel counts in whole.
-        (Some("Bare"), "D2") => (0.09, 0.08),
-        // Where they begin, more twigs pass than there are.
-        (Some("Bare"), "pictures") => (0.16, 0.08),
-        _ => (0.05, 0.08),
+        seen
     }
 }
 
@@ -160,16 +113,15 @@ fn distances_m(templates: &[Arc<Template>]) -> Vec<(String, f32)> {
 fn a_wood_is_the_same_at_every_distance() {
     let round = Round::new();
     round.until(|event| matches!(event, Event::Done { .. }));
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let studio = Headless::open(&shaders(folder.path()), 1).expect("a device");
+    let backdrops = Backdrops::open();
     let mut all = Vec::new();
     for path in scene_files(&Source::World(round.files.root().to_owned())).expect("scenes") {
-        let scene = studio.read(&path).expect("readable");
+        let scene = backdrops.studio().read(&path).expect("readable");
         let templates = &scene.trees.templates;
         let (wood, reach_m) = wood(&scene);
         let mut look = Look {
-            studio: &studio,
-            view: studio.view(studio.upload(&wood).expect("uploaded"), [MAX_PX; 2]),
+            backdrops: &backdrops,
+            stage: backdrops.stage(&wood, [MAX_PX; 2]),
             middle_m: Vec3::Y
                 * (scene.ground.field.height_m(0.0, 0.0) + mean(templates, |tree| tree.center_m[1])),
             reach_m,
@@ -177,12 +129,11 @@ fn a_wood_is_the_same_at_every_distance() {
         };
         for (stage, away_m) in distances_m(templates) {
             let full = look.see(away_m, TreeLodMode::Off, FINER);
-            let (cover, light) = look.see(away_m, TreeLodMode::default(), 1).beside(&full);
+            let (cover, light) = beside(&look.see(away_m, TreeLodMode::default(), 1), &full);
             let told =
                 format!("{}, {stage}, {away_m:.0} m: covers {cover:.3}, light {light:+.3?}", scene.name);
             genescape_bake::say!("{told}");
-            let (more, brighter) = limits(&scene.name, &stage);
-            let is_like = (cover - 1.0).abs() < more && light.iter().all(|channel| channel.abs() < brighter);
+            let is_like = (cover - 1.0).abs() < MORE && light.iter().all(|channel| channel.abs() < BRIGHTER);
             all.push((is_like, told));
         }
     }

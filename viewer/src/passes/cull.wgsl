@@ -54,15 +54,26 @@ struct Template {
     pad: array<f32, 2>,
 }
 
-// What does not go on to the last stays below it in 16 bits.
-const MAX_EDGE: f32 = 65534.0 / 65535.0;
+// Shares of a tree's pixels are told in 10 bits. What does not go on to the last stays below it.
+const STEPS: f32 = 1023.0;
+const MAX_EDGE: f32 = 1022.0 / STEPS;
 
 struct Visible {
     tree: u32,
     lambda: f32,
-    // Which of its pixels are drawn, as `is_shown` of `common.wgsl` knows them, in twice 16 bits: while leaves dissolve into
-    // clusters, clusters into fewer, or all of it into the picture. Only what goes on to the last draws bark.
+    // Which of its pixels are drawn, as `is_shown` of `common.wgsl` knows them, and before which of them it is the picture's, each
+    // in 10 bits: while leaves dissolve into clusters, clusters into fewer, or all of it into the picture. Only what goes on to the
+    // last draws bark, and all that is not the picture's.
     shown: u32,
+}
+
+fn in_steps(share: f32) -> f32 {
+    return round(share * STEPS) / STEPS;
+}
+
+fn pack(edges: vec3f) -> u32 {
+    let bits = vec3u(round(edges * STEPS));
+    return bits.x | (bits.y << 10u) | (bits.z << 20u);
 }
 
 struct Command {
@@ -164,23 +175,23 @@ fn choose(@builtin(global_invocation_id) id: vec3u) {
     let lambda = lod_number(template_index, scale, distance);
     let to_eye = cull.eye - center;
     let steepness = abs(to_eye.y) / max(length(to_eye), 1e-6);
-    let share = pictured(template_index, scale, distance, steepness);
+    let share = in_steps(pictured(template_index, scale, distance, steepness));
     if (share < 1.0) {
         let level = u32(lambda);
         let next = level + 1u;
         let dissolves = next >= templates[template_index].clusters && next < templates[template_index].levels;
-        let edge = select(share, mix(share, 1.0, morphed(lambda)), dissolves);
+        let edge = select(share, in_steps(mix(share, 1.0, morphed(lambda))), dissolves);
         let slot = atomicAdd(&counts[bucket(template_index, level)], 1u);
-        visible[list(template_index, level) + slot] = Visible(index, lambda, pack2x16unorm(vec2f(min(edge, MAX_EDGE), 1.0)));
+        visible[list(template_index, level) + slot] = Visible(index, lambda, pack(vec3f(min(edge, MAX_EDGE), 1.0, min(share, MAX_EDGE))));
         if (edge > share) {
             let slot = atomicAdd(&counts[bucket(template_index, next)], 1u);
-            let shown = pack2x16unorm(vec2f(share, min(edge, MAX_EDGE)));
+            let shown = pack(vec3f(share, min(edge, MAX_EDGE), share));
             visible[list(template_index, next) + slot] = Visible(index, f32(next), shown);
         }
     }
     if (share > 0.0) {
         let slot = atomicAdd(&counts[bucket(template_index, cull.levels)], 1u);
-        let shown = pack2x16unorm(vec2f(0.0, share));
+        let shown = pack(vec3f(0.0, share, share));
         visible[list(template_index, templates[template_index].levels) + slot] = Visible(index, lambda, shown);
     }
 }

@@ -68,7 +68,7 @@ fn way_to_template(rows: array<vec4f, 3>, way: vec3f) -> vec3f {
 }
 
 @vertex
-fn vertex(@location(8) tree: u32, @location(10) shown: vec2f, @builtin(vertex_index) index: u32) -> Out {
+fn vertex(@location(8) tree: u32, @location(10) shown: vec4f, @builtin(vertex_index) index: u32) -> Out {
     let rows = trees[tree].rows;
     let template_index = trees[tree].template_index;
     let axis = frames[template_index].axis;
@@ -90,7 +90,7 @@ fn vertex(@location(8) tree: u32, @location(10) shown: vec2f, @builtin(vertex_in
     out.toward = way_from_template(rows, vec3f(ahead.x, 0.0, ahead.y));
     out.turn = fract(atan2(ahead.x, ahead.y) / (2.0 * PI) + 1.0) * 8.0;
     out.template_index = template_index;
-    out.shown = shown;
+    out.shown = shown.xy;
     out.leaf_light = leaf_light(template_index, normalize(back), normalize(way_to_template(rows, view.sun_direction)));
     return out;
 }

@@ -27,9 +27,9 @@ pub const VERTEX: [wgpu::VertexAttribute; 8] = wgpu::vertex_attr_array![
     0 => Float32x3, 1 => Unorm8x4, 2 => Float32x3, 3 => Snorm16x2,
     4 => Float32x2, 5 => Float32x2, 6 => Snorm16x2, 7 => Snorm16x2,
 ];
-/// Attributes of a visible tree: its number, λ, and which of its pixels are drawn.
+/// Attributes of a visible tree: its number, λ, and which of its pixels are drawn, see `Visible` of `cull.wgsl`.
 pub const VISIBLE: [wgpu::VertexAttribute; 3] =
-    wgpu::vertex_attr_array![8 => Uint32, 9 => Float32, 10 => Unorm16x2];
+    wgpu::vertex_attr_array![8 => Uint32, 9 => Float32, 10 => Unorm10_10_10_2];
 
 /// The two vertex buffers of every draw of trees.
 pub(super) fn buffers() -> [Option<wgpu::VertexBufferLayout<'static>>; 2] {

@@ -17,8 +17,9 @@ struct In {
     @location(8) tree: u32,
     // λ: level of detail and, after the point, how far it has morphed to the next.
     @location(9) lambda: f32,
-    // Which of its leaves' pixels are drawn: the others show clusters or its picture.
-    @location(10) shown: vec2f,
+    // Which of its leaves' pixels are drawn, from where to where: the others show clusters or its picture. Bark is drawn from the
+    // third number on.
+    @location(10) shown: vec4f,
 }
 
 struct Out {
@@ -47,7 +48,7 @@ fn placed(in: In) -> Out {
     out.uv = in.uv + alpha * in.uv_delta;
     out.color = select(in.color.rgb, level_tint(in.lambda) * 1.6, view.tint_levels != 0u);
     out.open = in.color.a;
-    out.shown = in.shown;
+    out.shown = in.shown.xy;
     return out;
 }
 
@@ -56,7 +57,7 @@ fn vertex(in: In) -> Out {
     return placed(in);
 }
 
-// Bark is of the level that goes on to the last of the pixels, and there whole.
+// Bark is of the level that goes on to the last of the pixels, and there whole but for what its picture shows.
 @vertex
 fn bark_vertex(in: In) -> Out {
     var out = placed(in);
@@ -64,6 +65,7 @@ fn bark_vertex(in: In) -> Out {
         // Outside of all pictures.
         out.clip = vec4f(0.0, 0.0, 2.0, 1.0);
     }
+    out.shown = vec2f(in.shown.z, 1.0);
     return out;
 }
 
@@ -73,6 +75,9 @@ fn ambient(normal: vec3f, albedo: vec3f) -> vec3f {
 
 @fragment
 fn bark(in: Out) -> @location(0) vec4f {
+    if (in.shown.x > 0.0 && !is_shown(in.clip.xy, in.shown)) {
+        discard;
+    }
     var albedo = in.color * material.factor.rgb;
     var normal = normalize(in.normal);
     albedo *= textureSample(color_map, repeating, in.uv).rgb;

@@ -41,6 +41,8 @@ struct Shown {
     mesh: f32,
     next: f32,
     picture: f32,
+    /// The share of the bark that is drawn.
+    bark: f32,
 }
 
 fn forest(rng: &mut Pcg32) -> Forest {
@@ -134,16 +136,24 @@ fn chosen(
         let first = commands[if is_picture { meshes + kind } else { list }].first_instance as usize;
         for &[tree, lambda, part] in &visible[first..first + counts[list] as usize] {
             let lambda = f32::from_bits(lambda);
-            let [from, to] = [part & 0xffff, part >> 16].map(|edge| edge as f32 / 65535.0);
+            let [from, to, picture] = [0, 10, 20].map(|bit| (part >> bit & 1023) as f32 / 1023.0);
             assert!(is_picture || lambda as usize == level, "a tree is listed at its level");
             assert_eq!(forest.trees.instances[tree as usize].template as usize, kind, "and under its kind");
-            let one =
-                shown[tree as usize].get_or_insert(Shown { lambda, mesh: 0.0, next: 0.0, picture: 0.0 });
+            let one = shown[tree as usize].get_or_insert(Shown {
+                lambda,
+                mesh: 0.0,
+                next: 0.0,
+                picture: 0.0,
+                bark: 0.0,
+            });
             let part = match (is_picture, to < 1.0) {
                 (true, _) => &mut one.picture,
                 (false, true) => &mut one.next,
                 (false, false) => &mut one.mesh,
             };
+            if !is_picture && to == 1.0 {
+                one.bark = 1.0 - picture;
+            }
             assert!(std::mem::replace(part, to - from) == 0.0 && to > from, "tree {tree} is drawn twice");
             if !is_picture && to < 1.0 {
                 let clusters = forest.trees.templates[kind].clusters.expect("only clusters dissolve");
@@ -198,13 +208,17 @@ fn compare(studio: &Headless, seed: u64) -> [usize; 4] {
                     "seed {seed}, tree {tree}"
                 );
             }
-            let Some(Shown { lambda, mesh, next, picture }) = shown else {
+            let Some(Shown { lambda, mesh, next, picture, bark }) = shown else {
                 seen[0] += 1;
                 continue;
             };
             seen[if picture == 0.0 { 1 } else { 2 + usize::from(mesh == 0.0) }] += 1;
             let all = mesh + next + picture;
             assert!((all - 1.0).abs() < 5e-5, "seed {seed}, tree {tree}: {mesh}, {next} and {picture}");
+            assert!(
+                mesh == 0.0 || (bark + picture - 1.0).abs() < 2e-3,
+                "tree {tree}: bark {bark}, {picture}"
+            );
             let errors_m = &forest.errors_m[instance.template as usize];
             let away_m = distance_m(center.distance(camera.position_m), radius_m);
             let number = |control: &Control, away_m: f32| {

@@ -217,7 +217,7 @@ fn shaders_read_the_attributes_as_they_are_written() {
                 F::Float32 => (ScalarKind::Float, 1),
                 F::Float32x2 | F::Snorm16x2 | F::Unorm16x2 => (ScalarKind::Float, 2),
                 F::Float32x3 => (ScalarKind::Float, 3),
-                F::Unorm8x4 | F::Float16x4 => (ScalarKind::Float, 4),
+                F::Unorm8x4 | F::Unorm10_10_10_2 | F::Float16x4 => (ScalarKind::Float, 4),
                 F::Uint32 => (ScalarKind::Uint, 1),
                 F::Uint32x2 => (ScalarKind::Uint, 2),
                 F::Sint32x2 => (ScalarKind::Sint, 2),
