@@ -163,8 +163,9 @@ impl Spread<'_> {
             let four: Vec<&[f32]> = std::iter::once(&own).chain(rows).map(Vec::as_slice).collect();
             worth(&four, &units)
         };
+        let best_seen = self.seen(best);
         let strange: Vec<bool> =
-            others.iter().map(|one| (self.stands_out)(self.seen(best), self.seen(one))).collect();
+            others.iter().map(|one| (self.stands_out)(best_seen, self.seen(one))).collect();
         let mut new: Vec<usize> = (0..others.len()).collect();
         while new.len() > least_new {
             let all = worth(&rows);
@@ -181,11 +182,10 @@ impl Spread<'_> {
             new.retain(|one| *one != at);
             rows[at].clone_from(&own);
         }
-        let mut strangers = new.iter().filter(|at| strange[**at]).count();
-        // Where nothing is strange, what is new is shown twice all the same.
-        let again =
-            new.iter().find(|at| strange[**at]).or_else(|| new.first().filter(|_| new.len() == 1)).copied();
-        strangers = strangers.max(usize::from(new.len() == 1));
+        // Where nothing is strange, the only new one is shown twice all the same.
+        let stands_twice = |at: &&usize| strange[**at] || new.len() == 1;
+        let again = new.iter().find(stands_twice).copied();
+        let mut strangers = new.iter().filter(stands_twice).count();
         for at in (0..others.len()).filter(|at| !new.contains(at)) {
             match again.filter(|_| strangers < STRANGERS) {
                 Some(again) => {

@@ -75,13 +75,14 @@ fn ambient(normal: vec3f, albedo: vec3f) -> vec3f {
 
 @fragment
 fn bark(in: Out) -> @location(0) vec4f {
-    if (in.shown.x > 0.0 && !is_shown(in.clip.xy, in.shown)) {
-        discard;
-    }
     var albedo = in.color * material.factor.rgb;
     var normal = normalize(in.normal);
     albedo *= textureSample(color_map, repeating, in.uv).rgb;
     let bump = textureSample(normal_map, repeating, in.uv).xyz * 2.0 - 1.0;
+    // Not before its textures are read: their mip levels depend on the pixels around.
+    if (in.shown.x > 0.0 && !is_shown(in.clip.xy, in.shown)) {
+        discard;
+    }
     let tangent = normalize(in.tangent.xyz - normal * dot(in.tangent.xyz, normal));
     let bitangent = cross(normal, tangent) * in.tangent.w;
     let bumped = normalize(tangent * bump.x + bitangent * bump.y + normal * bump.z);
