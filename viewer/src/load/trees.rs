@@ -16,6 +16,7 @@ use super::octahedral::{direction, octahedral};
 use super::{Result, images};
 use crate::scene::{
     Crown, Image, Impostor, LEAVES, LeafSide, Level, Material, Range, Template, TreeVertex, Trees,
+    middles_m,
 };
 
 /// The trees; none if the scene has none.
@@ -170,7 +171,8 @@ fn impostor(document: &Document, value: &serde_json::Value, template: &Template)
     let places = leaf_vertices(template).map(|vertex| Vec3::from(vertex.position_m));
     let crown = Crown::around(places);
     let leaves = some_leaves(template);
-    Ok(Impostor { color, relief, alpha_cutoff, axis_m, low_m, size_m, error_m, crown, leaves })
+    let middles_m = middles_m(&relief, size_m[0]);
+    Ok(Impostor { color, relief, alpha_cutoff, axis_m, low_m, size_m, error_m, crown, leaves, middles_m })
 }
 
 /// The corners of the triangles of all leaves of D_0.

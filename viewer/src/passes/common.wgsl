@@ -115,9 +115,24 @@ struct Studio {
 
 const PI: f32 = 3.14159265;
 
-// Aerial perspective: of the light that comes from `distance` metres away some is replaced by the haze's own.
-fn aerial_perspective(radiance: vec3f, distance: f32) -> vec3f {
-    return mix(view.haze, radiance, exp(-distance * view.haze_extinction));
+// The light of endless haze in a direction: that of the cloudless sky at the horizon, brighter towards the sun, so that land
+// fades into the sky behind it.
+fn haze_towards(way: vec3f) -> vec3f {
+    return textureSampleLevel(clear_cube, clamped, vec3f(way.x, 0.0, way.z) + vec3f(1e-4, 0.0, 0.0), 0.0).rgb;
+}
+
+// Less haze than this, as a share of what is seen, looks alike in all directions.
+const THIN_HAZE: f32 = 0.01;
+
+// Aerial perspective: of the light that comes from a place in the world some is replaced by the haze's own.
+fn aerial_perspective(radiance: vec3f, world: vec3f) -> vec3f {
+    let way = world - view.eye;
+    let clear = exp(-length(way) * view.haze_extinction);
+    var haze = view.haze;
+    if (clear < 1.0 - THIN_HAZE) {
+        haze = haze_towards(way);
+    }
+    return mix(haze, radiance, clear);
 }
 
 // Irradiance from the sky above and the ground below on what faces upwards by that share of the way from straight down to

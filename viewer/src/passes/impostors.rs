@@ -4,13 +4,17 @@ use super::shaders::ShaderError;
 use super::trees::VISIBLE;
 use super::{BoundScene, BoundTrees, Compiler, DrawPass, FilledOrWire, PipelineDesc, Shader, buffer_layout};
 use crate::options::Options;
-use crate::scene::LEAVES;
+use crate::scene::{LEAVES, ROWS};
 use crate::upload::{DrawCommand, MAX_LEVELS, TreeSet};
 
 pub const SHADER: Shader = Shader {
     name: "impostors",
     source: include_str!("impostors.wgsl"),
-    constants: &[("LEAVES", LEAVES as f64), ("PICTURES_LEVEL", MAX_LEVELS as f64)],
+    constants: &[
+        ("LEAVES", LEAVES as f64),
+        ("ROWS", ROWS as f64),
+        ("PICTURES_LEVEL", MAX_LEVELS as f64),
+    ],
 };
 
 #[derive(Debug)]

@@ -3,6 +3,8 @@
 
 // Leaves whose normals are known of each template.
 override LEAVES: u32;
+// Rows of which a template's middle is known.
+override ROWS: u32;
 // The number by which tints know pictures from meshes.
 override PICTURES_LEVEL: f32;
 
@@ -23,6 +25,8 @@ struct Frame {
     // Of as many leaves as `LEAVES` in Rust: by which they are lit, and by which the eye sees more or less of them.
     leaf_normals: array<vec4f, 32>,
     leaf_faces: array<vec4f, 32>,
+    // Where the tree's middle is in each row from the top, x and z from the axis.
+    middles: array<vec2f, 32>,
 }
 
 struct Out {
@@ -128,13 +132,26 @@ struct Pixel {
     @builtin(sample_mask) samples: u32,
 }
 
+// How far the middle of a tree lies to the right, at a height, as a part of its picture's width: as it is seen from `ahead` beyond
+// what the picture from a side shows.
+fn shift(template_index: u32, v: f32, ahead: vec2f, side: u32) -> f32 {
+    let row = clamp(v * f32(ROWS) - 0.5, 0.0, f32(ROWS - 1u));
+    let first = u32(row);
+    let above = frames[template_index].middles[first];
+    let below = frames[template_index].middles[min(first + 1u, ROWS - 1u)];
+    let middle = mix(above, below, row - f32(first));
+    let angle = f32(side) * PI / 4.0;
+    return dot(middle, vec2f(ahead.y - cos(angle), sin(angle) - ahead.x)) / frames[template_index].size.x;
+}
+
 fn pixel(in: Out, is_kept: bool) -> Pixel {
     // Half-way between two sides some places of the tree are seen from the one, some from the other.
     let part = smoothstep(0.35, 0.65, fract(in.turn));
     let place = floor(in.uv * 32.0);
     let side = u32(in.turn) + select(0u, 1u, scattered(place) < part);
+    let beside = in.uv.x - shift(in.template_index, in.uv.y, in.ahead, side);
     // From behind it is its own mirror image.
-    let u = select(in.uv.x, 1.0 - in.uv.x, (side & 4u) != 0u);
+    let u = clamp(select(beside, 1.0 - beside, (side & 4u) != 0u), 0.0, 1.0);
     let at = vec2f((f32(side & 3u) + u) * 0.25, in.uv.y);
     let along_x = dpdx(in.uv) * vec2f(0.25, 1.0);
     let along_y = dpdy(in.uv) * vec2f(0.25, 1.0);
@@ -165,7 +182,7 @@ fn pixel(in: Out, is_kept: bool) -> Pixel {
     let up = mix(0.5, in.leaf_light.z, relief.g);
     let ambient = ambient_light(up) * mix(0.8, 0.15 + 0.75 * open * open, relief.g);
     let radiance = (albedo * ambient + view.sun_irradiance * sun) / PI;
-    return Pixel(vec4f(aerial_perspective(radiance, distance(in.world, view.eye)), 1.0), samples);
+    return Pixel(vec4f(aerial_perspective(radiance, in.world), 1.0), samples);
 }
 
 @fragment

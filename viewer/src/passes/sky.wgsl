@@ -18,7 +18,7 @@ fn fragment(corner: Corner) -> @location(0) vec4f {
     let direction = normalize(ray.xyz);
     var radiance = sky_radiance(direction);
     // Below the horizon there is only haze: land ends where the apron ends.
-    radiance = mix(radiance, view.haze, smoothstep(0.0, -0.02, direction.y));
+    radiance = mix(radiance, haze_towards(direction), smoothstep(0.0, -0.02, direction.y));
     let beside = acos(clamp(dot(direction, view.sun_direction), -1.0, 1.0)) / view.sun_angular_radius;
     if (beside < 40.0 && direction.y > -0.01) {
         // The disc itself, and what the eye and the lens scatter around it. Far above white either way.

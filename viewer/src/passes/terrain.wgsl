@@ -294,7 +294,7 @@ fn ground(in: Out) -> @location(0) vec4f {
     }
     albedo = select(albedo * wetness(in.world.y), level_tint(in.level) * 0.5, view.tint_levels != 0u);
     let irradiance = view.sun_irradiance * light.g * relief + view.sky_irradiance * light.r * (0.6 + 0.4 * normal.y);
-    return vec4f(aerial_perspective(albedo / PI * irradiance, away), 1.0);
+    return vec4f(aerial_perspective(albedo / PI * irradiance, in.world), 1.0);
 }
 
 // Metres above the lake up to which the ground is wet.
@@ -324,7 +324,7 @@ fn mirrored_ground(in: Out) -> @location(0) vec4f {
     }
     let up = 0.6 + 0.4 * normalize(in.normal).y;
     let irradiance = view.sun_irradiance * light.g + view.sky_irradiance * light.r * up;
-    return vec4f(aerial_perspective(albedo * wetness(in.world.y) / PI * irradiance, distance(in.world, view.eye)), 1.0);
+    return vec4f(aerial_perspective(albedo * wetness(in.world.y) / PI * irradiance, in.world), 1.0);
 }
 
 // The ring around the field.
@@ -371,7 +371,7 @@ fn ring_radiance(in: RingOut) -> vec3f {
     let albedo = in.color * mix(vec3f(1.0), tiles.factor, rough);
     let sun = view.sun_irradiance * max(dot(normal, view.sun_direction), 0.0);
     let sky = view.sky_irradiance * (0.5 + 0.5 * normal.y);
-    return aerial_perspective(albedo / PI * (sun + sky), distance(in.world, view.eye));
+    return aerial_perspective(albedo / PI * (sun + sky), in.world);
 }
 
 @fragment

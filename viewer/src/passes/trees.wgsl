@@ -92,7 +92,7 @@ fn bark(in: Out) -> @location(0) vec4f {
     if (facing > 0.0) {
         radiance += albedo / PI * view.sun_irradiance * facing * sun_visibility(in.world, 0.25);
     }
-    return vec4f(aerial_perspective(radiance, distance(in.world, view.eye)), 1.0);
+    return vec4f(aerial_perspective(radiance, in.world), 1.0);
 }
 
 // A leaf has two sides and lets light through: seen from the side that the sun doesn't shine on it glows. In its own shade is
@@ -111,7 +111,7 @@ fn leaf_light(in: Out, albedo: vec3f, normal: vec3f, bias_m: f32) -> vec4f {
     let outward = select(-normal, normal, normal.y > 0.0);
     var radiance = ambient(outward, albedo) * (0.15 + 0.75 * in.open * in.open);
     radiance += (reflected + through * glow) / PI * view.sun_irradiance * sun;
-    return vec4f(aerial_perspective(radiance, distance(in.world, view.eye)), 1.0);
+    return vec4f(aerial_perspective(radiance, in.world), 1.0);
 }
 
 fn card_albedo(in: Out) -> vec3f {

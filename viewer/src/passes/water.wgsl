@@ -130,6 +130,6 @@ fn fragment(in: Out) -> @location(0) vec4f {
     // What comes from land and trees has been through all of the air; the rest only arrives from here.
     let share = reflectance + (1.0 - reflectance) * opaque;
     let clear = exp(-away * view.haze_extinction);
-    let own = radiance * clear + view.haze * (1.0 - clear) * (share - reflectance * land.a);
+    let own = radiance * clear + haze_towards(in.world - view.eye) * (1.0 - clear) * (share - reflectance * land.a);
     return vec4f((own + land.rgb * reflectance) * edge, share * edge);
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{DrawCommand, ImageUse, Uploader};
-use crate::scene::{Impostor, LEAVES, Template};
+use crate::scene::{Impostor, LEAVES, ROWS, Template};
 
 /// Mip levels end where a picture of a strip has so many pixels a side.
 const MIN_PX: u32 = 8 * genescape_schema::scene::IMPOSTOR_PICTURES;
@@ -28,6 +28,8 @@ pub struct ImpostorData {
     pub leaf_normals: [[f32; 4]; LEAVES],
     /// Likewise.
     pub leaf_faces: [[f32; 4]; LEAVES],
+    /// Where the tree's middle is in each row from the top, x and z from the axis.
+    pub middles: [[f32; 2]; ROWS],
 }
 
 /// The pictures of all templates.
@@ -95,5 +97,6 @@ fn frame(pictures: &Impostor) -> ImpostorData {
         alpha_cutoff: pictures.alpha_cutoff,
         leaf_normals: pictures.leaves.map(|leaf| padded(leaf.normal)),
         leaf_faces: pictures.leaves.map(|leaf| padded(leaf.face)),
+        middles: pictures.middles_m,
     }
 }
