@@ -24,9 +24,9 @@ pub struct ProgressiveMeshExtension {
 /// Trees cover so much of their pictures at least, but for bare ones and palms.
 const USUAL_COVERAGE: f32 = 0.13;
 /// Errors of nothing count so many times at most.
-const MAX_WEIGHT: f32 = 2.5;
+const MAX_WEIGHT: f32 = 5.0;
 
-/// How many times the errors of a mesh with that `coverage` count for the eye, 1 … 2.5: a picture that is mostly sky differs
+/// How many times the errors of a mesh with that `coverage` count for the eye, 1 … 5: a picture that is mostly sky differs
 /// little from another, and yet everybody sees that a bare tree has half of its twigs. So what differs counts as a part of
 /// what there is to be seen, where that is less than usual.
 pub fn error_weight(coverage: Option<f32>) -> f32 {
@@ -64,6 +64,6 @@ mod tests {
     fn what_covers_little_counts_more_but_not_without_end() {
         assert_eq!([None, Some(0.3), Some(1.0)].map(error_weight), [1.0; 3]);
         assert!((error_weight(Some(0.065)) - 2.0).abs() < 1e-6);
-        assert_eq!([Some(0.0), Some(1e-9)].map(error_weight), [2.5; 2]);
+        assert_eq!([Some(0.0), Some(1e-9)].map(error_weight), [5.0; 2]);
     }
 }
