@@ -29,7 +29,7 @@ const TURNING_DEG: [f32; 2] = [75.0, 55.0];
 const FULL_BLOSSOM: f32 = 0.25;
 
 /// Grass that sleeps, from where it is moist to where it is dry.
-const DORMANT: [Rgb; 2] = [[0.080, 0.074, 0.030], [0.205, 0.162, 0.086]];
+const DORMANT: [Rgb; 2] = [[0.090, 0.098, 0.034], [0.265, 0.220, 0.104]];
 /// Young grass.
 const FRESH: [Rgb; 2] = [[0.040, 0.092, 0.016], [0.090, 0.140, 0.032]];
 /// Bare twigs, and bracken that has turned.
@@ -46,7 +46,10 @@ impl Season {
     /// The season that trees of these genes show.
     pub fn of(trees: &LitterParams) -> Self {
         let whole = |part: f32| (part.min(1.0) * STEPS).round() / STEPS;
-        if trees.leaves_per_stem == 0 {
+        if trees.is_dead() {
+            return Self::default();
+        }
+        if trees.is_asleep() {
             return Self { winter: 1.0, ..Self::default() };
         }
         let autumn = whole(turned(trees.leaf_hue_deg));

@@ -14,12 +14,24 @@ use crate::model::{Instance, Landform};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LitterParams {
     pub height_m: f32,
-    /// Bare trees stand on last autumn's leaves.
     pub leaves_per_stem: u32,
+    pub secondary_branches: u32,
     pub leaf_shape: u32,
     pub leaf_size_m: f32,
     pub leaf_hue_deg: f32,
     pub blossom: f32,
+}
+
+impl LitterParams {
+    /// Trees without leaves in the winter; they stand on last autumn's.
+    pub(super) fn is_asleep(&self) -> bool {
+        self.leaves_per_stem == 0 && !self.is_dead()
+    }
+
+    /// Trees without leaves that have lost their twigs, too. In which season they stand is not to be seen.
+    pub(super) fn is_dead(&self) -> bool {
+        self.leaves_per_stem == 0 && self.secondary_branches == 0
+    }
 }
 
 const NEEDLES: u32 = 6;
@@ -60,7 +72,7 @@ const SPRAY: f32 = 0.8;
 impl Offspring {
     fn new(params: &LitterParams) -> Self {
         let foliage = match params.leaf_shape {
-            _ if params.leaves_per_stem == 0 => Foliage::Bare,
+            _ if params.is_asleep() => Foliage::Bare,
             NEEDLES => Foliage::Needles,
             FRONDS => Foliage::Fronds,
             _ => Foliage::Leaves,
@@ -84,7 +96,8 @@ impl Litter {
             is_needles: false,
         };
         match params.leaf_shape {
-            _ if params.leaves_per_stem == 0 => broad(0.8, [BROWN, STRAW]),
+            _ if params.is_asleep() => broad(0.8, [BROWN, STRAW]),
+            _ if params.is_dead() => broad(0.25, [BROWN, RUSSET]),
             NEEDLES => Self { is_needles: true, ..broad(0.85, [RUSSET, BROWN]) },
             FRONDS => broad(0.25, [STRAW, BROWN]),
             _ => {

@@ -128,6 +128,7 @@ fn no_plant_grows_on_rock_or_snow() {
 const MAPLE: LitterParams = LitterParams {
     height_m: 14.0,
     leaves_per_stem: 20,
+    secondary_branches: 20,
     leaf_shape: 4,
     leaf_size_m: 0.1,
     leaf_hue_deg: 30.0,
