@@ -87,7 +87,7 @@ const WET_MUD: Rgb = [0.062, 0.054, 0.037];
 const SAND: Rgb = [0.37, 0.30, 0.20];
 const GRAVEL: Rgb = [0.185, 0.176, 0.150];
 /// Heath and moss, which grow in patches of their own.
-const HEATH: Rgb = [0.082, 0.060, 0.034];
+const HEATH: Rgb = [0.086, 0.066, 0.036];
 pub(super) const MOSS: Rgb = [0.040, 0.060, 0.014];
 /// Part of the light from a meadow in full bloom that comes from petals, most of which stand beyond where they are drawn.
 const IN_BLOOM: f32 = 0.05;

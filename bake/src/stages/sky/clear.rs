@@ -19,13 +19,15 @@ const COLUMNS: usize = 32;
 const NOON_SUN: f32 = 7.5;
 /// `key` in `adapt` at noon, for a sun of irradiance 1.
 const NOON_KEY: f32 = 0.115;
+/// Degree to which the eye takes the light's colour for white, as D in CIECAM02; 1 would make a sunset grey.
+const WHITE_ADAPTED: f32 = 0.6;
 
 /// The cloudless sky.
 pub struct ClearSky {
     /// Unit vector towards the sun.
     pub sun: Vec3A,
     /// The sun's irradiance above the atmosphere in our units.
-    pub sun_above: f32,
+    pub sun_above: Vec3A,
     /// The sun's irradiance at the ground on a surface that faces it.
     pub sun_ground: Vec3A,
     /// Radiance of the ground.
@@ -62,7 +64,7 @@ impl ClearSky {
         let haze_per_km = 3.912 / (params.haze_m.max(100.0) * 0.001);
         let mut sky = Self {
             sun,
-            sun_above: 1.0,
+            sun_above: Vec3A::ONE,
             sun_ground: air.sun_transmittance(EYE_KM, sun.y, 64),
             ground: Vec3A::ZERO,
             haze: Vec3A::ZERO,
@@ -95,14 +97,17 @@ impl ClearSky {
     }
 
     /// Scales all light as an adapted eye sees it: a bright noon stays as it is, dusk and overcast are lifted most
-    /// of the way.
+    /// of the way, and the colour of the light on level ground is half taken for white (von Kries): grass at sunset is
+    /// golden, not brown.
     fn adapt(&mut self, dimming: f32) {
         self.fill_horizon();
         let sky = self.irradiance();
         let open = self.sun_ground * self.sun.y + sky;
         // The eye rests mostly on the sky itself.
         let key = luminance(sky).max(1e-6) + 0.03 * luminance(self.sun_ground) * self.sun.y;
-        let scale = NOON_SUN * libm::powf(NOON_KEY / key, 0.85) * libm::powf(dimming, -0.45);
+        let bright = NOON_SUN * libm::powf(NOON_KEY / key, 0.85) * libm::powf(dimming, -0.45);
+        let white = Vec3A::splat(luminance(open)) / open.max(Vec3A::splat(1e-6));
+        let scale = bright * Vec3A::ONE.lerp(white, WHITE_ADAPTED);
         self.sun_above = scale;
         self.sun_ground *= scale;
         for entry in &mut self.table {

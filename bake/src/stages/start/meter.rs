@@ -17,6 +17,9 @@ const ADAPTED: f32 = 0.7;
 /// What a photographer adds for snow, which a meter takes for grey; all of it where this part of the picture is snow.
 const SNOW_EV: f32 = 1.0;
 const MUCH_SNOW: f32 = 0.4;
+/// The same for fog: all of it where nothing is seen at this many metres.
+const FOG_EV: f32 = 2.4;
+const INTO_FOG_M: f32 = 250.0;
 /// No picture is dimmed or lifted by more than these factors.
 const LIMITS: [f32; 2] = [0.25, 6.0];
 /// The foreground's log-average, in shade as in the sun, that a picture is to show at least: of display luminance it is a tenth,
@@ -44,7 +47,8 @@ const MIRRORED: f32 = 0.35;
 /// Factor by which the picture is to be made brighter; `lit` is the part of its ground that the sun reaches.
 pub(super) fn exposure(picture: &Picture<'_>, light: &SkyLight, lit: f32) -> f32 {
     let snow = picture.share(|kind| kind == Kind::Snow);
-    let key = libm::exp2f(SNOW_EV * (snow / MUCH_SNOW).min(1.0));
+    let fog = 1.0 - libm::expf(-INTO_FOG_M * light.haze_extinction_per_m);
+    let key = libm::exp2f((SNOW_EV * (snow / MUCH_SNOW).min(1.0)).max(FOG_EV * fog));
     let (scene, lit) = (Scene::of(light), lit.min(MAX_LIT));
     let whole = scene.log_average(picture, lit, f32::INFINITY);
     let factor = key * libm::powf(NEUTRAL / whole, ADAPTED);

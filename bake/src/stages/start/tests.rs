@@ -353,4 +353,16 @@ fn metered_pictures_are_neither_dark_nor_burnt_and_dusk_has_colour() {
     // Under a deck there is little colour, and no brown.
     let [above, _] = shown(&dull_dusk, false);
     assert!(above.x - above.z < 0.1, "{above}");
+    // Grass at sunset is gold, not brown.
+    let sunset = SkyParams { sun_elevation_deg: 7.0, ..noon };
+    let [_, grass] = shown(&sunset, false);
+    assert!(grass.y > 0.96 * grass.x && grass.x > 1.3 * grass.z, "{grass}");
+}
+
+#[test]
+fn fog_is_bright() {
+    let light = sky::light(&SkyParams { sun_elevation_deg: 10.0, haze_m: 1300.0, ..NOON });
+    let exposure = look(&land(|_, _| 0.0, None), &[], &light).exposure;
+    let fog = luma(Vec3::from(film((exposure * Vec3::from(light.haze_linear)).to_array())));
+    assert!((0.86..0.94).contains(&fog), "{fog}");
 }

@@ -271,6 +271,9 @@ fn the_ground_has_the_season_of_its_trees() {
     assert!(summer.0 > 2 * autumn.0 && autumn.0 > 0 && winter.0 == 0, "{summer:?} {autumn:?} {winter:?}");
     assert!(summer.1 > autumn.1 + 0.02 && autumn.1 > winter.1 + 0.02, "{summer:?} {autumn:?} {winter:?}");
     assert!(spring.0 == summer.0 && spring.1 > summer.1 + 0.02, "{spring:?} {summer:?}");
+    // Dead trees, which have no twigs either, stand in any season.
+    let dead = LitterParams { leaves_per_stem: 0, secondary_branches: 0, ..leafy.clone() };
+    assert_eq!(seen(dead), summer);
     // Another green is the same summer: what is kept of the ground stays.
     assert_eq!(
         Season::of(&leafy),
