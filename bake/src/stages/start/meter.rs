@@ -30,8 +30,10 @@ const MAX_LIFT: f32 = 2.7;
 const MAX_LIT: f32 = 0.5;
 /// Metres up to which land and trees are foreground.
 const NEAR_M: f32 = 40.0;
-/// Part of the sky's light that reaches what the sun does not: what hides the sun hides some sky.
+/// Part of the sky's light that reaches what the sun does not: what hides the sun hides some sky. And by how much less, as a
+/// part, where all that is seen above the land is trees.
 const OPEN_IN_SHADE: f32 = 0.7;
+const HIDDEN_BY_TREES: f32 = 0.7;
 /// How much the sky counts beside as large a part of the land: who looks at a bright sky still wants to see the ground.
 const SKY_WEIGHT: f32 = 0.5;
 /// Black enough to be no measure, as a part of the neutral luminance.
@@ -49,7 +51,9 @@ pub(super) fn exposure(picture: &Picture<'_>, light: &SkyLight, lit: f32) -> f32
     let snow = picture.share(|kind| kind == Kind::Snow);
     let fog = 1.0 - libm::expf(-INTO_FOG_M * light.haze_extinction_per_m);
     let key = libm::exp2f((SNOW_EV * (snow / MUCH_SNOW).min(1.0)).max(FOG_EV * fog));
-    let (scene, lit) = (Scene::of(light), lit.min(MAX_LIT));
+    let [trees, sky] = [Kind::Tree, Kind::Sky].map(|wanted| picture.share(|kind| kind == wanted));
+    let trees = trees / (trees + sky).max(f32::MIN_POSITIVE);
+    let (scene, lit) = (Scene::of(light, 1.0 - HIDDEN_BY_TREES * trees), lit.min(MAX_LIT));
     let whole = scene.log_average(picture, lit, f32::INFINITY);
     let factor = key * libm::powf(NEUTRAL / whole, ADAPTED);
     let lift = FOREGROUND / (factor * scene.log_average(picture, lit, NEAR_M));
@@ -68,13 +72,14 @@ struct Scene {
 }
 
 impl Scene {
-    fn of(light: &SkyLight) -> Self {
+    /// Where trees leave that part of the sky open.
+    fn of(light: &SkyLight, open: f32) -> Self {
         let around = luminance(light.sky_irradiance_linear);
         let sun = luminance(light.sun_irradiance_linear) * light.sun_direction.y.max(0.0);
         Self {
             sky: light.zonal_radiance_linear.iter().copied().map(luminance).collect(),
             sunny: (around + sun) * std::f32::consts::FRAC_1_PI,
-            shady: around * OPEN_IN_SHADE * std::f32::consts::FRAC_1_PI,
+            shady: around * OPEN_IN_SHADE * open * std::f32::consts::FRAC_1_PI,
             haze: luminance(light.haze_linear),
             haze_per_m: light.haze_extinction_per_m,
         }
