@@ -25,7 +25,7 @@ const TREES: u32 = 24;
 const DIRECTIONS_RAD: [f32; 2] = [0.5, 2.5];
 /// By how much cover and light may differ from those of full trees.
 const MORE: f64 = 0.04;
-const BRIGHTER: f64 = 0.08;
+const BRIGHTER: f64 = 0.085;
 
 /// How much of the sky one hides, as a multiple of what another hides that has `FINER` times as many pixels a side, and by how much
 /// each channel differs as a part of the brightest one.
