@@ -4,7 +4,7 @@ use super::shaders::ShaderError;
 use super::trees::VISIBLE;
 use super::{BoundScene, BoundTrees, Compiler, DrawPass, FilledOrWire, PipelineDesc, Shader, buffer_layout};
 use crate::options::Options;
-use crate::scene::{LEAVES, ROWS};
+use crate::scene::{IMPOSTOR_ROWS, LEAVES};
 use crate::upload::{DrawCommand, MAX_LEVELS, TreeSet};
 
 pub const SHADER: Shader = Shader {
@@ -12,7 +12,7 @@ pub const SHADER: Shader = Shader {
     source: include_str!("impostors.wgsl"),
     constants: &[
         ("LEAVES", LEAVES as f64),
-        ("ROWS", ROWS as f64),
+        ("ROWS", IMPOSTOR_ROWS as f64),
         ("PICTURES_LEVEL", MAX_LEVELS as f64),
     ],
 };

@@ -6,7 +6,7 @@ use glam::Vec3;
 use super::Image;
 
 /// Rows in which a tree's middle is kept.
-pub const ROWS: usize = 32;
+pub const IMPOSTOR_ROWS: usize = 32;
 
 /// Leaves that are kept as [`LeafSide`]s.
 pub const LEAVES: usize = 32;
@@ -33,9 +33,9 @@ pub struct Impostor {
     pub crown: Crown,
     /// Some leaves, evenly spread over all their area, for the light that leaves get on average; zero where there are none.
     pub leaves: [LeafSide; LEAVES],
-    /// Where the middle of the tree is in each of [`ROWS`] from top to bottom, in x and z from the axis: between the sides that
+    /// Where the middle of the tree is in each of [`IMPOSTOR_ROWS`] from top to bottom, in x and z from the axis: between the sides that
     /// there are pictures of, a trunk that leans or bends stands where it does by this.
-    pub middles_m: [[f32; 2]; ROWS],
+    pub middles_m: [[f32; 2]; IMPOSTOR_ROWS],
 }
 
 /// How a leaf lies; unit vectors in the template's space, on either side.
@@ -73,26 +73,26 @@ impl Default for Crown {
     }
 }
 
-/// The middle of what pictures of a width cover in each of [`ROWS`], in x and z from the axis; as in the nearest row where nothing is.
+/// The middle of what pictures of a width cover in each of [`IMPOSTOR_ROWS`], in x and z from the axis; as in the nearest row where nothing is.
 ///
 /// Seen from +z, x runs to the right; seen from +x, −z does.
-pub fn middles_m(relief: &Image, width_m: f32) -> [[f32; 2]; ROWS] {
+pub fn middles_m(relief: &Image, width_m: f32) -> [[f32; 2]; IMPOSTOR_ROWS] {
     let along_x = middles(relief, 0);
     let along_z = middles(relief, IMPOSTOR_PICTURES as usize / 2);
     std::array::from_fn(|row| [along_x[row] * width_m, -along_z[row] * width_m])
 }
 
 /// The same to the right in one picture, as parts of its width.
-fn middles(relief: &Image, picture: usize) -> [f32; ROWS] {
+fn middles(relief: &Image, picture: usize) -> [f32; IMPOSTOR_ROWS] {
     let (strip, side) = (relief.width_px as usize, relief.height_px as usize);
-    let Some(pixels) = relief.levels.first().filter(|_| side > 0) else { return [0.0; ROWS] };
-    let (mut covered, mut moments) = ([0.0; ROWS], [0.0; ROWS]);
+    let Some(pixels) = relief.levels.first().filter(|_| side > 0) else { return [0.0; IMPOSTOR_ROWS] };
+    let (mut covered, mut moments) = ([0.0; IMPOSTOR_ROWS], [0.0; IMPOSTOR_ROWS]);
     for (y, x) in (0..side).flat_map(|y| (0..side).map(move |x| (y, x))) {
         let share = f32::from(pixels[4 * (y * strip + picture * side + x) + 2]);
-        covered[y * ROWS / side] += share;
-        moments[y * ROWS / side] += share * ((x as f32 + 0.5) / side as f32 - 0.5);
+        covered[y * IMPOSTOR_ROWS / side] += share;
+        moments[y * IMPOSTOR_ROWS / side] += share * ((x as f32 + 0.5) / side as f32 - 0.5);
     }
-    let known: Vec<usize> = (0..ROWS).filter(|&row| covered[row] > 0.0).collect();
+    let known: Vec<usize> = (0..IMPOSTOR_ROWS).filter(|&row| covered[row] > 0.0).collect();
     std::array::from_fn(|row| {
         let nearest = known.iter().min_by_key(|known| known.abs_diff(row));
         nearest.map_or(0.0, |&row| moments[row] / covered[row])
@@ -119,8 +119,12 @@ mod tests {
         let relief = Image { name: String::new(), width_px: 256, height_px: 64, levels };
         let middles = middles_m(&relief, 8.0);
         let near = |a: [f32; 2], b: [f32; 2]| (a[0] - b[0]).abs() < 0.2 && (a[1] - b[1]).abs() < 0.2;
-        assert!(near(middles[ROWS - 1], [0.0, 0.0]), "{:?}", middles[ROWS - 1]);
-        assert!(near(middles[ROWS / 2], [8.0 * x_part, 8.0 * z_part]), "{:?}", middles[ROWS / 2]);
-        assert_eq!(middles[0], middles[ROWS / 2], "above the tree as at its top");
+        assert!(near(middles[IMPOSTOR_ROWS - 1], [0.0, 0.0]), "{:?}", middles[IMPOSTOR_ROWS - 1]);
+        assert!(
+            near(middles[IMPOSTOR_ROWS / 2], [8.0 * x_part, 8.0 * z_part]),
+            "{:?}",
+            middles[IMPOSTOR_ROWS / 2]
+        );
+        assert_eq!(middles[0], middles[IMPOSTOR_ROWS / 2], "above the tree as at its top");
     }
 }

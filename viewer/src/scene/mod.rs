@@ -19,7 +19,7 @@ pub use genescape_schema::scene::{
 };
 pub use ground::{Apron, Ground};
 pub use image::{HdrImage, Image};
-pub use impostor::{Crown, Impostor, LEAVES, LeafSide, ROWS, middles_m};
+pub use impostor::{Crown, IMPOSTOR_ROWS, Impostor, LEAVES, LeafSide, middles_m};
 pub use sky::Sky;
 pub use trees::{Level, Material, Range, Template, TreeVertex, Trees};
 

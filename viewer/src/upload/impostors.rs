@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{DrawCommand, ImageUse, Uploader};
-use crate::scene::{Impostor, LEAVES, ROWS, Template};
+use crate::scene::{IMPOSTOR_ROWS, Impostor, LEAVES, Template};
 
 /// Mip levels end where a picture of a strip has so many pixels a side.
 const MIN_PX: u32 = 8 * genescape_schema::scene::IMPOSTOR_PICTURES;
@@ -29,7 +29,7 @@ pub struct ImpostorData {
     /// Likewise.
     pub leaf_faces: [[f32; 4]; LEAVES],
     /// Where the tree's middle is in each row from the top, x and z from the axis.
-    pub middles: [[f32; 2]; ROWS],
+    pub middles: [[f32; 2]; IMPOSTOR_ROWS],
 }
 
 /// The pictures of all templates.

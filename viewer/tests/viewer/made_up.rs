@@ -7,8 +7,8 @@ use genescape_schema::scene::{Heightfield, SkyImages, SkyLight};
 use genescape_viewer::headless::Headless;
 use genescape_viewer::passes::Shaders;
 use genescape_viewer::scene::{
-    Apron, Crown, Ground, GroundDetail, GroundSurface, HdrImage, Image, Impostor, Instance, LEAVES, LeafSide,
-    Level, Material, Range, Scene, Sky, StartView, Template, TerrainLod, TreeVertex, Trees,
+    Apron, Crown, Ground, GroundDetail, GroundSurface, HdrImage, IMPOSTOR_ROWS, Image, Impostor, Instance,
+    LEAVES, LeafSide, Level, Material, Range, Scene, Sky, StartView, Template, TerrainLod, TreeVertex, Trees,
 };
 use genescape_viewer::upload::{SceneBuffers, Uploader};
 use glam::Vec3;
@@ -176,6 +176,7 @@ pub fn impostor(name: &str, error_m: f32) -> Impostor {
         error_m,
         crown: Crown { middle_m: [0.0, 3.4, 0.0], half_m: [1.6, 2.6, 1.6] },
         leaves: [LeafSide { normal: [0.0, 1.0, 0.0], face: [0.0, 0.0, 1.0] }; LEAVES],
+        middles_m: [[0.0; 2]; IMPOSTOR_ROWS],
     }
 }
 
