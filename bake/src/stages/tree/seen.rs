@@ -27,7 +27,7 @@ const PIXELS: usize = 32;
 /// Samples along each side of the first's pixels, and of the second's: leaves are small beside pixels, and what is seen of them
 /// by chance must not pass for a difference.
 const OUTLINE_SAMPLES: usize = 10;
-const COLOR_SAMPLES: usize = 8;
+const COLOR_SAMPLES: usize = 6;
 /// The square is wider than the full tree by this factor, for levels may reach a little further.
 const MARGIN: f32 = 1.04;
 /// Behind the tree: the sky, linear.
@@ -48,16 +48,18 @@ pub(super) struct Compared {
     pub coverage: Option<f32>,
 }
 
-/// Compares levels with the first, which is the full tree: the same for any number of threads.
-pub(super) fn compare(levels: &[&Mesh], surfaces: &Surfaces) -> Compared {
+/// Compares levels with the first, which is the full tree: the same for any number of threads. Its colours are those of
+/// `colored`, which shows nearly the same in less time.
+pub(super) fn compare(levels: &[&Mesh], colored: &Mesh, surfaces: &Surfaces) -> Compared {
     let Some((full, _)) = levels.split_first() else {
         return Compared { errors_m: Vec::new(), coverage: None };
     };
     let (frame, height_m) = (frame(full), height_m(full));
     let sides = SIDES.len();
-    let all: Vec<_> = levels.iter().flat_map(|level| SIDES.map(move |k| (level, k))).collect();
+    let meshes = levels.iter().enumerate().map(|(n, level)| [*level, if n == 0 { colored } else { level }]);
+    let all: Vec<_> = meshes.flat_map(|meshes| SIDES.map(move |k| (meshes, k))).collect();
     let pictures: Vec<Picture> =
-        all.par_iter().map(|(level, k)| Picture::of(level, surfaces, *k, frame)).collect();
+        all.par_iter().map(|(meshes, k)| Picture::of(*meshes, surfaces, *k, frame)).collect();
     let (full, coarser) = pictures.split_at(sides);
     let error_m = |level: &[Picture]| {
         let sum: f32 = full.iter().zip(level).map(|(a, b)| a.difference(b)).sum();
@@ -98,11 +100,17 @@ struct Picture {
 }
 
 impl Picture {
-    fn of(mesh: &Mesh, surfaces: &Surfaces, side: usize, (foot_m, side_m): (Vec3, f32)) -> Self {
+    /// Of one mesh the outline, of the other the colours.
+    fn of(
+        [outlined, colored]: [&Mesh; 2],
+        surfaces: &Surfaces,
+        side: usize,
+        (foot_m, side_m): (Vec3, f32),
+    ) -> Self {
         let look = |samples: usize| Look::new(side, foot_m, [side_m; 2], samples);
         let mut outline = Silhouette::empty(PIXELS * OUTLINE_SAMPLES);
-        cover(mesh, |_| true, surfaces, &look(PIXELS * OUTLINE_SAMPLES), &mut outline);
-        let colors = Drawing::new(mesh, surfaces, &look(PIXELS / 2 * COLOR_SAMPLES));
+        cover(outlined, |_| true, surfaces, &look(PIXELS * OUTLINE_SAMPLES), &mut outline);
+        let colors = Drawing::new(colored, surfaces, &look(PIXELS / 2 * COLOR_SAMPLES));
         Self {
             covered: outline.shares(OUTLINE_SAMPLES),
             covered_coarsely: outline.shares(2 * OUTLINE_SAMPLES),
@@ -150,7 +158,8 @@ mod tests {
     const BARK: [f32; 3] = [0.1; 3];
 
     fn errors(levels: &[&Mesh], surfaces: &Surfaces) -> Vec<f32> {
-        compare(levels, surfaces).errors_m
+        let full = levels.first().copied().cloned().unwrap_or_default();
+        compare(levels, &full, surfaces).errors_m
     }
 
     /// A column of upright squares, one on the other.
