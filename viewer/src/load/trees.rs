@@ -15,8 +15,7 @@ use super::document::Document;
 use super::octahedral::{direction, octahedral};
 use super::{Result, images};
 use crate::scene::{
-    Crown, Image, Impostor, LEAVES, LeafSide, Level, Material, Range, Template, TreeVertex, Trees,
-    middles_m,
+    Crown, Image, Impostor, LEAVES, LeafSide, Level, Material, Range, Template, TreeVertex, Trees, middles_m,
 };
 
 /// The trees; none if the scene has none.

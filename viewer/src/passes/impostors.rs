@@ -10,11 +10,7 @@ use crate::upload::{DrawCommand, MAX_LEVELS, TreeSet};
 pub const SHADER: Shader = Shader {
     name: "impostors",
     source: include_str!("impostors.wgsl"),
-    constants: &[
-        ("LEAVES", LEAVES as f64),
-        ("ROWS", ROWS as f64),
-        ("PICTURES_LEVEL", MAX_LEVELS as f64),
-    ],
+    constants: &[("LEAVES", LEAVES as f64), ("ROWS", ROWS as f64), ("PICTURES_LEVEL", MAX_LEVELS as f64)],
 };
 
 #[derive(Debug)]

@@ -3,8 +3,8 @@
 //! Each level is drawn as the full tree is, cut out by the alpha of its leaves, with its colours in the light of a sun, from
 //! two sides, in square pictures that just hold the tree. Pixels are averaged to a 32nd and a 16th of the picture's side. In
 //! each the two differ by the share of the pixel that one covers and the other doesn't, as a black tree before white sky
-//! would; in those of a 16th also by half of the mean difference of their channels in the square root of linear light, which
-//! is near to L* of CIELAB. An outline stands out whatever is behind the tree, colours hardly change. Δ is
+//! would; in those of a 16th of the first side also by the mean difference of their channels in the square root of linear light,
+//! which is near to L* of CIELAB. An outline stands out whatever is behind the tree, colours hardly change. Δ is
 //! the power mean of that over pixels, sizes of pixels and sides, of exponent 0.7: that of FLIP (Andersson et al. 2020, section
 //! 4), by which much that differs a little counts more than little that differs much.
 //!
@@ -35,8 +35,8 @@ const SKY: Vec3 = Vec3::new(0.45, 0.6, 0.8);
 /// Light of the sun, and that from all around.
 const SUNLIGHT: f32 = 0.7;
 const SKYLIGHT: f32 = 0.3;
-/// How much a difference of colour counts beside one of coverage.
-const COLOR: f32 = 0.5;
+/// How much a difference of colour counts beside one of coverage, where it is seen from one side: half as much among both.
+const COLOR: f32 = 1.0;
 /// The exponent of the mean.
 const POWER: f32 = 0.7;
 
@@ -95,8 +95,9 @@ struct Picture {
     covered: Vec<f32>,
     /// The same of pixels twice as large.
     covered_coarsely: Vec<f32>,
-    /// Their colours before the sky, as the eye has them.
-    colors: Vec<Vec3>,
+    /// Their colours before the sky, as the eye has them; of the first side alone, for they differ less than outlines, and cost
+    /// as much.
+    colors: Option<Vec<Vec3>>,
 }
 
 impl Picture {
@@ -110,11 +111,14 @@ impl Picture {
         let look = |samples: usize| Look::new(side, foot_m, [side_m; 2], samples);
         let mut outline = Silhouette::empty(PIXELS * OUTLINE_SAMPLES);
         cover(outlined, |_| true, surfaces, &look(PIXELS * OUTLINE_SAMPLES), &mut outline);
-        let colors = Drawing::new(colored, surfaces, &look(PIXELS / 2 * COLOR_SAMPLES));
+        let colors = || {
+            let drawing = Drawing::new(colored, surfaces, &look(PIXELS / 2 * COLOR_SAMPLES));
+            (0..(PIXELS / 2).pow(2)).map(|i| color(&drawing, i)).collect()
+        };
         Self {
             covered: outline.shares(OUTLINE_SAMPLES),
             covered_coarsely: outline.shares(2 * OUTLINE_SAMPLES),
-            colors: (0..(PIXELS / 2).pow(2)).map(|i| color(&colors, i)).collect(),
+            colors: (side == SIDES[0]).then(colors),
         }
     }
 
@@ -127,11 +131,13 @@ impl Picture {
         let outline = |a: &f32, b: &f32| (a - b).abs();
         let fine: f32 =
             self.covered.iter().zip(&other.covered).map(|(a, b)| powf(outline(a, b), POWER)).sum();
-        let colors =
-            self.colors.iter().zip(&other.colors).map(|(a, b)| COLOR / 3.0 * (a - b).abs().element_sum());
+        let color = |i: usize| match (&self.colors, &other.colors) {
+            (Some(a), Some(b)) => COLOR / 3.0 * (a[i] - b[i]).abs().element_sum(),
+            _ => 0.0,
+        };
         let outlines = self.covered_coarsely.iter().zip(&other.covered_coarsely).map(|(a, b)| outline(a, b));
-        let coarse: f32 = outlines.zip(colors).map(|(outline, color)| powf(outline + color, POWER)).sum();
-        0.5 * (fine / self.covered.len() as f32 + coarse / self.colors.len() as f32)
+        let coarse: f32 = outlines.enumerate().map(|(i, outline)| powf(outline + color(i), POWER)).sum();
+        0.5 * (fine / self.covered.len() as f32 + coarse / self.covered_coarsely.len() as f32)
     }
 }
 
