@@ -101,14 +101,19 @@ pub fn fit(state: &mut State, span: &PartSpan, element: u32, triangle: [Vec2; 3]
 /// among them.
 fn nearest(vertices: [(u32, Vec2); 4], triangle: [Vec2; 3]) -> (u32, [u32; 3]) {
     const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
-    let without = |left: usize| [0, 1, 2].map(|k| vertices[if k < left { k } else { k + 1 }]);
-    let all = (1..4).flat_map(|left| ORDERS.map(|order| (left, order.map(|k| without(left)[k]))));
-    let way = |stay: &[(u32, Vec2); 3]| -> f32 {
-        stay.iter().zip(triangle).map(|((_, from), to)| from.distance_squared(to)).sum()
-    };
-    let best = all.min_by(|p, q| way(&p.1).total_cmp(&way(&q.1)));
-    let (left, stay) = best.unwrap_or((3, without(3)));
-    (vertices[left].0, stay.map(|(id, _)| id))
+    let ways = vertices.map(|(_, from)| triangle.map(|to| from.distance_squared(to)));
+    let without = |left: usize| [0, 1, 2].map(|k| if k < left { k } else { k + 1 });
+    let mut best = (f32::INFINITY, 3, without(3));
+    for left in 1..4 {
+        for stay in ORDERS.map(|order| order.map(|k| without(left)[k])) {
+            let way = ways[stay[0]][0] + ways[stay[1]][1] + ways[stay[2]][2];
+            if way < best.0 {
+                best = (way, left, stay);
+            }
+        }
+    }
+    let (_, left, stay) = best;
+    (vertices[left].0, stay.map(|k| vertices[k].0))
 }
 
 fn facing(corners: &[[f32; 3]; 3]) -> Vec3 {

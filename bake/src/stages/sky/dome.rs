@@ -149,8 +149,8 @@ fn alike(texels: [Vec4; 4]) -> bool {
     let low = texels[0].min(texels[1]).min(texels[2].min(texels[3]));
     let high = texels[0].max(texels[1]).max(texels[2].max(texels[3]));
     let span = high - low;
-    let light = 0.05 * (high.x + high.y + high.z) + 0.002;
-    span.w < 0.04 && span.x + span.y + span.z < light
+    let light = 0.15 * (high.x + high.y + high.z) + 0.006;
+    span.w < 0.12 && span.x + span.y + span.z < light
 }
 
 /// The map with every texel made anew from itself and its eight neighbours, row by row; columns wrap around.

@@ -27,6 +27,8 @@ pub struct CloudField {
     /// How much the sky is closed by a deck rather than by single clouds, [0, 1].
     pub deck: f32,
     scale_m: f32,
+    /// Texels of the cover map a metre.
+    texels_per_m: f32,
     cover: f32,
     threshold: f32,
     macro_weight: f32,
@@ -62,6 +64,7 @@ impl CloudField {
             height_m,
             billow_m: (0.42 * scale_m.min(1.2 * height_m)).clamp(40.0, 650.0),
             tile_m: scale_m * CELLS as f32,
+            texels_per_m: MAP as f32 / (scale_m * CELLS as f32),
             deck: smoothstep(0.7, 1.0, cover),
             scale_m,
             cover,
@@ -103,8 +106,7 @@ impl CloudField {
 
     #[inline]
     fn cover_at(&self, x: f32, z: f32) -> f32 {
-        let texels = MAP as f32 / self.tile_m;
-        let (u, v) = ((x + self.offset[0]) * texels, (z + self.offset[1]) * texels);
+        let [u, v] = [x + self.offset[0], z + self.offset[1]].map(|m| m * self.texels_per_m);
         let map = |u: f32, v: f32| bilinear(&self.map, MAP, u, v);
         let fine = map(u, v);
         if self.macro_weight == 0.0 {
@@ -120,8 +122,11 @@ impl CloudField {
     pub fn shape(&self, x: f32, y: f32, z: f32) -> Shape {
         let cover = self.cover_at(x, z);
         let edge = (cover - self.threshold) * 0.55 * self.scale_m;
-        let u = (edge / (0.3 * self.scale_m)).clamp(0.0, 1.0);
-        let (mut top_m, mut base_m) = (self.height_m * (u * (2.0 - u)).sqrt(), 0.0);
+        let (mut top_m, mut base_m) = (0.0, 0.0);
+        if edge > 0.0 {
+            let u = (edge / (0.3 * self.scale_m)).min(1.0);
+            top_m = self.height_m * (u * (2.0 - u)).sqrt();
+        }
         if self.deck > 0.0 {
             // A deck has lumps and thin places instead of gaps.
             let lump = smoothstep(0.1, 0.85, cover);

@@ -37,8 +37,9 @@ pub fn turn(y: f32, x: f32) -> f32 {
     if a >= 1.0 { 0.0 } else { a }
 }
 
-/// A tiling square of `side` texels (a power of two) a side, at a point in texels, interpolated.
-#[inline]
+/// A tiling square of `side` texels (a power of two) a side, at a point in texels, interpolated. Where clouds are marched, two of
+/// them are read at once, which takes less time than one after the other.
+#[inline(always)]
 pub fn bilinear(texels: &[f32], side: usize, u: f32, v: f32) -> f32 {
     let ((iu, du), (iv, dv)) = (split(u), split(v));
     let (iu, iv) = (iu as usize, iv as usize);

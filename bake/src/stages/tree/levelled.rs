@@ -47,7 +47,7 @@ pub fn levelled<P>(mesh: &Mesh, textures: &TreeTextures<P>, ended: &mut dyn FnMu
         pictures = found;
         let coarser = levels.iter().skip(1).map(|level| &level.mesh);
         let meshes: Vec<&Mesh> = std::iter::once(mesh).chain(coarser).collect();
-        let Compared { mut errors_m, coverage: covered } = compare(&meshes, &surfaces);
+        let Compared { mut errors_m, coverage: covered } = compare(&meshes, &full, &surfaces);
         coverage = covered;
         let past_m = PAST_PICTURES * impostor_error_m(mesh) / error_weight(coverage);
         let last = errors_m.iter().position(|&error_m| error_m >= past_m);
@@ -100,7 +100,8 @@ mod tests {
             let full = lod::fitted(&tree.mesh, &options(&tree.mesh, &textures).masks);
             fitted += usize::from(full.triangle_count() < tree.mesh.triangle_count());
             let levels = levelled(&tree.mesh, &textures, &mut |_| ()).mesh.levels;
-            let found = compare(&[&tree.mesh, &full, &levels[1].mesh], &Surfaces::of(&textures)).errors_m;
+            let found =
+                compare(&[&tree.mesh, &full, &levels[1].mesh], &tree.mesh, &Surfaces::of(&textures)).errors_m;
             assert!(found[0] < 0.25 * found[1], "{name}: {} m off, D_1 is {} m", found[0], found[1]);
         }
         assert!(fitted > 2, "hardly any tree has flat cards");

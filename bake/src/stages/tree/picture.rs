@@ -78,11 +78,15 @@ impl Picture {
 /// Fills pixels in which nothing is from those around them.
 fn bled(mut pixels: Vec<Option<Pixel>>, side: usize) -> Vec<Pixel> {
     let mean = Pixel::mean(pixels.iter().flatten().copied()).unwrap_or_default();
-    // Those in which nothing is, but beside them.
-    let is_rim = |pixels: &[Option<Pixel>], i: usize| {
-        pixels[i].is_none() && around(i, side).any(|j| pixels[j].is_some())
+    let is_there: Vec<bool> = pixels.iter().map(Option::is_some).collect();
+    let in_row = |i: usize| {
+        let x = i % side;
+        is_there[i] || x > 0 && is_there[i - 1] || x + 1 < side && is_there[i + 1]
     };
-    let mut rim: Vec<usize> = (0..pixels.len()).filter(|&i| is_rim(&pixels, i)).collect();
+    let in_row: Vec<bool> = (0..pixels.len()).map(in_row).collect();
+    let near = |&i: &usize| in_row[i] || i >= side && in_row[i - side] || in_row.get(i + side) == Some(&true);
+    // Those in which nothing is, but beside them.
+    let mut rim: Vec<usize> = (0..pixels.len()).filter(|i| !is_there[*i] && near(i)).collect();
     let mut is_listed = vec![false; pixels.len()];
     for _ in 0..BLED_PX {
         let fill = |&i: &usize| Pixel::mean(around(i, side).filter_map(|j| pixels[j]));

@@ -186,25 +186,28 @@ impl<'a> Drawing<'a> {
         let [a, b, c] = outline.corners.map(|corner| corner.y);
         let size = self.size;
         let mut shows = false;
-        for row in first(a.min(b).min(c), size)..first(a.max(b).max(c), size) {
-            let y = row as f32 + 0.5;
-            let (left, right) = outline.span(y);
-            let columns = first(left - EDGE, size)..first(right + EDGE, size);
-            let row_m = outline.depth_m.origin + outline.depth_m.per_y * y;
-            for column in columns.clone().step_by(LANES) {
-                let x = column as f32 + Vec4::new(0.5, 1.5, 2.5, 3.5);
-                let here_m = row_m + outline.depth_m.per_x * x;
-                let at = row * size + column;
-                let in_row = (1 << (columns.end - column).min(LANES)) - 1;
-                let mut nearer = here_m.cmpgt(Vec4::from_slice(&self.depths_m[at..])).bitmask() & in_row;
-                if nearer != 0 {
-                    nearer &= is_there(x, y) as u32;
-                    shows |= nearer != 0;
-                }
-                while nearer != 0 {
-                    let lane = nearer.trailing_zeros() as usize;
-                    (self.depths_m[at + lane], self.nearest[at + lane]) = (here_m[lane], index);
-                    nearer &= nearer - 1;
+        let rows = first(a.min(b).min(c), size)..first(a.max(b).max(c), size);
+        for four in rows.clone().step_by(LANES) {
+            let [left, right] = outline.spans(four).map(|ends| ends.to_array());
+            for row in four..(four + LANES).min(rows.end) {
+                let y = row as i32 as f32 + 0.5;
+                let columns = first(left[row - four] - EDGE, size)..first(right[row - four] + EDGE, size);
+                let row_m = outline.depth_m.origin + outline.depth_m.per_y * y;
+                for column in columns.clone().step_by(LANES) {
+                    let x = column as i32 as f32 + Vec4::new(0.5, 1.5, 2.5, 3.5);
+                    let here_m = row_m + outline.depth_m.per_x * x;
+                    let at = row * size + column;
+                    let in_row = (1 << (columns.end - column).min(LANES)) - 1;
+                    let mut nearer = here_m.cmpgt(Vec4::from_slice(&self.depths_m[at..])).bitmask() & in_row;
+                    if nearer != 0 {
+                        nearer &= is_there(x, y) as u32;
+                        shows |= nearer != 0;
+                    }
+                    while nearer != 0 {
+                        let lane = nearer.trailing_zeros() as usize;
+                        (self.depths_m[at + lane], self.nearest[at + lane]) = (here_m[lane], index);
+                        nearer &= nearer - 1;
+                    }
                 }
             }
         }
@@ -291,18 +294,17 @@ impl Outline {
         [0, 1].map(|axis| plane(self.corners[0], self.edges, uvs.map(|uv| uv[axis])))
     }
 
-    /// Where a horizontal line enters and leaves it.
+    /// Where the middles of four rows enter and leave it: from right to left where they do not.
     #[inline]
-    fn span(&self, y: f32) -> (f32, f32) {
-        let (mut left, mut right) = (f32::MAX, f32::MIN);
-        for k in 0..3 {
+    fn spans(&self, first_row: usize) -> [Vec4; 2] {
+        let y = first_row as i32 as f32 + Vec4::new(0.5, 1.5, 2.5, 3.5);
+        (0..3).fold([Vec4::MAX, Vec4::MIN], |[left, right], k| {
             let (a, b) = (self.corners[k], self.corners[(k + 1) % 3]);
-            if (a.y <= y) != (b.y <= y) {
-                let x = a.x + (y - a.y) * self.slopes[k];
-                (left, right) = (left.min(x), right.max(x));
-            }
-        }
-        (left, right)
+            let crosses = Vec4::splat(a.y).cmple(y) ^ Vec4::splat(b.y).cmple(y);
+            let x = a.x + (y - a.y) * self.slopes[k];
+            let at = |nowhere: Vec4| Vec4::select(crosses, x, nowhere);
+            [left.min(at(Vec4::MAX)), right.max(at(Vec4::MIN))]
+        })
     }
 }
 

@@ -3,8 +3,8 @@
 //! Each level is drawn as the full tree is, cut out by the alpha of its leaves, with its colours in the light of a sun, from
 //! two sides, in square pictures that just hold the tree. Pixels are averaged to a 32nd and a 16th of the picture's side. In
 //! each the two differ by the share of the pixel that one covers and the other doesn't, as a black tree before white sky
-//! would; in those of a 16th also by half of the mean difference of their channels in the square root of linear light, which
-//! is near to L* of CIELAB. An outline stands out whatever is behind the tree, colours hardly change. Δ is
+//! would; in those of a 16th of the first side also by the mean difference of their channels in the square root of linear light,
+//! which is near to L* of CIELAB. An outline stands out whatever is behind the tree, colours hardly change. Δ is
 //! the power mean of that over pixels, sizes of pixels and sides, of exponent 0.7: that of FLIP (Andersson et al. 2020, section
 //! 4), by which much that differs a little counts more than little that differs much.
 //!
@@ -27,7 +27,7 @@ const PIXELS: usize = 32;
 /// Samples along each side of the first's pixels, and of the second's: leaves are small beside pixels, and what is seen of them
 /// by chance must not pass for a difference.
 const OUTLINE_SAMPLES: usize = 10;
-const COLOR_SAMPLES: usize = 8;
+const COLOR_SAMPLES: usize = 6;
 /// The square is wider than the full tree by this factor, for levels may reach a little further.
 const MARGIN: f32 = 1.04;
 /// Behind the tree: the sky, linear.
@@ -35,8 +35,8 @@ const SKY: Vec3 = Vec3::new(0.45, 0.6, 0.8);
 /// Light of the sun, and that from all around.
 const SUNLIGHT: f32 = 0.7;
 const SKYLIGHT: f32 = 0.3;
-/// How much a difference of colour counts beside one of coverage.
-const COLOR: f32 = 0.5;
+/// How much a difference of colour counts beside one of coverage, where it is seen from one side: half as much among both.
+const COLOR: f32 = 1.0;
 /// The exponent of the mean.
 const POWER: f32 = 0.7;
 
@@ -48,16 +48,18 @@ pub(super) struct Compared {
     pub coverage: Option<f32>,
 }
 
-/// Compares levels with the first, which is the full tree: the same for any number of threads.
-pub(super) fn compare(levels: &[&Mesh], surfaces: &Surfaces) -> Compared {
+/// Compares levels with the first, which is the full tree: the same for any number of threads. Its colours are those of
+/// `colored`, which shows nearly the same in less time.
+pub(super) fn compare(levels: &[&Mesh], colored: &Mesh, surfaces: &Surfaces) -> Compared {
     let Some((full, _)) = levels.split_first() else {
         return Compared { errors_m: Vec::new(), coverage: None };
     };
     let (frame, height_m) = (frame(full), height_m(full));
     let sides = SIDES.len();
-    let all: Vec<_> = levels.iter().flat_map(|level| SIDES.map(move |k| (level, k))).collect();
+    let meshes = levels.iter().enumerate().map(|(n, level)| [*level, if n == 0 { colored } else { level }]);
+    let all: Vec<_> = meshes.flat_map(|meshes| SIDES.map(move |k| (meshes, k))).collect();
     let pictures: Vec<Picture> =
-        all.par_iter().map(|(level, k)| Picture::of(level, surfaces, *k, frame)).collect();
+        all.par_iter().map(|(meshes, k)| Picture::of(*meshes, surfaces, *k, frame)).collect();
     let (full, coarser) = pictures.split_at(sides);
     let error_m = |level: &[Picture]| {
         let sum: f32 = full.iter().zip(level).map(|(a, b)| a.difference(b)).sum();
@@ -93,20 +95,30 @@ struct Picture {
     covered: Vec<f32>,
     /// The same of pixels twice as large.
     covered_coarsely: Vec<f32>,
-    /// Their colours before the sky, as the eye has them.
-    colors: Vec<Vec3>,
+    /// Their colours before the sky, as the eye has them; of the first side alone, for they differ less than outlines, and cost
+    /// as much.
+    colors: Option<Vec<Vec3>>,
 }
 
 impl Picture {
-    fn of(mesh: &Mesh, surfaces: &Surfaces, side: usize, (foot_m, side_m): (Vec3, f32)) -> Self {
+    /// Of one mesh the outline, of the other the colours.
+    fn of(
+        [outlined, colored]: [&Mesh; 2],
+        surfaces: &Surfaces,
+        side: usize,
+        (foot_m, side_m): (Vec3, f32),
+    ) -> Self {
         let look = |samples: usize| Look::new(side, foot_m, [side_m; 2], samples);
         let mut outline = Silhouette::empty(PIXELS * OUTLINE_SAMPLES);
-        cover(mesh, |_| true, surfaces, &look(PIXELS * OUTLINE_SAMPLES), &mut outline);
-        let colors = Drawing::new(mesh, surfaces, &look(PIXELS / 2 * COLOR_SAMPLES));
+        cover(outlined, |_| true, surfaces, &look(PIXELS * OUTLINE_SAMPLES), &mut outline);
+        let colors = || {
+            let drawing = Drawing::new(colored, surfaces, &look(PIXELS / 2 * COLOR_SAMPLES));
+            (0..(PIXELS / 2).pow(2)).map(|i| color(&drawing, i)).collect()
+        };
         Self {
             covered: outline.shares(OUTLINE_SAMPLES),
             covered_coarsely: outline.shares(2 * OUTLINE_SAMPLES),
-            colors: (0..(PIXELS / 2).pow(2)).map(|i| color(&colors, i)).collect(),
+            colors: (side == SIDES[0]).then(colors),
         }
     }
 
@@ -119,11 +131,13 @@ impl Picture {
         let outline = |a: &f32, b: &f32| (a - b).abs();
         let fine: f32 =
             self.covered.iter().zip(&other.covered).map(|(a, b)| powf(outline(a, b), POWER)).sum();
-        let colors =
-            self.colors.iter().zip(&other.colors).map(|(a, b)| COLOR / 3.0 * (a - b).abs().element_sum());
+        let color = |i: usize| match (&self.colors, &other.colors) {
+            (Some(a), Some(b)) => COLOR / 3.0 * (a[i] - b[i]).abs().element_sum(),
+            _ => 0.0,
+        };
         let outlines = self.covered_coarsely.iter().zip(&other.covered_coarsely).map(|(a, b)| outline(a, b));
-        let coarse: f32 = outlines.zip(colors).map(|(outline, color)| powf(outline + color, POWER)).sum();
-        0.5 * (fine / self.covered.len() as f32 + coarse / self.colors.len() as f32)
+        let coarse: f32 = outlines.enumerate().map(|(i, outline)| powf(outline + color(i), POWER)).sum();
+        0.5 * (fine / self.covered.len() as f32 + coarse / self.covered_coarsely.len() as f32)
     }
 }
 
@@ -150,7 +164,8 @@ mod tests {
     const BARK: [f32; 3] = [0.1; 3];
 
     fn errors(levels: &[&Mesh], surfaces: &Surfaces) -> Vec<f32> {
-        compare(levels, surfaces).errors_m
+        let full = levels.first().copied().cloned().unwrap_or_default();
+        compare(levels, &full, surfaces).errors_m
     }
 
     /// A column of upright squares, one on the other.

@@ -1,10 +1,16 @@
 //! What the parts of a tree look like: bark of one colour, and cards that are cut out.
 
+use std::sync::LazyLock;
+
 use glam::{Vec3, Vec4};
 
 use super::ALPHA_CUTOFF;
 use crate::math::linear_from_srgb;
 use crate::model::{AlphaMask, Image8, Material, TreeTextures};
+
+/// Linear light of each byte of sRGB.
+static LINEAR: LazyLock<[f32; 256]> =
+    LazyLock::new(|| std::array::from_fn(|byte| linear_from_srgb(byte as f32 / 255.0)));
 
 /// A card's colours, and where it is cut away.
 pub(super) struct Card {
@@ -14,32 +20,32 @@ pub(super) struct Card {
 
 /// The pictures of all clusters of leaves.
 pub(super) struct Atlas {
-    /// Where it is not cut away.
-    opaque: Vec<bool>,
     sunlit: Vec<f32>,
     texels: Texels,
 }
 
-/// Colours, linear: rows from the top.
+/// A picture: rows from the top.
 struct Texels {
     width: usize,
     height: usize,
-    colors: Vec<Vec3>,
+    /// sRGB with alpha.
+    pixels: Vec<[u8; 4]>,
 }
 
 impl Texels {
     /// Of an RGBA picture; white where there is none.
     fn of(image: &Image8) -> Self {
         if image.channels != 4 || image.data.is_empty() {
-            return Self { width: 1, height: 1, colors: vec![Vec3::ONE] };
+            return Self { width: 1, height: 1, pixels: vec![[u8::MAX; 4]] };
         }
-        let linear: Vec<f32> = (0..256).map(|byte| linear_from_srgb(byte as f32 / 255.0)).collect();
-        let texel = |pixel: &[u8]| Vec3::from_array([0, 1, 2].map(|c| linear[usize::from(pixel[c])]));
-        Self {
-            width: image.width as usize,
-            height: image.height as usize,
-            colors: image.data.chunks_exact(4).map(texel).collect(),
-        }
+        let (width, height) = (image.width as usize, image.height as usize);
+        Self { width, height, pixels: image.data.as_chunks().0.to_vec() }
+    }
+
+    /// Linear.
+    fn color(&self, index: usize) -> Vec3 {
+        let [r, g, b, _] = self.pixels[index];
+        Vec3::from_array([r, g, b].map(|byte| LINEAR[usize::from(byte)]))
     }
 
     /// Which texel is at texture coordinates, which are clamped to [0, 1].
@@ -56,19 +62,19 @@ impl Card {
     }
 
     pub fn at(&self, u: f32, v: f32) -> Vec3 {
-        self.texels.colors[self.texels.index(u, v)]
+        self.texels.color(self.texels.index(u, v))
     }
 }
 
 impl Atlas {
     /// Of an RGBA picture; with how far what each texel shows is turned to the sun.
     pub fn new(image: &Image8, sunlit: Vec<f32>) -> Self {
-        let opaque = |pixel: &[u8]| f32::from(pixel[3]) >= 255.0 * ALPHA_CUTOFF;
-        Self { opaque: image.data.chunks_exact(4).map(opaque).collect(), sunlit, texels: Texels::of(image) }
+        Self { sunlit, texels: Texels::of(image) }
     }
 
     pub fn is_opaque(&self, u: f32, v: f32) -> bool {
-        self.opaque[self.texels.index(u, v)]
+        let [.., alpha] = self.texels.pixels[self.texels.index(u, v)];
+        f32::from(alpha) >= 255.0 * ALPHA_CUTOFF
     }
 
     /// The same at four places: a bit for each.
@@ -79,7 +85,7 @@ impl Atlas {
     /// Colour, and how far it is turned to the sun.
     pub fn at(&self, u: f32, v: f32) -> (Vec3, f32) {
         let index = self.texels.index(u, v);
-        (self.texels.colors[index], self.sunlit[index])
+        (self.texels.color(index), self.sunlit[index])
     }
 }
 

@@ -33,8 +33,11 @@ const MIN_LEAVES: usize = 4;
 const CARD: usize = 4;
 const CLUSTER: usize = 2 * CARD;
 
-/// Sides of the impostor from which it is counted how much a level covers, and samples a side.
-const SIDES: [usize; 4] = [0, 1, 2, 3];
+/// So many leaves at least are drawn of a cluster that has more: every nth, as much larger as makes up for the others.
+const DRAWN_LEAVES: usize = 64;
+
+/// Sides of the impostor, one beside the other, from which it is counted how much a level covers, and samples a side.
+const SIDES: [usize; 2] = [0, 2];
 const COVERAGE_PX: usize = 96;
 /// How much smaller or larger cards may become.
 const SCALES: Range<f32> = 0.7..1.5;
@@ -152,10 +155,14 @@ impl<'a> Foliage<'a> {
         let part = &self.mesh.parts[self.part];
         let mut shown = Mesh::default();
         let mut faces = Vec::with_capacity(triangles * leaves.len());
-        for leaf in leaves {
+        let one_in = (leaves.len() / DRAWN_LEAVES).max(1);
+        let scale = (one_in as f32).sqrt();
+        for leaf in leaves.iter().step_by(one_in) {
             let first = self.first_vertex + leaf * vertices;
             let moved = shown.positions.len() as u32;
-            shown.positions.extend_from_slice(&self.mesh.positions[first..][..vertices]);
+            let middle_m = self.places[*leaf].at_m;
+            let grown = |&p: &[f32; 3]| (middle_m + scale * (Vec3::from_array(p) - middle_m)).to_array();
+            shown.positions.extend(self.mesh.positions[first..][..vertices].iter().map(grown));
             let run = first..first + vertices;
             shown.normals.extend_from_slice(self.mesh.normals.get(run.clone()).unwrap_or_default());
             shown.uvs.extend_from_slice(self.mesh.uvs.get(run.clone()).unwrap_or_default());
