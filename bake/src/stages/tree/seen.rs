@@ -168,14 +168,14 @@ mod tests {
         compare(levels, &full, surfaces).errors_m
     }
 
-    /// A column of upright squares, one on the other.
+    /// A column of upright squares, one on the other, which face the side from which colours are compared.
     fn column(height: usize, side_m: f32, color: [u8; 4]) -> Mesh {
         let mut mesh = Mesh::default();
         let mut triangles = Vec::new();
         for y in 0..height {
             let first = mesh.positions.len() as u32;
             for [x, up] in [[-0.5, 0.0], [0.5, 0.0], [0.5, 1.0], [-0.5, 1.0f32]] {
-                mesh.positions.push([side_m * x, side_m * (y as f32 + up), side_m * x]);
+                mesh.positions.push([side_m * x, side_m * (y as f32 + up), -side_m * x]);
                 mesh.uvs.push([0.5; 2]);
                 mesh.colors.push(color);
             }
