@@ -1,6 +1,8 @@
 //! How many pixels a mesh covers when seen from the sides, orthographically; elements of aggregates are cut out by their
 //! texture's alpha.
 
+use std::f32::consts::FRAC_1_SQRT_2;
+
 use glam::{Vec2, Vec3};
 
 use super::state::{PartSpan, State};
@@ -9,7 +11,10 @@ use crate::silhouette::Silhouette;
 
 /// Unit vectors to the right in each view, one across the other, and how far each looks from below or above: the tangent of its
 /// elevation.
-const VIEWS: [(Vec3, f32); 2] = [(Vec3::new(1.0, 0.0, 0.0), 0.2), (Vec3::new(0.0, 0.0, 1.0), -0.2)];
+const VIEWS: [(Vec3, f32); 2] = [
+    (Vec3::new(FRAC_1_SQRT_2, 0.0, FRAC_1_SQRT_2), 0.2),
+    (Vec3::new(-FRAC_1_SQRT_2, 0.0, FRAC_1_SQRT_2), -0.2),
+];
 
 /// Where a mesh lies in the views.
 #[derive(Clone, Copy, Debug)]
