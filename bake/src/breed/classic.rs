@@ -203,7 +203,9 @@ impl<'a> Birth<'a, '_> {
         let picker = Picker { space, kinds, pool: kinds.iter().collect() };
         if let Some(picked) = picker.pick(self.category, self.company, &seen, &mut self.dice) {
             newcomers.extend(picked.home.main());
-            return picked.chromosome;
+            // A narrow kind that a parent is of may give its very individual.
+            let is_seen = self.is_seen(&picked.chromosome);
+            return if is_seen { self.another(&picked.chromosome) } else { picked.chromosome };
         }
         // Without any kind: from two parents, much changed.
         let mother = self.dice.below(INDIVIDUALS as u32) as usize;

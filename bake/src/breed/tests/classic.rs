@@ -263,6 +263,17 @@ fn newcomers_are_of_kinds_that_nobody_has_seen_and_go_with_the_rest() {
     assert!(different > 15, "{different} of 30");
 }
 
+#[test]
+fn a_newcomer_is_nobody_that_the_person_has_seen() {
+    let space = Space::builtin();
+    let kinds = kinds(&space);
+    // Here the third child's land was the fourth parent's, to the seed.
+    let parents = voted(&space, &kinds, 464_094_117_190_367_132, 67, [Some(0), None, Some(0)]);
+    let children = breed(&space, &kinds, &parents, 68).expect("votes");
+    let land = |one: &Individual| one.genome.chromosome(Category::Terrain).clone();
+    assert!(!parents.individuals.iter().any(|one| land(one) == land(&children.individuals[2])));
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 32, ..ProptestConfig::default() })]
 

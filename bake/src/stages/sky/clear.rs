@@ -97,8 +97,8 @@ impl ClearSky {
     }
 
     /// Scales all light as an adapted eye sees it: a bright noon stays as it is, dusk and overcast are lifted most
-    /// of the way, and the colour of the light on level ground is half taken for white (von Kries): grass at sunset is
-    /// golden, not brown.
+    /// of the way, and the colour of the light on level ground is partly taken for white (von Kries): grass at sunset
+    /// is golden, not brown.
     fn adapt(&mut self, dimming: f32) {
         self.fill_horizon();
         let sky = self.irradiance();
