@@ -16,6 +16,9 @@ const BRIGHTEST: f64 = 5.0;
 /// What a pixel of the white sky holds, of 255: so there is room for a tree's light above it.
 const WHITE: f64 = 160.0;
 
+/// Samples a pixel: as windows have.
+const SAMPLES: u32 = 4;
+
 /// A device for each sky.
 pub struct Backdrops {
     black: Headless,
@@ -55,7 +58,7 @@ impl Backdrops {
     pub fn open() -> Self {
         let folders = [0, 1].map(|_| tempfile::tempdir().expect("a temporary folder"));
         let [black, white] = [(0.0, &folders[0]), (radiance(WHITE), &folders[1])]
-            .map(|(sky, folder)| Headless::open(&shaders(folder.path(), sky), 1).expect("a device"));
+            .map(|(sky, folder)| Headless::open(&shaders(folder.path(), sky), SAMPLES).expect("a device"));
         Self { black, white, _shaders: folders }
     }
 

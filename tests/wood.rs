@@ -19,7 +19,7 @@ const FOCAL_PX: f32 = 623.0;
 /// The most pixels a side; of a larger wood its middle is seen.
 const MAX_PX: u32 = 160;
 /// Pictures of full trees have so many times as many pixels a side.
-const FINER: u32 = 2;
+const FINER: u32 = 4;
 /// Trees of a wood, and directions from which it is seen: with the sun behind the eye, and before it.
 const TREES: u32 = 24;
 const DIRECTIONS_RAD: [f32; 2] = [0.5, 2.5];

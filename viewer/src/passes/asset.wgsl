@@ -236,12 +236,13 @@ fn solid(in: Out, @builtin(front_facing) front: bool) -> @location(0) vec4f {
 }
 
 @fragment
-fn masked(in: Out, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+fn masked(in: Out, @builtin(front_facing) front: bool) -> Pixel {
     let shaded = shade(in, front);
-    if (shaded.a < surface.alpha_cutoff) {
+    let samples = samples_of(cut_out(shaded.a, surface.alpha_cutoff), 0.375);
+    if (samples == 0u) {
         discard;
     }
-    return vec4f(shaded.rgb, 1.0);
+    return Pixel(vec4f(shaded.rgb, 1.0), samples);
 }
 
 @fragment

@@ -161,6 +161,25 @@ fn is_shown(pixel: vec2f, shown: vec2f) -> bool {
     return number >= shown.x && (number < shown.y || shown.y == 1.0);
 }
 
+// Light of a pixel, and the samples that it is for.
+struct Pixel {
+    @location(0) radiance: vec4f,
+    @builtin(sample_mask) samples: u32,
+}
+
+// Which samples of a pixel show what covers a share of it: of four so many, of one now and then.
+fn samples_of(share: f32, noise: f32) -> u32 {
+    let is_covered = vec4f(share) > fract(vec4f(noise) + vec4f(0.0, 0.25, 0.5, 0.75));
+    return dot(select(vec4u(0u), vec4u(1u, 2u, 4u, 8u), is_covered), vec4u(1u));
+}
+
+// Share of a pixel that a texture covers where its alpha is at least the cutoff: the edge runs straight through the pixel, at a
+// distance that alpha and its slope tell (Golus, "Anti-aliased Alpha Test: The Esoteric Alpha To Coverage", 2017). Steeper slopes
+// are those of a leaf smaller than a pixel, beside which there is nothing.
+fn cut_out(alpha: f32, cutoff: f32) -> f32 {
+    return saturate((alpha - cutoff) / clamp(length(vec2f(dpdx(alpha), dpdy(alpha))), 1e-4, 0.5) + 0.5);
+}
+
 // Whether a card shows its picture there: a triangle that holds all of it reaches beyond.
 fn is_on_picture(uv: vec2f) -> bool {
     return all(uv == saturate(uv));

@@ -121,17 +121,6 @@ fn phase(cosine: f32) -> f32 {
     return 2.0 / (3.0 * PI) * (sqrt(1.0 - c * c) + (PI - angle) * c);
 }
 
-// Which samples of a pixel show what covers a share of it: of four so many, of one now and then.
-fn samples_of(share: f32, noise: f32) -> u32 {
-    let is_covered = vec4f(share) > fract(vec4f(noise) + vec4f(0.0, 0.25, 0.5, 0.75));
-    return dot(select(vec4u(0u), vec4u(1u, 2u, 4u, 8u), is_covered), vec4u(1u));
-}
-
-struct Pixel {
-    @location(0) radiance: vec4f,
-    @builtin(sample_mask) samples: u32,
-}
-
 // How far the middle of a tree lies to the right, at a height, as a part of its picture's width: as it is seen from `ahead` beyond
 // what the picture from a side shows.
 fn shift(template_index: u32, v: f32, ahead: vec2f, side: u32) -> f32 {
@@ -160,7 +149,8 @@ fn pixel(in: Out, is_kept: bool) -> Pixel {
     // Twigs are thinner than pixels, and so are fronds; of small leaves most pixels are full, and none is better in part.
     let thin = samples_of(relief.b, scattered(floor(in.uv * 256.0)));
     let cutoff = frames[in.template_index].alpha_cutoff;
-    let samples = select(thin, select(0u, 15u, seen.a >= cutoff), relief.g > 0.5 && cutoff > 0.0);
+    let full = samples_of(cut_out(seen.a, cutoff), 0.375);
+    let samples = select(thin, full, relief.g > 0.5 && cutoff > 0.0);
     if (samples == 0u || !is_kept) {
         discard;
     }

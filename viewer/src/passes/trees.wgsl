@@ -29,6 +29,8 @@ struct Out {
     @location(2) tangent: vec4f,
     @location(3) uv: vec2f,
     @location(4) color: vec3f,
+    // The same as `uv` within the triangle: a leaf smaller than a pixel seldom holds the pixel's middle.
+    @location(7) @interpolate(perspective, centroid) uv_within: vec2f,
     // Leaves: share of the open sky and ground that they see between their neighbours.
     @location(5) open: f32,
     @location(6) @interpolate(flat) shown: vec2f,
@@ -46,6 +48,7 @@ fn placed(in: In) -> Out {
     out.normal = normalize(normal_from_template(rows, turned));
     out.tangent = vec4f(normalize(tangent), in.color.a * 2.0 - 1.0);
     out.uv = in.uv + alpha * in.uv_delta;
+    out.uv_within = out.uv;
     out.color = select(in.color.rgb, level_tint(in.lambda) * 1.6, view.tint_levels != 0u);
     out.open = in.color.a;
     out.shown = in.shown.xy;
@@ -97,7 +100,8 @@ fn bark(in: Out) -> @location(0) vec4f {
 
 // A leaf has two sides and lets light through: seen from the side that the sun doesn't shine on it glows. In its own shade is
 // what lies less than `bias_m` behind others.
-fn leaf_light(in: Out, albedo: vec3f, normal: vec3f, bias_m: f32) -> vec4f {
+fn leaf_light(in: Out, card: Card, normal: vec3f, bias_m: f32) -> Pixel {
+    let albedo = card.albedo;
     let to_eye = normalize(view.eye - in.world);
     let toward_sun = dot(normal, view.sun_direction);
     let same_side = toward_sun * dot(normal, to_eye) > 0.0;
@@ -111,30 +115,38 @@ fn leaf_light(in: Out, albedo: vec3f, normal: vec3f, bias_m: f32) -> vec4f {
     let outward = select(-normal, normal, normal.y > 0.0);
     var radiance = ambient(outward, albedo) * (0.15 + 0.75 * in.open * in.open);
     radiance += (reflected + through * glow) / PI * view.sun_irradiance * sun;
-    return vec4f(aerial_perspective(radiance, in.world), 1.0);
+    return Pixel(vec4f(aerial_perspective(radiance, in.world), 1.0), card.samples);
 }
 
-fn card_albedo(in: Out) -> vec3f {
-    let albedo = vec4f(in.color, 1.0) * material.factor * textureSample(color_map, clamped, in.uv);
-    if (albedo.a < material.alpha_cutoff || !is_on_picture(in.uv) || !is_shown(in.clip.xy, in.shown)) {
+// What a card shows at a pixel, and at which of its samples.
+struct Card {
+    albedo: vec3f,
+    samples: u32,
+}
+
+fn card_at(in: Out) -> Card {
+    let texel = textureSampleGrad(color_map, clamped, in.uv_within, dpdx(in.uv), dpdy(in.uv));
+    let albedo = vec4f(in.color, 1.0) * material.factor * texel;
+    let samples = samples_of(cut_out(albedo.a, material.alpha_cutoff), 0.375);
+    if (samples == 0u || !is_on_picture(in.uv_within) || !is_shown(in.clip.xy, in.shown)) {
         discard;
     }
-    return albedo.rgb;
+    return Card(albedo.rgb, samples);
 }
 
 @fragment
-fn leaf(in: Out) -> @location(0) vec4f {
-    return leaf_light(in, card_albedo(in), normalize(in.normal), 0.4);
+fn leaf(in: Out) -> Pixel {
+    return leaf_light(in, card_at(in), normalize(in.normal), 0.4);
 }
 
 // So far before a card are the outermost of the leaves that it shows, which are not in their own shade.
 const CLUSTER_BIAS_M = 0.45;
 
 @fragment
-fn cluster(in: Out) -> @location(0) vec4f {
+fn cluster(in: Out) -> Pixel {
     let bump = textureSample(normal_map, clamped, in.uv).xyz * 2.0 - 1.0;
     let right = normalize(in.tangent.xyz);
     let front = normalize(in.normal);
     let normal = normalize(right * bump.x + cross(front, right) * bump.y + front * bump.z);
-    return leaf_light(in, card_albedo(in), normal, CLUSTER_BIAS_M);
+    return leaf_light(in, card_at(in), normal, CLUSTER_BIAS_M);
 }

@@ -19,6 +19,10 @@ pub enum ImageUse {
     Data,
 }
 
+/// Pixels a side of a cutout's last mip level. One pixel is seen or not: leaves that cover less than half of their card would
+/// be gone in the distance, and others be squares.
+const MIN_CUTOUT_PX: u32 = 16;
+
 impl ImageUse {
     fn format(self) -> wgpu::TextureFormat {
         match self {
@@ -32,7 +36,8 @@ impl Uploader {
     /// An image as a texture. Mip levels that its file brings are used as they are (leaves keep their coverage by
     /// them); an image without gets averages.
     pub(super) fn image(&self, image: &Image, kind: ImageUse) -> Arc<wgpu::Texture> {
-        self.shared(format!("{kind:?} {}", image.name), || self.array(&[image], kind, 1))
+        let min_px = if kind == ImageUse::Cutout { MIN_CUTOUT_PX } else { 1 };
+        self.shared(format!("{kind:?} {}", image.name), || self.array(&[image], kind, min_px))
     }
 
     /// Several images of one size as the layers of one texture.

@@ -186,7 +186,8 @@ impl Uploader {
             Some(image) => self.image(image, kind),
             None => self.image(&Image::of_one_pixel(otherwise), kind),
         };
-        let cutout_or_color = if material.clusters { ImageUse::Cutout } else { ImageUse::Color };
+        let is_cutout = material.alpha_cutoff.is_some();
+        let cutout_or_color = if is_cutout { ImageUse::Cutout } else { ImageUse::Color };
         TreeMaterial {
             name: material.name.clone(),
             masked: material.alpha_cutoff.is_some(),
