@@ -75,7 +75,8 @@ fn far_trees_cover_as_much_and_are_as_bright_as_near_ones() {
                 let seen = of(mode, 1);
                 let covers = seen.pixels / truth.pixels * f64::from(FINER * FINER);
                 let bright = brightness(&seen) / brightness(&truth);
-                let told = format!("{} {template}, {what}: covers {covers:.3}, bright {bright:.3}", scene.name);
+                let told =
+                    format!("{} {template}, {what}: covers {covers:.3}, bright {bright:.3}", scene.name);
                 genescape_bake::say!("{told}");
                 all.push(((covers - 1.0).abs() < most && (bright - 1.0).abs() < 0.08, told));
             }

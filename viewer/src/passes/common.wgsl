@@ -121,18 +121,17 @@ fn haze_towards(way: vec3f) -> vec3f {
     return textureSampleLevel(clear_cube, clamped, vec3f(way.x, 0.0, way.z) + vec3f(1e-4, 0.0, 0.0), 0.0).rgb;
 }
 
-// Less haze than this, as a share of what is seen, looks alike in all directions.
-const THIN_HAZE: f32 = 0.01;
-
-// Aerial perspective: of the light that comes from a place in the world some is replaced by the haze's own.
-fn aerial_perspective(radiance: vec3f, world: vec3f) -> vec3f {
+// Aerial perspective: the haze's own light before a place in the world, and the share of that place's light that comes through.
+// It changes little from one corner of a triangle to the next, and a shader of pixels runs for whole blocks of them however
+// small a triangle is: so vertices are given it.
+fn air_before(world: vec3f) -> vec4f {
     let way = world - view.eye;
     let clear = exp(-length(way) * view.haze_extinction);
-    var haze = view.haze;
-    if (clear < 1.0 - THIN_HAZE) {
-        haze = haze_towards(way);
-    }
-    return mix(haze, radiance, clear);
+    return vec4f(haze_towards(way) * (1.0 - clear), clear);
+}
+
+fn hazed(air: vec4f, radiance: vec3f) -> vec3f {
+    return radiance * air.a + air.rgb;
 }
 
 // Irradiance from the sky above and the ground below on what faces upwards by that share of the way from straight down to
@@ -194,17 +193,13 @@ fn sun_visibility(world: vec3f, bias_m: f32) -> f32 {
     if (any(uv < vec2f(0.0)) || any(uv > vec2f(1.0)) || shadow.z > 1.0 || shadow.z < 0.0) {
         return 1.0;
     }
-    let size = vec2i(textureDimensions(shadow_map));
-    let at = uv * vec2f(size) - 0.5;
-    let low = max(vec2i(floor(at)), vec2i(0));
-    let high = min(vec2i(floor(at)) + 1, size - 1);
-    let north = vec2f(textureLoad(shadow_map, low, 0), textureLoad(shadow_map, vec2i(high.x, low.y), 0));
-    let south = vec2f(textureLoad(shadow_map, vec2i(low.x, high.y), 0), textureLoad(shadow_map, high, 0));
+    // From the lower left on against the clock.
+    let four = textureGather(shadow_map, clamped, uv);
     let columns = view.shadow_from_world;
     let depth_per_m = -dot(vec3f(columns[0].z, columns[1].z, columns[2].z), view.sun_direction);
-    let lit = saturate(1.5 - (shadow.z - vec4f(north, south)) / (depth_per_m * bias_m));
-    let part = fract(at);
-    let sides = mix(lit.xz, lit.yw, part.x);
+    let lit = saturate(1.5 - (shadow.z - four) / (depth_per_m * bias_m));
+    let part = fract(uv * vec2f(textureDimensions(shadow_map)) - 0.5);
+    let sides = mix(lit.wx, lit.zy, part.x);
     return mix(sides.x, sides.y, part.y);
 }
 

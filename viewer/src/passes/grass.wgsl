@@ -134,7 +134,7 @@ fn vertex(clump: Clump, @builtin(vertex_index) index: u32) -> Out {
     let against = max(dot(-to_eye, view.sun_direction), 0.0);
     let glow = against * against * against * 0.9 * up * (1.0 - far);
     radiance += albedo * vec3f(0.9, 1.0, 0.35) / PI * view.sun_irradiance * light.b * glow;
-    return Out(view.clip_from_world * vec4f(world, 1.0), aerial_perspective(radiance, world));
+    return Out(view.clip_from_world * vec4f(world, 1.0), hazed(air_before(world), radiance));
 }
 
 @fragment

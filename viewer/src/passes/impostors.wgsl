@@ -46,6 +46,7 @@ struct Out {
     // Of the leaves that the eye sees, on average: how much sun falls on the side that it sees and on the other one, and how
     // far they face upwards.
     @location(8) @interpolate(flat) leaf_light: vec3f,
+    @location(9) @interpolate(flat) air: vec4f,
 }
 
 // What `leaf` of `trees.wgsl` makes of the sun and of normals, averaged over leaves by how much of each the eye sees. Directions
@@ -95,6 +96,7 @@ fn vertex(@location(8) tree: u32, @location(10) shown: vec4f, @builtin(vertex_in
     out.turn = fract(atan2(ahead.x, ahead.y) / (2.0 * PI) + 1.0) * 8.0;
     out.template_index = template_index;
     out.shown = shown.xy;
+    out.air = air_before(out.world);
     out.leaf_light = leaf_light(template_index, normalize(back), normalize(way_to_template(rows, view.sun_direction)));
     return out;
 }
@@ -172,7 +174,7 @@ fn pixel(in: Out, is_kept: bool) -> Pixel {
     let up = mix(0.5, in.leaf_light.z, relief.g);
     let ambient = ambient_light(up) * mix(0.8, 0.15 + 0.75 * open * open, relief.g);
     let radiance = (albedo * ambient + view.sun_irradiance * sun) / PI;
-    return Pixel(vec4f(aerial_perspective(radiance, in.world), 1.0), samples);
+    return Pixel(vec4f(hazed(in.air, radiance), 1.0), samples);
 }
 
 @fragment

@@ -49,7 +49,7 @@ fn vertex(plant: Plant, corner: Corner) -> Out {
     let open = mix(1.0, 0.55 + 0.45 * clamp(3.0 * corner.position.y, 0.0, 1.0), leafy);
     let sky_on = 0.55 + 0.45 * normal.y;
     let irradiance = view.sun_irradiance * light.b * sun_on + view.sky_irradiance * light.r * sky_on;
-    return Out(view.clip_from_world * vec4f(world, 1.0), aerial_perspective(albedo / PI * irradiance * open, world));
+    return Out(view.clip_from_world * vec4f(world, 1.0), hazed(air_before(world), albedo / PI * irradiance * open));
 }
 
 @fragment

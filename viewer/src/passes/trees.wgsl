@@ -34,6 +34,7 @@ struct Out {
     // Leaves: share of the open sky and ground that they see between their neighbours.
     @location(5) open: f32,
     @location(6) @interpolate(flat) shown: vec2f,
+    @location(8) @interpolate(flat) air: vec4f,
 }
 
 fn placed(in: In) -> Out {
@@ -52,6 +53,7 @@ fn placed(in: In) -> Out {
     out.color = select(in.color.rgb, level_tint(in.lambda) * 1.6, view.tint_levels != 0u);
     out.open = in.color.a;
     out.shown = in.shown.xy;
+    out.air = air_before(world);
     return out;
 }
 
@@ -95,7 +97,7 @@ fn bark(in: Out) -> @location(0) vec4f {
     if (facing > 0.0) {
         radiance += albedo / PI * view.sun_irradiance * facing * sun_visibility(in.world, 0.25);
     }
-    return vec4f(aerial_perspective(radiance, in.world), 1.0);
+    return vec4f(hazed(in.air, radiance), 1.0);
 }
 
 // A leaf has two sides and lets light through: seen from the side that the sun doesn't shine on it glows. In its own shade is
@@ -115,7 +117,7 @@ fn leaf_light(in: Out, card: Card, normal: vec3f, bias_m: f32) -> Pixel {
     let outward = select(-normal, normal, normal.y > 0.0);
     var radiance = ambient(outward, albedo) * (0.15 + 0.75 * in.open * in.open);
     radiance += (reflected + through * glow) / PI * view.sun_irradiance * sun;
-    return Pixel(vec4f(aerial_perspective(radiance, in.world), 1.0), card.samples);
+    return Pixel(vec4f(hazed(in.air, radiance), 1.0), card.samples);
 }
 
 // What a card shows at a pixel, and at which of its samples.
