@@ -39,9 +39,18 @@ pub struct Matte {
     pub pixels: f64,
     /// The sum of their radiance over these, exposed, in red, green and blue.
     pub light: [f64; 3],
+    /// Of neighbours that are all tree: the sum of what they differ by, in all channels together.
+    pub differ: f64,
+    /// And of what they have together.
+    pub together: f64,
 }
 
 impl Matte {
+    /// By how much neighbours within a tree differ in light, as a part of their mean.
+    pub fn contrast(&self) -> f64 {
+        2.0 * self.differ / self.together.max(1e-9)
+    }
+
     pub fn radiance(&self) -> [f64; 3] {
         self.light.map(|sum| sum / self.pixels)
     }
@@ -50,6 +59,8 @@ impl Matte {
 impl std::ops::AddAssign for Matte {
     fn add_assign(&mut self, other: Self) {
         self.pixels += other.pixels;
+        self.differ += other.differ;
+        self.together += other.together;
         self.light.iter_mut().zip(other.light).for_each(|(sum, one)| *sum += one);
     }
 }
@@ -84,10 +95,20 @@ impl Backdrops {
             |studio: &Headless, view: &mut View| studio.shoot(view, frame, camera, camera).expect("drawn");
         let (black, white) = (before(&self.black, &mut stage.black), before(&self.white, &mut stage.white));
         let mut matte = Matte::default();
-        for (black, white) in black.pixels().zip(white.pixels()) {
+        let width = black.width() as usize;
+        let mut before: Option<f64> = None;
+        for (n, (black, white)) in black.pixels().zip(white.pixels()).enumerate() {
             let [black, white] = [black, white].map(|pixel| [0, 1, 2].map(|c| radiance(pixel.0[c].into())));
             let passes: f64 = (0..3).map(|c| white[c] - black[c]).sum::<f64>() / 3.0 / radiance(WHITE);
-            matte += Matte { pixels: 1.0 - passes, light: black };
+            matte += Matte { pixels: 1.0 - passes, light: black, ..Matte::default() };
+            let whole = (passes < 0.01).then(|| black.iter().sum::<f64>());
+            if n % width > 0
+                && let (Some(left), Some(right)) = (before, whole)
+            {
+                matte.differ += (left - right).abs();
+                matte.together += left + right;
+            }
+            before = whole;
         }
         matte
     }

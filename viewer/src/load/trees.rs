@@ -169,9 +169,21 @@ fn impostor(document: &Document, value: &serde_json::Value, template: &Template)
     let alpha_cutoff = template.clusters.map_or(0.0, |_| alpha_cutoff.unwrap_or(0.5));
     let places = leaf_vertices(template).map(|vertex| Vec3::from(vertex.position_m));
     let crown = Crown::around(places);
-    let leaves = some_leaves(template);
+    let (leaves, leaf_m) = (some_leaves(template), leaf_m(template));
     let middles_m = middles_m(&relief, size_m[0]);
-    Ok(Impostor { color, relief, alpha_cutoff, axis_m, low_m, size_m, error_m, crown, leaves, middles_m })
+    Ok(Impostor {
+        color,
+        relief,
+        alpha_cutoff,
+        axis_m,
+        low_m,
+        size_m,
+        error_m,
+        crown,
+        leaves,
+        leaf_m,
+        middles_m,
+    })
 }
 
 /// The corners of the triangles of all leaves of D_0.
@@ -211,6 +223,18 @@ fn some_leaves(template: &Template) -> [LeafSide; LEAVES] {
         LeafSide { normal: normal.normalize_or_zero().into(), face: face.normalize_or_zero().into() }
     })
 }
+
+/// How wide a leaf of D_0 is: a card's triangle is twice as large as its picture, of which the leaf takes about half.
+fn leaf_m(template: &Template) -> f32 {
+    let corners: Vec<Vec3> = leaf_vertices(template).map(|vertex| Vec3::from(vertex.position_m)).collect();
+    let (triangles, _) = corners.as_chunks::<3>();
+    let area_m2 = |&[a, b, c]: &[Vec3; 3]| 0.5 * (b - a).cross(c - a).length();
+    let mean_m2 = triangles.iter().map(area_m2).sum::<f32>() / triangles.len().max(1) as f32;
+    (0.25 * mean_m2).sqrt().max(MIN_LEAF_M)
+}
+
+/// Smaller leaves are not told apart.
+const MIN_LEAF_M: f32 = 0.02;
 
 fn check(document: &Document, template: &Template) -> Result<()> {
     let errors = || template.levels.iter().map(|level| level.error_m);

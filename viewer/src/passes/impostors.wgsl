@@ -47,21 +47,32 @@ struct Out {
     // far they face upwards.
     @location(8) @interpolate(flat) leaf_light: vec3f,
     @location(9) @interpolate(flat) air: vec4f,
+    // Towards the eye and towards the sun in the template's space, of unit length.
+    @location(10) @interpolate(flat) to_eye: vec3f,
+    @location(11) @interpolate(flat) to_sun: vec3f,
 }
 
-// What `leaf` of `trees.wgsl` makes of the sun and of normals, averaged over leaves by how much of each the eye sees. Directions
-// are in the template's space.
+// What `leaf` of `trees.wgsl` makes of the sun and of a leaf's normal. Directions are in the template's space.
+fn light_of(template_index: u32, leaf: u32, to_eye: vec3f, to_sun: vec3f) -> vec3f {
+    let normal = frames[template_index].leaf_normals[leaf].xyz;
+    let toward_sun = dot(normal, to_sun);
+    let lit = abs(toward_sun) * 0.75 + 0.25;
+    let sides = select(vec2f(0.0, lit), vec2f(lit, 0.0), toward_sun * dot(normal, to_eye) > 0.0);
+    return vec3f(sides, 0.5 + 0.5 * abs(normal.y));
+}
+
+// How much of a leaf the eye sees, as a share of its area.
+fn share_of(template_index: u32, leaf: u32, to_eye: vec3f) -> f32 {
+    return abs(dot(frames[template_index].leaf_faces[leaf].xyz, to_eye));
+}
+
+// The light of all leaves, averaged by how much of each the eye sees.
 fn leaf_light(template_index: u32, to_eye: vec3f, to_sun: vec3f) -> vec3f {
     var sum = vec3f(0.0);
     var seen = 1e-6;
     for (var leaf = 0u; leaf < LEAVES; leaf++) {
-        let normal = frames[template_index].leaf_normals[leaf].xyz;
-        let toward_eye = dot(normal, to_eye);
-        let toward_sun = dot(normal, to_sun);
-        let lit = abs(toward_sun) * 0.75 + 0.25;
-        let sides = select(vec2f(0.0, lit), vec2f(lit, 0.0), toward_sun * toward_eye > 0.0);
-        let share = abs(dot(frames[template_index].leaf_faces[leaf].xyz, to_eye));
-        sum += share * vec3f(sides, 0.5 + 0.5 * abs(normal.y));
+        let share = share_of(template_index, leaf, to_eye);
+        sum += share * light_of(template_index, leaf, to_eye, to_sun);
         seen += share;
     }
     return sum / seen;
@@ -97,7 +108,9 @@ fn vertex(@location(8) tree: u32, @location(10) shown: vec4f, @builtin(vertex_in
     out.template_index = template_index;
     out.shown = shown.xy;
     out.air = air_before(out.world);
-    out.leaf_light = leaf_light(template_index, normalize(back), normalize(way_to_template(rows, view.sun_direction)));
+    out.to_eye = normalize(back);
+    out.to_sun = normalize(way_to_template(rows, view.sun_direction));
+    out.leaf_light = leaf_light(template_index, out.to_eye, out.to_sun);
     return out;
 }
 
@@ -106,6 +119,19 @@ fn scattered(cell: vec2f) -> f32 {
     var p = fract(cell.xyx * 0.1031);
     p += dot(p, p.yzx + 33.33);
     return fract((p.x + p.y) * p.z);
+}
+
+// The light of the leaf at a place of a picture, `place` in leaves' widths: one of those that are known, of two that which shows
+// more of itself to the eye more often. Single leaves gleam and are dark, also where all are of one size with the pixels; where
+// they are smaller, and `sharp` less than 1, nearly their mean is seen.
+fn one_leaf(in: Out, place: vec2f, sharp: f32) -> vec3f {
+    let cell = floor(place);
+    let first = min(u32(scattered(cell) * f32(LEAVES)), LEAVES - 1u);
+    let second = min(u32(scattered(cell + 71.7) * f32(LEAVES)), LEAVES - 1u);
+    let one = share_of(in.template_index, first, in.to_eye);
+    let other = share_of(in.template_index, second, in.to_eye);
+    let leaf = select(first, second, scattered(cell + 37.3) * (one + other) < other);
+    return mix(in.leaf_light, light_of(in.template_index, leaf, in.to_eye, in.to_sun), sharp);
 }
 
 // The relief of a pixel is a mean: so far before it are the outermost leaves, which are not in their own shade.
@@ -169,9 +195,13 @@ fn pixel(in: Out, is_kept: bool) -> Pixel {
     let through = albedo * vec3f(0.75, 0.9, 0.3);
     let facing = max(-cosine, 0.0);
     let glow = 0.6 * facing * facing * facing * facing * facing * facing;
-    let leaf_sun = (albedo * 0.8 * in.leaf_light.x + through * (0.6 * in.leaf_light.y + glow)) * smoothstep(0.0, 0.7, open);
+    let leaf_m = frames[in.template_index].leaf_faces[0].w;
+    let at_leaf = in.uv * frames[in.template_index].size / leaf_m;
+    let sharp = saturate(leaf_m * view.focal_px / distance(view.eye, in.world));
+    let leaf = one_leaf(in, at_leaf, sharp);
+    let leaf_sun = (albedo * 0.8 * leaf.x + through * (0.6 * leaf.y + glow)) * smoothstep(0.0, 0.7, open);
     let sun = mix(albedo * phase(cosine), leaf_sun, relief.g) * sun_visibility(world, SHADOW_BIAS_M);
-    let up = mix(0.5, in.leaf_light.z, relief.g);
+    let up = mix(0.5, leaf.z, relief.g);
     let ambient = ambient_light(up) * mix(0.8, 0.15 + 0.75 * open * open, relief.g);
     let radiance = (albedo * ambient + view.sun_irradiance * sun) / PI;
     return Pixel(vec4f(hazed(in.air, radiance), 1.0), samples);

@@ -24,9 +24,9 @@ pub struct ImpostorData {
     pub crown_half: [f32; 3],
     /// Below this alpha nothing is drawn.
     pub alpha_cutoff: f32,
-    /// Of some leaves, those by which they are lit and those of their triangles; the fourth number is unused.
+    /// Of some leaves, normals by which they are lit; the fourth number is unused.
     pub leaf_normals: [[f32; 4]; LEAVES],
-    /// Likewise.
+    /// Those of their triangles; the fourth number is the width of a leaf.
     pub leaf_faces: [[f32; 4]; LEAVES],
     /// Where the tree's middle is in each row from the top, x and z from the axis.
     pub middles: [[f32; 2]; IMPOSTOR_ROWS],
@@ -96,7 +96,7 @@ fn frame(pictures: &Impostor) -> ImpostorData {
         crown_half: pictures.crown.half_m,
         alpha_cutoff: pictures.alpha_cutoff,
         leaf_normals: pictures.leaves.map(|leaf| padded(leaf.normal)),
-        leaf_faces: pictures.leaves.map(|leaf| padded(leaf.face)),
+        leaf_faces: pictures.leaves.map(|leaf| [leaf.face[0], leaf.face[1], leaf.face[2], pictures.leaf_m]),
         middles: pictures.middles_m,
     }
 }

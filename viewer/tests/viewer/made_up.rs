@@ -177,6 +177,7 @@ pub fn impostor(name: &str, error_m: f32) -> Impostor {
         crown: Crown { middle_m: [0.0, 3.4, 0.0], half_m: [1.6, 2.6, 1.6] },
         leaves: [LeafSide { normal: [0.0, 1.0, 0.0], face: [0.0, 0.0, 1.0] }; LEAVES],
         middles_m: [[0.0; 2]; IMPOSTOR_ROWS],
+        leaf_m: 0.1,
     }
 }
 
