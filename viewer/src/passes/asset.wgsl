@@ -25,7 +25,8 @@ struct Surface {
     transmission: f32,
     transmission_textured: f32,
     transmission_tint: vec3f,
-    unused: f32,
+    // Factor on what is mirrored by what is no metal.
+    specular: f32,
     // Of colour, metal and roughness, normals, occlusion, glow.
     uv_maps: array<UvMap, 5>,
 }
@@ -140,6 +141,8 @@ struct Point {
     through: vec3f,
     // Reflectance of a mirror at right angles.
     mirror: vec3f,
+    // The same along its surface.
+    grazing: f32,
     normal: vec3f,
     to_eye: vec3f,
     roughness: f32,
@@ -157,7 +160,7 @@ fn sunlight(point: Point, light: Light) -> vec3f {
     let shade = 0.5 / mix(2.0 * sun * facing, sun + facing, sqrt(a2));
     let away = 1.0 - clamp(dot(half, point.to_eye), 0.0, 1.0);
     let graze = away * away * away * away * away;
-    let fresnel = point.mirror + (1.0 - point.mirror) * graze;
+    let fresnel = point.mirror + (point.grazing - point.mirror) * graze;
     // Where the room's camera sees a mirror of the sun it is bright, and no brighter than can be shown.
     let gloss = min(spread * max(shade, 0.0), 200.0);
     let behind = max(-dot(point.normal, to_sun), 0.0) * point.through / PI;
@@ -204,7 +207,8 @@ fn shade(in: Out, front: bool) -> vec4f {
     let tint = surface.transmission_tint * mix(vec3f(1.0), texel.rgb, surface.transmission_textured);
     point.albedo = base.rgb * (1.0 - metallic) * (1.0 - transmission);
     point.through = transmission * select(tint, base.rgb, tinted);
-    point.mirror = mix(vec3f(0.04), base.rgb, metallic);
+    point.mirror = mix(vec3f(0.04 * surface.specular), base.rgb, metallic);
+    point.grazing = mix(surface.specular, 1.0, metallic);
     point.normal = normal;
     point.to_eye = to_eye;
     point.roughness = clamp(surface.roughness * metal.g, 0.045, 1.0);
@@ -213,7 +217,7 @@ fn shade(in: Out, front: bool) -> vec4f {
     let mirror = mirrored_part(point.roughness, facing);
     // With what is reflected twice and more between the facets of a rough mirror (Turquin 2019).
     let again = 1.0 + point.mirror * (1.0 / max(mirror.x + mirror.y, 0.05) - 1.0);
-    let mirrored = (point.mirror * mirror.x + mirror.y) * again;
+    let mirrored = (point.mirror * mirror.x + point.grazing * mirror.y) * again;
     // Rough mirrors hardly see what is far from their normal: no lobe is wider than that of a wall.
     let seen = room(reflect(-to_eye, normal), 0.5 / (a * a) + 1.6);
     let diffuse = point.albedo * room(normal, WALL) + point.through * room(-normal, WALL);

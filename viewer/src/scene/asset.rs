@@ -120,6 +120,8 @@ pub struct Surface {
     pub unlit: bool,
     /// How much of the diffuse light comes out on the other side.
     pub transmission: Transmission,
+    /// Factor on what is mirrored by what is no metal.
+    pub specular: f32,
     /// By [`Slot`].
     pub textures: [Option<Texture>; 5],
 }
@@ -212,6 +214,7 @@ impl Default for Surface {
             double_sided: false,
             unlit: false,
             transmission: Transmission::default(),
+            specular: 1.0,
             textures: Default::default(),
         }
     }

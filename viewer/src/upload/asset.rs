@@ -91,7 +91,7 @@ pub struct SurfaceUniform {
     pub transmission: f32,
     pub transmission_textured: f32,
     pub transmission_tint: [f32; 3],
-    pub unused: f32,
+    pub specular: f32,
     pub uv_maps: [UvMap; 5],
 }
 
@@ -284,7 +284,7 @@ fn surface_uniform(surface: &Surface) -> SurfaceUniform {
         transmission: surface.transmission.part,
         transmission_textured: flag(surface.transmission.textured),
         transmission_tint: surface.transmission.tint,
-        unused: 0.0,
+        specular: surface.specular,
         uv_maps: Slot::ALL.map(uv_map),
     }
 }

@@ -124,3 +124,19 @@ fn materials_arrive_with_their_extensions() {
     }
     assert!(asset.facts.notes[0].contains("clear coats"), "{:?}", asset.facts.notes);
 }
+
+#[test]
+fn what_a_leaf_mirrors_less_is_read_and_colours_of_it_are_told() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let read = |extension: serde_json::Value| {
+        let mut file = files::with_material(json!({}));
+        file.json["materials"][0]["extensions"] = json!({ "KHR_materials_specular": extension });
+        let asset =
+            files::read_path(&files::write(folder.path(), "model.glb", &file.glb())).expect("a square");
+        let told = asset.facts.notes.iter().any(|note| note.contains("KHR_materials_specular"));
+        (asset.surfaces[0].specular, told)
+    };
+    assert_eq!(read(json!({ "specularFactor": 0.2 })), (0.2, false));
+    assert_eq!(read(json!({})), (1.0, false), "as if there were no extension");
+    assert_eq!(read(json!({ "specularColorFactor": [1, 0, 0] })), (1.0, true));
+}

@@ -55,6 +55,10 @@ fn surface(file: &AssetFile, material: &Material, pictures: &mut Pictures<'_>, n
         transmitted.map(|value| diffuse_transmission(value, material, notes)).unwrap_or_default();
     let strength = number("KHR_materials_emissive_strength/emissiveStrength").unwrap_or(1.0);
     let transmission = number("KHR_materials_transmission/transmissionFactor").unwrap_or(0.0).clamp(0.0, 1.0);
+    let tinted = ["specularTexture", "specularColorFactor", "specularColorTexture"];
+    if others.get(SPECULAR).is_some_and(|told| tinted.iter().any(|field| told.get(field).is_some())) {
+        notes.add(format!("Not drawn: colours of what is mirrored ({SPECULAR})"));
+    }
     let pbr = &material.pbr_metallic_roughness;
     let mut texture = |index: Index<JsonTexture>, set: u32, transform: Option<&Value>| {
         self::texture(file, index, set, transform, pictures, notes)
@@ -98,10 +102,13 @@ fn surface(file: &AssetFile, material: &Material, pictures: &mut Pictures<'_>, n
         alpha,
         double_sided: material.double_sided,
         unlit: others.contains_key("KHR_materials_unlit"),
+        specular: number("KHR_materials_specular/specularFactor").unwrap_or(1.0).clamp(0.0, 1.0),
         transmission: transmitted,
         textures: [color, metal, normal, occlusion, glow],
     }
 }
+
+const SPECULAR: &str = "KHR_materials_specular";
 
 const DIFFUSE_TRANSMISSION: &str = "KHR_materials_diffuse_transmission";
 
