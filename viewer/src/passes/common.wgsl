@@ -130,6 +130,12 @@ fn air_before(world: vec3f) -> vec4f {
     return vec4f(haze_towards(way) * (1.0 - clear), clear);
 }
 
+// The same where haze was interpolated along land: beyond the edge of a sliver, where a pixel's middle may lie, that is any number.
+fn air_of(haze: vec3f, world: vec3f) -> vec4f {
+    let clear = exp(-distance(world, view.eye) * view.haze_extinction);
+    return vec4f(clamp(haze, vec3f(0.0), 4.0 * view.haze) * (1.0 - clear), clear);
+}
+
 fn hazed(air: vec4f, radiance: vec3f) -> vec3f {
     return radiance * air.a + air.rgb;
 }
