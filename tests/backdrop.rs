@@ -16,7 +16,7 @@ const BRIGHTEST: f64 = 5.0;
 /// What a pixel of the white sky holds, of 255: so there is room for a tree's light above it.
 const WHITE: f64 = 160.0;
 
-/// Samples a pixel: as windows have.
+/// Samples a pixel: as screenshots have, and windows on a graphics card.
 const SAMPLES: u32 = 4;
 
 /// A device for each sky.
@@ -96,19 +96,19 @@ impl Backdrops {
         let (black, white) = (before(&self.black, &mut stage.black), before(&self.white, &mut stage.white));
         let mut matte = Matte::default();
         let width = black.width() as usize;
-        let mut before: Option<f64> = None;
+        let mut beside: Option<f64> = None;
         for (n, (black, white)) in black.pixels().zip(white.pixels()).enumerate() {
             let [black, white] = [black, white].map(|pixel| [0, 1, 2].map(|c| radiance(pixel.0[c].into())));
             let passes: f64 = (0..3).map(|c| white[c] - black[c]).sum::<f64>() / 3.0 / radiance(WHITE);
             matte += Matte { pixels: 1.0 - passes, light: black, ..Matte::default() };
             let whole = (passes < 0.01).then(|| black.iter().sum::<f64>());
             if n % width > 0
-                && let (Some(left), Some(right)) = (before, whole)
+                && let (Some(left), Some(right)) = (beside, whole)
             {
                 matte.differ += (left - right).abs();
                 matte.together += left + right;
             }
-            before = whole;
+            beside = whole;
         }
         matte
     }

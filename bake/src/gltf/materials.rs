@@ -19,7 +19,7 @@ pub const KHR_MATERIALS_DIFFUSE_TRANSMISSION: &str = "KHR_materials_diffuse_tran
 const TRANSMISSION: f64 = 0.45;
 
 /// How strongly what is no metal mirrors.
-pub const KHR_MATERIALS_SPECULAR: &str = "KHR_materials_specular";
+const KHR_MATERIALS_SPECULAR: &str = "KHR_materials_specular";
 /// Cards mirror nothing: the leaves of their pictures lie in all directions and hide each other, and renderers, which know of a plane
 /// alone, have crowns before a low sun glare like wet slate. Of a fifth of it half of the glare is left in Blender, along a plane.
 const SPECULAR: f64 = 0.0;

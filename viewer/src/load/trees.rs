@@ -169,7 +169,7 @@ fn impostor(document: &Document, value: &serde_json::Value, template: &Template)
     let alpha_cutoff = template.clusters.map_or(0.0, |_| alpha_cutoff.unwrap_or(0.5));
     let places = leaf_vertices(template).map(|vertex| Vec3::from(vertex.position_m));
     let crown = Crown::around(places);
-    let (leaves, leaf_m) = (some_leaves(template), leaf_m(template));
+    let (leaves, leaf_m) = some_leaves(template);
     let middles_m = middles_m(&relief, size_m[0]);
     Ok(Impostor {
         color,
@@ -197,8 +197,9 @@ fn leaf_vertices(template: &Template) -> impl Iterator<Item = &TreeVertex> + Clo
         .map(move |&vertex| &template.vertices[base + vertex as usize])
 }
 
-/// Leaves of D_0 that are evenly spread over all their area.
-fn some_leaves(template: &Template) -> [LeafSide; LEAVES] {
+/// Leaves of D_0 that are evenly spread over all their area, and how wide what shows of one is: a leaf takes about half of its card, as
+/// much as one of its two triangles, and others hide half of its width.
+fn some_leaves(template: &Template) -> ([LeafSide; LEAVES], f32) {
     let corners: Vec<&TreeVertex> = leaf_vertices(template).collect();
     let (triangles, _) = corners.as_chunks::<3>();
     let twice_area_m2 = |corners: &[&TreeVertex; 3]| {
@@ -212,8 +213,9 @@ fn some_leaves(template: &Template) -> [LeafSide; LEAVES] {
             Some(*sum_m2)
         })
         .collect();
-    let Some(&all_m2) = sums_m2.last() else { return [LeafSide::default(); LEAVES] };
-    std::array::from_fn(|leaf| {
+    let Some(&all_m2) = sums_m2.last() else { return ([LeafSide::default(); LEAVES], MIN_LEAF_M) };
+    let leaf_m = (0.125 * all_m2 / triangles.len() as f32).sqrt().max(MIN_LEAF_M);
+    let leaves = std::array::from_fn(|leaf| {
         let at_m2 = (leaf as f32 + 0.5) / LEAVES as f32 * all_m2;
         let triangle = &triangles[sums_m2.partition_point(|&sum_m2| sum_m2 < at_m2).min(triangles.len() - 1)];
         // Nearer now to the one corner, now to another.
@@ -221,16 +223,8 @@ fn some_leaves(template: &Template) -> [LeafSide; LEAVES] {
         let normal: Vec3 = near.map(|(corner, part)| part * direction(corner.normal_oct)).sum();
         let face = twice_area_m2(triangle);
         LeafSide { normal: normal.normalize_or_zero().into(), face: face.normalize_or_zero().into() }
-    })
-}
-
-/// How wide a leaf of D_0 is: a card's triangle is twice as large as its picture, of which the leaf takes about half.
-fn leaf_m(template: &Template) -> f32 {
-    let corners: Vec<Vec3> = leaf_vertices(template).map(|vertex| Vec3::from(vertex.position_m)).collect();
-    let (triangles, _) = corners.as_chunks::<3>();
-    let area_m2 = |&[a, b, c]: &[Vec3; 3]| 0.5 * (b - a).cross(c - a).length();
-    let mean_m2 = triangles.iter().map(area_m2).sum::<f32>() / triangles.len().max(1) as f32;
-    (0.25 * mean_m2).sqrt().max(MIN_LEAF_M)
+    });
+    (leaves, leaf_m)
 }
 
 /// Smaller leaves are not told apart.

@@ -242,7 +242,7 @@ fn solid(in: Out, @builtin(front_facing) front: bool) -> @location(0) vec4f {
 @fragment
 fn masked(in: Out, @builtin(front_facing) front: bool) -> Pixel {
     let shaded = shade(in, front);
-    let samples = samples_of(cut_out(shaded.a, surface.alpha_cutoff), 0.375);
+    let samples = cut_out(shaded.a, surface.alpha_cutoff);
     if (samples == 0u) {
         discard;
     }

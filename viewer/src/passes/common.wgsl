@@ -122,20 +122,15 @@ fn haze_towards(way: vec3f) -> vec3f {
 }
 
 // Aerial perspective: the haze's own light before a place in the world, and the share of that place's light that comes through.
-// It changes little from one corner of a triangle to the next, and a shader of pixels runs for whole blocks of them however
-// small a triangle is: so vertices are given it.
 fn air_before(world: vec3f) -> vec4f {
     let way = world - view.eye;
     let clear = exp(-length(way) * view.haze_extinction);
     return vec4f(haze_towards(way) * (1.0 - clear), clear);
 }
 
-// The same where haze was interpolated along land: beyond the edge of a sliver, where a pixel's middle may lie, that is any number.
-fn air_of(haze: vec3f, world: vec3f) -> vec4f {
-    let clear = exp(-distance(world, view.eye) * view.haze_extinction);
-    return vec4f(clamp(haze, vec3f(0.0), 4.0 * view.haze) * (1.0 - clear), clear);
-}
-
+// Light as it is seen through that. Plants give their vertices the air: it changes little across so small a triangle, and a shader of
+// pixels runs for whole blocks of them however small one is. Land is asked for it by the pixel: its triangles may span the
+// glow around a low sun, or be slivers beyond whose edge, where a pixel's middle may lie, what is interpolated is any number.
 fn hazed(air: vec4f, radiance: vec3f) -> vec3f {
     return radiance * air.a + air.rgb;
 }
@@ -178,11 +173,12 @@ fn samples_of(share: f32, noise: f32) -> u32 {
     return dot(select(vec4u(0u), vec4u(1u, 2u, 4u, 8u), is_covered), vec4u(1u));
 }
 
-// Share of a pixel that a texture covers where its alpha is at least the cutoff: the edge runs straight through the pixel, at a
+// Which samples of a pixel a texture covers where its alpha is at least the cutoff: the edge runs straight through the pixel, at a
 // distance that alpha and its slope tell (Golus, "Anti-aliased Alpha Test: The Esoteric Alpha To Coverage", 2017). Steeper slopes
-// are those of a leaf smaller than a pixel, beside which there is nothing.
-fn cut_out(alpha: f32, cutoff: f32) -> f32 {
-    return saturate((alpha - cutoff) / clamp(length(vec2f(dpdx(alpha), dpdy(alpha))), 1e-4, 0.5) + 0.5);
+// are those of a leaf smaller than a pixel, beside which there is nothing. One sample in four is covered from an eighth on.
+fn cut_out(alpha: f32, cutoff: f32) -> u32 {
+    let slope = length(vec2f(dpdx(alpha), dpdy(alpha)));
+    return samples_of(saturate((alpha - cutoff) / clamp(slope, 1e-4, 0.5) + 0.5), 0.375);
 }
 
 // Whether a card shows its picture there: a triangle that holds all of it reaches beyond.

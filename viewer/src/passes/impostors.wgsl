@@ -46,6 +46,7 @@ struct Out {
     // Of the leaves that the eye sees, on average: how much sun falls on the side that it sees and on the other one, and how
     // far they face upwards.
     @location(8) @interpolate(flat) leaf_light: vec3f,
+    // See `air_before`.
     @location(9) @interpolate(flat) air: vec4f,
     // Towards the eye and towards the sun in the template's space, of unit length.
     @location(10) @interpolate(flat) to_eye: vec3f,
@@ -174,10 +175,10 @@ fn pixel(in: Out, is_kept: bool) -> Pixel {
     let along_y = dpdy(in.uv) * vec2f(0.25, 1.0);
     let seen = textureSampleGrad(colors, clamped, at, in.template_index, along_x, along_y);
     let relief = textureSampleGrad(reliefs, clamped, at, in.template_index, along_x, along_y).rgb;
-    // Twigs are thinner than pixels, and so are fronds; of small leaves most pixels are full, and none is better in part.
+    // Twigs are thinner than pixels, and so are fronds; crowns of small leaves have an edge.
     let thin = samples_of(relief.b, scattered(floor(in.uv * 256.0)));
     let cutoff = frames[in.template_index].alpha_cutoff;
-    let full = samples_of(cut_out(seen.a, cutoff), 0.375);
+    let full = cut_out(seen.a, cutoff);
     let samples = select(thin, full, relief.g > 0.5 && cutoff > 0.0);
     if (samples == 0u || !is_kept) {
         discard;

@@ -12,8 +12,6 @@ struct Out {
     @location(0) world: vec3f,
     @location(1) normal: vec3f,
     @location(2) level: f32,
-    // The light of endless haze there.
-    @location(3) haze: vec3f,
 }
 
 @group(0) @binding(11) var reach: texture_2d_array<f32>;
@@ -122,7 +120,7 @@ fn normal_at(s: vec2u) -> vec3f {
 }
 
 fn out_at(world: vec3f, normal: vec3f, level: f32) -> Out {
-    return Out(view.clip_from_world * vec4f(world, 1.0), world, normal, level, haze_towards(world - view.eye));
+    return Out(view.clip_from_world * vec4f(world, 1.0), world, normal, level);
 }
 
 @vertex
@@ -296,7 +294,7 @@ fn ground(in: Out) -> @location(0) vec4f {
     }
     albedo = select(albedo * wetness(in.world.y), level_tint(in.level) * 0.5, view.tint_levels != 0u);
     let irradiance = view.sun_irradiance * light.g * relief + view.sky_irradiance * light.r * (0.6 + 0.4 * normal.y);
-    return vec4f(hazed(air_of(in.haze, in.world), albedo / PI * irradiance), 1.0);
+    return vec4f(hazed(air_before(in.world), albedo / PI * irradiance), 1.0);
 }
 
 // Metres above the lake up to which the ground is wet.
@@ -326,7 +324,7 @@ fn mirrored_ground(in: Out) -> @location(0) vec4f {
     }
     let up = 0.6 + 0.4 * normalize(in.normal).y;
     let irradiance = view.sun_irradiance * light.g + view.sky_irradiance * light.r * up;
-    return vec4f(hazed(air_of(in.haze, in.world), albedo * wetness(in.world.y) / PI * irradiance), 1.0);
+    return vec4f(hazed(air_before(in.world), albedo * wetness(in.world.y) / PI * irradiance), 1.0);
 }
 
 // The ring around the field.
@@ -341,14 +339,11 @@ struct RingOut {
     @location(0) world: vec3f,
     @location(1) normal: vec3f,
     @location(2) color: vec3f,
-    // The light of endless haze there.
-    @location(3) haze: vec3f,
 }
 
 @vertex
 fn ring_vertex(in: RingVertex) -> RingOut {
-    let clip = view.clip_from_world * vec4f(in.position, 1.0);
-    return RingOut(clip, in.position, in.normal, in.color.rgb, haze_towards(in.position - view.eye));
+    return RingOut(view.clip_from_world * vec4f(in.position, 1.0), in.position, in.normal, in.color.rgb);
 }
 
 // Metres of a tile of far rock, which stands for crags and gullies that the ring is too coarse for, and how far its bumps
@@ -376,7 +371,7 @@ fn ring_radiance(in: RingOut) -> vec3f {
     let albedo = in.color * mix(vec3f(1.0), tiles.factor, rough);
     let sun = view.sun_irradiance * max(dot(normal, view.sun_direction), 0.0);
     let sky = view.sky_irradiance * (0.5 + 0.5 * normal.y);
-    return hazed(air_of(in.haze, in.world), albedo / PI * (sun + sky));
+    return hazed(air_before(in.world), albedo / PI * (sun + sky));
 }
 
 @fragment

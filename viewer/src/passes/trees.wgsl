@@ -29,11 +29,12 @@ struct Out {
     @location(2) tangent: vec4f,
     @location(3) uv: vec2f,
     @location(4) color: vec3f,
-    // The same as `uv` within the triangle: a leaf smaller than a pixel seldom holds the pixel's middle.
-    @location(7) @interpolate(perspective, centroid) uv_within: vec2f,
     // Leaves: share of the open sky and ground that they see between their neighbours.
     @location(5) open: f32,
     @location(6) @interpolate(flat) shown: vec2f,
+    // The same as `uv` within the triangle: a leaf smaller than a pixel seldom holds the pixel's middle.
+    @location(7) @interpolate(perspective, centroid) uv_within: vec2f,
+    // See `air_before`.
     @location(8) @interpolate(flat) air: vec4f,
 }
 
@@ -129,7 +130,7 @@ struct Card {
 fn card_at(in: Out) -> Card {
     let texel = textureSampleGrad(color_map, clamped, in.uv_within, dpdx(in.uv), dpdy(in.uv));
     let albedo = vec4f(in.color, 1.0) * material.factor * texel;
-    let samples = samples_of(cut_out(albedo.a, material.alpha_cutoff), 0.375);
+    let samples = cut_out(albedo.a, material.alpha_cutoff);
     if (samples == 0u || !is_on_picture(in.uv_within) || !is_shown(in.clip.xy, in.shown)) {
         discard;
     }

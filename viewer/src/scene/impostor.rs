@@ -33,7 +33,7 @@ pub struct Impostor {
     pub crown: Crown,
     /// Some leaves, evenly spread over all their area, for the light that leaves get on average; zero where there are none.
     pub leaves: [LeafSide; LEAVES],
-    /// How wide a leaf is, above 0.
+    /// How wide what shows of a leaf is, above 0.
     pub leaf_m: f32,
     /// Where the middle of the tree is in each of [`IMPOSTOR_ROWS`] from top to bottom, in x and z from the axis: between the sides that
     /// there are pictures of, a trunk that leans or bends stands where it does by this.

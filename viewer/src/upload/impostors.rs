@@ -83,8 +83,8 @@ impl Uploader {
     }
 }
 
-fn padded([x, y, z]: [f32; 3]) -> [f32; 4] {
-    [x, y, z, 0.0]
+fn with([x, y, z]: [f32; 3], fourth: f32) -> [f32; 4] {
+    [x, y, z, fourth]
 }
 
 fn frame(pictures: &Impostor) -> ImpostorData {
@@ -95,8 +95,8 @@ fn frame(pictures: &Impostor) -> ImpostorData {
         low: pictures.low_m,
         crown_half: pictures.crown.half_m,
         alpha_cutoff: pictures.alpha_cutoff,
-        leaf_normals: pictures.leaves.map(|leaf| padded(leaf.normal)),
-        leaf_faces: pictures.leaves.map(|leaf| [leaf.face[0], leaf.face[1], leaf.face[2], pictures.leaf_m]),
+        leaf_normals: pictures.leaves.map(|leaf| with(leaf.normal, 0.0)),
+        leaf_faces: pictures.leaves.map(|leaf| with(leaf.face, pictures.leaf_m)),
         middles: pictures.middles_m,
     }
 }

@@ -186,11 +186,11 @@ impl Uploader {
             Some(image) => self.image(image, kind),
             None => self.image(&Image::of_one_pixel(otherwise), kind),
         };
-        let is_cutout = material.alpha_cutoff.is_some();
-        let cutout_or_color = if is_cutout { ImageUse::Cutout } else { ImageUse::Color };
+        let masked = material.alpha_cutoff.is_some();
+        let cutout_or_color = if masked { ImageUse::Cutout } else { ImageUse::Color };
         TreeMaterial {
             name: material.name.clone(),
-            masked: material.alpha_cutoff.is_some(),
+            masked,
             clusters: material.clusters,
             uniform: self.gpu.buffer("material", &[uniform], wgpu::BufferUsages::UNIFORM),
             color: image(&material.color, [255; 4], cutout_or_color),
