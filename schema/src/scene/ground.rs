@@ -29,7 +29,8 @@ pub struct GroundSurface<P> {
 pub struct GroundDetail<P> {
     /// "grass", "rock", "scree", "snow", "earth" or "sand".
     pub name: String,
-    /// sRGB RGB with mean (128, 128, 128), which leaves the ground's colour as it is: it is multiplied by twice this.
+    /// Factor on the ground's colour, linear RGB: 128, its mean, stands for 1. The viewer makes green of red and blue, as
+    /// 0.6 R + 0.4 B, which it is within a byte.
     pub detail: P,
     /// Tangent-space normals, RGB.
     pub normal: P,

@@ -83,7 +83,7 @@ impl BoundScene {
             ];
             bind(gpu, "view", &layouts.view, (0..).zip(bound))
         };
-        let ground = [&land.color, &land.weights, &land.details, &land.detail_normals];
+        let ground = [&land.color, &land.weights, &land.details];
         let ground = (0..).zip(ground.map(|texture| Binding::texture(texture)));
         let reach = BoundReach::new(gpu, &land.roughness);
         Self {

@@ -94,7 +94,7 @@ impl Layouts {
             camera: all("camera", both, &[UNIFORM]),
             studio: all("studio", both, &[UNIFORM, READ]),
             surface: all("surface", fragment, &[&[UNIFORM][..], &[IMAGE; 5], &[FILTERING; 5]].concat()),
-            ground: all("ground", both, &[IMAGE, IMAGE, LAYERS, LAYERS]),
+            ground: all("ground", both, &[IMAGE, IMAGE, LAYERS]),
             trees: all("trees", ShaderStages::VERTEX, &[READ]),
             impostors: all("pictures of trees", both, &[READ, READ, LAYERS, LAYERS]),
             material: all("material", fragment, &[UNIFORM, IMAGE, IMAGE]),

@@ -17,8 +17,8 @@ struct Out {
 @group(0) @binding(11) var reach: texture_2d_array<f32>;
 @group(1) @binding(0) var ground_color: texture_2d<f32>;
 @group(1) @binding(1) var ground_weights: texture_2d<f32>;
+// Tiling textures: red and blue of the factor on the colour, which is 1 at 128, then the first two parts of the normal.
 @group(1) @binding(2) var details: texture_2d_array<f32>;
-@group(1) @binding(3) var detail_normals: texture_2d_array<f32>;
 
 fn sample_place(s: vec2u) -> vec3f {
     return vec3f(place_m(f32(s.x)), textureLoad(heights, vec2i(s), 0).r, place_m(f32(s.y)));
@@ -143,6 +143,17 @@ struct Tiles {
     bump: vec3f,
 }
 
+// What a texel of `details` says. Ground varies between dark and light and between warm and cool, never between green and
+// purple: so green follows from red and blue, and colour and normal are one look at a texture instead of two.
+fn tiles_of(texel: vec4f) -> Tiles {
+    let tone = texel.rg * (255.0 / 128.0);
+    let bump = texel.ba * 2.0 - 1.0;
+    return Tiles(
+        vec3f(tone.x, dot(tone, vec2f(0.6, 0.4)), tone.y),
+        vec3f(bump, sqrt(saturate(1.0 - dot(bump, bump)))),
+    );
+}
+
 // What a pixel covers, its longer side made shorter, to the mean of both: tiling textures are to be sharp at low angles
 // also where the device filters them alike in all directions, and are smooth enough to bear it.
 fn less_stretched(dx: vec2f, dy: vec2f) -> vec2f {
@@ -184,18 +195,17 @@ fn look(k: u32, at: Surface, parts: array<f32, 5>, far: f32) -> Tiles {
     let shorter = less_stretched(dx, dy);
     dx *= shorter.x;
     dy *= shorter.y;
-    var factor = textureSampleGrad(details, repeating, p, layer, dx, dy).rgb * (255.0 / 128.0);
-    var bump = textureSampleGrad(detail_normals, repeating, p, layer, dx, dy).xyz * 2.0 - 1.0;
+    var tiles = tiles_of(textureSampleGrad(details, repeating, p, layer, dx, dy));
     if (wide) {
         // v runs against the bitangent: normals turn back the other way.
         // And fainter: from afar it stands for patches, not for giant blades and pebbles.
         let rough = select(0.8, 0.9, layer == 1u);
-        bump = vec3f(TURN * bump.xy * rough, bump.z);
-        factor = mix(vec3f(1.0), factor, rough);
+        tiles.bump = vec3f(TURN * tiles.bump.xy * rough, tiles.bump.z);
+        tiles.factor = mix(vec3f(1.0), tiles.factor, rough);
     }
     let seen = select(select(at.sides.z, at.sides.x, axis == 1u), at.sides.y, axis == 0u);
     let share = entry(parts, layer) * seen * select(1.0 - far, far, wide);
-    return Tiles(share * factor, share * bump);
+    return Tiles(share * tiles.factor, share * tiles.bump);
 }
 
 // All looks that count. Mesa's software driver takes both ways of every `if`, but ends a loop when no pixel needs it any
@@ -238,10 +248,9 @@ fn close_up(at: Surface, parts: array<f32, 5>, near: f32) -> Tiles {
         let dx = turn * along(axis, at.dx);
         let dy = turn * along(axis, at.dy);
         let shorter = less_stretched(dx, dy);
-        let factor = textureSampleGrad(details, repeating, p, best, dx * shorter.x, dy * shorter.y).rgb * (255.0 / 128.0);
-        let bump = textureSampleGrad(detail_normals, repeating, p, best, dx * shorter.x, dy * shorter.y).xyz * 2.0 - 1.0;
-        result.factor = mix(vec3f(1.0), factor, 0.6 * near);
-        result.bump = vec3f(vec2f(0.29, 0.957) * bump.x + vec2f(-0.957, 0.29) * bump.y, 0.0) * (0.5 * near);
+        let fine = tiles_of(textureSampleGrad(details, repeating, p, best, dx * shorter.x, dy * shorter.y));
+        result.factor = mix(vec3f(1.0), fine.factor, 0.6 * near);
+        result.bump = vec3f(vec2f(0.29, 0.957) * fine.bump.x + vec2f(-0.957, 0.29) * fine.bump.y, 0.0) * (0.5 * near);
     }
     return result;
 }
@@ -353,12 +362,9 @@ const CRAGS_LEAN: f32 = 0.8;
 
 // Crags at two scales: their bumps and a factor on the colour.
 fn crags(place: vec2f) -> Tiles {
-    let wide = place / CRAGS_M;
-    let fine = TURN * place / (0.23 * CRAGS_M);
-    let factor = textureSample(details, repeating, wide, 1).rgb + textureSample(details, repeating, fine, 1).rgb;
-    let wide_bump = textureSample(detail_normals, repeating, wide, 1).xy * 2.0 - 1.0;
-    let fine_bump = textureSample(detail_normals, repeating, fine, 1).xy * 2.0 - 1.0;
-    return Tiles(factor * (0.5 * 255.0 / 128.0), vec3f(wide_bump + TURN * fine_bump, 1.0));
+    let wide = tiles_of(textureSample(details, repeating, place / CRAGS_M, 1));
+    let fine = tiles_of(textureSample(details, repeating, TURN * place / (0.23 * CRAGS_M), 1));
+    return Tiles(0.5 * (wide.factor + fine.factor), vec3f(wide.bump.xy + TURN * fine.bump.xy, 1.0));
 }
 
 fn ring_radiance(in: RingOut) -> vec3f {

@@ -2,6 +2,10 @@
 
 use std::sync::Arc;
 
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::texture::mip_levels;
 use super::{ImageUse, Lake, PlantBuffers, Ring, Uploader};
 use crate::lod::block;
 use crate::lod::reach::Roughness;
@@ -20,10 +24,8 @@ pub struct GroundBuffers {
     pub weights: Arc<wgpu::Texture>,
     /// Light that arrives: sky, sun, visibility of the sun.
     pub light: Arc<wgpu::Texture>,
-    /// Tiling textures, a layer each.
+    /// Tiling textures, a layer each, as [`packed`] has them.
     pub details: Arc<wgpu::Texture>,
-    /// Their normals.
-    pub detail_normals: Arc<wgpu::Texture>,
     /// Metres that each tile covers.
     pub tiles_m: [f32; 5],
     /// The coarse land around the field.
@@ -37,9 +39,6 @@ pub struct GroundBuffers {
 impl Uploader {
     pub(super) fn ground(&self, ground: &Ground) -> Result<GroundBuffers, String> {
         let surface = &ground.surface;
-        let pick = |choose: fn(&GroundDetail<Image>) -> &Image| {
-            surface.details.iter().map(choose).collect::<Vec<_>>()
-        };
         if surface.details.len() != 5 {
             return Err(format!("the ground has {} tiling textures instead of 5", surface.details.len()));
         }
@@ -53,12 +52,47 @@ impl Uploader {
             color: self.image(&surface.color, ImageUse::Color),
             weights: self.image(&surface.weights, ImageUse::Data),
             light: self.image(&surface.light, ImageUse::Data),
-            details: self.layers(&pick(|detail| &detail.detail), ImageUse::Data)?,
-            detail_normals: self.layers(&pick(|detail| &detail.normal), ImageUse::Data)?,
+            details: self.tiling(&surface.details)?,
             tiles_m: std::array::from_fn(|layer| surface.details[layer].tile_m),
             ring: self.ring(&ground.apron, 0.5 * ground.field.extent_m()),
             lake: Lake::of(ground),
             plants: self.plants(ground),
         })
     }
+
+    /// Tiling textures as the layers of one.
+    fn tiling(&self, details: &[GroundDetail<Image>]) -> Result<Arc<wgpu::Texture>, String> {
+        let images: Vec<&Image> =
+            details.iter().flat_map(|detail| [&detail.detail, &detail.normal]).collect();
+        let size = |image: &Image| (image.width_px, image.height_px);
+        if let Some(odd) = images.iter().find(|&&image| size(image) != size(images[0])) {
+            let first = images[0];
+            return Err(format!(
+                "tiling textures differ in size: {} is {} × {}, {} is {} × {}",
+                first.name, first.width_px, first.height_px, odd.name, odd.width_px, odd.height_px
+            ));
+        }
+        let names: Vec<&str> = images.iter().map(|image| image.name.as_str()).collect();
+        Ok(self.shared(format!("tiling {}", names.join(" ")), || {
+            let packed: Vec<Image> = details.par_iter().map(packed).collect();
+            self.array(&packed.iter().collect::<Vec<_>>(), ImageUse::Data, 1)
+        }))
+    }
+}
+
+/// Colour and normal in one image: red and blue, of which the shader makes green, then x and y of the normal, of which it makes z.
+fn packed(detail: &GroundDetail<Image>) -> Image {
+    let [colors, normals] = [&detail.detail, &detail.normal].map(|image| mip_levels(image, ImageUse::Data));
+    let levels = colors.iter().zip(&normals).map(|(colors, normals)| {
+        let texels = colors.as_chunks::<4>().0.iter().zip(normals.as_chunks::<4>().0);
+        texels.flat_map(|(&[r, _, b, _], &normal)| [[r, b], slopes(normal)].concat()).collect()
+    });
+    Image { levels: levels.collect(), ..detail.detail.clone() }
+}
+
+/// x and y of a mean of normals once it is as long as a normal.
+fn slopes([x, y, z, _]: [u8; 4]) -> [u8; 2] {
+    let mean = Vec3::new(f32::from(x), f32::from(y), f32::from(z)) - 127.5;
+    let normal = mean.normalize_or(Vec3::Z);
+    [normal.x, normal.y].map(|part| (127.5 + 127.5 * part).round() as u8)
 }

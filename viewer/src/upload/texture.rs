@@ -40,20 +40,6 @@ impl Uploader {
         self.shared(format!("{kind:?} {}", image.name), || self.array(&[image], kind, min_px))
     }
 
-    /// Several images of one size as the layers of one texture.
-    pub(super) fn layers(&self, images: &[&Image], kind: ImageUse) -> Result<Arc<wgpu::Texture>, String> {
-        let first = images.first().ok_or("there are no tiling textures")?;
-        let odd = images.iter().find(|p| (p.width_px, p.height_px) != (first.width_px, first.height_px));
-        if let Some(odd) = odd {
-            return Err(format!(
-                "tiling textures differ in size: {} is {} × {}, {} is {} × {}",
-                first.name, first.width_px, first.height_px, odd.name, odd.width_px, odd.height_px
-            ));
-        }
-        let names: Vec<&str> = images.iter().map(|image| image.name.as_str()).collect();
-        Ok(self.shared(format!("{kind:?} {}", names.join(" ")), || self.array(images, kind, 1)))
-    }
-
     /// Several strips of square pictures of one size as the layers of one texture, down to `min_px` a side: smaller, and
     /// pictures run into each other.
     pub(super) fn strips(&self, images: &[&Image], kind: ImageUse, min_px: u32) -> Arc<wgpu::Texture> {
@@ -61,8 +47,9 @@ impl Uploader {
         self.shared(format!("strips {kind:?} {}", names.join(" ")), || self.array(images, kind, min_px))
     }
 
-    fn array(&self, images: &[&Image], kind: ImageUse, min_px: u32) -> wgpu::Texture {
-        let chains: Vec<Vec<Arc<[u8]>>> = images.par_iter().map(|image| chain(image, kind)).collect();
+    /// Several images of one size as the layers of one texture, with mip levels down to `min_px` a side.
+    pub(super) fn array(&self, images: &[&Image], kind: ImageUse, min_px: u32) -> wgpu::Texture {
+        let chains: Vec<Vec<Arc<[u8]>>> = images.par_iter().map(|image| mip_levels(image, kind)).collect();
         let wanted =
             (images[0].height_px.max(images[0].width_px) / min_px.max(1)).max(1).ilog2() as usize + 1;
         let levels = chains.iter().map(Vec::len).min().unwrap_or(1).min(wanted);
@@ -100,7 +87,7 @@ impl Uploader {
 const CUT: u8 = 128;
 
 /// An image's mip levels: its own, or averages down to one pixel.
-fn chain(image: &Image, kind: ImageUse) -> Vec<Arc<[u8]>> {
+pub(super) fn mip_levels(image: &Image, kind: ImageUse) -> Vec<Arc<[u8]>> {
     if image.levels.len() > 1 {
         return image.levels.clone();
     }
@@ -201,11 +188,11 @@ mod tests {
 
     #[test]
     fn mips_go_down_to_one_pixel_and_keep_the_mean_of_light() {
-        let levels = chain(&checkered(0, 255), ImageUse::Color);
+        let levels = mip_levels(&checkered(0, 255), ImageUse::Color);
         assert_eq!(levels.iter().map(|level| level.len()).collect::<Vec<_>>(), [64, 16, 4]);
         // Half the light of white is sRGB 188, not 128; alpha is no light.
         assert_eq!(levels[2][..], [188, 188, 188, 128]);
-        assert_eq!(chain(&checkered(0, 255), ImageUse::Data)[2][..], [128; 4]);
+        assert_eq!(mip_levels(&checkered(0, 255), ImageUse::Data)[2][..], [128; 4]);
     }
 
     #[test]
@@ -220,7 +207,7 @@ mod tests {
             let passes = level.chunks_exact(4).filter(|pixel| pixel[3] >= CUT).count();
             passes as f32 / (level.len() / 4) as f32
         };
-        let [cut, plain] = [ImageUse::Cutout, ImageUse::Color].map(|kind| chain(&image, kind));
+        let [cut, plain] = [ImageUse::Cutout, ImageUse::Color].map(|kind| mip_levels(&image, kind));
         for level in &cut[1..4] {
             assert!((share(level) - share(&cut[0])).abs() < 0.04, "{} of {}", share(level), share(&cut[0]));
         }
@@ -231,7 +218,7 @@ mod tests {
     fn a_file_s_own_mips_are_left_as_they_are() {
         let mut image = checkered(10, 20);
         image.levels.push(vec![7; 16].into());
-        assert_eq!(chain(&image, ImageUse::Color), image.levels);
+        assert_eq!(mip_levels(&image, ImageUse::Color), image.levels);
     }
 
     #[test]

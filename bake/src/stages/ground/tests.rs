@@ -255,6 +255,18 @@ fn textures_have_their_mean_and_point_outwards() {
     }
 }
 
+#[test]
+fn green_of_tones_follows_from_red_and_blue() {
+    for t in TEXTURES.iter() {
+        let squares = t.detail.data.chunks_exact(3).map(|tone| {
+            let [red, green, blue] = [0, 1, 2].map(|channel| f64::from(tone[channel]));
+            (0.6 * red + 0.4 * blue - green).powi(2)
+        });
+        let rms = (squares.sum::<f64>() / (512.0 * 512.0)).sqrt();
+        assert!(rms < 1.0, "the viewer, which never reads it, is off by {rms} on {}", t.name);
+    }
+}
+
 /// A near mesh of the land, and the piece cut out of it around a place.
 fn cut(east_m: f32, south_m: f32) -> (crate::model::Mesh, crate::model::Foreground) {
     cut_with(&MAPS.plants, east_m, south_m)
