@@ -118,7 +118,7 @@ const PI: f32 = 3.14159265;
 // The light of endless haze in a direction: that of the cloudless sky at the horizon, brighter towards the sun, so that land
 // fades into the sky behind it.
 fn haze_towards(way: vec3f) -> vec3f {
-    return textureSampleLevel(clear_cube, clamped, vec3f(way.x, 0.0, way.z) + vec3f(1e-4, 0.0, 0.0), 0.0).rgb;
+    return clear_sky(vec3f(way.x, 0.0, way.z) + vec3f(1e-4, 0.0, 0.0));
 }
 
 // Aerial perspective: the haze's own light before a place in the world, and the share of that place's light that comes through.
@@ -353,27 +353,33 @@ fn frayed(direction: vec3f) -> vec3f {
     return direction + (right * beside.x + cross(direction, right) * beside.y) * reach;
 }
 
-// What clouds add to the clear sky, or take from it.
-fn cloud_difference(direction: vec3f) -> vec3f {
-    let there = frayed(direction);
-    let painted = textureSampleLevel(sky_cube, clamped, there, 0.0).rgb;
-    return painted - textureSampleLevel(clear_cube, clamped, there, 0.0).rgb;
+fn clear_sky(direction: vec3f) -> vec3f {
+    return textureSampleLevel(clear_cube, clamped, direction, 0.0).rgb;
 }
 
-// The sky in a direction, without the sun's disc: the painted clouds, drifting if that is wished for. At the horizon they
-// stand still. A loop, because Mesa's software driver leaves a loop early but takes both ways of an `if`.
-fn sky_radiance(direction: vec3f) -> vec3f {
+// What clouds that stand still add to the clear sky, or take from it.
+fn painted_clouds(direction: vec3f, are_frayed: bool) -> vec3f {
+    var there = direction;
+    if (are_frayed) {
+        there = frayed(direction);
+    }
+    return textureSampleLevel(sky_cube, clamped, there, 0.0).rgb - clear_sky(there);
+}
+
+// The same of the painted clouds, drifting if that is wished for. At the horizon they stand still. A loop, because Mesa's
+// software driver leaves a loop early but takes both ways of an `if`.
+fn clouds_towards(direction: vec3f, are_frayed: bool) -> vec3f {
     let d = drift();
     let lift = smoothstep(0.005, 0.06, direction.y);
-    var radiance = textureSampleLevel(clear_cube, clamped, direction, 0.0).rgb;
+    var radiance = vec3f(0.0);
     let first = select(0, 1, d.share <= 0.0 && lift > 0.0);
     let last = select(2, 1, d.share >= 1.0 || lift <= 0.0);
     for (var copy = first; copy < last; copy++) {
         let moved = select(d.second, d.first, copy == 0) * lift;
         let share = select(select(1.0 - d.share, d.share, copy == 0), 1.0, lift <= 0.0);
-        radiance += share * cloud_difference(before_drift(direction, moved));
+        radiance += share * painted_clouds(before_drift(direction, moved), are_frayed);
     }
-    return max(radiance, vec3f(0.0));
+    return radiance;
 }
 
 fn layer_alpha(image: texture_2d<f32>, direction: vec3f, altitude: f32, extent: f32, moved: vec2f) -> f32 {

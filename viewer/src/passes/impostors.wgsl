@@ -171,10 +171,11 @@ fn pixel(in: Out, is_kept: bool) -> Pixel {
     // From behind it is its own mirror image.
     let u = clamp(select(beside, 1.0 - beside, (side & 4u) != 0u), 0.0, 1.0);
     let at = vec2f((f32(side & 3u) + u) * 0.25, in.uv.y);
-    let along_x = dpdx(in.uv) * vec2f(0.25, 1.0);
-    let along_y = dpdy(in.uv) * vec2f(0.25, 1.0);
-    let seen = textureSampleGrad(colors, clamped, at, in.template_index, along_x, along_y);
-    let relief = textureSampleGrad(reliefs, clamped, at, in.template_index, along_x, along_y).rgb;
+    // `at` leaps from place to place.
+    let step = max(length(dpdx(in.uv)), length(dpdy(in.uv)));
+    let level = log2(step * f32(textureDimensions(colors).y));
+    let seen = textureSampleLevel(colors, clamped, at, in.template_index, level);
+    let relief = textureSampleLevel(reliefs, clamped, at, in.template_index, level).rgb;
     // Twigs are thinner than pixels, and so are fronds; crowns of small leaves have an edge.
     let thin = samples_of(relief.b, scattered(floor(in.uv * 256.0)));
     let cutoff = frames[in.template_index].alpha_cutoff;

@@ -112,11 +112,12 @@ impl Passes {
             mirror: Mirror::new(&compiler)?,
             picture: [
                 (trees::SHADER.name, Box::new(trees::Trees::new(&compiler)?)),
-                (impostors::SHADER.name, Box::new(impostors::Impostors::new(&compiler)?)),
                 // Before the terrain: what it hides needs no light.
                 (grass::SHADER.name, Box::new(grass::Grass::new(&compiler)?)),
                 (plants::SHADER.name, Box::new(plants::Plants::new(&compiler)?)),
                 (terrain::SHADER.name, Box::new(terrain::Terrain::new(&compiler)?)),
+                // After it: many far trees are behind hills.
+                (impostors::SHADER.name, Box::new(impostors::Impostors::new(&compiler)?)),
                 (sky::SHADER.name, Box::new(sky::Sky::new(&compiler)?)),
                 (water::SHADER.name, Box::new(water::Water::new(&compiler)?)),
             ],

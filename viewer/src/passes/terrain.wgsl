@@ -156,7 +156,7 @@ fn tiles_of(texel: vec4f) -> Tiles {
 
 // What a pixel covers, its longer side made shorter, to the mean of both: tiling textures are to be sharp at low angles
 // also where the device filters them alike in all directions, and are smooth enough to bear it.
-fn less_stretched(dx: vec2f, dy: vec2f) -> vec2f {
+fn less_stretched(dx: vec3f, dy: vec3f) -> vec2f {
     let squares = vec2f(max(dot(dx, dx), 1e-18), max(dot(dy, dy), 1e-18));
     let mean = sqrt(squares.x * squares.y);
     return min(inverseSqrt(squares) * sqrt(mean), vec2f(1.0));
@@ -192,9 +192,6 @@ fn look(k: u32, at: Surface, parts: array<f32, 5>, far: f32) -> Tiles {
         dx = TURN * dx / 4.3;
         dy = TURN * dy / 4.3;
     }
-    let shorter = less_stretched(dx, dy);
-    dx *= shorter.x;
-    dy *= shorter.y;
     var tiles = tiles_of(textureSampleGrad(details, repeating, p, layer, dx, dy));
     if (wide) {
         // v runs against the bitangent: normals turn back the other way.
@@ -247,8 +244,7 @@ fn close_up(at: Surface, parts: array<f32, 5>, near: f32) -> Tiles {
         let p = turn * along(axis, at.world);
         let dx = turn * along(axis, at.dx);
         let dy = turn * along(axis, at.dy);
-        let shorter = less_stretched(dx, dy);
-        let fine = tiles_of(textureSampleGrad(details, repeating, p, best, dx * shorter.x, dy * shorter.y));
+        let fine = tiles_of(textureSampleGrad(details, repeating, p, best, dx, dy));
         result.factor = mix(vec3f(1.0), fine.factor, 0.6 * near);
         result.bump = vec3f(vec2f(0.29, 0.957) * fine.bump.x + vec2f(-0.957, 0.29) * fine.bump.y, 0.0) * (0.5 * near);
     }
@@ -286,7 +282,8 @@ fn ground(in: Out) -> @location(0) vec4f {
     var normal = normalize(in.normal);
     var relief = 1.0;
     if (away < 240.0) {
-        let at = Surface(in.world, dx, dy, sides_of(normal));
+        let shorter = less_stretched(dx, dy);
+        let at = Surface(in.world, dx * shorter.x, dy * shorter.y, sides_of(normal));
         let rest = max(1.0 - weights.r - weights.g - weights.b - weights.a, 0.0);
         let parts = array<f32, 5>(rest, weights.r, weights.g, weights.b, weights.a);
         var tiles = looks(at, parts, smoothstep(7.0, 22.0, away));

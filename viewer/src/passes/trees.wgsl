@@ -27,15 +27,14 @@ struct Out {
     @location(0) world: vec3f,
     @location(1) normal: vec3f,
     @location(2) tangent: vec4f,
-    @location(3) uv: vec2f,
+    // Within the triangle: a leaf smaller than a pixel seldom holds the pixel's middle.
+    @location(3) @interpolate(perspective, centroid) uv: vec2f,
     @location(4) color: vec3f,
     // Leaves: share of the open sky and ground that they see between their neighbours.
     @location(5) open: f32,
     @location(6) @interpolate(flat) shown: vec2f,
-    // The same as `uv` within the triangle: a leaf smaller than a pixel seldom holds the pixel's middle.
-    @location(7) @interpolate(perspective, centroid) uv_within: vec2f,
     // See `air_before`.
-    @location(8) @interpolate(flat) air: vec4f,
+    @location(7) @interpolate(flat) air: vec4f,
 }
 
 fn placed(in: In) -> Out {
@@ -50,7 +49,6 @@ fn placed(in: In) -> Out {
     out.normal = normalize(normal_from_template(rows, turned));
     out.tangent = vec4f(normalize(tangent), in.color.a * 2.0 - 1.0);
     out.uv = in.uv + alpha * in.uv_delta;
-    out.uv_within = out.uv;
     out.color = select(in.color.rgb, level_tint(in.lambda) * 1.6, view.tint_levels != 0u);
     out.open = in.color.a;
     out.shown = in.shown.xy;
@@ -128,10 +126,10 @@ struct Card {
 }
 
 fn card_at(in: Out) -> Card {
-    let texel = textureSampleGrad(color_map, clamped, in.uv_within, dpdx(in.uv), dpdy(in.uv));
+    let texel = textureSample(color_map, clamped, in.uv);
     let albedo = vec4f(in.color, 1.0) * material.factor * texel;
     let samples = cut_out(albedo.a, material.alpha_cutoff);
-    if (samples == 0u || !is_on_picture(in.uv_within) || !is_shown(in.clip.xy, in.shown)) {
+    if (samples == 0u || !is_on_picture(in.uv) || !is_shown(in.clip.xy, in.shown)) {
         discard;
     }
     return Card(albedo.rgb, samples);
