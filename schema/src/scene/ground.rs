@@ -32,7 +32,7 @@ pub struct GroundDetail<P> {
     /// Factor on the ground's colour, linear RGB: 128, its mean, stands for 1. The viewer makes green of red and blue, as
     /// 0.6 R + 0.4 B, which it is within a byte.
     pub detail: P,
-    /// Tangent-space normals, RGB.
+    /// Tangent-space normals, RGB, of the same size.
     pub normal: P,
     /// Metres that one tile covers.
     pub tile_m: f32,

@@ -171,9 +171,9 @@ fn pixel(in: Out, is_kept: bool) -> Pixel {
     // From behind it is its own mirror image.
     let u = clamp(select(beside, 1.0 - beside, (side & 4u) != 0u), 0.0, 1.0);
     let at = vec2f((f32(side & 3u) + u) * 0.25, in.uv.y);
-    // `at` leaps from place to place.
-    let step = max(length(dpdx(in.uv)), length(dpdy(in.uv)));
-    let level = log2(step * f32(textureDimensions(colors).y));
+    // By `uv`: `at` leaps from place to place.
+    let moved = max(length(dpdx(in.uv)), length(dpdy(in.uv)));
+    let level = log2(moved * f32(textureDimensions(colors).y));
     let seen = textureSampleLevel(colors, clamped, at, in.template_index, level);
     let relief = textureSampleLevel(reliefs, clamped, at, in.template_index, level).rgb;
     // Twigs are thinner than pixels, and so are fronds; crowns of small leaves have an edge.

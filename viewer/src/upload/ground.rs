@@ -85,14 +85,45 @@ fn packed(detail: &GroundDetail<Image>) -> Image {
     let [colors, normals] = [&detail.detail, &detail.normal].map(|image| mip_levels(image, ImageUse::Data));
     let levels = colors.iter().zip(&normals).map(|(colors, normals)| {
         let texels = colors.as_chunks::<4>().0.iter().zip(normals.as_chunks::<4>().0);
-        texels.flat_map(|(&[r, _, b, _], &normal)| [[r, b], slopes(normal)].concat()).collect()
+        let texels = texels.map(|(&[r, _, b, _], &normal)| {
+            let [x, y] = leaning(normal);
+            [r, b, x, y]
+        });
+        texels.collect::<Vec<_>>().into_flattened().into()
     });
     Image { levels: levels.collect(), ..detail.detail.clone() }
 }
 
 /// x and y of a mean of normals once it is as long as a normal.
-fn slopes([x, y, z, _]: [u8; 4]) -> [u8; 2] {
+fn leaning([x, y, z, _]: [u8; 4]) -> [u8; 2] {
     let mean = Vec3::new(f32::from(x), f32::from(y), f32::from(z)) - 127.5;
     let normal = mean.normalize_or(Vec3::Z);
     [normal.x, normal.y].map(|part| (127.5 + 127.5 * part).round() as u8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn image(name: &str, pixel: impl Fn(u32) -> [u8; 4]) -> Image {
+        let pixels: Vec<u8> = (0..4).flat_map(pixel).collect();
+        Image { name: name.into(), width_px: 2, height_px: 2, levels: vec![pixels.into()] }
+    }
+
+    #[test]
+    fn packed_tiles_keep_red_and_blue_and_the_direction_of_mean_normals() {
+        // Half of it leans to the right by 60°, the other half not at all: on average by 30°.
+        let leaning = |n: u32| if n < 2 { [238, 128, 191, 255] } else { [128, 128, 255, 255] };
+        let tile = GroundDetail {
+            name: "grass".into(),
+            detail: image("tones", |n| [40 + n as u8, 99, 200, 255]),
+            normal: image("normals", leaning),
+            tile_m: 3.0,
+        };
+        let levels = packed(&tile).levels;
+        assert_eq!(levels[0][..8], [40, 200, 238, 128, 41, 200, 238, 128]);
+        let [red, blue, x, y] = levels[1][..] else { panic!("{} bytes for one pixel", levels[1].len()) };
+        assert_eq!([red, blue, y], [42, 200, 128]);
+        assert!(x.abs_diff(191) <= 1, "sin 30° is 191, not {x}");
+    }
 }
