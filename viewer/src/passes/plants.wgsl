@@ -21,6 +21,8 @@ struct Corner {
 struct Out {
     @builtin(position) clip: vec4f,
     @location(0) radiance: vec3f,
+    // Of one of the corners.
+    @location(1) @interpolate(flat) corner: vec3f,
 }
 
 @vertex
@@ -49,10 +51,12 @@ fn vertex(plant: Plant, corner: Corner) -> Out {
     let open = mix(1.0, 0.55 + 0.45 * clamp(3.0 * corner.position.y, 0.0, 1.0), leafy);
     let sky_on = 0.55 + 0.45 * normal.y;
     let irradiance = view.sun_irradiance * light.b * sun_on + view.sky_irradiance * light.r * sky_on;
-    return Out(view.clip_from_world * vec4f(world, 1.0), hazed(air_before(world), albedo / PI * irradiance * open));
+    let radiance = hazed(air_before(world), albedo / PI * irradiance * open);
+    return Out(view.clip_from_world * vec4f(world, 1.0), radiance, radiance);
 }
 
 @fragment
 fn fragment(in: Out) -> @location(0) vec4f {
-    return vec4f(in.radiance, 1.0);
+    // Beyond the edge of a sliver, where a pixel's middle may lie, what is interpolated is any number.
+    return vec4f(clamp(in.radiance, 0.1 * in.corner, 10.0 * in.corner), 1.0);
 }

@@ -73,6 +73,12 @@ fn bark_vertex(in: In) -> Out {
     return out;
 }
 
+// Pixels of slivers may lie beyond their edges, where what is interpolated is any number, black or glaring. They are left to what
+// is behind.
+fn is_beyond(color: vec3f) -> bool {
+    return any(color < vec3f(0.0)) || any(color > vec3f(2.0));
+}
+
 fn ambient(normal: vec3f, albedo: vec3f) -> vec3f {
     return albedo / PI * ambient_light(0.5 + 0.5 * normal.y);
 }
@@ -84,7 +90,7 @@ fn bark(in: Out) -> @location(0) vec4f {
     albedo *= textureSample(color_map, repeating, in.uv).rgb;
     let bump = textureSample(normal_map, repeating, in.uv).xyz * 2.0 - 1.0;
     // Not before its textures are read: their mip levels depend on the pixels around.
-    if (in.shown.x > 0.0 && !is_shown(in.clip.xy, in.shown)) {
+    if ((in.shown.x > 0.0 && !is_shown(in.clip.xy, in.shown)) || is_beyond(in.color)) {
         discard;
     }
     let tangent = normalize(in.tangent.xyz - normal * dot(in.tangent.xyz, normal));
@@ -129,7 +135,7 @@ fn card_at(in: Out) -> Card {
     let texel = textureSample(color_map, clamped, in.uv);
     let albedo = vec4f(in.color, 1.0) * material.factor * texel;
     let samples = cut_out(albedo.a, material.alpha_cutoff);
-    if (samples == 0u || !is_on_picture(in.uv) || !is_shown(in.clip.xy, in.shown)) {
+    if (samples == 0u || !is_on_picture(in.uv) || !is_shown(in.clip.xy, in.shown) || is_beyond(in.color)) {
         discard;
     }
     return Card(albedo.rgb, samples);
