@@ -121,10 +121,12 @@ impl Picture<'_> {
         let not_all = 0.4 + 0.6 * ramp(0.7, 0.4, near + good + far);
         // One crown may fill as much of a picture as a wall.
         let not_in_the_way = 0.3 + 0.7 * ramp(0.5, 0.25, near + between(10.0, 30.0));
+        // A stem without its crown is a bar across the picture.
+        let not_cut = 0.35 + 0.65 * ramp(0.06, 0.015, self.cut_stems);
         // Those at the edge alone are half as good.
         let good = 0.5 * (good + self.middle_share_between(10.0..60.0, |kind| kind == Kind::Tree));
         let some = 0.08 + 0.92 * ramp(0.0, 0.2, good + 0.2 * far);
-        some * none_near * not_all * not_in_the_way
+        some * none_near * not_all * not_in_the_way * not_cut
     }
 
     fn water(&self) -> f32 {

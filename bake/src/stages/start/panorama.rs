@@ -23,6 +23,8 @@ const GROWTH: f32 = 1.09;
 const FAR_M: f32 = 3000.0;
 /// Farthest tree that can be told from the ground.
 const FAR_TREE_M: f32 = 250.0;
+/// Farthest stem that is wide enough to count.
+const FAR_STEM_M: f32 = 16.0;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
@@ -59,9 +61,10 @@ pub(super) struct Surroundings<'a> {
     trees: Vec<Tree>,
 }
 
-/// A tree as an ellipsoid on a stem that is too thin to count.
+/// A tree as an ellipsoid on a stem, which counts only where it is near.
 pub(super) struct Tree {
     foot: Vec2,
+    stem_radius_m: f32,
     radius_m: f32,
     bottom_m: f32,
     top_m: f32,
@@ -74,6 +77,7 @@ impl Tree {
         let (foot_m, height_m) = (rows[1][3], footprint.height_m * rows[1][1]);
         Some(Self {
             foot: Vec2::new(rows[0][3], rows[2][3]),
+            stem_radius_m: footprint.trunk_radius_m * rows[1][1],
             radius_m: footprint.crown_radius_m * libm::hypotf(rows[0][0], rows[2][0]),
             bottom_m: foot_m + footprint.clear_trunk * height_m,
             top_m: foot_m + height_m,
@@ -139,6 +143,18 @@ pub(super) struct Panorama {
     skyline: Vec<f32>,
     /// For each column the logarithm of the farthest land's depth, in metres.
     log_far: Vec<f32>,
+    stems: Vec<Stem>,
+}
+
+/// A stem near by.
+#[derive(Clone, Copy)]
+pub(super) struct Stem {
+    /// Where its middle stands, in columns from north.
+    pub column: f32,
+    /// How many columns it hides.
+    pub width: f32,
+    /// Slope at which its crown begins.
+    pub crown_from: f32,
 }
 
 /// What is seen in one direction.
@@ -153,7 +169,8 @@ pub(super) struct Column<'a> {
 impl Panorama {
     pub fn new(scene: &Surroundings<'_>, place: Vec2) -> Self {
         let eye_m = scene.surface_m(place) + StartView::EYE_HEIGHT_M;
-        let mut panorama = Self { eye_m, seen: Vec::new(), skyline: Vec::new(), log_far: Vec::new() };
+        let mut panorama =
+            Self { eye_m, seen: Vec::new(), skyline: Vec::new(), log_far: Vec::new(), stems: Vec::new() };
         for column in 0..COLUMNS {
             panorama.add_column(scene, place, column_towards(column));
         }
@@ -192,6 +209,10 @@ impl Panorama {
         let middle = libm::atan2f(way.x, -way.y) / step;
         let half = libm::atanf(tree.radius_m / depth_m) / step;
         let (low, high) = ((tree.bottom_m - self.eye_m) / depth_m, (tree.top_m - self.eye_m) / depth_m);
+        if depth_m < FAR_STEM_M {
+            let width = 2.0 * libm::atanf(tree.stem_radius_m / depth_m) / step;
+            self.stems.push(Stem { column: middle, width, crown_from: low });
+        }
         let reach = half.max(0.5) as i32 + 1;
         for offset in -reach..=reach {
             let column = libm::roundf(middle) as i32 + offset;
@@ -214,6 +235,11 @@ impl Panorama {
                 *seen = Seen { kind: Kind::Tree, depth_m };
             }
         }
+    }
+
+    /// Stems near by, all around.
+    pub fn stems(&self) -> &[Stem] {
+        &self.stems
     }
 
     /// The column `index - before` from north, all round.

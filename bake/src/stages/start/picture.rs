@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use genescape_schema::scene::Lookout;
 
+use super::appraise::ramp;
 use super::panorama::{COLUMNS, Column, Kind, Panorama, ROWS, Seen, slope_of};
 
 /// Columns of the panorama in half a picture: ±41°, the viewer's 60° upright at 16:10.
@@ -27,6 +28,8 @@ pub(super) struct Picture<'a> {
     pub skyline: f32,
     /// Slope of the look.
     pub pitch: f32,
+    /// Part of the picture's width that stems near by take whose crowns are beyond its upper edge.
+    pub cut_stems: f32,
     /// Rays of each kind in each band of depths.
     counts: Counts,
     /// The same of the picture's middle half.
@@ -43,12 +46,14 @@ impl<'a> Picture<'a> {
             columns,
             skyline: 0.0,
             pitch: 0.0,
+            cut_stems: 0.0,
             counts: Counts::default(),
             in_middle: Counts::default(),
         };
         picture.skyline = picture.mean(|column| column.skyline);
         let pitch = picture.skyline - 2.0 * HALF_HEIGHT * (0.5 - SKYLINE_AT);
         picture.pitch = pitch.clamp(-MAX_PITCH, MAX_PITCH);
+        picture.cut_stems = cut_stems(panorama, middle, picture.pitch);
         let [mut counts, mut in_middle] = [Counts::default(); 2];
         for (k, (_, seen)) in picture.rays().enumerate() {
             let is_in_middle = (k % picture.columns.len()).abs_diff(HALF_COLUMNS) <= HALF_COLUMNS / 2;
@@ -98,6 +103,16 @@ impl<'a> Picture<'a> {
     pub fn middle_share_between(&self, depths_m: Range<f32>, wanted: impl Fn(Kind) -> bool) -> f32 {
         share_of(&self.in_middle, depths_m, wanted)
     }
+}
+
+/// As [`Picture::cut_stems`], around a column. A crown counts as cut off that begins in the picture's uppermost fifth, and by
+/// parts one that begins below it.
+fn cut_stems(panorama: &Panorama, middle: usize, pitch: f32) -> f32 {
+    let (all, half) = (COLUMNS as f32, HALF_COLUMNS as f32 + 0.5);
+    let aside = |column: f32| (column - middle as f32 + 1.5 * all) % all - 0.5 * all;
+    let taken = panorama.stems().iter().filter(|stem| aside(stem.column).abs() < half);
+    taken.map(|stem| stem.width * ramp(0.2, 0.6, (stem.crown_from - pitch) / HALF_HEIGHT)).sum::<f32>()
+        / (2.0 * half)
 }
 
 fn share_of(counts: &Counts, depths_m: Range<f32>, wanted: impl Fn(Kind) -> bool) -> f32 {

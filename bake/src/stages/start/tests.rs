@@ -208,6 +208,24 @@ fn crowns_that_fill_the_picture_spoil_it_and_the_same_farther_away_do_not() {
 }
 
 #[test]
+fn a_stem_whose_crown_is_cut_off_does_not_stand_across_the_picture() {
+    let (land, light) = (land(|_, _| 0.0, None), light(40.0, 130.0));
+    let first = Lookout::HEADINGS * 136;
+    let headings: Vec<Lookout> = Lookout::all().skip(first).take(Lookout::HEADINGS).collect();
+    let place = headings[0].place_m(land.field.extent_m());
+    let term = |trunk_radius_m: f32, heading: usize| {
+        let pine = TreeFootprint { height_m: 20.0, clear_trunk: 0.6, trunk_radius_m, ..TREE };
+        let near = place + 5.0 * headings[heading].ahead();
+        let wood = (0..24).map(|k| place + 40.0 * headings[k].ahead());
+        looks(&land, &trees(wood.chain([near])), &[pine], &light, 1, 0.0)[first].term(Want::Trees)
+    };
+    // Before the eyes; behind the back; one that hides nothing.
+    let (before, behind, thin) = (term(0.3, 0), term(0.3, 12), term(0.03, 0));
+    assert!(before < 0.6 * behind, "{before} {behind}");
+    assert!(thin > 0.95 * behind, "{thin} {behind}");
+}
+
+#[test]
 fn a_look_into_shade_is_worth_little_where_the_sun_shines() {
     let light = light(15.0, 90.0);
     let term = |wall_m: f32| {
