@@ -62,7 +62,7 @@ fn more_votes_bring_it_nearer() {
     let space = Space::builtin();
     let (kinds, _) = Kinds::shipped(&space);
     let after =
-        |rounds| mean((20..28).map(|seed| distance_after(Strategy::Learned, &space, &kinds, rounds, seed)));
+        |rounds| mean((20..36).map(|seed| distance_after(Strategy::Learned, &space, &kinds, rounds, seed)));
     let [start, few, many] = [0, 4, 16].map(after);
     assert!(few < 0.8 * start && many < 0.8 * few, "{start}, {few}, {many}");
 }

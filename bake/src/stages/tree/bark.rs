@@ -12,13 +12,19 @@ use super::budget::Budget;
 use super::params::TreeParams;
 use super::shade::Shade;
 use super::skeleton::{Skeleton, Stem, perpendicular};
-use crate::math::{lerp, unit_to_byte};
+use crate::math::{lerp, smoothstep, unit_to_byte};
 use crate::model::{Material, Mesh, Part, PartKind};
 
 /// Metres of bark that one repeat of the texture covers on the trunk.
 const TILE_M: f32 = 0.9;
 /// Sides of the trunk's tube when it has roots.
 const ROOT_SIDES: usize = 20;
+/// Pale bark comes with age: twigs up to the first radius in metres are brown, branches from the second on are as the trunk.
+const TWIGS_M: [f32; 2] = [0.016, 0.06];
+/// Colour of twigs as a part of that of the palest bark.
+const TWIG: [f32; 3] = [0.24, 0.17, 0.155];
+/// Values of `bark_tone` up to which twigs are as the trunk, and from which they are [`TWIG`].
+const PALE: [f32; 2] = [0.6, 1.0];
 
 /// A place along a stem where a ring of vertices goes.
 #[derive(Clone, Copy)]
@@ -76,6 +82,8 @@ struct Skin<'a> {
     shade: &'a Shade,
     roots: Roots,
     moss: f32,
+    /// What the bark's texture is multiplied with on twigs.
+    twig: [f32; 3],
     circles: Vec<Vec<[f32; 2]>>,
 }
 
@@ -93,7 +101,11 @@ pub(super) fn skin(params: &TreeParams, budget: &Budget, skeleton: &Skeleton, sh
     let sides = budgeted_sides(skeleton, &stations, budget.max_bark_triangles as usize);
     let circles = (0..=ROOT_SIDES).map(|sides| circle(sides.max(1))).collect();
     let moss = 0.5 * (1.0 - params.bark_tone);
-    let mut skin = Skin { mesh: Mesh::default(), triangles: Vec::new(), shade, roots, moss, circles };
+    // Dead wood is weathered all over.
+    let is_even = params.is_cane() || params.is_dead();
+    let darker = if is_even { 0.0 } else { smoothstep(PALE[0], PALE[1], params.bark_tone) };
+    let twig = TWIG.map(|part| lerp(1.0, part, darker));
+    let mut skin = Skin { mesh: Mesh::default(), triangles: Vec::new(), shade, roots, moss, twig, circles };
     for (index, stem) in skeleton.stems.iter().enumerate() {
         skin.tube(stem, &stations[index], sides[index], index);
     }
@@ -204,7 +216,7 @@ impl Skin<'_> {
             self.mesh.positions.push(position);
             self.mesh.normals.push((out - along * slope).normalize_or(out).to_array());
             self.mesh.uvs.push([repeats * k as f32 / sides as f32, v]);
-            self.mesh.colors.push(self.mossy(light, out, ring));
+            self.mesh.colors.push(self.color(light, out, ring));
         }
     }
 
@@ -266,12 +278,14 @@ impl Skin<'_> {
         light
     }
 
-    /// Moss near the ground on the north side (−z) and on top of branches.
-    fn mossy(&self, light: f32, out: Vec3, ring: &Station) -> [u8; 4] {
+    /// Moss near the ground on the north side (−z) and on top of branches; twigs of pale trees are brown.
+    fn color(&self, light: f32, out: Vec3, ring: &Station) -> [u8; 4] {
         let low = (1.0 - ring.at.y / 2.5).clamp(0.0, 1.0);
         let moss = self.moss * (low * (0.35 - 0.65 * out.z).max(0.0) + 0.18 * out.y.max(0.0));
-        let [r, g, b] = [0.55, 0.15, 0.7].map(|part| unit_to_byte(light * (1.0 - part * moss)));
-        [r, g, b, 255]
+        let old = smoothstep(TWIGS_M[0], TWIGS_M[1], ring.radius_m);
+        let channel = |part: f32, twig: f32| unit_to_byte(light * (1.0 - part * moss) * lerp(twig, 1.0, old));
+        let [red, green, blue] = self.twig;
+        [channel(0.55, red), channel(0.15, green), channel(0.7, blue), 255]
     }
 }
 

@@ -39,7 +39,7 @@ pub struct TreeParams {
     /// Autumn leaves differ more from twig to twig.
     pub leaf_hue_deg: f32,
     pub blossom: f32,
-    /// Moss grows on dark bark.
+    /// Moss grows on dark bark; twigs of trees with pale bark are brown.
     pub bark_tone: f32,
 }
 
@@ -47,6 +47,11 @@ impl TreeParams {
     /// Whether it grows canes, green and without bark, instead of a trunk.
     pub(super) fn is_cane(&self) -> bool {
         self.radius_ratio < CANE_RATIO
+    }
+
+    /// Whether it has lost its twigs with its leaves.
+    pub(super) fn is_dead(&self) -> bool {
+        self.leaves_per_stem == 0 && self.secondary_branches == 0
     }
 }
 
