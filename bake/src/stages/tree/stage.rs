@@ -81,7 +81,7 @@ pub struct TreeFiles {
 
 impl Stage for TreeStage {
     const NAME: &'static str = "tree";
-    const VERSION: u32 = 30;
+    const VERSION: u32 = 31;
     type Output = TreeFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<TreeFiles, StageError> {

@@ -36,9 +36,10 @@ const CLUSTER: usize = 2 * CARD;
 /// So many leaves at least are drawn of a cluster that has more: every nth, as much larger as makes up for the others.
 const DRAWN_LEAVES: usize = 64;
 
-/// Sides of the impostor, one beside the other, from which it is counted how much a level covers, and samples a side.
-const SIDES: [usize; 2] = [0, 2];
-const COVERAGE_PX: usize = 96;
+/// Sides of the impostor from which it is counted how much a level covers, and samples a side. Two would not do: how much crossed
+/// cards cover depends on how they are turned to the eye.
+const SIDES: [usize; 4] = [0, 1, 2, 3];
+const COVERAGE_PX: usize = 88;
 /// How much smaller or larger cards may become.
 const SCALES: Range<f32> = 0.7..1.5;
 
