@@ -7,7 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::panorama::{Kind, Seen};
-use super::picture::{HALF_HEIGHT, Picture};
+use super::picture::{HALF_HEIGHT, Picture, ramp};
 
 /// What a view is wanted to have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -148,9 +148,4 @@ impl Picture<'_> {
         let land = self.share(Kind::is_land);
         1.0 - 0.5 * ramp(0.4, 1.0, snow / land.max(0.05))
     }
-}
-
-/// 0 at `from` and beyond, 1 at `to` and beyond, straight between.
-pub(super) fn ramp(from: f32, to: f32, x: f32) -> f32 {
-    ((x - from) / (to - from)).clamp(0.0, 1.0)
 }

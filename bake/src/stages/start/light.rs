@@ -3,8 +3,8 @@
 
 use glam::{Vec2, Vec3};
 
-use super::appraise::ramp;
 use super::panorama::{Surroundings, Tree};
+use super::picture::ramp;
 use crate::model::SkyLight;
 
 /// Distances at which the ground is asked whether the sun reaches it.

@@ -22,12 +22,12 @@ use glam::Vec2;
 use rayon::prelude::*;
 
 use crate::model::{Instance, Landform, SkyLight, StartView, TreeFootprint};
+use appraise::appraise;
 pub use appraise::{Appraisal, Want};
-use appraise::{appraise, ramp};
 use genescape_schema::scene::{Lookout, Lookouts, Prospect};
 use light::{SHADES_M, Sun};
 use panorama::{Panorama, Surroundings};
-use picture::Picture;
+use picture::{Picture, ramp};
 pub use stage::{StartFiles, StartStage};
 
 /// Places that [`any_good_look`] tries at once.

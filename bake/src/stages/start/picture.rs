@@ -5,7 +5,6 @@ use std::ops::Range;
 
 use genescape_schema::scene::Lookout;
 
-use super::appraise::ramp;
 use super::panorama::{COLUMNS, Column, Kind, Panorama, ROWS, Seen, slope_of};
 
 /// Columns of the panorama in half a picture: ±41°, the viewer's 60° upright at 16:10.
@@ -128,4 +127,9 @@ fn share_of(counts: &Counts, depths_m: Range<f32>, wanted: impl Fn(Kind) -> bool
 /// Number of the band in which a depth lies.
 fn band(depth_m: f32) -> usize {
     BANDS_M.iter().filter(|&&band_m| band_m <= depth_m).count()
+}
+
+/// 0 at `from` and beyond, 1 at `to` and beyond, straight between.
+pub(super) fn ramp(from: f32, to: f32, x: f32) -> f32 {
+    ((x - from) / (to - from)).clamp(0.0, 1.0)
 }
