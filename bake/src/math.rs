@@ -14,10 +14,16 @@ pub fn lerp_array<const N: usize>(a: [f32; N], b: [f32; N], t: f32) -> [f32; N] 
     std::array::from_fn(|k| lerp(a[k], b[k], t))
 }
 
+/// 0 at `from` and beyond, 1 at `to` and beyond, straight between.
+#[inline]
+pub fn ramp(from: f32, to: f32, x: f32) -> f32 {
+    ((x - from) / (to - from)).clamp(0.0, 1.0)
+}
+
 /// Hermite's step: 0 up to `low`, 1 from `high`, smooth between; falling if `high` is less. The two must differ.
 #[inline]
 pub fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
-    hermite(((x - low) / (high - low)).clamp(0.0, 1.0))
+    hermite(ramp(low, high, x))
 }
 
 /// Hermite's curve from 0 at t = 0 to 1 at t = 1, level at both.

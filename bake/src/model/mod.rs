@@ -25,6 +25,7 @@ pub use mesh::{Bounds, Material, Mesh, Part, PartKind};
 pub use terrain::{Landform, TerrainMesh};
 pub use tree::{
     Clusters, Impostor, Level, LevelledMesh, Morph, Placement, TreeFootprint, TreeTemplate, TreeTextures,
+    is_dead,
 };
 
 /// The sky as pixels.

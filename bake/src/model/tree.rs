@@ -156,6 +156,11 @@ pub struct Placement {
     pub instances: Vec<Instance>,
 }
 
+/// Whether trees of these genes are dead: they have lost their twigs with their leaves.
+pub fn is_dead(leaves_per_stem: u32, secondary_branches: u32) -> bool {
+    leaves_per_stem == 0 && secondary_branches == 0
+}
+
 /// The size of a template of trees, in metres at scale 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TreeFootprint {

@@ -6,9 +6,8 @@ use super::Season;
 use super::palette::Rgb;
 use super::season::turned;
 use super::woody::Foliage;
-use crate::math::lerp_array;
-use crate::model::leaf_color;
-use crate::model::{Instance, Landform};
+use crate::math::{lerp_array, ramp};
+use crate::model::{Instance, Landform, is_dead, leaf_color};
 
 /// The genes of trees that the ground shows; names, ranges and meanings as in the parameter space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,9 +27,9 @@ impl LitterParams {
         self.leaves_per_stem == 0 && !self.is_dead()
     }
 
-    /// Trees without leaves that have lost their twigs, too. In which season they stand is not to be seen.
+    /// In which season dead trees stand is not to be seen.
     pub(super) fn is_dead(&self) -> bool {
-        self.leaves_per_stem == 0 && self.secondary_branches == 0
+        is_dead(self.leaves_per_stem, self.secondary_branches)
     }
 }
 
@@ -88,7 +87,7 @@ impl Litter {
         let autumn = turned(hue);
         let above = AUTUMN.iter().position(|stop| stop.0 >= hue).unwrap_or(2).max(1);
         let ((low, a), (high, b)) = (AUTUMN[above - 1], AUTUMN[above]);
-        let bright = lerp_array(a, b, ((hue - low) / (high - low)).clamp(0.0, 1.0));
+        let bright = lerp_array(a, b, ramp(low, high, hue));
         let broad = |amount: f32, colors: [Rgb; 2]| Self {
             amount,
             colors,

@@ -7,7 +7,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::panorama::{Kind, Seen};
-use super::picture::{HALF_HEIGHT, Picture, ramp};
+use super::picture::{HALF_HEIGHT, Picture};
+use crate::math::ramp;
 
 /// What a view is wanted to have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -4,7 +4,7 @@
 use glam::{Vec2, Vec3};
 
 use super::panorama::{Surroundings, Tree};
-use super::picture::ramp;
+use crate::math::ramp;
 use crate::model::SkyLight;
 
 /// Distances at which the ground is asked whether the sun reaches it.

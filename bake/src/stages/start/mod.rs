@@ -21,13 +21,14 @@ mod tests;
 use glam::Vec2;
 use rayon::prelude::*;
 
+use crate::math::ramp;
 use crate::model::{Instance, Landform, SkyLight, StartView, TreeFootprint};
 use appraise::appraise;
 pub use appraise::{Appraisal, Want};
 use genescape_schema::scene::{Lookout, Lookouts, Prospect};
 use light::{SHADES_M, Sun};
 use panorama::{Panorama, Surroundings};
-use picture::{Picture, ramp};
+use picture::Picture;
 pub use stage::{StartFiles, StartStage};
 
 /// Places that [`any_good_look`] tries at once.

@@ -6,6 +6,7 @@ use std::ops::Range;
 use genescape_schema::scene::Lookout;
 
 use super::panorama::{COLUMNS, Column, Kind, Panorama, ROWS, Seen, slope_of};
+use crate::math::ramp;
 
 /// Columns of the panorama in half a picture: ±41°, the viewer's 60° upright at 16:10.
 pub(super) const HALF_COLUMNS: usize = 11;
@@ -27,7 +28,7 @@ pub(super) struct Picture<'a> {
     pub skyline: f32,
     /// Slope of the look.
     pub pitch: f32,
-    /// Part of the picture's width that stems near by take whose crowns are beyond its upper edge.
+    /// Part of the picture's width that stems near by take whose crowns its upper edge cuts off.
     pub cut_stems: f32,
     /// Rays of each kind in each band of depths.
     counts: Counts,
@@ -104,8 +105,8 @@ impl<'a> Picture<'a> {
     }
 }
 
-/// As [`Picture::cut_stems`], around a column. A crown counts as cut off that begins in the picture's uppermost fifth, and by
-/// parts one that begins below it.
+/// [`Picture::cut_stems`] of the picture around a column. A crown counts wholly that begins in the picture's uppermost fifth,
+/// and less and less down to a tenth above the middle.
 fn cut_stems(panorama: &Panorama, middle: usize, pitch: f32) -> f32 {
     let (all, half) = (COLUMNS as f32, HALF_COLUMNS as f32 + 0.5);
     let aside = |column: f32| (column - middle as f32 + 1.5 * all) % all - 0.5 * all;
@@ -127,9 +128,4 @@ fn share_of(counts: &Counts, depths_m: Range<f32>, wanted: impl Fn(Kind) -> bool
 /// Number of the band in which a depth lies.
 fn band(depth_m: f32) -> usize {
     BANDS_M.iter().filter(|&&band_m| band_m <= depth_m).count()
-}
-
-/// 0 at `from` and beyond, 1 at `to` and beyond, straight between.
-pub(super) fn ramp(from: f32, to: f32, x: f32) -> f32 {
-    ((x - from) / (to - from)).clamp(0.0, 1.0)
 }

@@ -192,32 +192,30 @@ fn the_sun_is_not_in_the_eyes_and_lights_the_ground() {
     }
 }
 
-#[test]
-fn crowns_that_fill_the_picture_spoil_it_and_the_same_farther_away_do_not() {
+/// How good the trees are that one sees who looks north on level land, at `(heading, metres)` from there.
+fn trees_north(footprint: TreeFootprint, around: impl IntoIterator<Item = (usize, f32)>) -> f32 {
     let (land, light) = (land(|_, _| 0.0, None), light(40.0, 130.0));
     let first = Lookout::HEADINGS * 136;
     let headings: Vec<Lookout> = Lookout::all().skip(first).take(Lookout::HEADINGS).collect();
     let place = headings[0].place_m(land.field.extent_m());
+    let trees = trees(around.into_iter().map(|(heading, away_m)| place + away_m * headings[heading].ahead()));
+    looks(&land, &trees, &[footprint], &light, 1, 0.0)[first].term(Want::Trees)
+}
+
+#[test]
+fn crowns_that_fill_the_picture_spoil_it_and_the_same_farther_away_do_not() {
     let huge = TreeFootprint { height_m: 28.0, crown_radius_m: 8.0, clear_trunk: 0.0, ..TREE };
-    let score = |distance_m: f32| {
-        // Before the eyes, and 30 degrees to both sides.
-        let trees = trees([22, 0, 2].map(|heading| place + distance_m * headings[heading].ahead()));
-        looks(&land, &trees, &[huge], &light, 1, 0.0)[first].term(Want::Trees)
-    };
+    // Before the eyes, and 30 degrees to both sides.
+    let score = |away_m: f32| trees_north(huge, [22, 0, 2].map(|heading| (heading, away_m)));
     assert!(score(11.0) < 0.6 * score(36.0), "{} {}", score(11.0), score(36.0));
 }
 
 #[test]
 fn a_stem_whose_crown_is_cut_off_does_not_stand_across_the_picture() {
-    let (land, light) = (land(|_, _| 0.0, None), light(40.0, 130.0));
-    let first = Lookout::HEADINGS * 136;
-    let headings: Vec<Lookout> = Lookout::all().skip(first).take(Lookout::HEADINGS).collect();
-    let place = headings[0].place_m(land.field.extent_m());
     let term = |trunk_radius_m: f32, heading: usize| {
         let pine = TreeFootprint { height_m: 20.0, clear_trunk: 0.6, trunk_radius_m, ..TREE };
-        let near = place + 5.0 * headings[heading].ahead();
-        let wood = (0..24).map(|k| place + 40.0 * headings[k].ahead());
-        looks(&land, &trees(wood.chain([near])), &[pine], &light, 1, 0.0)[first].term(Want::Trees)
+        let wood = (0..Lookout::HEADINGS).map(|heading| (heading, 40.0));
+        trees_north(pine, wood.chain([(heading, 5.0)]))
     };
     // Before the eyes; behind the back; one that hides nothing.
     let (before, behind, thin) = (term(0.3, 0), term(0.3, 12), term(0.03, 0));

@@ -12,8 +12,8 @@ use super::budget::Budget;
 use super::params::TreeParams;
 use super::shade::Shade;
 use super::skeleton::{Skeleton, Stem, perpendicular};
-use crate::math::{lerp, smoothstep, unit_to_byte};
-use crate::model::{Material, Mesh, Part, PartKind};
+use crate::math::{lerp, lerp_array, smoothstep, unit_to_byte};
+use crate::model::{Material, Mesh, Part, PartKind, is_dead};
 
 /// Metres of bark that one repeat of the texture covers on the trunk.
 const TILE_M: f32 = 0.9;
@@ -102,9 +102,9 @@ pub(super) fn skin(params: &TreeParams, budget: &Budget, skeleton: &Skeleton, sh
     let circles = (0..=ROOT_SIDES).map(|sides| circle(sides.max(1))).collect();
     let moss = 0.5 * (1.0 - params.bark_tone);
     // Dead wood is weathered all over.
-    let is_even = params.is_cane() || params.is_dead();
+    let is_even = params.is_cane() || is_dead(params.leaves_per_stem, params.secondary_branches);
     let darker = if is_even { 0.0 } else { smoothstep(PALE[0], PALE[1], params.bark_tone) };
-    let twig = TWIG.map(|part| lerp(1.0, part, darker));
+    let twig = lerp_array([1.0; 3], TWIG, darker);
     let mut skin = Skin { mesh: Mesh::default(), triangles: Vec::new(), shade, roots, moss, twig, circles };
     for (index, stem) in skeleton.stems.iter().enumerate() {
         skin.tube(stem, &stations[index], sides[index], index);
@@ -207,6 +207,8 @@ impl Skin<'_> {
     fn ring(&mut self, ring: &Station, frame: &Frame, light: f32, sides: usize) {
         let &Frame { x, along, slope, repeats, v } = frame;
         let z = along.cross(x);
+        let old = smoothstep(TWIGS_M[0], TWIGS_M[1], ring.radius_m);
+        let bark = lerp_array(self.twig, [1.0; 3], old);
         for k in 0..=sides {
             let [cos, sin] = self.circles[sides][k];
             let out = x * cos + z * sin;
@@ -216,7 +218,7 @@ impl Skin<'_> {
             self.mesh.positions.push(position);
             self.mesh.normals.push((out - along * slope).normalize_or(out).to_array());
             self.mesh.uvs.push([repeats * k as f32 / sides as f32, v]);
-            self.mesh.colors.push(self.color(light, out, ring));
+            self.mesh.colors.push(self.mossy(light, bark, out, ring));
         }
     }
 
@@ -278,14 +280,13 @@ impl Skin<'_> {
         light
     }
 
-    /// Moss near the ground on the north side (−z) and on top of branches; twigs of pale trees are brown.
-    fn color(&self, light: f32, out: Vec3, ring: &Station) -> [u8; 4] {
+    /// Moss on bark of a colour, near the ground on the north side (−z) and on top of branches.
+    fn mossy(&self, light: f32, bark: [f32; 3], out: Vec3, ring: &Station) -> [u8; 4] {
         let low = (1.0 - ring.at.y / 2.5).clamp(0.0, 1.0);
         let moss = self.moss * (low * (0.35 - 0.65 * out.z).max(0.0) + 0.18 * out.y.max(0.0));
-        let old = smoothstep(TWIGS_M[0], TWIGS_M[1], ring.radius_m);
-        let channel = |part: f32, twig: f32| unit_to_byte(light * (1.0 - part * moss) * lerp(twig, 1.0, old));
-        let [red, green, blue] = self.twig;
-        [channel(0.55, red), channel(0.15, green), channel(0.7, blue), 255]
+        let parts = [0.55, 0.15, 0.7];
+        let [r, g, b] = [0, 1, 2].map(|k| unit_to_byte(light * (1.0 - parts[k] * moss) * bark[k]));
+        [r, g, b, 255]
     }
 }
 

@@ -48,11 +48,6 @@ impl TreeParams {
     pub(super) fn is_cane(&self) -> bool {
         self.radius_ratio < CANE_RATIO
     }
-
-    /// Whether it has lost its twigs with its leaves.
-    pub(super) fn is_dead(&self) -> bool {
-        self.leaves_per_stem == 0 && self.secondary_branches == 0
-    }
 }
 
 /// Genes of leaf, blossom and bark textures, for [`super::textures`].
