@@ -165,6 +165,7 @@ pub fn landform() -> Landform {
         field: near,
         flow: vec![0.0; n],
         deposit: vec![0.0; n],
+        paddies: None,
         water_level_m: Some(8.0),
         snow_line_m: 1000.0,
         apron: field(65, 64.0),

@@ -16,6 +16,8 @@ pub struct Landform {
     /// Loose material laid down by erosion, per sample, [0, 1].
     #[serde(with = "floats")]
     pub deposit: Vec<f32>,
+    /// How much of each sample is farmed, in level fields that are cut into the slope, [0, 1]; `None` where nothing is.
+    pub paddies: Option<Vec<f32>>,
     /// Surface of the lake in metres; `None` when the land is dry.
     pub water_level_m: Option<f32>,
     /// Altitude in metres above which snow lies; above the highest point when there is none.
@@ -23,6 +25,13 @@ pub struct Landform {
     /// The same land, coarse and several times as wide, to stand at the horizon: only its part outside `field` is
     /// drawn. Its heights agree with `field` along the border of `field`.
     pub apron: Heightfield,
+}
+
+impl Landform {
+    /// How much of a sample of the field is farmed, [0, 1].
+    pub fn farmed(&self, sample: usize) -> f32 {
+        self.paddies.as_ref().map_or(0.0, |paddies| paddies[sample])
+    }
 }
 
 /// The land as triangles for any viewer.

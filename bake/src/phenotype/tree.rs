@@ -81,6 +81,7 @@ fn standing(placement: &PlacementParams, measures: &TreeMeasures) -> Vec<Instanc
         apron: level(3, 4096.0),
         flow: vec![0.0; samples],
         deposit: vec![0.0; samples],
+        paddies: None,
         water_level_m: None,
         snow_line_m: 1e4,
         field,

@@ -89,6 +89,16 @@ const GRAVEL: Rgb = [0.185, 0.176, 0.150];
 /// Heath and moss, which grow in patches of their own.
 const HEATH: Rgb = [0.086, 0.066, 0.036];
 pub(super) const MOSS: Rgb = [0.040, 0.060, 0.014];
+/// Rice from the planting to the harvest.
+const RICE: [Rgb; 5] = [
+    [0.058, 0.074, 0.040],
+    [0.080, 0.136, 0.032],
+    [0.056, 0.104, 0.024],
+    [0.122, 0.144, 0.036],
+    [0.265, 0.205, 0.058],
+];
+/// Trodden earth along the fields' edges.
+const PATH: Rgb = [0.150, 0.125, 0.068];
 /// Part of the light from a meadow in full bloom that comes from petals, most of which stand beyond where they are drawn.
 const IN_BLOOM: f32 = 0.05;
 /// Kinds of rock: granite, limestone, basalt, sandstone, slate.
@@ -118,6 +128,9 @@ pub(super) struct Painter {
     bare_slope: f32,
     /// How dry it is beside other lands of its climate: 0 lush, 1 arid.
     thirst: f32,
+    /// How far rice has come, 0 planted, 1 ripe.
+    ripe: f32,
+    rice_seed: u32,
     /// Most flowers of the land.
     bloom: Rgb,
     shore: Rgb,
@@ -150,6 +163,8 @@ impl Painter {
             talus,
             bare_slope: 0.42 + 0.5 * talus,
             thirst,
+            ripe: 0.1 + 0.8 * chance(5),
+            rice_seed: seed,
             rock,
             rock_band: lerp(rock, other, 0.3),
             shore_scale: (80.0 / (hi - lo).max(1.0)).clamp(1.6, 3.2),
@@ -179,6 +194,9 @@ impl Painter {
         let wash = t.flow + 0.05 * broken;
         let bed = if wash < 0.84 { 0.0 } else { step(0.84, 0.92, wash) * (1.0 - step(0.25, 0.6, t.slope)) };
         let mud = shore.max(bed);
+        if self.rice(t) > 0.5 {
+            return Cover::default();
+        }
         // Each lies over the ones before it.
         let mut cover = self.bare(t, broken);
         let litter = self.shed(t, n);
@@ -310,8 +328,30 @@ impl Painter {
         let dry = (dry + t.sunny * (0.9 * thirst - 0.5 * frost)).clamp(0.0, 4.999);
         let k = dry as usize;
         let grass = lerp(growth[k], growth[k + 1], dry - k as f32);
+        let rice = self.rice(t);
+        if rice > 0.5 {
+            return self.crop(t, n);
+        }
         let grass = lerp(lerp(grass, HEATH, 0.6 * self.heath(t, n)), self.bloom, IN_BLOOM * self.bloom(t, n));
         scale(grass, 1.0 + 0.16 * n.fine + 0.10 * n.broad + 0.18 * n.grain)
+    }
+
+    /// Part of a place on which rice grows: fields, and not the banks between them.
+    #[inline]
+    pub fn rice(&self, t: &Traits) -> f32 {
+        if t.farmed == 0.0 { 0.0 } else { t.farmed * (1.0 - step(0.16, 0.34, t.slope)) }
+    }
+
+    /// Rice, which neighbours plant and cut at other times, along the paths on which one reaches it. A field has one height; wide
+    /// ones are several people's.
+    #[inline]
+    fn crop(&self, t: &Traits, n: &Noise) -> Rgb {
+        let plot = [libm::roundf(2.5 * t.height_m), (2.2 * t.tuft).floor()].map(|part| part as i32);
+        let own = hash01(self.rice_seed, plot[0], plot[1], 1) - 0.5;
+        let ripe = (self.ripe + 0.45 * own + 0.06 * n.broad).clamp(0.0, 0.999) * (RICE.len() - 1) as f32;
+        let rice = lerp(RICE[ripe as usize], RICE[ripe as usize + 1], ripe.fract());
+        let inside = step(0.62, 0.82, self.rice(t) + 0.05 * n.fine);
+        scale(lerp(PATH, rice, inside), 1.0 + 0.1 * n.fine + 0.15 * n.grain)
     }
 
     /// Bare earth or sand, paler on crests.

@@ -224,6 +224,8 @@ impl Painter {
         self.wood(t, n, green, cover, &mut growth);
         let dry_land = step(0.15, 0.4, above_m) * free;
         ON_LAND.into_iter().for_each(|kind| growth[kind] *= dry_land);
+        let weeded = 1.0 - t.farmed;
+        growth.iter_mut().for_each(|density| *density *= weeded);
         growth
     }
 }

@@ -27,6 +27,8 @@ static LAND: LazyLock<Landform> = LazyLock::new(|| {
         talus_angle_deg: 33.0,
         water_level: 0.15,
         snow_line: 0.6,
+        cliff_m: 0.0,
+        paddies: 0.0,
     };
     landform(&params, 257)
 });

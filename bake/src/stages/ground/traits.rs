@@ -42,12 +42,14 @@ pub(super) struct Traits {
     pub lee: f32,
     /// How much lies under crowns of trees, [0, 1].
     pub shade: f32,
+    /// How much is farmed, [0, 1].
+    pub farmed: f32,
 }
 
 impl Traits {
     /// [`lerp_array`] of each.
     fn lerp(self, other: Self, t: f32) -> Self {
-        bytemuck::cast(lerp_array::<11>(bytemuck::cast(self), bytemuck::cast(other), t))
+        bytemuck::cast(lerp_array::<12>(bytemuck::cast(self), bytemuck::cast(other), t))
     }
 }
 
@@ -118,7 +120,20 @@ fn sample(patches: &Patches, land: &Landform, i: u32, j: u32, step: u32) -> Trai
     let Form { slope, hollow, sunny, lee } = form_at(&land.field, i, j, step);
     let last = (land.field.side - 1) as f32;
     let [patch, tuft, outcrop] = patches.at(i as f32 / last, j as f32 / last);
-    Traits { height_m, slope, flow, deposit, hollow, patch, tuft, outcrop, sunny, lee, shade: 0.0 }
+    Traits {
+        height_m,
+        slope,
+        flow,
+        deposit,
+        hollow,
+        patch,
+        tuft,
+        outcrop,
+        sunny,
+        lee,
+        shade: 0.0,
+        farmed: land.farmed(at),
+    }
 }
 
 /// Traits of a sample of the apron, whose spacing hides much of the slope.
@@ -138,6 +153,7 @@ pub(super) fn far(patches: &Patches, land: &Landform, i: u32, j: u32) -> Traits 
         sunny,
         lee,
         shade: 0.0,
+        farmed: 0.0,
     }
 }
 

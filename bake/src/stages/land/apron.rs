@@ -28,7 +28,8 @@ pub(super) fn heights(shape: &Shape, params: &LandParams) -> Grid {
         let hills = fbm2(seed, x / 1500.0, z / 1500.0, 4, 0.45, 0);
         let ridges = 1.0 - 2.2 * hills.abs();
         let far = 0.5 + 0.5 * (hills * 1.6 * (1.0 - params.ridged) + ridges * params.ridged);
-        shape.height_m(x, z, spacing_m) + growth_m * rise * far.max(0.0)
+        let landward = 1.0 - shape.seaward(x, z);
+        shape.height_m(x, z, spacing_m) + growth_m * rise * far.max(0.0) * landward
     })
 }
 

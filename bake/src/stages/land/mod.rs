@@ -3,13 +3,15 @@
 //!
 //! A warped multifractal (Musgrave, "Texturing and Modeling", 2003) gives the raw land; rivers cut it by the stream
 //! power law (Braun & Willett 2013), raindrops carve gullies and lay down fans (Beyer 2015), and slopes slide to
-//! their angle of repose (Musgrave, Kolb & Mace 1989). All erosion works on fixed grids, whatever the size asked
+//! their angle of repose (Musgrave, Kolb & Mace 1989). The sea breaks off its coast, and people cut slopes into fields. All erosion works on fixed grids, whatever the size asked
 //! for, so that a valley keeps its place; finer sizes add finer noise. The apron follows the erosion of the border,
 //! less and less with distance, so that valleys lead out of the field.
 
 mod apron;
+mod coast;
 mod droplets;
 mod grid;
+mod paddies;
 mod shape;
 mod stage;
 mod streams;
@@ -21,7 +23,9 @@ mod water;
 use serde::{Deserialize, Serialize};
 
 use crate::model::{Heightfield, Landform};
+use coast::Coast;
 use grid::Grid;
+use paddies::Paddies;
 use shape::Shape;
 pub use stage::LandStage;
 
@@ -74,6 +78,8 @@ pub struct LandParams {
     pub talus_angle_deg: f32,
     pub water_level: f32,
     pub snow_line: f32,
+    pub cliff_m: f32,
+    pub paddies: f32,
 }
 
 /// Shapes the land on a grid of `size`² samples; `size` is 2^k+1 and at least 3 (513, 1025 and 2049 are in use).
@@ -91,22 +97,29 @@ pub fn sketch(params: &LandParams, brush: Brush) -> Landform {
 fn shaped(params: &LandParams, size: u32, grids: &Grids) -> Landform {
     let mut shape = Shape::new(params);
     let raw = shape.fit(grids.slopes);
-    let (worn, loose) = erode(params, &raw, grids);
+    let (mut worn, mut loose) = erode(params, &raw, grids);
     let level = water::Level::new(params, &worn);
 
     let mut field = shape.sample(size, &raw);
     grid::add_change(&mut field, &raw, &worn);
     let mut apron = apron::heights(&shape, params);
     apron::follow(&mut apron, &raw, &worn);
+    let flow = streams::flow(&worn, grids.rivers[1]);
+    if let Some(coast) = Coast::new(params, &worn, level.water_m) {
+        [&mut worn, &mut field].into_iter().for_each(|land| coast.raise(land));
+        coast.raise_apron(&mut apron);
+        coast.sweep(&mut loose);
+    }
+    let paddies = Paddies::new(params, &worn, level.water_m).map(|paddies| paddies.cut(&mut field));
     level.settle(&mut field.values);
     level.settle(&mut apron.values);
     apron::join(&mut apron, &field);
 
-    let flow = streams::flow(&worn, grids.rivers[1]);
     let peak = apron.values.iter().chain(&field.values).fold(f32::MIN, |a, &b| a.max(b));
     Landform {
         flow: flow.resized(size).map(|f| f.clamp(0.0, 1.0)).values,
         deposit: loose.map(|m| m / (m + 0.4)).resized(size).map(|d| d.clamp(0.0, 1.0)).values,
+        paddies,
         water_level_m: level.water_m,
         snow_line_m: if params.snow_line >= 0.999 { peak + 1.0 } else { params.snow_line * params.relief_m },
         field: into_field(field),

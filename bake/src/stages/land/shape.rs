@@ -1,6 +1,7 @@
 //! Position in metres → raw height in metres, for any place on the field or beyond it: a multifractal of rotated
 //! octaves, folded by domain warping, on a broad massif where the relief is too great for the landforms' size.
 
+use std::f32::consts::TAU;
 use std::ops::Range;
 
 use bytemuck::Zeroable;
@@ -34,6 +35,7 @@ pub(super) struct Shape<'a> {
     range: (f32, f32),
     /// How far, as part of the relief, the middle is lifted so that the walk does not start under water.
     lift: f32,
+    sea: Sea,
 }
 
 /// The sum so far at a place.
@@ -77,6 +79,14 @@ impl Octave {
         let v = x * self.rotation[1] + z * self.rotation[0] + self.shift[1];
         gradient2(self.seed, u, v, 0)
     }
+}
+
+/// Where the land of a coast sinks below the sea, which is open to the horizon.
+struct Sea {
+    /// Part of the relief by which the land sinks at last.
+    depth: f32,
+    /// Direction of the sea along x and z.
+    way: [f32; 2],
 }
 
 /// Soft steps in the slopes.
@@ -123,6 +133,7 @@ impl<'a> Shape<'a> {
             },
             range: (0.0, 1.0),
             lift: 0.0,
+            sea: Sea::new(p),
         }
     }
 
@@ -215,7 +226,12 @@ impl<'a> Shape<'a> {
         let stepped = self.terraces.step(flattened, x, z);
         let r = (x * x + z * z) / (300.0 * 300.0);
         let bump = (1.0 - r.min(1.0)) * (1.0 - r.min(1.0));
-        (stepped + self.lift * bump) * self.genes.relief_m
+        self.sea.sunk(stepped + self.lift * bump, x, z) * self.genes.relief_m
+    }
+
+    /// 0 where there is land up to the horizon, 1 where there is open sea.
+    pub fn seaward(&self, x: f32, z: f32) -> f32 {
+        self.sea.seaward(x, z)
     }
 
     /// How far the middle lies below a height that is dry by a margin.
@@ -235,6 +251,41 @@ impl<'a> Shape<'a> {
 /// Greatest amplitude in metres of an octave: landforms may be steep, but not bumps underfoot.
 fn walkable_amplitude_m(wavelength_m: f32) -> f32 {
     0.34 * wavelength_m * libm::powf((wavelength_m / 400.0).min(1.0), 0.75)
+}
+
+impl Sea {
+    /// Metres from the middle over which land turns to sea.
+    const COAST_M: [f32; 2] = [-60.0, 620.0];
+    /// Height of cliffs from which on the sea is as wide as it gets.
+    const WIDE_M: f32 = 9.0;
+    /// Part of the relief by which it sinks there.
+    const DEPTH: f32 = 0.9;
+    /// How deep the sea's bed falls below the lowest land, as a part of what it would.
+    const BED: f32 = 0.12;
+
+    fn new(genes: &LandParams) -> Self {
+        let turn = noise_seed(genes.terrain_seed.into(), "land", 21) as f32 * (TAU / u32::MAX as f32);
+        let depth = Self::DEPTH * (genes.cliff_m / Self::WIDE_M).min(1.0);
+        Self { depth, way: [libm::cosf(turn), libm::sinf(turn)] }
+    }
+
+    fn seaward(&self, x: f32, z: f32) -> f32 {
+        if self.depth == 0.0 {
+            return 0.0;
+        }
+        let [from_m, to_m] = Self::COAST_M;
+        self.depth / Self::DEPTH * smoothstep(from_m, to_m, x * self.way[0] + z * self.way[1])
+    }
+
+    /// A height, as a part of the relief.
+    fn sunk(&self, part: f32, x: f32, z: f32) -> f32 {
+        let seaward = self.seaward(x, z);
+        if seaward == 0.0 {
+            return part;
+        }
+        let sunk = part - Self::DEPTH * seaward;
+        if sunk < 0.0 { Self::BED * sunk } else { sunk }
+    }
 }
 
 impl Terraces {

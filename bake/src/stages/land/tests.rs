@@ -21,6 +21,8 @@ pub(crate) fn random_params(k: u32) -> LandParams {
         talus_angle_deg: gene(11, 20.0, 45.0),
         water_level: gene(12, 0.0, 0.6),
         snow_line: gene(13, 0.2, 1.0),
+        cliff_m: gene(14, 0.0, 45.0),
+        paddies: gene(15, 0.0, 1.0),
     }
 }
 
@@ -43,6 +45,8 @@ fn corners() -> [LandParams; 2] {
                 talus_angle_deg: talus,
                 water_level: water,
                 snow_line: snow,
+                cliff_m: 45.0 * part,
+                paddies: part,
             }
         };
     [
@@ -194,4 +198,78 @@ fn a_sketch_is_the_same_land_seen_coarsely() {
         let mean = places.map(off).sum::<f32>() / (41.0 * 41.0);
         assert!(mean < most * params.relief_m, "{seed}, {brush:?}: {mean} m of {}", params.relief_m);
     }
+}
+
+/// Rolling land by a lake.
+fn downs() -> LandParams {
+    LandParams {
+        terrain_seed: 5,
+        relief_m: 90.0,
+        wavelength_m: 900.0,
+        hurst: 1.25,
+        lacunarity: 2.06,
+        ridged: 0.0,
+        domain_warp: 0.5,
+        offset: 0.1,
+        terraces: 0.0,
+        stream_power_steps: 2,
+        droplets: 4000.0,
+        talus_angle_deg: 40.0,
+        water_level: 0.3,
+        snow_line: 1.0,
+        cliff_m: 0.0,
+        paddies: 0.0,
+    }
+}
+
+#[test]
+fn a_coast_breaks_off_at_a_sea_that_is_open_to_the_horizon() {
+    for terrain_seed in [5, 6, 7] {
+        let coast = |cliff_m: f32| {
+            let land = landform(&LandParams { terrain_seed, cliff_m, ..downs() }, 257);
+            let water_m = land.water_level_m.expect("a sea");
+            let is_wet = |field: &Heightfield, i: u32, j: u32| field.at(i, j) < water_m;
+            // Land from 12 m to 24 m behind the shoreline.
+            let mut behind: Vec<f32> = (6..251)
+                .flat_map(|j| (6..251).map(move |i| (i, j)))
+                .filter(|&(i, j)| {
+                    let near = |reach: u32| {
+                        let ways = [(reach, 0), (0, reach), (2 * reach, reach), (reach, 2 * reach)];
+                        ways.iter().any(|&(x, y)| is_wet(&land.field, i + x - reach, j + y - reach))
+                    };
+                    !is_wet(&land.field, i, j) && near(6) && !near(3)
+                })
+                .map(|(i, j)| land.field.at(i, j) - water_m)
+                .collect();
+            behind.sort_by(f32::total_cmp);
+            let far = (0..land.apron.side).flat_map(|j| [(0, j), (128, j), (j, 0), (j, 128)]);
+            let sea = far.filter(|&(i, j)| is_wet(&land.apron, i, j)).count() as f32 / 516.0;
+            (behind[behind.len() * 2 / 3], sea)
+        };
+        let ((lake_m, lake), (cliff_m, sea)) = (coast(0.0), coast(30.0));
+        assert!(lake_m < 9.0 && cliff_m > 17.0, "{lake_m} m by a lake, {cliff_m} m by the sea");
+        assert!(lake < 0.15 && sea > 0.3, "{lake} and {sea} of the horizon are water");
+    }
+}
+
+#[test]
+fn paddies_are_level_and_follow_the_slope() {
+    let [wild, farmed] = [0.0, 0.8].map(|paddies| landform(&LandParams { paddies, ..downs() }, 513));
+    let paddies = farmed.paddies.as_ref().expect("fields");
+    assert!(wild.paddies.is_none());
+    let cut: Vec<u32> = (0..513 * 513).filter(|&k| paddies[k as usize] > 0.99).collect();
+    assert!(cut.len() > 513 * 513 / 4, "{} samples are farmed", cut.len());
+    let level = |land: &Landform| {
+        let is_level = |k: &&u32| land.field.normal_at(*k % 513, *k / 513).y > 0.9995;
+        cut.iter().filter(is_level).count() as f32 / cut.len() as f32
+    };
+    assert!(
+        level(&farmed) > 0.35 && level(&wild) < 0.1,
+        "{} of fields and {} before",
+        level(&farmed),
+        level(&wild)
+    );
+    let moved = |&k: &u32| (farmed.field.heights_m[k as usize] - wild.field.heights_m[k as usize]).abs();
+    let most = cut.iter().map(moved).fold(0.0, f32::max);
+    assert!(most < 6.0, "a field lies {most} m from the slope that it is cut into");
 }

@@ -32,6 +32,8 @@ const SNOW_C: f32 = -2.0;
 const SNOWY: f32 = 0.3;
 /// Density far from water in a desert, as a part of that by a stream.
 const PARCHED: f32 = 0.05;
+/// Density on farmed land, as a part of that beside it.
+const FARMED: f32 = 0.03;
 /// Density of single trees in a clearing, as a part of that in a grove.
 const SOLITARY: f32 = 0.012;
 
@@ -109,6 +111,7 @@ impl<'a> Site<'a> {
         }
         let cold = self.cold([x_m, y, z_m])?;
         let limits = limits * lerp(1.0, CHILLED, cold) * self.watered(y, flow);
+        let limits = limits * lerp(1.0, FARMED, self.land.farmed(self.sample(x_m, z_m)));
         let grove = self.grove(x_m, z_m);
         let weight = limits * (1.0 - self.clustering * (1.0 - SOLITARY) * (1.0 - grove));
         let sheltered = 1.0 - 0.3 * self.clustering * (1.0 - grove);
@@ -144,13 +147,18 @@ impl<'a> Site<'a> {
 
     /// The greatest flow of the four samples around the point: beds are narrow.
     pub fn flow(&self, x_m: f32, z_m: f32) -> f32 {
+        let at = self.sample(x_m, z_m);
+        let flow = |k: usize| self.land.flow.get(k).copied().unwrap_or(0.0);
+        let below = at + self.land.field.side as usize;
+        flow(at).max(flow(at + 1)).max(flow(below)).max(flow(below + 1))
+    }
+
+    /// Number of the sample north-west of a point.
+    fn sample(&self, x_m: f32, z_m: f32) -> usize {
         let field = &self.land.field;
         let last = (field.side - 1) as f32;
         let cell = |m: f32| ((m / field.spacing_m + 0.5 * last).clamp(0.0, last) as u32).min(field.side - 2);
-        let at = (cell(z_m) * field.side + cell(x_m)) as usize;
-        let flow = |k: usize| self.land.flow.get(k).copied().unwrap_or(0.0);
-        let below = at + field.side as usize;
-        flow(at).max(flow(at + 1)).max(flow(below)).max(flow(below + 1))
+        (cell(z_m) * field.side + cell(x_m)) as usize
     }
 
     /// 1 inside a grove, 0 in a clearing.

@@ -28,7 +28,15 @@ fn land(seed: u32, relief_m: f32, water: f32, side: u32) -> Landform {
     let [low, high] = field.range_m();
     let water_level_m = (water > 0.0).then_some(low + water * (high - low));
     let deposit = vec![0.0; flow.len()];
-    Landform { apron: field.clone(), field, flow, deposit, water_level_m, snow_line_m: high + 1.0 }
+    Landform {
+        apron: field.clone(),
+        field,
+        flow,
+        deposit,
+        paddies: None,
+        water_level_m,
+        snow_line_m: high + 1.0,
+    }
 }
 
 fn params() -> impl Strategy<Value = PlacementParams> {
@@ -366,4 +374,18 @@ fn no_tree_that_needs_warmth_stands_where_the_ground_is_white() {
     let hardy = place(&PlacementParams { hardiness_c: -10.0, ..params }, &land, snow.as_ref(), &[OAK]);
     let in_white = hardy.iter().filter(|tree| origin(tree).y > 110.0).count();
     assert!(in_white > 20, "{in_white}");
+}
+
+#[test]
+fn hardly_a_tree_stands_on_farmed_land() {
+    let wild = land(3, 40.0, 0.0, 257);
+    let farmed = |k: usize| if k % 257 < 128 { 1.0 } else { 0.0 };
+    let half = Landform { paddies: Some((0..257 * 257).map(farmed).collect()), ..wild.clone() };
+    let west = |land: &Landform| {
+        let trees = place(&PlacementParams { density_per_ha: 60.0, ..usual() }, land, None, &[OAK]);
+        let [west, east] = [true, false]
+            .map(|is_west| trees.iter().filter(|tree| (tree.world_from_tree[0][3] < 0.0) == is_west).count());
+        west as f32 / east as f32
+    };
+    assert!(west(&wild) > 0.5 && west(&half) < 0.1, "{} and {}", west(&wild), west(&half));
 }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::panorama::{Kind, Seen};
 use super::picture::{HALF_HEIGHT, Picture};
-use crate::math::ramp;
+use crate::math::{lerp, ramp};
 
 /// What a view is wanted to have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -21,7 +21,7 @@ pub enum Want {
     Depth,
     /// Trees between 10 m and 60 m; none in the face, and not nothing but trees.
     Trees,
-    /// Water in sight, but not at the feet and not everywhere.
+    /// Water in sight where there is much of it, but not at the feet and not everywhere.
     Water,
     /// Sun from the side, on the ground before the eyes; if it shines at all.
     Light,
@@ -50,7 +50,7 @@ impl Want {
             Self::Open => "a wall before the eyes",
             Self::Depth => "no depth",
             Self::Trees => "no trees at a good distance",
-            Self::Water => "water at the feet or nothing but water",
+            Self::Water => "water at the feet, nothing but water, or none of it in sight where there is much",
             Self::Light => "no light on the ground, or the sun in the eyes",
             Self::Horizon => "no horizon in the picture",
             Self::Green => "snow from edge to edge",
@@ -83,14 +83,14 @@ impl Appraisal {
     }
 }
 
-/// Appraises a picture; `footing` and `light` are known from elsewhere.
-pub(super) fn appraise(picture: &Picture<'_>, footing: f32, light: f32) -> Appraisal {
+/// Appraises a picture; `footing`, `light` and how much of the land is under water are known from elsewhere.
+pub(super) fn appraise(picture: &Picture<'_>, footing: f32, light: f32, wet: f32) -> Appraisal {
     let terms = [
         footing,
         picture.open(),
         picture.depth(),
         picture.trees(),
-        picture.water(),
+        picture.water(wet),
         light,
         picture.horizon(),
         picture.green(),
@@ -130,10 +130,12 @@ impl Picture<'_> {
         some * none_near * not_all * not_in_the_way * not_cut
     }
 
-    fn water(&self) -> f32 {
+    /// The more of the land is under water, the more is missed where none is seen.
+    fn water(&self, wet: f32) -> f32 {
         let share = self.share(|kind| kind == Kind::Water);
         let at_feet = self.share_between(0.0..6.0, |kind| kind == Kind::Water);
-        let some = 0.85 + 0.15 * ramp(0.0, 0.03, share);
+        let none = lerp(0.85, 0.35, ramp(0.05, 0.4, wet));
+        let some = lerp(none, 1.0, ramp(0.0, 0.05, share));
         some * (0.4 + 0.6 * ramp(0.45, 0.3, share)) * (0.4 + 0.6 * ramp(0.1, 0.0, at_feet))
     }
 

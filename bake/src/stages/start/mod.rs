@@ -149,7 +149,8 @@ fn at_place(scene: &Surroundings<'_>, sun: &Sun, lookouts: &[Lookout], least: f3
     let panorama = Panorama::new(scene, place);
     let trees = scene.trees_around(place, SHADES_M);
     let look = |&lookout: &Lookout| {
-        appraise(&Picture::new(&panorama, lookout), footing, sun.suits(scene, &trees, place, lookout.ahead()))
+        let light = sun.suits(scene, &trees, place, lookout.ahead());
+        appraise(&Picture::new(&panorama, lookout), footing, light, scene.wet)
     };
     lookouts.iter().map(look).collect()
 }

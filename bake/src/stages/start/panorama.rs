@@ -21,6 +21,8 @@ const FIRST_M: f32 = 1.5;
 const GROWTH: f32 = 1.09;
 /// Farthest land that counts.
 const FAR_M: f32 = 3000.0;
+/// Metres along x and z from the middle to the farthest water that one would miss.
+const AROUND_M: f32 = 1024.0;
 /// Farthest tree that can be told from the ground.
 const FAR_TREE_M: f32 = 250.0;
 /// Farthest stem that is wide enough to count.
@@ -59,6 +61,8 @@ const SKY: Seen = Seen { kind: Kind::Sky, depth_m: f32::INFINITY };
 pub(super) struct Surroundings<'a> {
     pub land: &'a Landform,
     trees: Vec<Tree>,
+    /// Part of what lies within `AROUND_M` that is under water.
+    pub wet: f32,
 }
 
 /// A tree as an ellipsoid on a stem, which counts only where it is near.
@@ -97,7 +101,8 @@ impl Tree {
 
 impl<'a> Surroundings<'a> {
     pub fn new(land: &'a Landform, trees: &[Instance], footprints: &[TreeFootprint]) -> Self {
-        Self { land, trees: trees.iter().filter_map(|tree| Tree::of(tree, footprints)).collect() }
+        let trees = trees.iter().filter_map(|tree| Tree::of(tree, footprints)).collect();
+        Self { land, trees, wet: wet(land) }
     }
 
     /// The trees whose feet are no farther from a place.
@@ -131,6 +136,16 @@ impl<'a> Surroundings<'a> {
             Kind::Ground
         }
     }
+}
+
+/// Part of the land around the middle that is under water.
+fn wet(land: &Landform) -> f32 {
+    let Some(water_m) = land.water_level_m else { return 0.0 };
+    let apron = &land.apron;
+    let near = |k: &u32| apron.place_m(*k).abs() <= AROUND_M;
+    let lines: Vec<u32> = (0..apron.side).filter(near).collect();
+    let wet = lines.iter().flat_map(|&j| lines.iter().filter(move |&&i| apron.at(i, j) < water_m)).count();
+    wet as f32 / (lines.len() * lines.len()).max(1) as f32
 }
 
 /// What is seen around a place.

@@ -5,6 +5,7 @@ use genescape_schema::scene::{Lookout, Lookouts, SharedView};
 use genescape_schema::{Genome, Kinds, Space};
 use glam::{Vec2, Vec3};
 
+use super::appraise::Appraisal;
 use super::{FirstLook, Want, first_look, looks};
 use crate::export::film;
 use crate::model::TreeFootprint;
@@ -32,7 +33,15 @@ fn land(height_m: impl Fn(f32, f32) -> f32, water_level_m: Option<f32>) -> Landf
     };
     let (field, apron) = (field(129, 8.0), field(65, 64.0));
     let flat = vec![0.0; field.heights_m.len()];
-    Landform { field, flow: flat.clone(), deposit: flat, water_level_m, snow_line_m: 1e4, apron }
+    Landform {
+        field,
+        flow: flat.clone(),
+        deposit: flat,
+        paddies: None,
+        water_level_m,
+        snow_line_m: 1e4,
+        apron,
+    }
 }
 
 /// Trees of 12 m, upright.
@@ -381,4 +390,21 @@ fn fog_is_bright() {
     let exposure = look(&land(|_, _| 0.0, None), &[], &light).exposure;
     let fog = luma(Vec3::from(film((exposure * Vec3::from(light.haze_linear)).to_array())));
     assert!((0.86..0.94).contains(&fog), "{fog}");
+}
+
+#[test]
+fn who_comes_to_the_sea_sees_it() {
+    let sea = land(|x, _| (60.0 - 0.3 * x).clamp(-20.0, 4.0), Some(0.0));
+    let trees =
+        trees((0..60).map(|k| Vec2::new((k % 10) as f32 * 90.0 - 450.0, (k / 10) as f32 * 150.0 - 400.0)));
+    let looks = looks(&sea, &trees, &[TREE], &light(40.0, 130.0), 1, 0.0);
+    let best = looks.iter().max_by(|a, b| a.score().total_cmp(&b.score())).expect("a look");
+    assert!(best.term(Want::Water) > 0.9, "{best:?}");
+    // Who looks the other way misses much, and where there is no sea nothing.
+    let least = |looks: &[Appraisal]| {
+        looks.iter().map(|look| look.term(Want::Water)).filter(|&t| t > 0.0).fold(1.0, f32::min)
+    };
+    let dry = land(|_, _| 4.0, None);
+    let dry = super::looks(&dry, &trees, &[TREE], &light(40.0, 130.0), 1, 0.0);
+    assert!(least(&looks) < 0.5 && least(&dry) > 0.8, "{} {}", least(&looks), least(&dry));
 }

@@ -32,7 +32,15 @@ fn land(side: u32, seed: u32, relief_m: f32, water_level_m: Option<f32>) -> Land
         }
     }
     let rest = vec![0.0; field.heights_m.len()];
-    Landform { field, flow: rest.clone(), deposit: rest, water_level_m, snow_line_m: 1e4, apron }
+    Landform {
+        field,
+        flow: rest.clone(),
+        deposit: rest,
+        paddies: None,
+        water_level_m,
+        snow_line_m: 1e4,
+        apron,
+    }
 }
 
 /// Directed edges with how often they occur.

@@ -13,7 +13,15 @@ fn dunes() -> Landform {
     let field = Heightfield { side, spacing_m, heights_m: (0..side * side).map(height_m).collect() };
     let flat = vec![0.0; field.heights_m.len()];
     let apron = Heightfield { side: 2, spacing_m: 2048.0, heights_m: vec![0.0; 4] };
-    Landform { field, flow: flat.clone(), deposit: flat, water_level_m: None, snow_line_m: -40.0, apron }
+    Landform {
+        field,
+        flow: flat.clone(),
+        deposit: flat,
+        paddies: None,
+        water_level_m: None,
+        snow_line_m: -40.0,
+        apron,
+    }
 }
 
 /// Mean part of snow of the texels whose height and rise along the wind, in metres a metre, are wanted.

@@ -280,3 +280,17 @@ fn the_ground_has_the_season_of_its_trees() {
         Season::of(&LitterParams { leaf_hue_deg: 85.0, leaves_per_stem: 9, ..leafy })
     );
 }
+
+#[test]
+fn rice_grows_in_fields_and_nothing_else_does() {
+    let mut land = LAND.clone();
+    land.paddies = Some(vec![1.0; land.flow.len()]);
+    let made = maps(&PARAMS, &Woods::none(Season::default()), &land, 256);
+    assert!(made.plants.kinds.is_empty(), "weeds grow");
+    let corners = [(0, 0), (1, 0), (0, 1), (1, 1)];
+    let is_level = |i: u32, j: u32| LAND.field.normal_at(i, j).y > 0.995;
+    let level = |k: u32| corners.iter().all(|&(di, dj)| is_level(k % 256 + di, k / 256 + dj));
+    let pixels = made.weights.data.chunks_exact(4).zip(0..);
+    let bare = pixels.filter(|&(weights, k)| level(k) && weights.iter().any(|&w| w > 0)).count();
+    assert_eq!(bare, 0, "rock, scree, snow or earth on level fields");
+}
