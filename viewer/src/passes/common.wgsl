@@ -336,16 +336,17 @@ fn noise_pair(place: vec2f) -> vec2f {
     return mix(near, far, part.y);
 }
 
-// How far edges of clouds are frayed, in texels of the painted sky.
-const FRAYED: f32 = 1.4;
+// How far edges of clouds are frayed, in texels of the painted sky. Displacements that differ by more than the way between two
+// places would tear clouds into shreds, so finer ones are smaller, as billows are.
+const FRAYED: f32 = 1.6;
 
 // A direction beside, by about a texel of the painted sky: its clouds, magnified, get edges finer than its texels. Where a
 // pixel covers a texel there is nothing to add.
 fn frayed(direction: vec3f) -> vec3f {
     let texels = f32(textureDimensions(sky_cube).x) / 2.0;
-    // Below the horizon there is haze alone.
-    let place = direction.xz / (max(direction.y, 0.0) + 0.2) * texels;
-    let beside = noise_pair(place / 3.1) + 0.55 * noise_pair(place / 1.3 + 17.0);
+    // Lambert's azimuthal projection, in texels: alike in all directions up to the horizon, below which there is haze alone.
+    let place = direction.xz * (1.2 * texels * inverseSqrt(1.0 + max(direction.y, 0.0)));
+    let beside = noise_pair(place / 4.3) + 0.6 * noise_pair(place / 1.9 + 17.0) + 0.32 * noise_pair(place / 0.83 + 31.0);
     let right = normalize(vec3f(direction.z, 0.0, -direction.x) + vec3f(1e-4, 0.0, 0.0));
     // Around the sun the clear sky, which is taken from the painted one, changes within a texel.
     let beside_sun = smoothstep(0.9990, 0.9900, dot(direction, view.sun_direction));
