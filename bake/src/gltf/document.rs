@@ -130,9 +130,12 @@ impl Document {
     pub fn json(&self) -> Vec<u8> {
         let own = (!self.bin.is_empty()).then(|| json!({ "byteLength": self.bin.len() }));
         let buffers: Vec<&Value> = own.iter().chain(&self.buffers).collect();
+        let materials = self.materials.iter().filter_map(Value::as_object);
+        let used: BTreeSet<&String> =
+            materials.flat_map(extensions_of).chain(&self.extensions_used).collect();
         let entries = [
             Some(entry("asset", &json!({ "version": "2.0", "generator": GENERATOR }))),
-            (!self.extensions_used.is_empty()).then(|| entry("extensionsUsed", &self.extensions_used)),
+            (!used.is_empty()).then(|| entry("extensionsUsed", &used)),
             (!self.scenes.is_empty()).then(|| entry("scene", &0)),
             list("scenes", &self.scenes),
             list("nodes", &self.nodes),
@@ -150,6 +153,11 @@ impl Document {
         let entries: Vec<_> = entries.into_iter().flatten().collect();
         [b"{\n", &entries.join(&b",\n"[..])[..], b"\n}\n"].concat()
     }
+}
+
+/// The names of an object's extensions.
+pub(super) fn extensions_of(object: &Map<String, Value>) -> impl Iterator<Item = &String> {
+    object.get("extensions").and_then(Value::as_object).into_iter().flat_map(Map::keys)
 }
 
 fn entry(key: &str, value: &impl Serialize) -> Vec<u8> {

@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 use super::ExportError;
 use super::document::{ARRAY_BUFFER, Document, ELEMENT_ARRAY_BUFFER, FLOAT, Node, UNSIGNED_INT};
 use super::glb::write_glb;
+use super::materials::matte;
 use super::vertices::{Surface, add_vertices};
 use crate::model::{Foreground, Material};
 
@@ -62,14 +63,14 @@ pub fn foreground_glb(foreground: &Foreground, kinds: &[&str], white: f32) -> Re
 
 /// Blades of grass, coloured by their vertices.
 pub fn blade_material(white: f32) -> Value {
-    json!({ "name": "grass blades", "doubleSided": true, "pbrMetallicRoughness": {
-        "baseColorFactor": [white, white, white, 1], "metallicFactor": 0, "roughnessFactor": 0.8 } })
+    matte(json!({ "name": "grass blades", "doubleSided": true, "pbrMetallicRoughness": {
+        "baseColorFactor": [white, white, white, 1], "metallicFactor": 0, "roughnessFactor": 0.8 } }))
 }
 
 /// A kind of ground from near: its tiling colour and normals, and the light map as occlusion.
 pub fn tiled_material(name: &str, tile: usize, normal: usize, light: usize) -> Value {
-    json!({ "name": format!("near {name}"),
+    matte(json!({ "name": format!("near {name}"),
         "pbrMetallicRoughness": { "baseColorTexture": { "index": tile }, "metallicFactor": 0, "roughnessFactor": 0.95 },
         "normalTexture": { "index": normal },
-        "occlusionTexture": { "index": light, "texCoord": 1 } })
+        "occlusionTexture": { "index": light, "texCoord": 1 } }))
 }

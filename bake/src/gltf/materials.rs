@@ -4,7 +4,7 @@ use std::convert::Infallible;
 
 use serde_json::{Map, Value, json};
 
-use super::document::{Document, for_each_object, push};
+use super::document::{Document, extensions_of, for_each_object, push};
 use super::vertices::Surface;
 use crate::model::Material;
 
@@ -20,9 +20,14 @@ const TRANSMISSION: f64 = 0.45;
 
 /// How strongly what is no metal mirrors.
 const KHR_MATERIALS_SPECULAR: &str = "KHR_materials_specular";
-/// Cards mirror nothing: the leaves of their pictures lie in all directions and hide each other, and renderers, which know of a plane
-/// alone, have crowns before a low sun glare like wet slate. Of a fifth of it half of the glare is left in Blender, along a plane.
-const SPECULAR: f64 = 0.0;
+
+/// A material that mirrors nothing. Leaves, blades and crumbs lie in all directions and hide each other; renderers, which know of a
+/// plane alone, have crowns before a low sun glare like wet slate, and lay a grey veil over meadows, which send back less light
+/// than a plane mirrors where it is seen at a low angle. Of a fifth of it half of the glare is left in Blender, along a plane.
+pub(super) fn matte(mut material: Value) -> Value {
+    material["extensions"][KHR_MATERIALS_SPECULAR] = json!({ "specularFactor": 0 });
+    material
+}
 
 /// A sampler's JSON from minification filter and wrap mode.
 pub fn sampler((minify, wrap): (u32, u32)) -> Value {
@@ -85,11 +90,10 @@ impl<'a> MaterialSet<'a> {
         let texture = push(&mut self.textures, json!({ "name": name, "sampler": sampler, "source": image }));
         push(
             &mut self.materials,
-            json!({ "name": name,
+            matte(json!({ "name": name,
                 "pbrMetallicRoughness": { "baseColorTexture": { "index": texture },
                     "metallicFactor": 0, "roughnessFactor": roughness },
-                "alphaMode": "MASK", "alphaCutoff": alpha_cutoff, "doubleSided": true,
-                "extensions": { KHR_MATERIALS_SPECULAR: { "specularFactor": SPECULAR } } }),
+                "alphaMode": "MASK", "alphaCutoff": alpha_cutoff, "doubleSided": true })),
         )
     }
 
@@ -133,8 +137,7 @@ impl<'a> MaterialSet<'a> {
                         object.insert(name.into(), (index + by as u64).into());
                     }
                 }
-                let extensions = object.get("extensions").and_then(Value::as_object);
-                document.extensions_used.extend(extensions.into_iter().flat_map(Map::keys).cloned());
+                document.extensions_used.extend(extensions_of(object).cloned());
                 Ok(())
             };
             let Ok(()) = objects.iter_mut().try_for_each(|object| for_each_object(object, &mut shift));

@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 use super::ExportError;
 use super::document::{Document, Node};
 use super::glb::write_glb;
+use super::materials::matte;
 use super::vertices::{Surface, add_vertices};
 use crate::model::{Mesh, TerrainMesh};
 
@@ -53,14 +54,14 @@ fn plain_material(name: &str) -> Value {
     match name {
         "water" => water_material(),
         "apron" => apron_material(),
-        _ => json!({ "name": name, "pbrMetallicRoughness": {
-            "baseColorFactor": [0.12, 0.14, 0.06, 1], "metallicFactor": 0, "roughnessFactor": 0.95 } }),
+        _ => matte(json!({ "name": name, "pbrMetallicRoughness": {
+            "baseColorFactor": [0.12, 0.14, 0.06, 1], "metallicFactor": 0, "roughnessFactor": 0.95 } })),
     }
 }
 
 /// The land beyond the field, coloured by its vertices.
 pub fn apron_material() -> Value {
-    json!({ "name": "apron", "pbrMetallicRoughness": { "metallicFactor": 0, "roughnessFactor": 1 } })
+    matte(json!({ "name": "apron", "pbrMetallicRoughness": { "metallicFactor": 0, "roughnessFactor": 1 } }))
 }
 
 /// Deep lake water. Opaque: a scene without volumes shows the bed under transparent water as under glass.
@@ -71,10 +72,10 @@ pub fn water_material() -> Value {
 
 /// The land with its colour over the whole field, its light map as occlusion, and a tiling normal map for detail.
 pub fn ground_material(color: usize, light: usize, normal: Option<(usize, f32)>) -> Value {
-    let mut material = json!({ "name": "ground",
+    let mut material = matte(json!({ "name": "ground",
         "pbrMetallicRoughness": { "baseColorTexture": { "index": color },
             "metallicFactor": 0, "roughnessFactor": 0.95 },
-        "occlusionTexture": { "index": light, "strength": 1 } });
+        "occlusionTexture": { "index": light, "strength": 1 } }));
     if let Some((texture, repeats)) = normal {
         material["normalTexture"] = json!({ "index": texture, "scale": 0.8,
             "extensions": { "KHR_texture_transform": { "scale": [repeats, repeats] } } });

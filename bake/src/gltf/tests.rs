@@ -1,5 +1,7 @@
 //! What other programs rely on, checked by reading the files back with the `gltf` crate.
 
+use std::collections::BTreeSet;
+
 use glam::{DMat3, DQuat, Vec3};
 use serde_json::Value;
 
@@ -281,6 +283,19 @@ fn nothing_is_required_and_all_our_extensions_are_named() {
         assert!(used.iter().any(|u| u == name), "{name} is not in extensionsUsed");
     }
     assert_eq!(json["scenes"][0]["extras"]["genome"]["height_m"], 7.4);
+}
+
+#[test]
+fn only_water_and_bark_mirror_the_sky() {
+    let (_, bytes) = scene(3);
+    let json: Value = serde_json::from_slice(&bytes).unwrap();
+    let shiny = |material: &&Value| material["extensions"]["KHR_materials_specular"]["specularFactor"] != 0;
+    let materials = json["materials"].as_array().unwrap();
+    let names: BTreeSet<&str> =
+        materials.iter().filter(shiny).filter_map(|material| material["name"].as_str()).collect();
+    assert_eq!(names, BTreeSet::from(["bark", "water"]));
+    let named = |name: &Value| name == "KHR_materials_specular";
+    assert!(json["extensionsUsed"].as_array().unwrap().iter().any(named));
 }
 
 #[test]

@@ -39,7 +39,7 @@ pub struct SceneStage {
 
 impl Stage for SceneStage {
     const NAME: &'static str = "scene";
-    const VERSION: u32 = 7;
+    const VERSION: u32 = 8;
     type Output = File;
 
     fn run(&self, context: &Context<'_>) -> Result<File, StageError> {
