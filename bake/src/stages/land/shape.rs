@@ -83,8 +83,8 @@ impl Octave {
 
 /// Where the land of a coast sinks below the sea, which is open to the horizon.
 struct Sea {
-    /// Part of the relief by which the land sinks at last.
-    depth: f32,
+    /// 0 where there is none, 1 where the land sinks all the way to its bed.
+    part: f32,
     /// Direction of the sea along x and z.
     way: [f32; 2],
 }
@@ -258,23 +258,23 @@ impl Sea {
     const COAST_M: [f32; 2] = [-60.0, 620.0];
     /// Height of cliffs from which on the sea is as wide as it gets.
     const WIDE_M: f32 = 9.0;
-    /// Part of the relief by which it sinks there.
+    /// Part of the relief by which the land sinks.
     const DEPTH: f32 = 0.9;
     /// How deep the sea's bed falls below the lowest land, as a part of what it would.
     const BED: f32 = 0.12;
 
     fn new(genes: &LandParams) -> Self {
         let turn = noise_seed(genes.terrain_seed.into(), "land", 21) as f32 * (TAU / u32::MAX as f32);
-        let depth = Self::DEPTH * (genes.cliff_m / Self::WIDE_M).min(1.0);
-        Self { depth, way: [libm::cosf(turn), libm::sinf(turn)] }
+        let part = (genes.cliff_m / Self::WIDE_M).min(1.0);
+        Self { part, way: [libm::cosf(turn), libm::sinf(turn)] }
     }
 
     fn seaward(&self, x: f32, z: f32) -> f32 {
-        if self.depth == 0.0 {
+        if self.part == 0.0 {
             return 0.0;
         }
         let [from_m, to_m] = Self::COAST_M;
-        self.depth / Self::DEPTH * smoothstep(from_m, to_m, x * self.way[0] + z * self.way[1])
+        self.part * smoothstep(from_m, to_m, x * self.way[0] + z * self.way[1])
     }
 
     /// A height, as a part of the relief.
