@@ -159,17 +159,8 @@ pub fn landform() -> Landform {
         let heights_m = (0..side * side).map(|n| height(at(n % side), at(n / side))).collect();
         Heightfield { side, spacing_m, heights_m }
     };
-    let near = field(65, 16.0);
-    let n = near.heights_m.len();
-    Landform {
-        field: near,
-        flow: vec![0.0; n],
-        deposit: vec![0.0; n],
-        paddies: None,
-        water_level_m: Some(8.0),
-        snow_line_m: 1000.0,
-        apron: field(65, 64.0),
-    }
+    let bare = Landform::bare(field(65, 16.0), field(65, 64.0));
+    Landform { water_level_m: Some(8.0), snow_line_m: 1000.0, ..bare }
 }
 
 /// A grid mesh, of all cells (`hole` false) or those outside the middle quarter of the width.

@@ -28,6 +28,20 @@ pub struct Landform {
 }
 
 impl Landform {
+    /// Land of these heights that no force has shaped: without water, snow, deposits or fields.
+    pub fn bare(field: Heightfield, apron: Heightfield) -> Self {
+        let none = vec![0.0; field.heights_m.len()];
+        Self {
+            flow: none.clone(),
+            deposit: none,
+            paddies: None,
+            water_level_m: None,
+            snow_line_m: 1e4,
+            field,
+            apron,
+        }
+    }
+
     /// How much of a sample of the field is farmed, [0, 1].
     pub fn farmed(&self, sample: usize) -> f32 {
         self.paddies.as_ref().map_or(0.0, |paddies| paddies[sample])

@@ -75,17 +75,7 @@ fn standing(placement: &PlacementParams, measures: &TreeMeasures) -> Vec<Instanc
         spacing_m,
         heights_m: vec![0.0; (side * side) as usize],
     };
-    let field = level(33, 32.0);
-    let samples = field.heights_m.len();
-    let meadow = Landform {
-        apron: level(3, 4096.0),
-        flow: vec![0.0; samples],
-        deposit: vec![0.0; samples],
-        paddies: None,
-        water_level_m: None,
-        snow_line_m: 1e4,
-        field,
-    };
+    let meadow = Landform::bare(level(33, 32.0), level(3, 4096.0));
     let footprint = TreeFootprint {
         height_m: measures.height_m,
         trunk_radius_m: measures.trunk_radius_m,

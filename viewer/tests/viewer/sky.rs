@@ -1,11 +1,11 @@
 //! Clouds that are painted with few texels get edges finer than these, and are neither more nor fewer for it.
 
+use std::f32::consts::FRAC_PI_3;
+
 use genescape_viewer::camera::Camera;
 use genescape_viewer::headless::Headless;
 use genescape_viewer::options::FrameInput;
 use genescape_viewer::scene::{HdrImage, Scene};
-use std::f32::consts::FRAC_PI_3;
-
 use glam::Vec3;
 use image::RgbaImage;
 

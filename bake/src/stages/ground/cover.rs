@@ -178,6 +178,9 @@ impl Painter {
     /// What covers a place.
     #[inline]
     pub fn cover(&self, t: &Traits, n: &Noise) -> Cover {
+        if rice(t) > 0.5 {
+            return Cover::default();
+        }
         let broken = 0.55 * n.broad + 0.35 * n.fine;
         // Grass holds on to about 37°, less on crests and outcrops, more where soil has gathered.
         let bare = t.slope + 0.10 * broken + 0.09 * t.outcrop - 0.10 * t.hollow - 0.06 * t.deposit;
@@ -194,9 +197,6 @@ impl Painter {
         let wash = t.flow + 0.05 * broken;
         let bed = if wash < 0.84 { 0.0 } else { step(0.84, 0.92, wash) * (1.0 - step(0.25, 0.6, t.slope)) };
         let mud = shore.max(bed);
-        if self.rice(t) > 0.5 {
-            return Cover::default();
-        }
         // Each lies over the ones before it.
         let mut cover = self.bare(t, broken);
         let litter = self.shed(t, n);
@@ -315,6 +315,10 @@ impl Painter {
     /// Grass: lusher where water gathers, drier on crests and high up, in large patches of its own.
     #[inline]
     pub fn grass(&self, t: &Traits, n: &Noise) -> Rgb {
+        let rice = rice(t);
+        if rice > 0.5 {
+            return self.crop(rice, t, n);
+        }
         let altitude = (t.height_m - self.lowest_m) / self.relief_m;
         let moist = 0.75 * t.flow + 0.35 * t.hollow + 0.12 * t.deposit;
         let dry = 0.6 + 1.9 * self.thirst + 1.2 * t.patch + 1.25 * t.tuft + 0.5 * altitude
@@ -328,29 +332,19 @@ impl Painter {
         let dry = (dry + t.sunny * (0.9 * thirst - 0.5 * frost)).clamp(0.0, 4.999);
         let k = dry as usize;
         let grass = lerp(growth[k], growth[k + 1], dry - k as f32);
-        let rice = self.rice(t);
-        if rice > 0.5 {
-            return self.crop(t, n);
-        }
         let grass = lerp(lerp(grass, HEATH, 0.6 * self.heath(t, n)), self.bloom, IN_BLOOM * self.bloom(t, n));
         scale(grass, 1.0 + 0.16 * n.fine + 0.10 * n.broad + 0.18 * n.grain)
     }
 
-    /// Part of a place on which rice grows: fields, and not the banks between them.
-    #[inline]
-    pub fn rice(&self, t: &Traits) -> f32 {
-        if t.farmed == 0.0 { 0.0 } else { t.farmed * (1.0 - step(0.16, 0.34, t.slope)) }
-    }
-
-    /// Rice, which neighbours plant and cut at other times, along the paths on which one reaches it. A field has one height; wide
+    /// The colour of a place so much of which is rice: neighbours plant and cut it at other times, and paths lead along it. A field has one height; wide
     /// ones are several people's.
     #[inline]
-    fn crop(&self, t: &Traits, n: &Noise) -> Rgb {
+    fn crop(&self, part: f32, t: &Traits, n: &Noise) -> Rgb {
         let plot = [libm::roundf(2.5 * t.height_m), (2.2 * t.tuft).floor()].map(|part| part as i32);
         let own = hash01(self.rice_seed, plot[0], plot[1], 1) - 0.5;
         let ripe = (self.ripe + 0.45 * own + 0.06 * n.broad).clamp(0.0, 0.999) * (RICE.len() - 1) as f32;
         let rice = lerp(RICE[ripe as usize], RICE[ripe as usize + 1], ripe.fract());
-        let inside = step(0.62, 0.82, self.rice(t) + 0.05 * n.fine);
+        let inside = step(0.62, 0.82, part + 0.05 * n.fine);
         scale(lerp(PATH, rice, inside), 1.0 + 0.1 * n.fine + 0.15 * n.grain)
     }
 
@@ -372,6 +366,12 @@ impl Painter {
         let mud = lerp(mud, lerp(WET_MUD, self.shore, 0.35), step(0.5, 4.0, -above));
         scale(mud, 1.0 + 0.12 * n.fine + 0.22 * n.grain)
     }
+}
+
+/// Part of a place on which rice grows: fields, and not the banks between them.
+#[inline]
+fn rice(t: &Traits) -> f32 {
+    if t.farmed == 0.0 { 0.0 } else { t.farmed * (1.0 - step(0.16, 0.34, t.slope)) }
 }
 
 /// About [-1, 1] in patches of several sizes, by which plants gather.

@@ -9,6 +9,7 @@ use super::LandParams;
 use super::grid::Grid;
 use crate::math::{lerp, ramp, smoothstep};
 use crate::noise::gradient2;
+use crate::raster::square;
 use crate::seed::noise_seed;
 
 /// Part of the land's height above the sea that cliffs have at most.
@@ -32,37 +33,35 @@ pub(super) struct Coast {
     cliff_m: f32,
     /// Factor on heights above the sea, so that the highest point stays where it was.
     rest: f32,
-    /// Metres to the sea.
-    away_m: Grid,
-    seed: u32,
+    /// How far the land has come from the foot of the cliff, and on the sea's side of it (0), to the edge and behind it (1).
+    edge: Grid,
+    /// How much of a bay a place is in, 0 on headlands to 1.
+    bay: Grid,
 }
 
 impl Coast {
-    /// The coast of `land` by a sea that lies at `water_m`. `None` without cliffs, or if no water reaches the border: a lake is
-    /// no sea.
-    pub fn new(params: &LandParams, land: &Grid, water_m: Option<f32>) -> Option<Self> {
+    /// The coast of `land` by a sea that lies at `water_m`, on as many samples a side as the land or `side`, whichever is more.
+    /// `None` without cliffs, or if no water reaches the border: a lake is no sea.
+    pub fn new(params: &LandParams, land: &Grid, side: u32, water_m: Option<f32>) -> Option<Self> {
         let water_m = water_m.filter(|_| params.cliff_m > 0.0)?;
-        let away_m = distance_to_sea_m(land, water_m)?;
+        let away_m = distance_to_sea_m(land, water_m)?.resized(side.max(land.side));
         let above_m = land.range().1 - water_m;
         let cliff_m = params.cliff_m.min(MAX_PART * above_m);
         let rest = 1.0 - cliff_m / above_m;
-        Some(Self {
-            water_m,
-            cliff_m,
-            rest,
-            away_m,
-            seed: noise_seed(params.terrain_seed.into(), "land", 20),
-        })
+        let shore = Shore { cliff_m, seed: noise_seed(params.terrain_seed.into(), "land", 20) };
+        let bay = Grid::from_field(away_m.side, |x, z| shore.bay(x, z));
+        let n = away_m.side as usize;
+        let edge = square(n, |i, j| {
+            let k = j * n + i;
+            shore.edge(away_m.values[k], bay.values[k], away_m.place_m(i), away_m.place_m(j))
+        });
+        Some(Self { water_m, cliff_m, rest, edge: Grid { values: edge, ..away_m }, bay })
     }
 
     /// Raises the land behind the shoreline.
     pub fn raise(&self, field: &mut Grid) {
-        let away_m = self.away_m.resized(field.side);
-        let side = field.side as usize;
-        for (k, h) in field.values.iter_mut().enumerate() {
-            let [x, z] = [k % side, k / side].map(|k| away_m.place_m(k));
-            *h = self.raised(*h, self.edge(away_m.values[k], x, z));
-        }
+        let edge = self.edge.resized(field.side);
+        field.values.iter_mut().zip(edge.values).for_each(|(h, edge)| *h = self.raised(*h, edge));
     }
 
     /// Raises the land around, on whose coarse grid no face is to be seen.
@@ -73,12 +72,10 @@ impl Coast {
 
     /// Loose stone lies on no cliff.
     pub fn sweep(&self, loose: &mut Grid) {
-        let side = loose.side as usize;
-        for (k, loose) in loose.values.iter_mut().enumerate() {
-            let [x, z] = [k % side, k / side].map(|k| self.away_m.place_m(k));
-            let edge = self.edge(self.away_m.values[k], x, z);
-            *loose *= 1.0
-                - smoothstep(0.0, 0.1, edge) * (1.0 - smoothstep(0.9, 1.0, edge)) * (1.0 - self.bay(x, z));
+        let [edge, bay] = [&self.edge, &self.bay].map(|grid| grid.resized(loose.side));
+        for ((loose, edge), bay) in loose.values.iter_mut().zip(edge.values).zip(bay.values) {
+            let face = smoothstep(0.0, 0.1, edge) * (1.0 - smoothstep(0.9, 1.0, edge));
+            *loose *= 1.0 - face * (1.0 - bay);
         }
     }
 
@@ -89,13 +86,20 @@ impl Coast {
         let rest = if above_m > 0.0 { lerp(1.0, self.rest, edge) } else { 1.0 };
         self.water_m + rest * above_m + self.cliff_m * edge
     }
+}
 
-    /// 0 at the foot of the cliff and on the sea's side of it, 1 from its edge on.
-    fn edge(&self, away_m: f32, x: f32, z: f32) -> f32 {
+/// How the shore is broken.
+struct Shore {
+    cliff_m: f32,
+    seed: u32,
+}
+
+impl Shore {
+    /// [`Coast::edge`] at a place so far from the sea.
+    fn edge(&self, away_m: f32, bay: f32, x: f32, z: f32) -> f32 {
         if away_m <= 0.0 {
             return 0.0;
         }
-        let bay = self.bay(x, z);
         let noise =
             |item: u32, wave_m: f32| gradient2(self.seed.wrapping_add(item), x / wave_m, z / wave_m, 0);
         let broken_m = self.cliff_m * (0.3 * noise(1, BUTTRESSES_M) + 0.09 * noise(2, CRAGS_M));
@@ -107,7 +111,7 @@ impl Coast {
         lerp(lerp(way, ledge, 0.6), smoothstep(0.0, 1.0, way), bay)
     }
 
-    /// 1 in bays, 0 on headlands.
+    /// [`Coast::bay`] at a place.
     fn bay(&self, x: f32, z: f32) -> f32 {
         smoothstep(0.12, 0.42, gradient2(self.seed, x / BAYS_M, z / BAYS_M, 0))
     }

@@ -99,17 +99,6 @@ impl Grid {
         Self { side: m as u32, spacing_m: 0.5 * self.spacing_m, values }
     }
 
-    /// Tangent of the slope at a sample, from its neighbours.
-    pub fn slope(&self, i: usize, j: usize) -> f32 {
-        let n = self.side as usize;
-        let at = |i: usize, j: usize| self.values[j * n + i];
-        let (west, east) = (i.saturating_sub(1), (i + 1).min(n - 1));
-        let (north, south) = (j.saturating_sub(1), (j + 1).min(n - 1));
-        let dx = (at(east, j) - at(west, j)) / (east - west) as f32;
-        let dz = (at(i, south) - at(i, north)) / (south - north) as f32;
-        (dx * dx + dz * dz).sqrt() / self.spacing_m
-    }
-
     /// Smoothed once by the binomial kernel 1-2-1 both ways; beyond the edge, its own samples repeat.
     pub fn smoothed(&self) -> Self {
         let n = self.side as usize;

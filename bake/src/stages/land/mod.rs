@@ -3,9 +3,10 @@
 //!
 //! A warped multifractal (Musgrave, "Texturing and Modeling", 2003) gives the raw land; rivers cut it by the stream
 //! power law (Braun & Willett 2013), raindrops carve gullies and lay down fans (Beyer 2015), and slopes slide to
-//! their angle of repose (Musgrave, Kolb & Mace 1989). The sea breaks off its coast, and people cut slopes into fields. All erosion works on fixed grids, whatever the size asked
-//! for, so that a valley keeps its place; finer sizes add finer noise. The apron follows the erosion of the border,
-//! less and less with distance, so that valleys lead out of the field.
+//! their angle of repose (Musgrave, Kolb & Mace 1989). At last the sea breaks off its coast, and people cut slopes into
+//! fields. All erosion works on fixed grids, whatever the size asked for, so that a valley keeps its place; finer sizes
+//! add finer noise. The apron follows the erosion of the border, less and less with distance, so that valleys lead out of
+//! the field.
 
 mod apron;
 mod coast;
@@ -105,7 +106,7 @@ fn shaped(params: &LandParams, size: u32, grids: &Grids) -> Landform {
     let mut apron = apron::heights(&shape, params);
     apron::follow(&mut apron, &raw, &worn);
     let flow = streams::flow(&worn, grids.rivers[1]);
-    if let Some(coast) = Coast::new(params, &worn, level.water_m) {
+    if let Some(coast) = Coast::new(params, &worn, size, level.water_m) {
         [&mut worn, &mut field].into_iter().for_each(|land| coast.raise(land));
         coast.raise_apron(&mut apron);
         coast.sweep(&mut loose);

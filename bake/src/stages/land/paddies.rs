@@ -1,9 +1,10 @@
 //! Land → slopes cut into level fields, as for rice: people's work, which follows contours as no erosion does.
 
-use super::LandParams;
 use super::grid::{Grid, border_guard};
+use super::{LandParams, into_field};
 use crate::math::{lerp, smoothstep};
 use crate::noise::gradient2;
+use crate::raster::square;
 use crate::seed::noise_seed;
 
 /// Metres from one bank to the next where a slope is as steep as the land's are on the mean, and how high a step may be.
@@ -44,18 +45,21 @@ impl Paddies {
         let (lowest_m, highest_m) = smooth.range();
         let shore_m = water_m.unwrap_or(lowest_m - SHORE_M[1]);
         let side = land.side as usize;
-        let slopes: Vec<f32> = (0..side * side).map(|k| smooth.slope(k % side, k / side)).collect();
+        let field = into_field(smooth.clone());
+        let slopes = square(side, |i, j| {
+            let up = field.normal_at(i as u32, j as u32);
+            up.with_y(0.0).length() / up.y
+        });
         let mean = slopes.iter().map(|slope| slope.min(SLOPES[1])).sum::<f32>() / slopes.len() as f32;
-        let part = |k: usize| {
-            let (x, z) = (land.place_m(k % side), land.place_m(k / side));
+        let values = square(side, |i, j| {
+            let (k, x, z) = (j * side + i, land.place_m(i), land.place_m(j));
             let height_m = smooth.values[k];
             let farmed = gradient2(seed, x / FARMS_M, z / FARMS_M, 0) + 1.7 * params.paddies - 0.85;
             let gentle = 1.0 - smoothstep(SLOPES[0], SLOPES[1], slopes[k]);
             let crest = smoothstep(CRESTS[0], CRESTS[1], (height_m - lowest_m) / (highest_m - lowest_m));
             let dry = smoothstep(SHORE_M[0], SHORE_M[1], height_m - shore_m);
             smoothstep(-0.06, 0.06, farmed) * gentle * (1.0 - crest) * dry * guard.values[k]
-        };
-        let values = (0..side * side).map(part).collect();
+        });
         let step_m = (FIELD_M * mean).clamp(STEP_M[0], STEP_M[1]);
         Some(Self { part: Grid { values, ..*land }, smooth, step_m })
     }

@@ -31,16 +31,7 @@ fn land(side: u32, height_m: impl Fn(f32, f32) -> f32) -> Landform {
         Heightfield { side, spacing_m, heights_m }
     };
     let (field, apron) = (field(side, 1024.0 / (side - 1) as f32), field(65, 64.0));
-    let rest = vec![0.0; field.heights_m.len()];
-    Landform {
-        field,
-        flow: rest.clone(),
-        deposit: rest,
-        paddies: None,
-        water_level_m: None,
-        snow_line_m: 1e4,
-        apron,
-    }
+    Landform::bare(field, apron)
 }
 
 /// A box of bark from the ground up.

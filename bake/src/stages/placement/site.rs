@@ -110,8 +110,8 @@ impl<'a> Site<'a> {
             return None;
         }
         let cold = self.cold([x_m, y, z_m])?;
-        let limits = limits * lerp(1.0, CHILLED, cold) * self.watered(y, flow);
-        let limits = limits * lerp(1.0, FARMED, self.land.farmed(self.sample(x_m, z_m)));
+        let farmed = self.land.farmed(self.sample(x_m, z_m));
+        let limits = limits * lerp(1.0, CHILLED, cold) * self.watered(y, flow) * lerp(1.0, FARMED, farmed);
         let grove = self.grove(x_m, z_m);
         let weight = limits * (1.0 - self.clustering * (1.0 - SOLITARY) * (1.0 - grove));
         let sheltered = 1.0 - 0.3 * self.clustering * (1.0 - grove);

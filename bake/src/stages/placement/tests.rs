@@ -27,16 +27,7 @@ fn land(seed: u32, relief_m: f32, water: f32, side: u32) -> Landform {
     let field = Heightfield { side, spacing_m, heights_m };
     let [low, high] = field.range_m();
     let water_level_m = (water > 0.0).then_some(low + water * (high - low));
-    let deposit = vec![0.0; flow.len()];
-    Landform {
-        apron: field.clone(),
-        field,
-        flow,
-        deposit,
-        paddies: None,
-        water_level_m,
-        snow_line_m: high + 1.0,
-    }
+    Landform { flow, water_level_m, snow_line_m: high + 1.0, ..Landform::bare(field.clone(), field) }
 }
 
 fn params() -> impl Strategy<Value = PlacementParams> {

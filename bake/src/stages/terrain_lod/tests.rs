@@ -31,16 +31,7 @@ fn land(side: u32, seed: u32, relief_m: f32, water_level_m: Option<f32>) -> Land
             apron.heights_m[j * 65 + i] = field.height_m((i as f32 - 32.0) * 64.0, (j as f32 - 32.0) * 64.0);
         }
     }
-    let rest = vec![0.0; field.heights_m.len()];
-    Landform {
-        field,
-        flow: rest.clone(),
-        deposit: rest,
-        paddies: None,
-        water_level_m,
-        snow_line_m: 1e4,
-        apron,
-    }
+    Landform { water_level_m, ..Landform::bare(field, apron) }
 }
 
 /// Directed edges with how often they occur.

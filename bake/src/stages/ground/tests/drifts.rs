@@ -11,17 +11,8 @@ fn dunes() -> Landform {
         15.0 * libm::sinf((0.91 * x + 0.41 * z) * std::f32::consts::TAU / 200.0)
     };
     let field = Heightfield { side, spacing_m, heights_m: (0..side * side).map(height_m).collect() };
-    let flat = vec![0.0; field.heights_m.len()];
     let apron = Heightfield { side: 2, spacing_m: 2048.0, heights_m: vec![0.0; 4] };
-    Landform {
-        field,
-        flow: flat.clone(),
-        deposit: flat,
-        paddies: None,
-        water_level_m: None,
-        snow_line_m: -40.0,
-        apron,
-    }
+    Landform { snow_line_m: -40.0, ..Landform::bare(field, apron) }
 }
 
 /// Mean part of snow of the texels whose height and rise along the wind, in metres a metre, are wanted.
