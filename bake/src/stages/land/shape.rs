@@ -265,7 +265,7 @@ impl Sea {
 
     fn new(genes: &LandParams) -> Self {
         let turn = noise_seed(genes.terrain_seed.into(), "land", 21) as f32 * (TAU / u32::MAX as f32);
-        let part = (genes.cliff_m / Self::WIDE_M).min(1.0);
+        let part = if genes.water_level > 0.0 { (genes.cliff_m / Self::WIDE_M).min(1.0) } else { 0.0 };
         Self { part, way: [libm::cosf(turn), libm::sinf(turn)] }
     }
 

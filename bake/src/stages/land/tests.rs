@@ -253,6 +253,12 @@ fn a_coast_breaks_off_at_a_sea_that_is_open_to_the_horizon() {
 }
 
 #[test]
+fn a_dry_land_has_no_sea_to_sink_into() {
+    let land = |cliff_m: f32| landform(&LandParams { cliff_m, water_level: 0.0, ..downs() }, 129);
+    assert_eq!(land(30.0), land(0.0));
+}
+
+#[test]
 fn paddies_are_level_and_follow_the_slope() {
     let [wild, farmed] = [0.0, 0.8].map(|paddies| landform(&LandParams { paddies, ..downs() }, 513));
     let paddies = farmed.paddies.as_ref().expect("fields");
