@@ -13,8 +13,8 @@ pub struct GroundSurface<P> {
     /// How much of `details` 1 to 4 (rock, scree, snow, earth) there is, in RGBA; the rest up to 255 is `details` 0, grass.
     pub weights: P,
     /// R: part of the sky's irradiance that arrives, relative to open level ground (glTF reads occlusion from R);
-    /// G: the sun's irradiance relative to a surface that faces it, max(0, n·l) × visibility;
-    /// B: visibility of the sun's disc alone, trees and land included. Linear.
+    /// G: the sun's irradiance relative to a surface that faces it if there were no trees, max(0, n·l) × visibility;
+    /// B: the part of the sun's disc that the land leaves visible; A: the part of its light that trees let through. Linear.
     pub light: P,
     /// Grass, rock, scree, snow and earth.
     pub details: Vec<GroundDetail<P>>,

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::plants::PlantDraw;
-use super::{Binding, BoundMirror, BoundReach, CullUniform, Layouts, bind};
+use super::{Binding, BoundMirror, BoundReach, BoundShade, CullUniform, Layouts, bind};
 use crate::gpu::Gpu;
 use crate::upload::{SceneBuffers, TreeSet};
 
@@ -17,6 +17,8 @@ pub struct BoundScene {
     trees: Option<BoundTrees>,
     /// How near each level of the land's detail may come.
     pub reach: BoundReach,
+    /// Shade of near trees on the ground.
+    pub shade: BoundShade,
     /// None without a lake.
     pub mirror: Option<BoundMirror>,
     /// Blocks, or sample numbers of a strip, as the LOD mode has it.
@@ -66,6 +68,7 @@ impl BoundScene {
     pub fn new(gpu: &Gpu, layouts: &Layouts, scene: Arc<SceneBuffers>, uniform: &wgpu::Buffer) -> Self {
         use Binding::{Buffer, Sampler};
         let (sky, land) = (&scene.sky_textures, &scene.land);
+        let shade = BoundShade::new(gpu, layouts, &scene);
         let view = |uniform: &wgpu::Buffer, reach: &BoundReach| {
             let bound = [
                 Buffer(uniform),
@@ -80,6 +83,7 @@ impl BoundScene {
                 Binding::texture(&land.heights),
                 Binding::texture(&land.light),
                 Binding::layers(&reach.texture),
+                Binding::texture(&shade.texture),
             ];
             bind(gpu, "view", &layouts.view, (0..).zip(bound))
         };
@@ -92,6 +96,7 @@ impl BoundScene {
             trees: scene.trees.as_ref().map(|set| BoundTrees::new(gpu, layouts, set)),
             mirror: BoundMirror::new(gpu, layouts, &scene, view),
             reach,
+            shade,
             terrain: Elements::new(gpu, "terrain"),
             part: 1.0,
             clumps: Elements::new(gpu, "clumps of grass"),

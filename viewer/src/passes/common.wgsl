@@ -32,6 +32,8 @@ struct View {
     lod_above: f32,
     // Samples a side, metres between them, half the extent in metres, height of the highest land.
     field: vec4f,
+    // Where `near_shade` lies: its middle as x and z, how wide it is in metres, and 1 if it is known, or else 0.
+    shade: vec4f,
     // Tile sizes in metres of the first four tiling textures of the ground, and of the fifth.
     tiles: vec4f,
     last_tile: f32,
@@ -54,6 +56,7 @@ struct View {
 @group(0) @binding(8) var comparing: sampler_comparison;
 @group(0) @binding(9) var heights: texture_2d<f32>;
 @group(0) @binding(10) var light_map: texture_2d<f32>;
+@group(0) @binding(12) var near_shade: texture_2d<f32>;
 
 // A tree, as `TreeData` in Rust.
 struct Tree {
@@ -203,6 +206,25 @@ fn sun_visibility(world: vec3f, bias_m: f32) -> f32 {
     let part = fract(uv * vec2f(textureDimensions(shadow_map)) - 0.5);
     let sides = mix(lit.wx, lit.zy, part.x);
     return mix(sides.x, sides.y, part.y);
+}
+
+// From how far on the shade of near trees on the ground begins to be that of the light map, and from where on it is; metres.
+const NEAR_SHADE_M = vec2f(32.0, 44.0);
+
+// Where a place on the ground is in `near_shade`, and how much that counts there instead of the light map.
+fn near_shade_at(place: vec2f) -> vec3f {
+    let at = (place - view.shade.xy) / view.shade.z;
+    let inside = 1.0 - smoothstep(0.42, 0.46, length(at));
+    let near = 1.0 - smoothstep(NEAR_SHADE_M.x, NEAR_SHADE_M.y, distance(place, view.lod_eye.xz));
+    return vec3f(at + 0.5, view.shade.w * inside * near);
+}
+
+// `light_map` at a place on the ground, with its shade of trees in G and B; for vertices.
+fn light_on(place: vec2f) -> vec4f {
+    let light = textureSampleLevel(light_map, clamped, field_uv(place), 0.0);
+    let near = near_shade_at(place);
+    let shade = mix(light.a, textureSampleLevel(near_shade, clamped, near.xy, 1.0).r, near.z);
+    return vec4f(light.r, light.gb * shade, shade);
 }
 
 // Place of a sample's line in the world.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 use strum::VariantArray;
 
 use super::shaders::ShaderError;
@@ -88,15 +88,16 @@ impl CullUniform {
 
     /// The same, but only trees that reach into the square of that many metres to all four sides of a place.
     pub fn around(self, place_m: Vec2, reach_m: f32) -> Self {
-        let (low_m, high_m) = (place_m - reach_m, place_m + reach_m);
-        let planes = [
-            [1.0, 0.0, 0.0, -low_m.x],
-            [-1.0, 0.0, 0.0, high_m.x],
-            [0.0, 0.0, 1.0, -low_m.y],
-            [0.0, 0.0, -1.0, high_m.y],
-            // Everything is inside.
-            [0.0, 0.0, 0.0, 1.0],
-        ];
+        let side = |axis: Vec3, at_m: f32| (axis, [at_m - reach_m, at_m + reach_m]);
+        self.between([side(Vec3::X, place_m.x), side(Vec3::Z, place_m.y)])
+    }
+
+    /// The same, but only trees that reach between two pairs of planes: across two directions, from where to where along each.
+    pub fn between(self, sides: [(Vec3, [f32; 2]); 2]) -> Self {
+        let [[a, b], [c, d]] =
+            sides.map(|(axis, [from_m, to_m])| [axis.extend(-from_m), (-axis).extend(to_m)]);
+        // Everything is inside of the last.
+        let planes = [a, b, c, d, Vec4::W].map(Into::into);
         Self { planes, planes_used: 1, ..self }
     }
 

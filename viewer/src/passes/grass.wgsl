@@ -119,7 +119,7 @@ fn vertex(clump: Clump, @builtin(vertex_index) index: u32) -> Out {
         root.y + lean.y + facing.y * side * width,
     );
 
-    let light = textureSampleLevel(light_map, clamped, uv, 0.0);
+    let light = light_on(root);
     var albedo = textureSampleLevel(ground_color, clamped, uv, 0.0).rgb;
     // Some blades are straw, some tufts are fresher.
     albedo *= select(vec3f(1.0, 1.0 + 0.12 * lush, 1.0 - 0.2 * lush), vec3f(1.8, 1.42, 1.15), more.z > 0.88);

@@ -9,7 +9,7 @@ use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType
 pub struct Layouts {
     /// Group 0 of every picture: view, light, aerial perspective. See `common.wgsl`.
     pub view: BindGroupLayout,
-    /// Group 0 of the shadow pass, which cannot read what it writes: a part of `view`.
+    /// Group 0 of shadow maps' passes, which cannot read what it writes: a part of `view`.
     pub sun_view: BindGroupLayout,
     /// Group 0 of what needs the camera alone: a file that is no landscape, tone mapping.
     pub camera: BindGroupLayout,
@@ -29,6 +29,10 @@ pub struct Layouts {
     pub cull: BindGroupLayout,
     /// Group 1 of water: what it mirrors, and how far away that is.
     pub mirror: BindGroupLayout,
+    /// Group 1 of the shade of near trees: what the sun sees of them.
+    pub seen_by_sun: BindGroupLayout,
+    /// Group 1 of its coarser versions: the next finer one.
+    pub finer: BindGroupLayout,
     /// Group 1 of tone mapping: radiance.
     pub radiance: BindGroupLayout,
     /// Repeats, with mip levels.
@@ -39,7 +43,7 @@ pub struct Layouts {
     pub comparing: wgpu::Sampler,
 }
 
-/// The bindings of `common.wgsl` that the shadow pass reads.
+/// The bindings of `common.wgsl` that are read while a shadow map is drawn.
 pub(super) const SUN_VIEW: [u32; 3] = [0, 2, 9];
 
 const UNIFORM: BindingType = buffer(BufferBindingType::Uniform);
@@ -86,6 +90,7 @@ impl Layouts {
             DATA,
             IMAGE,
             DATA_LAYERS,
+            IMAGE,
         ];
         let sun_view = SUN_VIEW.map(|binding| (binding, view[binding as usize]));
         Self {
@@ -100,6 +105,8 @@ impl Layouts {
             material: all("material", fragment, &[UNIFORM, IMAGE, IMAGE]),
             cull: all("culling", ShaderStages::COMPUTE, &[READ, READ, READ, WRITE, WRITE, WRITE]),
             mirror: all("mirror", fragment, &[IMAGE, DEPTH_MAP]),
+            seen_by_sun: all("trees seen by the sun", fragment, &[DEPTH_MAP]),
+            finer: layout(gpu, "finer shade", fragment, [(1, DATA)]),
             radiance: all("radiance", fragment, &[DATA]),
             repeating: sampler(gpu, repeat, anisotropy, None),
             clamped: sampler(gpu, clamp, 1, None),

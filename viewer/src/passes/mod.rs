@@ -1,6 +1,6 @@
 //! The passes: each an immutable set of pipelines that records its part of a picture, with its WGSL beside it.
 //!
-//! Order of a picture: culling, where it shows a lake what that mirrors, then in one render pass what
+//! Order of a picture: the shade of near trees when the eye has come to another place, culling, where it shows a lake what that mirrors, then in one render pass what
 //! [`Passes::picture`] lists, then tone mapping. Shadows are drawn once for each landscape, before its first picture.
 //! A file that is no landscape has two passes of its own. A new pass is a file here with its WGSL, a line in [`SHADERS`],
 //! and a line in [`Passes::picture`].
@@ -10,6 +10,7 @@ mod bound;
 mod bound_asset;
 mod bound_mirror;
 mod bound_reach;
+mod bound_shade;
 mod cull;
 pub mod grass;
 pub mod impostors;
@@ -17,10 +18,12 @@ mod layouts;
 mod mirror;
 mod pipeline;
 pub mod plants;
+mod shade;
 mod shaders;
 mod shadow;
 mod sky;
 mod studio;
+mod sun_view;
 pub mod terrain;
 mod tone;
 pub mod trees;
@@ -32,13 +35,16 @@ pub use bound::{BoundScene, BoundTrees, Elements};
 pub use bound_asset::{AssetDraw, BoundAsset};
 pub use bound_mirror::{BoundMirror, Reflection};
 pub use bound_reach::BoundReach;
+pub use bound_shade::BoundShade;
 pub use cull::{Cull, CullUniform};
 pub use layouts::{Binding, Layouts, bind};
 pub use mirror::Mirror;
 pub use pipeline::Shader;
+pub use shade::Shade;
 pub use shaders::{ShaderError, Shaders};
 pub use shadow::{Shadow, ShadowBake};
 pub use studio::Studio;
+pub use sun_view::SunView;
 pub use tone::Tone;
 pub use view_uniform::ViewUniform;
 
@@ -55,9 +61,11 @@ pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 pub const DISPLAY: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// Format of shadow maps.
 pub const SHADOW: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
+/// Format of the part of the sun's light that arrives.
+pub const SHADE: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
 /// The shaders of all passes.
-pub static SHADERS: [&Shader; 12] = [
+pub static SHADERS: [&Shader; 13] = [
     &cull::SHADER,
     &trees::SHADER,
     &impostors::SHADER,
@@ -68,6 +76,7 @@ pub static SHADERS: [&Shader; 12] = [
     &water::SHADER,
     &tone::SHADER,
     &shadow::SHADER,
+    &shade::SHADER,
     &asset::SHADER,
     &studio::SHADER,
 ];
@@ -88,6 +97,8 @@ pub trait DrawPass: std::fmt::Debug + Send + Sync {
 pub struct Passes {
     pub layouts: Layouts,
     pub shadow: Shadow,
+    /// Of near trees on the ground, before the picture.
+    pub shade: Shade,
     pub cull: Cull,
     /// What a lake mirrors, before the picture.
     pub mirror: Mirror,
@@ -108,6 +119,7 @@ impl Passes {
         let compiler = Compiler { gpu, layouts: &layouts, shaders, samples };
         Ok(Self {
             shadow: Shadow::new(&compiler)?,
+            shade: Shade::new(&compiler)?,
             cull: Cull::new(&compiler)?,
             mirror: Mirror::new(&compiler)?,
             picture: [

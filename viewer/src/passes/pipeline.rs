@@ -1,7 +1,7 @@
 //! Shaders and what pipelines differ in → pipelines.
 
 use super::shaders::{ShaderError, Shaders};
-use super::{DEPTH, DISPLAY, Layouts, RADIANCE, SHADOW};
+use super::{DEPTH, DISPLAY, Layouts, RADIANCE, SHADE, SHADOW};
 use crate::gpu::Gpu;
 use wgpu::{BindGroupLayout, ComputePipeline, ComputePipelineDescriptor};
 
@@ -42,6 +42,8 @@ pub(super) enum Target {
     Display,
     /// Depth from the sun alone.
     Shadow,
+    /// How much of the sun's light arrives.
+    Shade,
 }
 
 /// What a render pipeline differs in.
@@ -117,6 +119,7 @@ impl Compiler<'_> {
             Target::Mirror => (Some(RADIANCE), Some((DEPTH, GreaterEqual)), 1),
             Target::Display => (Some(DISPLAY), None, 1),
             Target::Shadow => (None, Some((SHADOW, Less)), 1),
+            Target::Shade => (Some(SHADE), None, 1),
         };
         let write_mask = wgpu::ColorWrites::ALL;
         let color = color.map(|format| wgpu::ColorTargetState { format, blend: desc.blend, write_mask });

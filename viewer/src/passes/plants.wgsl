@@ -39,7 +39,7 @@ fn vertex(plant: Plant, corner: Corner) -> Out {
     let level = turned * corner.normal.xz / max(size, 1e-6);
     let normal = normalize(vec3f(level.x, corner.normal.y, level.y));
 
-    let light = textureSampleLevel(light_map, clamped, field_uv(plant.place.xy), 0.0);
+    let light = light_on(plant.place.xy);
     let albedo = mix(plant.root.rgb, plant.tip.rgb, corner.tint);
     let to_eye = view.eye - world;
     let away = length(to_eye);

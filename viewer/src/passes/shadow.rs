@@ -4,8 +4,9 @@ use super::bind;
 use super::layouts::SUN_VIEW;
 use super::shaders::ShaderError;
 use super::trees::{TreePipelines, buffers};
-use super::view_uniform::shadow_from_world;
-use super::{Binding, BoundTrees, Compiler, CullUniform, Passes, PipelineDesc, Shader, Target, ViewUniform};
+use super::{
+    Binding, BoundTrees, Compiler, CullUniform, Passes, PipelineDesc, Shader, SunView, Target, ViewUniform,
+};
 use crate::gpu::Gpu;
 use crate::upload::{SceneBuffers, TreeSet};
 use glam::Vec2;
@@ -24,7 +25,7 @@ const TREES_A_PIECE: u32 = 256;
 
 #[derive(Debug)]
 pub struct Shadow {
-    trees: TreePipelines,
+    pub(super) trees: TreePipelines,
     land: wgpu::RenderPipeline,
 }
 
@@ -50,7 +51,9 @@ impl Shadow {
 
     /// Begins a landscape's shadow map; may run on any thread.
     pub fn begin<'a>(&'a self, gpu: &'a Gpu, passes: &'a Passes, scene: &'a SceneBuffers) -> ShadowBake<'a> {
-        let uniform = gpu.buffer("sun", &[ViewUniform::for_sun(scene)], wgpu::BufferUsages::UNIFORM);
+        let sun_view = SunView::of_field(scene);
+        let uniform =
+            gpu.buffer("sun", &[ViewUniform::for_sun(scene, &sun_view)], wgpu::BufferUsages::UNIFORM);
         let bound = [
             Binding::Buffer(&uniform),
             Binding::Sampler(&passes.layouts.clamped),
@@ -61,7 +64,7 @@ impl Shadow {
             view: bind(gpu, "view of the sun", &passes.layouts.sun_view, bound),
             map: scene.shadow_map.create_view(&Default::default()),
             trees: scene.trees.as_ref().map(|set| (set, BoundTrees::new(gpu, &passes.layouts, set))),
-            half_texel_m: 0.5 * texel_m(scene),
+            half_texel_m: 0.5 * sun_view.texel_m(scene.shadow_map.width()),
             gpu,
             passes,
             scene,
@@ -133,7 +136,11 @@ impl ShadowBake<'_> {
     }
 }
 
-fn begin<'a>(encoder: &'a mut CommandEncoder, map: &TextureView, load: LoadOp<f32>) -> RenderPass<'a> {
+pub(super) fn begin<'a>(
+    encoder: &'a mut CommandEncoder,
+    map: &TextureView,
+    load: LoadOp<f32>,
+) -> RenderPass<'a> {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("shadows"),
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
@@ -143,10 +150,4 @@ fn begin<'a>(encoder: &'a mut CommandEncoder, map: &TextureView, load: LoadOp<f3
         }),
         ..Default::default()
     })
-}
-
-/// How wide a texel of a landscape's shadow map is: the map covers [−1, 1] along the first row of its matrix.
-fn texel_m(scene: &SceneBuffers) -> f32 {
-    let along = shadow_from_world(scene).transpose().x_axis.truncate().length();
-    2.0 / (along * scene.shadow_map.width() as f32)
 }

@@ -277,6 +277,8 @@ fn ground(in: Out) -> @location(0) vec4f {
     var albedo = textureSample(ground_color, clamped, uv).rgb;
     let weights = textureSample(ground_weights, clamped, uv);
     let light = textureSample(light_map, clamped, uv);
+    let near = near_shade_at(place);
+    let shade = mix(light.a, textureSample(near_shade, clamped, near.xy).r, near.z);
     let dx = dpdx(in.world);
     let dy = dpdy(in.world);
     var normal = normalize(in.normal);
@@ -299,7 +301,7 @@ fn ground(in: Out) -> @location(0) vec4f {
         normal = bumped;
     }
     albedo = select(albedo * wetness(in.world.y), level_tint(in.level) * 0.5, view.tint_levels != 0u);
-    let irradiance = view.sun_irradiance * light.g * relief + view.sky_irradiance * light.r * (0.6 + 0.4 * normal.y);
+    let irradiance = view.sun_irradiance * (light.g * shade * relief) + view.sky_irradiance * light.r * (0.6 + 0.4 * normal.y);
     return vec4f(hazed(air_before(in.world), albedo / PI * irradiance), 1.0);
 }
 
@@ -329,7 +331,7 @@ fn mirrored_ground(in: Out) -> @location(0) vec4f {
         discard;
     }
     let up = 0.6 + 0.4 * normalize(in.normal).y;
-    let irradiance = view.sun_irradiance * light.g + view.sky_irradiance * light.r * up;
+    let irradiance = view.sun_irradiance * (light.g * light.a) + view.sky_irradiance * light.r * up;
     return vec4f(hazed(air_before(in.world), albedo * wetness(in.world.y) / PI * irradiance), 1.0);
 }
 

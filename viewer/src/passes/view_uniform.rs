@@ -1,7 +1,8 @@
 //! Camera, landscape and the person's wishes → the numbers that all shaders read (`View` in `common.wgsl`).
 
-use glam::{BVec3, Mat4, Vec3, Vec4};
+use glam::Vec3;
 
+use super::SunView;
 use crate::camera::Camera;
 use crate::lod::morph::Detail;
 use crate::options::FrameInput;
@@ -32,6 +33,7 @@ pub struct ViewUniform {
     pub lod_eye: [f32; 3],
     pub lod_above: f32,
     pub field: [f32; 4],
+    pub shade: [f32; 4],
     pub tiles: [f32; 4],
     pub last_tile: f32,
     pub lod_top: f32,
@@ -63,7 +65,7 @@ impl ViewUniform {
     }
 
     /// The numbers of one view of a landscape: `camera` draws, `lod_eye` is the camera for which levels of detail are
-    /// chosen, and `detail` says how detailed the land is where.
+    /// chosen, `detail` says how detailed the land is where, and `shade` where that of near trees is known.
     pub fn new(
         scene: &SceneBuffers,
         camera: &Camera,
@@ -71,6 +73,7 @@ impl ViewUniform {
         size_px: [u32; 2],
         frame: &FrameInput,
         detail: &Detail,
+        shade: [f32; 4],
     ) -> Self {
         let (options, sky) = (&frame.options, &scene.sky);
         let [tiles @ .., last_tile] = scene.land.tiles_m;
@@ -91,52 +94,25 @@ impl ViewUniform {
             last_tile,
             lod_top: detail.top,
             lod_morph: detail.morph_m,
-            shadow_from_world: shadow_from_world(scene).to_cols_array_2d(),
+            shadow_from_world: SunView::of_field(scene).clip_from_world().to_cols_array_2d(),
+            shade,
             field: Self::field(scene),
             ..Self::of_camera(camera, size_px, frame, sky.exposure)
         }
     }
 
-    /// What the shadow pass reads of it.
-    pub fn for_sun(scene: &SceneBuffers) -> Self {
-        let shadow_from_world = shadow_from_world(scene).to_cols_array_2d();
-        Self { shadow_from_world, field: Self::field(scene), ..Default::default() }
+    /// What is read of it while a shadow map is drawn.
+    pub fn for_sun(scene: &SceneBuffers, sun_view: &SunView) -> Self {
+        Self {
+            shadow_from_world: sun_view.clip_from_world().to_cols_array_2d(),
+            sun_angular_radius: scene.sky.sun_angular_radius_rad,
+            field: Self::field(scene),
+            ..Default::default()
+        }
     }
 
     fn field(scene: &SceneBuffers) -> [f32; 4] {
         let (field, [_, top_m]) = (&scene.ground.field, scene.ground.lod.range_m());
         [field.side as f32, field.spacing_m, 0.5 * field.extent_m(), top_m]
     }
-}
-
-/// Trees reach no higher above the land: what throws shadows lies below.
-const MAX_TREE_HEIGHT_M: f32 = 60.0;
-
-/// The sun's view of the whole field, trees included: x and y in [−1, 1], depth in [0, 1] away from the sun.
-pub fn shadow_from_world(scene: &SceneBuffers) -> Mat4 {
-    let field = &scene.ground.field;
-    let to_sun = scene.sky.sun_direction.normalize_or(Vec3::Y);
-    // Any direction that is never parallel to the sun's.
-    let aside = if to_sun.y.abs() < 0.9 { Vec3::Y } else { Vec3::X };
-    let right = aside.cross(to_sun).normalize();
-    let up = to_sun.cross(right);
-    let half = 0.5 * field.extent_m();
-    let [low, high] = scene.ground.lod.range_m();
-    let (low, high) = (Vec3::new(-half, low - 5.0, -half), Vec3::new(half, high + MAX_TREE_HEIGHT_M, half));
-    let (mut min, mut max) = (Vec3::MAX, Vec3::MIN);
-    for corner in 0..8u32 {
-        let place = Vec3::select(BVec3::from_array([0, 1, 2].map(|bit| corner >> bit & 1 == 1)), high, low);
-        let seen = Vec3::new(right.dot(place), up.dot(place), -to_sun.dot(place));
-        (min, max) = (min.min(seen), max.max(seen));
-    }
-    let size = max - min;
-    let scale = Vec3::new(2.0 / size.x, 2.0 / size.y, 1.0 / size.z);
-    let offset = Vec3::new(-1.0, -1.0, 0.0) - min * scale;
-    let rows = [
-        (right * scale.x).extend(offset.x),
-        (up * scale.y).extend(offset.y),
-        (-to_sun * scale.z).extend(offset.z),
-        Vec4::W,
-    ];
-    Mat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose()
 }

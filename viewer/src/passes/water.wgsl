@@ -119,7 +119,7 @@ fn fragment(in: Out) -> @location(0) vec4f {
     let half_way = normalize(look + view.sun_direction);
     var light = vec4f(1.0);
     if (inside) {
-        light = textureSampleLevel(light_map, clamped, field_uv(in.world.xz), 0.0);
+        light = light_on(in.world.xz);
     }
     let glint = pow(max(dot(normal, half_way), 0.0), 900.0) * 60.0 * light.b * (1.0 - land.a);
     let body = vec3f(0.012, 0.035, 0.032) * (view.sky_irradiance * light.r + 0.5 * view.sun_irradiance * light.b);

@@ -40,8 +40,14 @@ impl LandscapeChoice {
         let size = size_px.map(|side| side as f32);
         let frustum = lod_camera.frustum(size[0] / size[1]);
 
+        // Where frames are slow, not while one moves: it is as long as one.
+        let may_move = frame.part >= 1.0 || !gpu.software;
+        if bound.shade.follow(gpu, &bound.scene, lod_camera.position_m, may_move) {
+            passes.shade.record(scope, passes, &bound.scene, &bound.shade);
+        }
         let (detail, triangles) = self.terrain.choose(bound, gpu, lod_camera, size, options);
-        let numbers = ViewUniform::new(&bound.scene, camera, lod_camera, size_px, frame, &detail);
+        let numbers =
+            ViewUniform::new(&bound.scene, camera, lod_camera, size_px, frame, &detail, bound.shade.place());
         gpu.queue.write_buffer(uniform, 0, bytemuck::bytes_of(&numbers));
 
         if let Some((set, trees)) = bound.trees() {

@@ -41,7 +41,8 @@ impl MirrorChoice {
         let focal_px = reflection.focal_px(lod_camera.focal_px(size_px[1] as f32));
         mirror.reach.set(gpu, &scene.land.roughness, TerrainLodMode::Morph, focal_px, error_px);
         let detail = quadtree::detail(lod, &mirror.reach.reach, eye_m, false, MAX_BLOCK_M);
-        let numbers = ViewUniform::new(scene, camera, lod_camera, size_px, frame, &detail);
+        let numbers =
+            ViewUniform::new(scene, camera, lod_camera, size_px, frame, &detail, bound.shade.place());
         mirror.set(gpu, &passes.layouts, size_px, &reflection.numbers(numbers));
         quadtree::select(lod, &mirror.reach.reach, &detail, Some(&reflection.frustum), &mut self.blocks);
         mirror.blocks.write(gpu, &self.blocks);

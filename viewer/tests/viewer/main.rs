@@ -17,6 +17,7 @@ mod made_up;
 mod manual;
 mod mistakes;
 mod program;
+mod shade;
 mod shaders;
 mod shadows;
 mod sky;

@@ -97,6 +97,7 @@ fn uniforms_are_laid_out_alike() {
             lod_eye,
             lod_above,
             field,
+            shade,
             tiles,
             last_tile,
             lod_top,

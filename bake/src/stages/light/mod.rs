@@ -1,5 +1,5 @@
 //! Sun, sky, land and trees → light on the ground: one 8-bit image over the field (thesis 3.3 and 4.4.2). Linear
-//! fractions of what open level ground receives; metres; row 0 is north. What R, G and B mean: [`LightMap`].
+//! fractions of what open level ground receives; metres; row 0 is north. What R, G, B and A mean: [`LightMap`].
 //!
 //! - [`horizon`]: how high the land stands towards an azimuth, for each sample (Timonen & Westerholm 2010);
 //! - [`sun`]: from there, which part of the sun's disc is above the land: a soft edge without sampling;
@@ -59,10 +59,10 @@ pub fn light_map(
         let (leaves, sun) = (&shade.sun[j * side..(j + 1) * side], &sun);
         move |i| {
             let [margin, edge, cosine, _] = struck[i];
-            let visible = sun.visibility(margin, edge) * leaves[i];
+            let visible = sun.visibility(margin, edge);
             let noise = dither(i, j);
             let sky = (sky[i][0] * crowns[i][0]).min(1.0);
-            [sky, cosine.max(0.0) * visible, visible].map(|value| quantise(value, noise))
+            [sky, cosine.max(0.0) * visible, visible, leaves[i]].map(|value| quantise(value, noise))
         }
     });
     LightMap { image }

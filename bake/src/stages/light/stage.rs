@@ -21,7 +21,7 @@ pub struct LightMapStage {
 
 impl Stage for LightMapStage {
     const NAME: &'static str = "light map";
-    const VERSION: u32 = 2;
+    const VERSION: u32 = 3;
     type Output = File;
 
     fn run(&self, context: &Context<'_>) -> Result<File, StageError> {

@@ -61,12 +61,12 @@ fn bare(light: &SkyLight, land: &Landform, side_px: u32) -> LightMap {
     light_map(light, land, &[], &[] as &[Mesh], side_px)
 }
 
-/// R, G, B at world (x, z).
-fn texel(map: &LightMap, x_m: f32, z_m: f32) -> [u8; 3] {
+/// R, G, B, A at world (x, z).
+fn texel(map: &LightMap, x_m: f32, z_m: f32) -> [u8; 4] {
     let side = map.image.width as f32;
     let place = |at: f32| ((at / 1024.0 + 0.5) * side) as u32;
     let p = map.image.pixel(place(x_m), place(z_m));
-    [p[0], p[1], p[2]]
+    [p[0], p[1], p[2], p[3]]
 }
 
 #[test]
@@ -82,11 +82,11 @@ fn an_open_plain_has_the_analytic_light() {
     ] {
         let map = bare(&light(elevation, azimuth, size), &plain, 96);
         let expected = 255.0 * libm::sinf(f32::to_radians(elevation));
-        for rgb in map.image.data.chunks_exact(3) {
-            assert!(rgb[0] == 255 && rgb[2] == 255, "{elevation}: {rgb:?}");
-            assert!((f32::from(rgb[1]) - expected).abs() < 1.01, "{elevation}: {rgb:?}, {expected}");
+        for rgba in map.image.data.chunks_exact(4) {
+            assert!(rgba[0] == 255 && rgba[2] == 255 && rgba[3] == 255, "{elevation}: {rgba:?}");
+            assert!((f32::from(rgba[1]) - expected).abs() < 1.01, "{elevation}: {rgba:?}, {expected}");
         }
-        let mean = map.image.data.chunks_exact(3).map(|p| f32::from(p[1])).sum::<f32>() / (96.0 * 96.0);
+        let mean = map.image.data.chunks_exact(4).map(|p| f32::from(p[1])).sum::<f32>() / (96.0 * 96.0);
         assert!((mean - expected).abs() < 0.05, "{elevation}: {mean}, {expected}");
     }
 }
@@ -133,7 +133,7 @@ fn a_larger_sun_has_softer_shadows() {
     let ridge = land(513, |x, _| (60.0 - 30.0 * (x + 300.0).abs()).max(0.0));
     let grey = |size: f32| {
         let map = bare(&light(15.0, 270.0, size), &ridge, 1024);
-        map.image.data.chunks_exact(3).take(1024).filter(|p| p[2] > 10 && p[2] < 245).count()
+        map.image.data.chunks_exact(4).take(1024).filter(|p| p[2] > 10 && p[2] < 245).count()
     };
     let (small, large) = (grey(0.5), grey(5.0));
     // 224 m of shadow, a disc of 5°: width = 2·tan 2.5°·(ray of 232 m) / sin 15°.
@@ -166,16 +166,16 @@ fn a_trunks_shadow_touches_its_foot_and_points_away_from_the_sun() {
                 let (dx, dz) = (-s.x / level, -s.z / level);
                 let rise = slope(dx, dz);
                 let length = 15.0 / (s.y / level + rise);
-                let along = |d: f32| texel(&map, x + dx * d, z + dz * d)[2];
+                let along = |d: f32| texel(&map, x + dx * d, z + dz * d)[3];
                 assert!(along(0.0) < 128, "gap at the foot: {} for {azimuth} {elevation}", along(0.0));
                 let steps = (length * 0.9) as usize;
                 assert!((0..steps).all(|d| along(d as f32) < 128), "{azimuth} {elevation} {ground}");
                 assert_eq!(along(length + 6.0), 255);
                 assert!((2..40).all(|d| along(-(d as f32) - 2.5) > 250), "{azimuth} {elevation}");
-                let side = texel(&map, x + dx * 4.0 - dz * 6.0, z + dz * 4.0 + dx * 6.0)[2];
+                let side = texel(&map, x + dx * 4.0 - dz * 6.0, z + dz * 4.0 + dx * 6.0)[3];
                 assert_eq!(side, 255);
                 let dark =
-                    |map: &LightMap| map.image.data.iter().skip(2).step_by(3).filter(|&&b| b < 128).count();
+                    |map: &LightMap| map.image.data.iter().skip(3).step_by(4).filter(|&&b| b < 128).count();
                 assert_eq!(dark(&open), 0);
                 let count = dark(&map) as f32;
                 assert!(
@@ -193,7 +193,7 @@ fn a_shadow_climbs_a_step_where_the_land_does() {
     let land = land(513, |x, _| if x > 4.0 { 12.0 } else { 0.0 });
     let placement = vec![at(0, 0.0, 0.0, 0.5, 0.0, 1.0)];
     let map = light_map(&light(45.0, 270.0, 0.53), &land, &placement, &[trunk(1.0, 20.0)], 1024);
-    assert!(texel(&map, 6.5, 0.5)[2] < 128 && texel(&map, 12.0, 0.5)[2] == 255);
+    assert!(texel(&map, 6.5, 0.5)[3] < 128 && texel(&map, 12.0, 0.5)[3] == 255);
 }
 
 fn forest(count: u32) -> (Landform, Vec<Instance>, Vec<Mesh>) {
@@ -248,7 +248,7 @@ fn nothing_breaks_on_odd_input() {
     odd.zonal_radiance_linear.clear();
     for side_px in [1, 2, 33] {
         let map = light_map(&odd, &land, &placement, &casters, side_px);
-        assert!(map.image.data.chunks_exact(3).all(|p| p[1] == 0 && p[2] == 0));
+        assert!(map.image.data.chunks_exact(4).all(|p| p[1] == 0 && p[2] == 0));
         for elevation in [0.0, 2.0, 90.0] {
             light_map(&light(elevation, 0.0, 5.0), &land, &placement, &casters, side_px);
         }
