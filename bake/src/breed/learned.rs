@@ -96,13 +96,13 @@ impl<'a> Learned<'a> {
         for (category, part) in Category::ALL.into_iter().zip(&mut parts) {
             part.iter_mut().enumerate().for_each(|(child, one)| self.keep_locked(category, child, one));
         }
-        let stands_out = |category, a: &_, b: &_| {
+        let distance = |category, a: &_, b: &_| {
             let [at_a, at_b] = [a, b].map(|one| point(self.space, category, one));
             let [a, b] =
                 [(a, &at_a), (b, &at_b)].map(|(one, at)| Seen { at, kind: self.kind(category, one) });
-            self.stands_out(category, a, b)
+            self.distance(category, a, b)
         };
-        pair(self.space, self.kinds, &mut parts, &stands_out);
+        pair(self.space, self.kinds, &mut parts, &distance, CLEARLY_DIFFERENT);
         let individuals = std::array::from_fn(|child| {
             let chromosomes = parts.each_ref().map(|part| part[child].clone());
             self.individual(child, chromosomes)
@@ -154,7 +154,7 @@ impl<'a> Learned<'a> {
         let legal = |component: usize, at: &mut Vec<f32>| self.legalise(category, component, at);
         let known: Vec<Vec<f32>> = taste.chosen.iter().map(|one| point(self.space, category, one)).collect();
         let kind = |at: &[f32]| self.kind(category, &self.encoded(category, at));
-        let stands_out = |a: Seen<'_>, b: Seen<'_>| self.stands_out(category, a, b);
+        let stands_out = |a: Seen<'_>, b: Seen<'_>| self.distance(category, a, b) > CLEARLY_DIFFERENT;
         let spread = Spread {
             prior: &taste.prior,
             ideals: &taste.ideals,
@@ -244,8 +244,9 @@ impl<'a> Learned<'a> {
         Home::of(self.space, self.kinds, category, chromosome).main().map(|kind| kind.id.as_str())
     }
 
-    fn stands_out(&self, category: Category, a: Seen<'_>, b: Seen<'_>) -> bool {
-        Visibility::shipped().distance(self.space, category, a, b) > CLEARLY_DIFFERENT
+    /// How different two parts look.
+    fn distance(&self, category: Category, a: Seen<'_>, b: Seen<'_>) -> f32 {
+        Visibility::shipped().distance(self.space, category, a, b)
     }
 
     /// Genes that the favourite has outside its kind: a person set them.
