@@ -21,11 +21,12 @@ const LIBRARIES: [(&str, &str); 10] = [
     ("libgomp1", "libgomp.so.1"),
 ];
 
-/// What a window without a screen needs: a Vulkan driver that draws on the processor, an X server, and what winit opens
-/// when it meets one.
-const WINDOW: [(&str, &str); 9] = [
+/// What a window without a screen needs: a Vulkan driver that draws on the processor, a layer that objects to what is not
+/// valid, an X server, and what winit opens when it meets one.
+const WINDOW: [(&str, &str); 10] = [
     ("mesa-vulkan-drivers", "libvulkan_lvp.so"),
     ("libvulkan1", "libvulkan.so.1"),
+    ("vulkan-validationlayers", "libVkLayer_khronos_validation.so"),
     ("xvfb", "Xvfb"),
     ("libx11-6", "libX11.so.6"),
     ("libx11-xcb1", "libX11-xcb.so.1"),

@@ -79,7 +79,7 @@ impl BoundScene {
                 Binding::texture(&sky.cumulus),
                 Binding::texture(&sky.cirrus),
                 Binding::texture(&scene.shadow_map),
-                Sampler(&layouts.comparing),
+                Sampler(&layouts.nearest),
                 Binding::texture(&land.heights),
                 Binding::texture(&land.light),
                 Binding::layers(&reach.texture),

@@ -83,6 +83,7 @@ impl BoundShade {
         let bound = [
             Binding::Buffer(&uniform),
             Binding::Sampler(&layouts.clamped),
+            Binding::Sampler(&layouts.nearest),
             Binding::texture(&scene.land.heights),
         ];
         Self {

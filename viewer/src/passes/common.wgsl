@@ -53,7 +53,7 @@ struct View {
 @group(0) @binding(5) var cumulus_layer: texture_2d<f32>;
 @group(0) @binding(6) var cirrus_layer: texture_2d<f32>;
 @group(0) @binding(7) var shadow_map: texture_depth_2d;
-@group(0) @binding(8) var comparing: sampler_comparison;
+@group(0) @binding(8) var nearest: sampler;
 @group(0) @binding(9) var heights: texture_2d<f32>;
 @group(0) @binding(10) var light_map: texture_2d<f32>;
 @group(0) @binding(12) var near_shade: texture_2d<f32>;
@@ -199,7 +199,7 @@ fn sun_visibility(world: vec3f, bias_m: f32) -> f32 {
         return 1.0;
     }
     // From the lower left on against the clock.
-    let four = textureGather(shadow_map, clamped, uv);
+    let four = textureGather(shadow_map, nearest, uv);
     let columns = view.shadow_from_world;
     let depth_per_m = -dot(vec3f(columns[0].z, columns[1].z, columns[2].z), view.sun_direction);
     let lit = saturate(1.5 - (shadow.z - four) / (depth_per_m * bias_m));

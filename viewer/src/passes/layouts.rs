@@ -1,8 +1,9 @@
 //! What the bind groups of all passes look like, and the samplers they share.
 
 use crate::gpu::Gpu;
-use wgpu::{AddressMode, CompareFunction, Sampler, ShaderStages, TextureSampleType, TextureViewDimension};
+use wgpu::{AddressMode, FilterMode, MipmapFilterMode, Sampler, ShaderStages};
 use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType, SamplerBindingType};
+use wgpu::{TextureSampleType, TextureViewDimension};
 
 /// Bind group layouts by what they hold; each pass names the groups it needs.
 #[derive(Debug)]
@@ -39,18 +40,18 @@ pub struct Layouts {
     pub repeating: wgpu::Sampler,
     /// Ends at the edge, with mip levels.
     pub clamped: wgpu::Sampler,
-    /// Compares depth.
-    pub comparing: wgpu::Sampler,
+    /// Ends at the edge, and gives texels as they are: what gathers depth must not filter it.
+    pub nearest: wgpu::Sampler,
 }
 
 /// The bindings of `common.wgsl` that are read while a shadow map is drawn.
-pub(super) const SUN_VIEW: [u32; 3] = [0, 2, 9];
+pub(super) const SUN_VIEW: [u32; 4] = [0, 2, 8, 9];
 
 const UNIFORM: BindingType = buffer(BufferBindingType::Uniform);
 const READ: BindingType = buffer(BufferBindingType::Storage { read_only: true });
 const WRITE: BindingType = buffer(BufferBindingType::Storage { read_only: false });
 const FILTERING: BindingType = BindingType::Sampler(SamplerBindingType::Filtering);
-const COMPARISON: BindingType = BindingType::Sampler(SamplerBindingType::Comparison);
+const UNFILTERING: BindingType = BindingType::Sampler(SamplerBindingType::NonFiltering);
 const FILTERED: TextureSampleType = TextureSampleType::Float { filterable: true };
 const IMAGE: BindingType = texture(FILTERED, TextureViewDimension::D2);
 const LAYERS: BindingType = texture(FILTERED, TextureViewDimension::D2Array);
@@ -86,7 +87,7 @@ impl Layouts {
             IMAGE,
             IMAGE,
             DEPTH_MAP,
-            COMPARISON,
+            UNFILTERING,
             DATA,
             IMAGE,
             DATA_LAYERS,
@@ -108,9 +109,9 @@ impl Layouts {
             seen_by_sun: all("trees seen by the sun", fragment, &[DEPTH_MAP]),
             finer: layout(gpu, "finer shade", fragment, [(1, DATA)]),
             radiance: all("radiance", fragment, &[DATA]),
-            repeating: sampler(gpu, repeat, anisotropy, None),
-            clamped: sampler(gpu, clamp, 1, None),
-            comparing: sampler(gpu, clamp, 1, Some(CompareFunction::LessEqual)),
+            repeating: sampler(gpu, repeat, FilterMode::Linear, anisotropy),
+            clamped: sampler(gpu, clamp, FilterMode::Linear, 1),
+            nearest: sampler(gpu, clamp, FilterMode::Nearest, 1),
         }
     }
 }
@@ -127,15 +128,17 @@ fn layout(
     gpu.device.create_bind_group_layout(&descriptor)
 }
 
-fn sampler(gpu: &Gpu, address: AddressMode, anisotropy: u16, compare: Option<CompareFunction>) -> Sampler {
+fn sampler(gpu: &Gpu, address: AddressMode, filter: FilterMode, anisotropy: u16) -> Sampler {
     gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         address_mode_u: address,
         address_mode_v: address,
-        mag_filter: wgpu::FilterMode::Linear,
-        min_filter: wgpu::FilterMode::Linear,
-        mipmap_filter: wgpu::MipmapFilterMode::Linear,
+        mag_filter: filter,
+        min_filter: filter,
+        mipmap_filter: match filter {
+            FilterMode::Linear => MipmapFilterMode::Linear,
+            FilterMode::Nearest => MipmapFilterMode::Nearest,
+        },
         anisotropy_clamp: anisotropy,
-        compare,
         ..Default::default()
     })
 }

@@ -18,7 +18,7 @@ const MAX_TEXELS: f32 = 9.0;
 
 // How much light comes past what is seen at a place, between four texels.
 fn is_lit(uv: vec2f, depth: f32) -> f32 {
-    let four = textureGather(seen_by_sun, clamped, uv);
+    let four = textureGather(seen_by_sun, nearest, uv);
     let lit = select(vec4f(0.0), vec4f(1.0), four >= vec4f(depth));
     let part = fract(uv * vec2f(textureDimensions(seen_by_sun)) - 0.5);
     let sides = mix(lit.wx, lit.zy, part.x);
@@ -44,7 +44,7 @@ fn fragment(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
         var count = 0.0;
         for (var k = 0u; k < 4u; k++) {
             let corner = vec2f(f32(k & 1u), f32(k >> 1u)) - 0.5;
-            let before = (seen.z - textureGather(seen_by_sun, clamped, uv + corner * widest)) / depth_per_m;
+            let before = (seen.z - textureGather(seen_by_sun, nearest, uv + corner * widest)) / depth_per_m;
             let hides = select(vec4f(0.0), vec4f(1.0), before > vec4f(0.0));
             away += dot(before, hides);
             count += dot(hides, vec4f(1.0));

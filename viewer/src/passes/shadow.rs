@@ -57,6 +57,7 @@ impl Shadow {
         let bound = [
             Binding::Buffer(&uniform),
             Binding::Sampler(&passes.layouts.clamped),
+            Binding::Sampler(&passes.layouts.nearest),
             Binding::texture(&scene.land.heights),
         ];
         let bound = SUN_VIEW.into_iter().zip(bound);
