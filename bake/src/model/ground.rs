@@ -7,7 +7,7 @@ use super::{GroundPlants, Mesh};
 /// Images that cover the field once, as those of `GroundSurface`, which says what they hold.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GroundMaps<P> {
-    /// RGB.
+    /// RGB; where the land has fields, RGBA: A is how much of the ground is not under their water.
     pub color: P,
     /// RGBA.
     pub weights: P,

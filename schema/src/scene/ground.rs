@@ -8,7 +8,7 @@ use super::GroundPlants;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct GroundSurface<P> {
-    /// Albedo, sRGB.
+    /// Albedo, sRGB. A, if there is any: how much of the ground is not under the water of flooded fields.
     pub color: P,
     /// How much of `details` 1 to 4 (rock, scree, snow, earth) there is, in RGBA; the rest up to 255 is `details` 0, grass.
     pub weights: P,

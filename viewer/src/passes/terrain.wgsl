@@ -274,7 +274,8 @@ fn ground(in: Out) -> @location(0) vec4f {
     let place = in.world.xz;
     let uv = field_uv(place);
     let away = distance(in.world, view.eye);
-    var albedo = textureSample(ground_color, clamped, uv).rgb;
+    let color = textureSample(ground_color, clamped, uv);
+    var albedo = color.rgb;
     let weights = textureSample(ground_weights, clamped, uv);
     let light = textureSample(light_map, clamped, uv);
     let near = near_shade_at(place);
@@ -302,7 +303,27 @@ fn ground(in: Out) -> @location(0) vec4f {
     }
     albedo = select(albedo * wetness(in.world.y), level_tint(in.level) * 0.5, view.tint_levels != 0u);
     let irradiance = view.sun_irradiance * (light.g * shade * relief) + view.sky_irradiance * light.r * (0.6 + 0.4 * normal.y);
-    return vec4f(hazed(air_before(in.world), albedo / PI * irradiance), 1.0);
+    var radiance = albedo / PI * irradiance;
+    // Water stands on level ground, and shows the sky. A loop, because Mesa's software driver leaves one early.
+    for (var is_flooded = color.a < 0.99; is_flooded; is_flooded = false) {
+        radiance = mix(radiance, flooded(radiance, in.world, light.r), smoothstep(0.7, 0.3, color.a));
+    }
+    return vec4f(hazed(air_before(in.world), radiance), 1.0);
+}
+
+// Ground with that light under still water a hand deep; `open` is the share of the sky that arrives there. By Schlick's
+// approximation.
+fn flooded(under: vec3f, world: vec3f, open: f32) -> vec3f {
+    let look = normalize(view.eye - world);
+    let up = max(look.y, 0.0);
+    let ripple = 0.012 * noise_pair(world.xz * 1.7 + vec2f(0.35, 0.2) * view.time_s);
+    let mirrored = normalize(vec3f(-look.x + ripple.x, max(up, 0.015) + abs(ripple.y), -look.z));
+    let sky = max(clear_sky(mirrored) + clouds_towards(mirrored, false), vec3f(0.0)) * open;
+    // Banks and trees around, about which nothing is known here, stand in the way of level rays.
+    let seen = mix(under, sky, mix(0.5, 1.0, smoothstep(0.0, 0.12, mirrored.y)));
+    let grazing = 1.0 - up;
+    let square = grazing * grazing;
+    return mix(under * 0.8, seen, 0.02 + 0.98 * square * square * grazing);
 }
 
 // Metres above the lake up to which the ground is wet.

@@ -84,6 +84,20 @@ fn a_lake_mirrors_land_in_its_colour() {
 
 #[test]
 #[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
+fn flooded_ground_mirrors_the_sky() {
+    let studio = made_up::studio();
+    // On the far shore, red ground; what is under water only shows the blue sky.
+    let colour = |dry: u8| {
+        let picture = shoot(&studio, &lakeside(false, false, [200, 20, 20, dry]));
+        picture.get_pixel(SIZE_PX[0] / 2, SIZE_PX[1] - 8).0.map(f32::from)
+    };
+    let ([r, _, b, _], [r_flooded, _, b_flooded, _]) = (colour(255), colour(0));
+    assert!(r > b + 40.0, "{r} red, {b} blue on dry ground");
+    assert!(r_flooded < r - 15.0 && b_flooded > b + 15.0, "{r_flooded} red, {b_flooded} blue under water");
+}
+
+#[test]
+#[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
 fn a_lake_mirrors_alike_in_pictures_of_all_sizes_and_nothing_from_below() {
     let studio = made_up::studio();
     let scene = made_up::upload(&studio, &lakeside(true, false, GREEN));

@@ -97,6 +97,9 @@ const RICE: [Rgb; 5] = [
     [0.122, 0.144, 0.036],
     [0.265, 0.205, 0.058],
 ];
+/// How far rice has come when its field is drained, and the part of a flooded field where none stands.
+const FLOODED_TILL: f32 = 0.36;
+const FLOODED_MUD: f32 = 0.5;
 /// Trodden earth along the fields' edges.
 const PATH: Rgb = [0.150, 0.125, 0.068];
 /// Part of the light from a meadow in full bloom that comes from petals, most of which stand beyond where they are drawn.
@@ -163,7 +166,7 @@ impl Painter {
             talus,
             bare_slope: 0.42 + 0.5 * talus,
             thirst,
-            ripe: 0.1 + 0.8 * chance(5),
+            ripe: 0.05 + 0.75 * chance(5),
             rice_seed: seed,
             rock,
             rock_band: lerp(rock, other, 0.3),
@@ -179,7 +182,10 @@ impl Painter {
     #[inline]
     pub fn cover(&self, t: &Traits, n: &Noise) -> Cover {
         if rice(t) > 0.5 {
-            return Cover::default();
+            // Young rice stands apart in mud.
+            let mut field = Cover::default();
+            field.over(EARTH, FLOODED_MUD * self.flooded(t));
+            return field;
         }
         let broken = 0.55 * n.broad + 0.35 * n.fine;
         // Grass holds on to about 37°, less on crests and outcrops, more where soil has gathered.
@@ -269,6 +275,10 @@ impl Painter {
     /// Its colour.
     #[inline]
     pub fn color(&self, t: &Traits, cover: &Cover, n: &Noise) -> Rgb {
+        let rice = rice(t);
+        if rice > 0.5 {
+            return lerp(self.crop(rice, t, n), WET_MUD, FLOODED_MUD * self.flooded(t));
+        }
         let [grass, rock, scree, snow, earth] = cover.parts();
         let mut color = [0.0; 3];
         if grass > 0.0 {
@@ -336,13 +346,25 @@ impl Painter {
         scale(grass, 1.0 + 0.16 * n.fine + 0.10 * n.broad + 0.18 * n.grain)
     }
 
-    /// The colour of a place so much of which is rice: neighbours plant and cut it at other times, and paths lead along it. A field has one height; wide
-    /// ones are several people's.
+    /// How far the rice of a field has come: neighbours plant and cut it at other times. A field has one height; wide ones are
+    /// several people's.
+    #[inline]
+    fn ripe(&self, t: &Traits) -> f32 {
+        let plot = [libm::roundf(2.5 * t.height_m), (2.2 * t.tuft).floor()].map(|part| part as i32);
+        self.ripe + 0.45 * (hash01(self.rice_seed, plot[0], plot[1], 1) - 0.5)
+    }
+
+    /// How much of a place is under the water of a field with young rice, 0 to 1.
+    #[inline]
+    pub fn flooded(&self, t: &Traits) -> f32 {
+        let rice = rice(t);
+        if rice <= 0.5 || self.ripe(t) > FLOODED_TILL { 0.0 } else { step(0.66, 0.86, rice) }
+    }
+
+    /// The colour of a place so much of which is rice. Paths lead along fields.
     #[inline]
     fn crop(&self, part: f32, t: &Traits, n: &Noise) -> Rgb {
-        let plot = [libm::roundf(2.5 * t.height_m), (2.2 * t.tuft).floor()].map(|part| part as i32);
-        let own = hash01(self.rice_seed, plot[0], plot[1], 1) - 0.5;
-        let ripe = (self.ripe + 0.45 * own + 0.06 * n.broad).clamp(0.0, 0.999) * (RICE.len() - 1) as f32;
+        let ripe = (self.ripe(t) + 0.06 * n.broad).clamp(0.0, 0.999) * (RICE.len() - 1) as f32;
         let rice = lerp(RICE[ripe as usize], RICE[ripe as usize + 1], ripe.fract());
         let inside = step(0.62, 0.82, part + 0.05 * n.fine);
         scale(lerp(PATH, rice, inside), 1.0 + 0.1 * n.fine + 0.15 * n.grain)

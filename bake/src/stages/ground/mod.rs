@@ -73,10 +73,12 @@ pub fn maps(params: &GroundParams, woods: &Woods, land: &Landform, side_px: u32)
     let traits = TraitsMap::new(&patches, land, woods, 0.0..=1.0);
     let grain = Grain::new(params.terrain_seed, side_px);
     let encode = SrgbTable::new();
-    let mut color_srgb = Image8::new(side_px, side_px, 3);
+    // With what stands under water, where that may be.
+    let channels = if land.paddies.is_some() { 4 } else { 3 };
+    let mut color_srgb = Image8::new(side_px, side_px, channels as u8);
     let mut weights = Image8::new(side_px, side_px, 4);
     let n = side_px as usize;
-    let rows = color_srgb.data.par_chunks_mut(n * 3).zip(weights.data.par_chunks_mut(n * 4));
+    let rows = color_srgb.data.par_chunks_mut(n * channels).zip(weights.data.par_chunks_mut(n * 4));
     rows.enumerate().for_each(|(j, (colors, weights))| {
         let row = traits.row((j as f32 + 0.5) / side_px as f32);
         for i in 0..n {
@@ -84,7 +86,11 @@ pub fn maps(params: &GroundParams, woods: &Woods, land: &Landform, side_px: u32)
             let noise = grain.at(i, j);
             let cover = painter.cover(&here, &noise);
             let color = painter.color(&here, &cover, &noise);
-            colors[3 * i..][..3].copy_from_slice(&color.map(|c| encode.byte(c)));
+            let texel = &mut colors[channels * i..][..channels];
+            texel[..3].copy_from_slice(&color.map(|c| encode.byte(c)));
+            if let Some(dry) = texel.get_mut(3) {
+                *dry = (255.0 * (1.0 - painter.flooded(&here))) as u8;
+            }
             weights[4 * i..][..4].copy_from_slice(&cover.bytes());
         }
     });

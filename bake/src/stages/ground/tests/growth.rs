@@ -290,7 +290,39 @@ fn rice_grows_in_fields_and_nothing_else_does() {
     let corners = [(0, 0), (1, 0), (0, 1), (1, 1)];
     let is_level = |i: u32, j: u32| LAND.field.normal_at(i, j).y > 0.995;
     let level = |k: u32| corners.iter().all(|&(di, dj)| is_level(k % 256 + di, k / 256 + dj));
-    let pixels = made.weights.data.chunks_exact(4).zip(0..);
-    let bare = pixels.filter(|&(weights, k)| level(k) && weights.iter().any(|&w| w > 0)).count();
-    assert_eq!(bare, 0, "rock, scree, snow or earth on level fields");
+    let dry: Vec<u8> = made.color.data.chunks_exact(4).map(|rgba| rgba[3]).collect();
+    let pixels = || made.weights.data.chunks_exact(4).zip(&dry).zip(0..);
+    let is_bare =
+        |weights: &[u8], dry: u8| weights[..3].iter().any(|&w| w > 0) || (dry == 255) == (weights[3] > 0);
+    let bare = pixels().filter(|&((weights, &dry), k)| level(k) && is_bare(weights, dry)).count();
+    assert_eq!(bare, 0, "rock, scree, snow, earth without water, or water without earth on level fields");
+    // Fields of young rice are flooded, and no bank is.
+    let steep =
+        |k: u32| corners.iter().all(|&(di, dj)| LAND.field.normal_at(k % 256 + di, k / 256 + dj).y < 0.94);
+    assert!(pixels().all(|((_, &dry), k)| !steep(k) || dry == 255), "water on a slope");
+    let flooded = |seed| {
+        let params = GroundParams { terrain_seed: seed, ..PARAMS };
+        let color = maps(&params, &Woods::none(Season::default()), &land, 64).color;
+        color.data.chunks_exact(4).filter(|rgba| rgba[3] == 0).count()
+    };
+    let counts: Vec<usize> = (0..12).map(flooded).collect();
+    assert!(counts.contains(&0) && counts.iter().any(|&count| count > 200), "{counts:?} of 4096 under water");
+}
+
+#[test]
+fn water_stands_in_fields_alone() {
+    let made = maps(&PARAMS, &Woods::none(Season::default()), &LAND, 64);
+    assert_eq!(made.color.channels, 3);
+    let mut land = LAND.clone();
+    let farmed = |k: usize| if k % LAND.field.side as usize > 128 { 1.0 } else { 0.0 };
+    land.paddies = Some((0..land.flow.len()).map(farmed).collect());
+    for seed in 0..12 {
+        let params = GroundParams { terrain_seed: seed, ..PARAMS };
+        let color = maps(&params, &Woods::none(Season::default()), &land, 256).color;
+        let is_dry = |k: u32| color.pixel(k % 256, k / 256)[3] == 255;
+        assert!(
+            (0..256 * 256).filter(|k| k % 256 < 126).all(is_dry),
+            "seed {seed}: water where nothing is farmed"
+        );
+    }
 }
