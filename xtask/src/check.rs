@@ -140,6 +140,8 @@ const PROPTEST_SEED: &str = "20261122";
 /// Tests of the workspace. Of one package alone, dependencies would have other features and be compiled again.
 fn test(arguments: &[&str]) -> Command {
     let mut command = cargo(&["test", "--quiet", "--workspace", "--no-fail-fast"]);
+    // Debug builds would draw everything under Vulkan's validation layer, slowly; one test does, and says what it heard.
+    command.env("WGPU_VALIDATION", "0");
     in_a_session(command.args(arguments));
     command
 }
