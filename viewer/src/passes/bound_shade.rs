@@ -3,8 +3,7 @@
 
 use glam::{Vec2, Vec3, Vec3Swizzles};
 
-use super::layouts::SUN_VIEW;
-use super::{Binding, BoundTrees, CullUniform, Layouts, SHADE, SHADOW, SunView, ViewUniform, bind};
+use super::{Binding, BoundTrees, CullUniform, Layouts, SHADE, SHADOW, SunView, ViewUniform, bind, sun_view};
 use crate::gpu::{Gpu, flat};
 use crate::upload::SceneBuffers;
 
@@ -80,14 +79,8 @@ impl BoundShade {
             levels.map(|(level, view)| Level { view: view.clone(), source: source(level) }).collect();
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
         let uniform = gpu.empty_buffer("sun", size_of::<ViewUniform>() as u64, usage);
-        let bound = [
-            Binding::Buffer(&uniform),
-            Binding::Sampler(&layouts.clamped),
-            Binding::Sampler(&layouts.nearest),
-            Binding::texture(&scene.land.heights),
-        ];
         Self {
-            sun_group: bind(gpu, "view of the sun", &layouts.sun_view, SUN_VIEW.into_iter().zip(bound)),
+            sun_group: sun_view::group(gpu, layouts, scene, &uniform),
             trees: set.map(|set| BoundTrees::new(gpu, layouts, set)),
             texture,
             levels,

@@ -203,8 +203,13 @@ fn sun_visibility(world: vec3f, bias_m: f32) -> f32 {
     let columns = view.shadow_from_world;
     let depth_per_m = -dot(vec3f(columns[0].z, columns[1].z, columns[2].z), view.sun_direction);
     let lit = saturate(1.5 - (shadow.z - four) / (depth_per_m * bias_m));
-    let part = fract(uv * vec2f(textureDimensions(shadow_map)) - 0.5);
-    let sides = mix(lit.wx, lit.zy, part.x);
+    return between(lit, uv, textureDimensions(shadow_map));
+}
+
+// What is at a place of a texture of that size between the values of four texels, as `textureGather` orders them.
+fn between(four: vec4f, uv: vec2f, size: vec2u) -> f32 {
+    let part = fract(uv * vec2f(size) - 0.5);
+    let sides = mix(four.wx, four.zy, part.x);
     return mix(sides.x, sides.y, part.y);
 }
 
@@ -225,6 +230,16 @@ fn light_on(place: vec2f) -> vec4f {
     let near = near_shade_at(place);
     let shade = mix(light.a, textureSampleLevel(near_shade, clamped, near.xy, 1.0).r, near.z);
     return vec4f(light.r, light.gb * shade, shade);
+}
+
+// The part of the light that water mirrors, by the cosine of the angle from which one looks: Schlick's approximation (1994).
+fn mirrored_by_water(cosine: f32) -> f32 {
+    return 0.02 + 0.98 * pow(1.0 - cosine, 5.0);
+}
+
+// The corners of one triangle that covers the picture.
+fn corner_of_picture(index: u32) -> vec2f {
+    return vec2f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0);
 }
 
 // Place of a sample's line in the world.

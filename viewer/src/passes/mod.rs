@@ -1,8 +1,8 @@
 //! The passes: each an immutable set of pipelines that records its part of a picture, with its WGSL beside it.
 //!
-//! Order of a picture: the shade of near trees when the eye has come to another place, culling, where it shows a lake what that mirrors, then in one render pass what
-//! [`Passes::picture`] lists, then tone mapping. Shadows are drawn once for each landscape, before its first picture.
-//! A file that is no landscape has two passes of its own. A new pass is a file here with its WGSL, a line in [`SHADERS`],
+//! Order of a picture: the shade of near trees when the eye has come to another place, culling, where it shows a lake what
+//! that mirrors, then in one render pass what [`Passes::picture`] lists, then tone mapping. Shadows are drawn once for each
+//! landscape, before its first picture. A file that is no landscape has two passes of its own. A new pass is a file here with its WGSL, a line in [`SHADERS`],
 //! and a line in [`Passes::picture`].
 
 pub mod asset;

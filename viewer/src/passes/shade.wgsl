@@ -7,7 +7,7 @@
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+    return vec4f(corner_of_picture(index), 0.0, 1.0);
 }
 
 const TAPS: u32 = 8u;
@@ -20,9 +20,7 @@ const MAX_TEXELS: f32 = 9.0;
 fn is_lit(uv: vec2f, depth: f32) -> f32 {
     let four = textureGather(seen_by_sun, nearest, uv);
     let lit = select(vec4f(0.0), vec4f(1.0), four >= vec4f(depth));
-    let part = fract(uv * vec2f(textureDimensions(seen_by_sun)) - 0.5);
-    let sides = mix(lit.wx, lit.zy, part.x);
-    return mix(sides.x, sides.y, part.y);
+    return between(lit, uv, textureDimensions(seen_by_sun));
 }
 
 @fragment

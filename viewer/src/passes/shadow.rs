@@ -1,11 +1,9 @@
 //! Draws what the sun sees of a landscape, once.
 
-use super::bind;
-use super::layouts::SUN_VIEW;
 use super::shaders::ShaderError;
 use super::trees::{TreePipelines, buffers};
 use super::{
-    Binding, BoundTrees, Compiler, CullUniform, Passes, PipelineDesc, Shader, SunView, Target, ViewUniform,
+    BoundTrees, Compiler, CullUniform, Passes, PipelineDesc, Shader, SunView, Target, ViewUniform, sun_view,
 };
 use crate::gpu::Gpu;
 use crate::upload::{SceneBuffers, TreeSet};
@@ -54,15 +52,8 @@ impl Shadow {
         let sun_view = SunView::of_field(scene);
         let uniform =
             gpu.buffer("sun", &[ViewUniform::for_sun(scene, &sun_view)], wgpu::BufferUsages::UNIFORM);
-        let bound = [
-            Binding::Buffer(&uniform),
-            Binding::Sampler(&passes.layouts.clamped),
-            Binding::Sampler(&passes.layouts.nearest),
-            Binding::texture(&scene.land.heights),
-        ];
-        let bound = SUN_VIEW.into_iter().zip(bound);
         ShadowBake {
-            view: bind(gpu, "view of the sun", &passes.layouts.sun_view, bound),
+            view: sun_view::group(gpu, &passes.layouts, scene, &uniform),
             map: scene.shadow_map.create_view(&Default::default()),
             trees: scene.trees.as_ref().map(|set| (set, BoundTrees::new(gpu, &passes.layouts, set))),
             half_texel_m: 0.5 * sun_view.texel_m(scene.shadow_map.width()),

@@ -9,8 +9,8 @@ struct Corner {
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> Corner {
-    // One triangle that covers the picture, at depth 0: infinitely far.
-    let ndc = vec2f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0);
+    // At depth 0: infinitely far.
+    let ndc = corner_of_picture(index);
     return Corner(vec4f(ndc, 0.0, 1.0), ndc);
 }
 

@@ -2,6 +2,9 @@
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
+use super::layouts::SUN_VIEW;
+use super::{Binding, Layouts, bind};
+use crate::gpu::Gpu;
 use crate::upload::SceneBuffers;
 
 /// Trees reach no higher above the land: what throws shadows lies below.
@@ -84,4 +87,20 @@ impl SunView {
     pub fn texel_m(&self, texels: u32) -> f32 {
         (self.max.x - self.min.x) / texels as f32
     }
+}
+
+/// Group 0 of passes that draw or read what the sun sees; `uniform` holds its view's [`super::ViewUniform`].
+pub(super) fn group(
+    gpu: &Gpu,
+    layouts: &Layouts,
+    scene: &SceneBuffers,
+    uniform: &wgpu::Buffer,
+) -> wgpu::BindGroup {
+    let bound = [
+        Binding::Buffer(uniform),
+        Binding::Sampler(&layouts.clamped),
+        Binding::Sampler(&layouts.nearest),
+        Binding::texture(&scene.land.heights),
+    ];
+    bind(gpu, "view of the sun", &layouts.sun_view, SUN_VIEW.into_iter().zip(bound))
 }

@@ -311,8 +311,7 @@ fn ground(in: Out) -> @location(0) vec4f {
     return vec4f(hazed(air_before(in.world), radiance), 1.0);
 }
 
-// Ground with that light under still water a hand deep; `open` is the share of the sky that arrives there. By Schlick's
-// approximation.
+// Ground with that light under still water a hand deep; `open` is the share of the sky that arrives there.
 fn flooded(under: vec3f, world: vec3f, open: f32) -> vec3f {
     let look = normalize(view.eye - world);
     let up = max(look.y, 0.0);
@@ -321,9 +320,7 @@ fn flooded(under: vec3f, world: vec3f, open: f32) -> vec3f {
     let sky = max(clear_sky(mirrored) + clouds_towards(mirrored, false), vec3f(0.0)) * open;
     // Banks and trees around, about which nothing is known here, stand in the way of level rays.
     let seen = mix(under, sky, mix(0.5, 1.0, smoothstep(0.0, 0.12, mirrored.y)));
-    let grazing = 1.0 - up;
-    let square = grazing * grazing;
-    return mix(under * 0.8, seen, 0.02 + 0.98 * square * square * grazing);
+    return mix(under * 0.8, seen, mirrored_by_water(up));
 }
 
 // Metres above the lake up to which the ground is wet.

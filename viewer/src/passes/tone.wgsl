@@ -5,7 +5,7 @@
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+    return vec4f(corner_of_picture(index), 0.0, 1.0);
 }
 
 // From linear Rec. 709 into AgX's wider primaries, column by column.

@@ -113,9 +113,8 @@ fn fragment(in: Out) -> @location(0) vec4f {
     let land = mirrored_land(in.world, mirrored, spread);
     // Waves blur the edges of clouds.
     let sky = max(clear_sky(mirrored) + clouds_towards(mirrored, false), vec3f(0.0));
-    // Schlick's fresnel with the reflectance of water.
     let facing = clamp(dot(normal, look), 0.0, 1.0);
-    let reflectance = 0.02 + 0.98 * pow(1.0 - facing, 5.0);
+    let reflectance = mirrored_by_water(facing);
     let half_way = normalize(look + view.sun_direction);
     var light = vec4f(1.0);
     if (inside) {

@@ -22,7 +22,7 @@ pub struct GroundBuffers {
     pub color: Arc<wgpu::Texture>,
     /// Parts of the tiling textures 1 to 4.
     pub weights: Arc<wgpu::Texture>,
-    /// Light that arrives: sky, sun, visibility of the sun.
+    /// Light that arrives: sky, sun, what the land leaves visible of the sun, what trees let through of it.
     pub light: Arc<wgpu::Texture>,
     /// Tiling textures, a layer each, as [`packed`] has them.
     pub details: Arc<wgpu::Texture>,
