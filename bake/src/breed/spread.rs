@@ -100,7 +100,8 @@ impl Spread<'_> {
         }
     }
 
-    /// Others than `shown`, as many as it takes to make four. Beside a best guess [`STRANGERS`] of them look different.
+    /// Others than `shown`, as many as it takes to make four, no two alike where the pool has so many. Beside a best guess
+    /// [`STRANGERS`] of them look different.
     pub fn others(&self, shown: &[Vec<f32>], dice: &mut Dice) -> Vec<Vec<f32>> {
         let units: Vec<f32> = self.ideals.iter().map(Ideal::unit).collect();
         let worth = |rows: &[&[f32]]| worth(rows, &units);
@@ -122,9 +123,12 @@ impl Spread<'_> {
                 worth(&with)
             };
             let must = has_strangers && INDIVIDUALS - rows.len() <= STRANGERS.saturating_sub(strangers);
-            let all = (0..pool.len()).filter(|one| !must || strange[*one]);
-            let best = all.max_by(|a, b| with(&missed[*a]).total_cmp(&with(&missed[*b])));
-            let best = best.unwrap_or_default();
+            let is_new = |one: &usize| !is_among(&pool[*one].at, shown, &set);
+            let most = |all: &mut dyn Iterator<Item = usize>| {
+                all.max_by(|a, b| with(&missed[*a]).total_cmp(&with(&missed[*b])))
+            };
+            let asked = || (0..pool.len()).filter(|one| !must || strange[*one]);
+            let best = most(&mut asked().filter(is_new)).or_else(|| most(&mut asked())).unwrap_or_default();
             strangers += usize::from(strange[best]);
             set.push(pool[best].clone());
             rows.push(missed[best].clone());
@@ -133,6 +137,9 @@ impl Spread<'_> {
         for _ in 0..CHANGES {
             let at = dice.below(set.len() as u32) as usize;
             let Some(other) = self.changed(&set[at], dice) else { continue };
+            if is_among(&other.at, shown, &set) {
+                continue;
+            }
             let row = std::mem::replace(&mut rows[shown.len() + at], self.missed(&other.at));
             let now = worth(&slices(&rows));
             // A stranger stays one.
@@ -298,6 +305,11 @@ fn mean(prior: &Prior, members: &[&Ideal]) -> Vec<f32> {
         sum / weight
     };
     (0..prior.genes()).map(of).collect()
+}
+
+/// Whether a point is one of those already.
+fn is_among(at: &[f32], shown: &[Vec<f32>], set: &[Candidate]) -> bool {
+    shown.iter().chain(set.iter().map(|one| &one.at)).any(|one| one == at)
 }
 
 fn slices(rows: &[Vec<f32>]) -> Vec<&[f32]> {
