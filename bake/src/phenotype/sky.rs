@@ -9,7 +9,7 @@ pub const TRAITS: [Trait; 8] = [
     Trait { name: "sun height", spread: 1.18 },
     Trait { name: "zenith", spread: 0.13 },
     Trait { name: "horizon", spread: 0.063 },
-    Trait { name: "sunlight", spread: 0.052 },
+    Trait { name: "sunlight", spread: 0.068 },
     Trait { name: "shadows", spread: 1.18 },
     Trait { name: "clouds", spread: 1.13 },
     Trait { name: "cirrus", spread: 0.32 },

@@ -17,7 +17,7 @@ pub struct SkyLightStage {
 
 impl Stage for SkyLightStage {
     const NAME: &'static str = "sky light";
-    const VERSION: u32 = 3;
+    const VERSION: u32 = 4;
     type Output = SkyLight;
 
     fn run(&self, _: &Context<'_>) -> Result<SkyLight, StageError> {
@@ -38,7 +38,7 @@ pub struct SkyImagesStage {
 
 impl Stage for SkyImagesStage {
     const NAME: &'static str = "sky pictures";
-    const VERSION: u32 = 4;
+    const VERSION: u32 = 5;
     type Output = SkyImages<File>;
 
     fn run(&self, context: &Context<'_>) -> Result<SkyImages<File>, StageError> {
