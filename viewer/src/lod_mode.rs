@@ -54,10 +54,10 @@ pub enum TreeLodMode {
 )]
 #[repr(u32)]
 pub enum TerrainLodMode {
-    /// Blocks of a quadtree that morph with distance, later where the land is rough
+    /// Triangles that rise as one comes near, sooner where the land is rough
     #[default]
     Morph,
-    /// The same by distance alone
+    /// Blocks of a quadtree that morph with distance alone
     // As in the thesis, 3.2: to compare with.
     Distance,
     /// Triangles split on the CPU where the land is rough, drawn as one strip
@@ -84,13 +84,6 @@ pub trait LodMode: Copy + PartialEq + EnumMessage + Into<&'static str> + Variant
     fn next(self) -> Self {
         let after = Self::VARIANTS.iter().skip_while(|&&mode| mode != self).nth(1);
         *after.unwrap_or(&Self::VARIANTS[0])
-    }
-}
-
-impl TerrainLodMode {
-    /// Whether vertices slide in the vertex shader.
-    pub fn morphs(self) -> bool {
-        matches!(self, Self::Morph | Self::Distance)
     }
 }
 

@@ -136,7 +136,7 @@ impl Default for Options {
             terrain_lod: TerrainLodMode::default(),
             tree_error_px: 2.3,
             mesh_error_px: MESH_ERROR_PX,
-            terrain_error_px: 6.0,
+            terrain_error_px: 2.0,
             wireframe: false,
             bark_strips: false,
             tint_levels: false,

@@ -12,8 +12,8 @@ use super::Bench;
 use super::report::Aim;
 use crate::camera::{Camera, Frustum};
 use crate::lod::block::{Block, block_cells, block_indices};
+use crate::lod::nested::{Nested, Sight};
 use crate::lod::quadtree;
-use crate::lod::reach::{Reach, Roughness};
 use crate::lod::roam;
 use crate::measure::quantile;
 use crate::options::Options;
@@ -23,8 +23,8 @@ use crate::walk::{EYE_HEIGHT_M, Land};
 
 const CAMERAS: u32 = 200;
 const PICTURE: [f32; 2] = [1920.0, 1080.0];
-/// Errors that are allowed, in pixels: the aim's, and about what is allowed by default.
-const ERRORS_PX: [f32; 2] = [1.0, 6.0];
+/// Errors that are allowed, in pixels: the aim's, and what is allowed by default.
+const ERRORS_PX: [f32; 2] = [1.0, 2.0];
 /// Steps by which the error of morphing by distance is brought to the other's.
 const BISECTIONS: u32 = 7;
 
@@ -44,18 +44,18 @@ pub(super) fn measure(bench: &mut Bench) -> Result<()> {
 fn tell(bench: &mut Bench, scene: &Scene, error_px: f32) {
     let lod = &scene.ground.lod;
     let cameras = cameras(scene);
-    let roughness = Roughness::of(&lod.field);
+    let nested = Nested::of(&lod.field);
     let focal_px = cameras[0].focal_px(PICTURE[1]);
-    let adaptive = Run::of(lod, &cameras, &roughness.reach(focal_px / error_px));
+    let adaptive = Run::of(lod, &cameras, by_roughness(lod, &nested, focal_px / error_px));
     let by_distance = |as_near: fn(&Run) -> f64| {
         // The largest error allowed by distance alone that looks no worse.
         let (mut low, mut high) = (1.0 / 64.0, 8.0_f32);
         for _ in 0..BISECTIONS {
             let middle = (low * high).sqrt();
-            let run = Run::of(lod, &cameras, &roughness.reach_by_distance(middle * focal_px));
+            let run = Run::of(lod, &cameras, by_distance_alone(lod, &nested, middle * focal_px));
             *(if as_near(&run) > as_near(&adaptive) { &mut low } else { &mut high }) = middle;
         }
-        Run::of(lod, &cameras, &roughness.reach_by_distance(high * focal_px))
+        Run::of(lod, &cameras, by_distance_alone(lod, &nested, high * focal_px))
     };
     let [by_greatest, by_mean] = [by_distance(Run::greatest_px), by_distance(Run::mean_px)];
     let (mut strip, mut counts) = (Vec::new(), Vec::<f64>::new());
@@ -82,31 +82,79 @@ fn tell(bench: &mut Bench, scene: &Scene, error_px: f32) {
     report.aimed("processor, by roughness / ROAM", adaptive.choose_ms / roam_ms, "×", Aim::AtMost(1.0));
 }
 
-/// What all cameras are shown with given reaches.
+/// What is drawn for a camera.
+struct Drawn {
+    triangles: Vec<[Vec3; 3]>,
+    /// What choosing them took.
+    seconds: f64,
+}
+
+/// Triangles that rise, where a radian has `pixels` for each that is allowed.
+fn by_roughness<'a>(
+    lod: &'a TerrainLod,
+    nested: &'a Nested,
+    pixels: f32,
+) -> impl Fn(&Camera, &Frustum) -> Drawn + 'a {
+    move |camera, frustum| {
+        let (field, sight) = (&*lod.field, Sight { eye_m: camera.position_m, pixels });
+        let mut chosen = Vec::new();
+        let start = Instant::now();
+        nested.select(field, &sight, Some(frustum), &mut chosen);
+        let seconds = start.elapsed().as_secs_f64();
+        let place_m = |number: u32| nested.drawn_m(field, &sight, [number % field.side, number / field.side]);
+        Drawn { triangles: chosen.into_iter().map(|corners| corners.map(place_m)).collect(), seconds }
+    }
+}
+
+/// Blocks by distance alone, likewise.
+fn by_distance_alone<'a>(
+    lod: &'a TerrainLod,
+    nested: &'a Nested,
+    pixels: f32,
+) -> impl Fn(&Camera, &Frustum) -> Drawn + 'a {
+    move |camera, frustum| {
+        let (field, mut blocks) = (&*lod.field, Vec::new());
+        let start = Instant::now();
+        let detail = quadtree::detail(lod, &nested.levels_m, pixels, camera.position_m, false, MAX_BLOCK_M);
+        quadtree::select(lod, &detail, Some(frustum), &mut blocks);
+        let seconds = start.elapsed().as_secs_f64();
+        let cells = block_cells(field);
+        let indices = block_indices(cells);
+        let of_block = |block: &Block| {
+            let vertex = |number: u32| {
+                let (column, row) = (number % (cells + 1), number / (cells + 1));
+                detail.drawn_m(field, [block.i + (column << block.level), block.j + (row << block.level)])
+            };
+            let vertices: Vec<Vec3> = (0..(cells + 1) * (cells + 1)).map(vertex).collect();
+            let corners = indices.as_chunks::<3>().0.iter();
+            corners.map(|all| all.map(|corner| vertices[usize::from(corner)])).collect::<Vec<_>>()
+        };
+        Drawn { triangles: blocks.iter().flat_map(of_block).collect(), seconds }
+    }
+}
+
+/// What all cameras are shown.
 struct Run {
+    /// Those that have vanished included.
     triangles: Vec<f64>,
     /// The greatest of each picture.
     errors_px: Vec<f64>,
     /// Sums over all pictures: of squared errors, by the pixels that their samples fill, and of these pixels.
     squares: [f64; 2],
-    /// Milliseconds of choosing a picture's blocks, mean.
+    /// Milliseconds of choosing what a picture draws, mean.
     choose_ms: f64,
 }
 
 impl Run {
-    fn of(lod: &TerrainLod, cameras: &[Camera], reach: &Reach) -> Self {
-        let mut blocks = Vec::new();
+    fn of(lod: &TerrainLod, cameras: &[Camera], draw: impl Fn(&Camera, &Frustum) -> Drawn) -> Self {
         let (mut triangles, mut errors_px, mut seconds) = (Vec::new(), Vec::new(), 0.0);
         let mut squares = [0.0; 2];
         for camera in cameras {
             let frustum = camera.frustum(PICTURE[0] / PICTURE[1]);
-            let start = Instant::now();
-            let detail = quadtree::detail(lod, reach, camera.position_m, false, MAX_BLOCK_M);
-            quadtree::select(lod, reach, &detail, Some(&frustum), &mut blocks);
-            seconds += start.elapsed().as_secs_f64();
-            triangles.push(f64::from(quadtree::triangles(&lod.field, &blocks)));
-            let drawn = |block, sample| detail.drawn_m(reach, &lod.field, block, sample);
-            errors_px.push(greatest_error_px(lod, camera, &frustum, &blocks, &mut squares, drawn));
+            let drawn = draw(camera, &frustum);
+            seconds += drawn.seconds;
+            triangles.push(drawn.triangles.len() as f64);
+            errors_px.push(greatest_error_px(lod, camera, &frustum, &drawn.triangles, &mut squares));
         }
         Self { triangles, errors_px, squares, choose_ms: seconds * 1e3 / cameras.len() as f64 }
     }
@@ -139,55 +187,44 @@ fn cameras(scene: &Scene) -> Vec<Camera> {
     (0..CAMERAS).map(camera).collect()
 }
 
-/// The greatest vertical distance between samples that are seen and what blocks draw there, in pixels at their distance;
+/// The greatest vertical distance between samples that are seen and what is drawn there, in pixels at their distance;
 /// adds to `squares`.
 fn greatest_error_px(
     lod: &TerrainLod,
     camera: &Camera,
     frustum: &Frustum,
-    blocks: &[Block],
+    triangles: &[[Vec3; 3]],
     squares: &mut [f64; 2],
-    drawn_m: impl Fn(u32, [u32; 2]) -> Vec3,
 ) -> f64 {
     let field = &lod.field;
     let focal_px = camera.focal_px(PICTURE[1]);
-    let cells = block_cells(field);
-    let indices = block_indices(cells);
     let half_m = 0.5 * field.extent_m();
     let line = |at_m: f32| (at_m + half_m) / field.spacing_m;
     let mut greatest_px = 0.0_f32;
-    for block in blocks {
-        let vertex = |number: u32| {
-            let (column, row) = (number % (cells + 1), number / (cells + 1));
-            drawn_m(block.level, [block.i + (column << block.level), block.j + (row << block.level)])
-        };
-        let vertices: Vec<Vec3> = (0..(cells + 1) * (cells + 1)).map(vertex).collect();
-        for corners in indices.as_chunks::<3>().0 {
-            let [a, b, c] = corners.map(|corner| vertices[usize::from(corner)]);
-            let flat = |p: Vec3| Vec2::new(p.x, p.z);
-            let (u, v) = (flat(b - a), flat(c - a));
-            let whole = u.perp_dot(v);
-            if whole == 0.0 {
-                continue;
-            }
-            let (low, high) = (flat(a.min(b).min(c)), flat(a.max(b).max(c)));
-            for j in line(low.y).ceil() as u32..=line(high.y).floor() as u32 {
-                for i in line(low.x).ceil() as u32..=line(high.x).floor() as u32 {
-                    let land_m = Vec3::new(field.place_m(i), field.at(i, j), field.place_m(j));
-                    let at = flat(land_m - a);
-                    let (s, t) = (at.perp_dot(v) / whole, u.perp_dot(at) / whole);
-                    if s < 0.0 || t < 0.0 || s + t > 1.0 || !frustum.sees_sphere(land_m, 0.0) {
-                        continue;
-                    }
-                    let drawn = a.y + s * (b.y - a.y) + t * (c.y - a.y);
-                    let distance_m = land_m.distance(camera.position_m).max(field.spacing_m);
-                    let error_px = (drawn - land_m.y).abs() * focal_px / distance_m;
-                    greatest_px = greatest_px.max(error_px);
-                    let side_px = field.spacing_m * focal_px / distance_m;
-                    let pixels = side_px * side_px;
-                    squares[0] += f64::from(pixels * error_px * error_px);
-                    squares[1] += f64::from(pixels);
+    for &[a, b, c] in triangles {
+        let flat = |p: Vec3| Vec2::new(p.x, p.z);
+        let (u, v) = (flat(b - a), flat(c - a));
+        let whole = u.perp_dot(v);
+        if whole == 0.0 {
+            continue;
+        }
+        let (low, high) = (flat(a.min(b).min(c)), flat(a.max(b).max(c)));
+        for j in line(low.y).ceil() as u32..=line(high.y).floor() as u32 {
+            for i in line(low.x).ceil() as u32..=line(high.x).floor() as u32 {
+                let land_m = Vec3::new(field.place_m(i), field.at(i, j), field.place_m(j));
+                let at = flat(land_m - a);
+                let (s, t) = (at.perp_dot(v) / whole, u.perp_dot(at) / whole);
+                if s < 0.0 || t < 0.0 || s + t > 1.0 || !frustum.sees_sphere(land_m, 0.0) {
+                    continue;
                 }
+                let drawn = a.y + s * (b.y - a.y) + t * (c.y - a.y);
+                let distance_m = land_m.distance(camera.position_m).max(field.spacing_m);
+                let error_px = (drawn - land_m.y).abs() * focal_px / distance_m;
+                greatest_px = greatest_px.max(error_px);
+                let side_px = field.spacing_m * focal_px / distance_m;
+                let pixels = side_px * side_px;
+                squares[0] += f64::from(pixels * error_px * error_px);
+                squares[1] += f64::from(pixels);
             }
         }
     }

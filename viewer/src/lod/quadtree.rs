@@ -2,11 +2,10 @@
 //! Metres, pixels.
 //!
 //! A block of level i is 8 × 8 cells of 2^i samples' distance, whatever i; its vertices move by [`super::morph`]. It is
-//! drawn if D ≥ d_i, so λ ≥ i, all over its closed square; else its four quarters are looked at. Then, σ being the steepness
-//! of the [`Reach`]:
-//! - *λ ≤ i+2 in it.* Its parent of level i+1 ≤ top was refused, so the least D in the parent's square is less than the
-//!   greatest d_{i+1}. Across the parent's diagonal, 16√2·2^i cells, they change by at most (1 + σ) times that, so at each
-//!   point of the block D < d_{i+1} + (1 + σ)·16√2·2^i cells ≤ d_{i+2}. And where there is no parent (top), λ ≤ top = i.
+//! drawn if D ≥ 2^i·d₀, so λ ≥ i, all over its closed square; else its four quarters are looked at. Then:
+//! - *λ ≤ i+2 in it.* Its parent of level i+1 ≤ top was refused, so the least D in the parent's square is less than 2^(i+1)·d₀.
+//!   Across the parent's diagonal, 16√2·2^i cells, D changes by at most that, so at each point of the block
+//!   D < 2^(i+1)·d₀ + 16√2·2^i cells ≤ 2^(i+2)·d₀. And where there is no parent (top), λ ≤ top = i.
 //! - *It draws what is within it.* A vertex of level < i+3 has its parents in the block's closed square; the corners'
 //!   levels are ≥ i+3 > λ, they stand.
 //! - *Neighbours fit.* On the edge shared with a block of level j > i, λ ≥ j. So vertices of levels < j have arrived at
@@ -17,14 +16,20 @@
 use glam::{Vec2, Vec3};
 
 use super::block::{Block, block_cells, block_number, top_level};
-use super::morph::Detail;
-use super::reach::Reach;
+use super::morph::{Detail, unit_m};
 use crate::camera::Frustum;
 use crate::scene::{Heightfield, TerrainLod};
 
-/// What λ depends on for a view from `eye_m`. `exact`: every sample is drawn; `max_block_m`: no block is wider, so that
+/// What λ depends on for a view from `eye_m`; `levels_m` and `pixels` as [`unit_m`] has them. `exact`: every sample is drawn; `max_block_m`: no block is wider, so that
 /// enough can be culled.
-pub fn detail(lod: &TerrainLod, reach: &Reach, eye_m: Vec3, exact: bool, max_block_m: f32) -> Detail {
+pub fn detail(
+    lod: &TerrainLod,
+    levels_m: &[f32],
+    pixels: f32,
+    eye_m: Vec3,
+    exact: bool,
+    max_block_m: f32,
+) -> Detail {
     let field = &lod.field;
     let width_m = block_cells(field) as f32 * field.spacing_m;
     let fits = |level: &u32| width_m * (1u32 << level) as f32 <= max_block_m;
@@ -32,25 +37,16 @@ pub fn detail(lod: &TerrainLod, reach: &Reach, eye_m: Vec3, exact: bool, max_blo
     Detail {
         eye_m: Vec2::new(eye_m.x, eye_m.z),
         above_m: (eye_m.y - lod.range_m()[1]).max(0.0),
-        morph_m: reach.morph_m,
+        unit_m: unit_m(field, levels_m, pixels),
+        pixels,
         top: top as f32,
     }
 }
 
 /// Replaces `blocks` by those to draw, those that `frustum` doesn't see left out; none is hidden by a later one.
-pub fn select(
-    lod: &TerrainLod,
-    reach: &Reach,
-    detail: &Detail,
-    frustum: Option<&Frustum>,
-    blocks: &mut Vec<Block>,
-) {
+pub fn select(lod: &TerrainLod, detail: &Detail, frustum: Option<&Frustum>, blocks: &mut Vec<Block>) {
     blocks.clear();
-    Selection { lod, reach, detail, frustum, blocks }.visit(Block {
-        i: 0,
-        j: 0,
-        level: top_level(&lod.field),
-    });
+    Selection { lod, detail, frustum, blocks }.visit(Block { i: 0, j: 0, level: top_level(&lod.field) });
 }
 
 /// Triangles in blocks, those that have vanished included.
@@ -60,7 +56,6 @@ pub fn triangles(field: &Heightfield, blocks: &[Block]) -> u32 {
 
 struct Selection<'a> {
     lod: &'a TerrainLod,
-    reach: &'a Reach,
     detail: &'a Detail,
     frustum: Option<&'a Frustum>,
     blocks: &'a mut Vec<Block>,
@@ -86,11 +81,11 @@ impl Selection<'_> {
         }
     }
 
-    /// Whether D ≥ d of the block's level all over its square.
+    /// Whether D ≥ 2^level·d₀ all over its square.
     fn is_far_enough(&self, block: Block, low_m: Vec3, high_m: Vec3) -> bool {
         let eye_m = self.detail.eye_m;
         let nearest_m = eye_m.clamp(Vec2::new(low_m.x, low_m.z), Vec2::new(high_m.x, high_m.z));
-        let from_m = self.reach.of_block_m(block);
+        let from_m = self.detail.from_m(block.level);
         block.level as f32 <= self.detail.top && self.detail.distance_squared_m2(nearest_m) >= from_m * from_m
     }
 

@@ -1,16 +1,16 @@
-//! The meshes that both algorithms draw, taken apart: closed, unfolded, near the land, and calm.
+//! The meshes that all algorithms draw, taken apart: closed, unfolded, near the land, and calm.
 
 use std::collections::HashMap;
 
 use genescape_bake::stages::terrain_lod;
-use genescape_schema::scene::bintree::parents;
+use genescape_schema::scene::bintree::{parents, requires};
 use glam::{Vec2, Vec3};
 use proptest::prelude::*;
 
-use super::block::{BLOCK_BITS, Block, block_cells, block_indices, top_level};
+use super::block::{BLOCK_BITS, Block, block_cells, block_indices};
 use super::morph::{Detail, sample_m};
+use super::nested::{self, Nested};
 use super::quadtree;
-use super::reach::{Reach, Roughness};
 use super::roam::triangulate;
 use crate::camera::{Camera, Frustum};
 use crate::scene::{Heightfield, TerrainLod};
@@ -37,7 +37,7 @@ fn hash(i: u32, j: u32, seed: u32) -> f32 {
 type Triangle = [Vec3; 3];
 
 /// What the GPU draws of some blocks.
-fn drawn(field: &Heightfield, reach: &Reach, detail: &Detail, blocks: &[Block]) -> Vec<Triangle> {
+fn drawn(field: &Heightfield, detail: &Detail, blocks: &[Block]) -> Vec<Triangle> {
     let cells = block_cells(field);
     let indices = block_indices(cells);
     let mut triangles = Vec::new();
@@ -45,7 +45,7 @@ fn drawn(field: &Heightfield, reach: &Reach, detail: &Detail, blocks: &[Block]) 
         let vertex = |number: u32| {
             let step = 1 << block.level;
             let (column, row) = (number % (cells + 1), number / (cells + 1));
-            detail.drawn_m(reach, field, block.level, [block.i + column * step, block.j + row * step])
+            detail.drawn_m(field, [block.i + column * step, block.j + row * step])
         };
         let vertices: Vec<Vec3> = (0..(cells + 1) * (cells + 1)).map(vertex).collect();
         let corners = indices.chunks_exact(3).map(|t| [0, 1, 2].map(|c| vertices[t[c] as usize]));
@@ -92,38 +92,38 @@ fn check_closed(field: &Heightfield, triangles: &[Triangle]) -> Result<(), TestC
 /// Cells a side of a block.
 const CELLS: u32 = 1 << BLOCK_BITS;
 
-/// What an eye is shown of a land, for pictures of so many pixels a radian: the more, the farther fine levels reach.
+/// What an eye is shown of a land by distance alone, for pictures of so many pixels a radian: the more, the farther fine levels
+/// reach.
 struct Sight {
-    reach: Reach,
     detail: Detail,
     blocks: Vec<Block>,
 }
 
 impl Sight {
-    fn of(lod: &TerrainLod, eye_m: Vec3, reach: Reach) -> Self {
-        let detail = quadtree::detail(lod, &reach, eye_m, false, f32::MAX);
+    fn of(lod: &TerrainLod, eye_m: Vec3, pixels: f32) -> Self {
+        let levels_m = Nested::of(&lod.field).levels_m;
+        let detail = quadtree::detail(lod, &levels_m, pixels, eye_m, false, f32::MAX);
         let mut blocks = Vec::new();
-        quadtree::select(lod, &reach, &detail, None, &mut blocks);
-        Self { reach, detail, blocks }
+        quadtree::select(lod, &detail, None, &mut blocks);
+        Self { detail, blocks }
     }
 
     fn drawn(&self, field: &Heightfield) -> Vec<Triangle> {
-        drawn(field, &self.reach, &self.detail, &self.blocks)
-    }
-
-    /// λ, wherever a block asks from.
-    fn lambda(&self, field: &Heightfield, at_m: Vec2) -> f32 {
-        let distance_m = self.detail.distance_squared_m2(at_m).sqrt();
-        let passed = |level: &u32| distance_m >= self.reach.at(*level, at_m.to_array())[0];
-        let from = (0..=top_level(field)).rev().find(passed).unwrap_or(0);
-        self.detail.lambda(&self.reach, from, at_m)
+        drawn(field, &self.detail, &self.blocks)
     }
 }
 
-/// Reaches by roughness, or by distance alone.
-fn reach(lod: &TerrainLod, pixels: f32, by_distance: bool) -> Reach {
-    let roughness = Roughness::of(&lod.field);
-    if by_distance { roughness.reach_by_distance(pixels) } else { roughness.reach(pixels) }
+/// What an eye is shown by distance and roughness.
+fn risen(
+    field: &Heightfield,
+    nested: &Nested,
+    sight: &nested::Sight,
+    frustum: Option<&Frustum>,
+) -> Vec<Triangle> {
+    let mut triangles = Vec::new();
+    nested.select(field, sight, frustum, &mut triangles);
+    let place_m = |n: u32| nested.drawn_m(field, sight, [n % field.side, n / field.side]);
+    triangles.into_iter().map(|corners| corners.map(place_m)).collect()
 }
 
 prop_compose! {
@@ -138,68 +138,91 @@ proptest! {
 
     #[test]
     fn morphed_blocks_close_without_folds(
-        depth in 2u32..9, eye in eye(), pixels in 1f32..400., relief in 0f32..30., seed in 0u32..99, by_distance: bool
+        depth in 2u32..9, eye in eye(), pixels in 1f32..400., relief in 0f32..30., seed in 0u32..99
     ) {
         let lod = land((1 << depth) + 1, 0.5, relief, seed);
         let field = &*lod.field;
-        let sight = Sight::of(&lod, eye * field.extent_m(), reach(&lod, pixels, by_distance));
+        let sight = Sight::of(&lod, eye * field.extent_m(), pixels);
         check_closed(field, &sight.drawn(field))?;
     }
 
     #[test]
     fn level_of_detail_spans_two_levels_in_a_block(
-        eye in eye(), pixels in 1f32..400., seed in 0u32..99, x in 0..=CELLS, z in 0..=CELLS, by_distance: bool
+        eye in eye(), pixels in 1f32..400., seed in 0u32..99, x in 0..=CELLS, z in 0..=CELLS
     ) {
         let lod = land(257, 1.0, 10.0, seed);
         let field = &*lod.field;
-        let sight = Sight::of(&lod, eye * field.extent_m(), reach(&lod, pixels, by_distance));
+        let sight = Sight::of(&lod, eye * field.extent_m(), pixels);
         let cells: u64 = sight.blocks.iter().map(|block| u64::from(CELLS << block.level).pow(2)).sum();
         prop_assert_eq!(cells, 256 * 256);
         for (&[x, z], block) in [[0, 0], [CELLS, 0], [0, CELLS], [CELLS, CELLS], [x, z]].iter().flat_map(|v| sight.blocks.iter().map(move |b| (v, b))) {
             let place = |from: u32, by: u32| field.place_m(from + (by << block.level));
-            let lambda = sight.lambda(field, Vec2::new(place(block.i, x), place(block.j, z)));
+            let lambda = sight.detail.lambda(Vec2::new(place(block.i, x), place(block.j, z)));
             let level = block.level as f32;
             prop_assert!(lambda >= level - 1e-4 && lambda <= level + 2.0 + 1e-4, "{lambda} in {block:?}");
         }
     }
 
+    /// What is drawn of a land that is seen whole, closed wherever corners are on their way.
     #[test]
-    fn reaches_are_smooth_and_grow_from_level_to_level(
-        depth in 4u32..9, pixels in 1f32..4000., relief in 0f32..30., seed in 0u32..99, from in 0u32..4,
-        x in -0.5f32..0.5, z in -0.5f32..0.5, turn in -4f32..4., part in 0f32..0.3
+    fn triangles_that_rise_close_without_folds(
+        depth in 1u32..9, eye in eye(), pixels in 1f32..4000., relief in 0f32..30., seed in 0u32..99
     ) {
-        let lod = land((1 << depth) + 1, 2.0, relief, seed);
-        let (field, reach) = (&*lod.field, reach(&lod, pixels, false));
-        let extent_m = field.extent_m();
-        let here = Vec2::new(x, z) * extent_m;
-        let step = Vec2::from_angle(turn) * part * extent_m;
-        let there = (here + step).clamp(Vec2::splat(-0.5 * extent_m), Vec2::splat(0.5 * extent_m));
-        let level = from.min(top_level(field));
-        let [at_here, at_there] = [here, there].map(|at| reach.at(level, at.to_array()));
-        // What the length of a morph bears: w ≥ (1 + σ)·8√2 cells.
-        let steepness = reach.morph_m / (8.0 * std::f32::consts::SQRT_2 * field.spacing_m) - 1.0;
-        prop_assert!(steepness >= 0.0);
-        let band_m = |k: usize| 0.999 * reach.morph_m * (1u32 << (level as usize + k)) as f32;
-        for k in 0..4 {
-            let by_m = (at_here[k] - at_there[k]).abs();
-            prop_assert!(by_m <= steepness * here.distance(there) + 0.01, "{by_m} from {here} to {there}");
-            prop_assert!(k == 3 || at_here[k + 1] - at_here[k] >= band_m(k), "{at_here:?}");
+        let lod = land((1 << depth) + 1, 0.5, relief, seed);
+        let field = &*lod.field;
+        let sight = nested::Sight { eye_m: eye * field.extent_m(), pixels };
+        check_closed(field, &risen(field, &Nested::of(field), &sight, None))?;
+    }
+
+    /// What is in sight is drawn as if all were.
+    #[test]
+    fn what_is_left_out_is_out_of_sight(mut camera in camera(), pixels in 1f32..4000., seed in 0u32..99) {
+        let lod = land(65, 1.0, 12.0, seed);
+        let (field, nested) = (&*lod.field, Nested::of(&lod.field));
+        camera.position_m *= field.extent_m();
+        let (sight, frustum) = (nested::Sight { eye_m: camera.position_m, pixels }, camera.frustum(1.5));
+        let bits = |triangle: &Triangle| triangle.map(|p| p.to_array().map(f32::to_bits));
+        let seen: HashMap<_, ()> =
+            risen(field, &nested, &sight, Some(&frustum)).iter().map(|t| (bits(t), ())).collect();
+        for triangle in risen(field, &nested, &sight, None) {
+            let middle_m = triangle.iter().sum::<Vec3>() / 3.0;
+            let is_seen = triangle.iter().chain([&middle_m]).any(|p| frustum.sees_sphere(*p, 0.0));
+            prop_assert!(!is_seen || seen.contains_key(&bits(&triangle)), "{triangle:?} is missing");
+        }
+    }
+
+    /// What a sample requires has risen before it begins.
+    #[test]
+    fn errors_and_radii_are_nested(depth in 2u32..8, relief in 0f32..30., seed in 0u32..99) {
+        let lod = land((1 << depth) + 1, 0.7, relief, seed);
+        let (field, nested) = (&*lod.field, Nested::of(&lod.field));
+        let (side, last) = (field.side, field.side - 1);
+        for sample in (0..side * side).map(|n| [n % side, n / side]).filter(|at| at.map(|line| line % last) != [0, 0]) {
+            let bounds = |[i, j]: [u32; 2]| nested.bounds[(j * side + i) as usize];
+            let (own, at_m) = (bounds(sample), sample_m(field, sample));
+            for needed in requires(sample, last).into_iter().flatten().filter(|at| at.map(|line| line % last) != [0, 0]) {
+                let apart_m = sample_m(field, needed).distance(at_m);
+                prop_assert!(bounds(needed).error_m >= nested::RATIO * own.error_m, "{needed:?} of {sample:?}");
+                prop_assert!(bounds(needed).radius_m >= own.radius_m + apart_m, "{needed:?} of {sample:?}");
+            }
+            let [a, b] = parents(sample).map(|end| sample_m(field, end));
+            prop_assert!(own.error_m >= (at_m.y - 0.5 * (a.y + b.y)).abs() * 0.9999 - 1e-5, "{sample:?}");
         }
     }
 
     /// What keeps triangles from folding, and cracks from opening.
     #[test]
     fn samples_between_vertices_change_by_one_in_eleven_cells_at_most(
-        eye in eye(), pixels in 1f32..400., relief in 0f32..30., seed in 0u32..99, by_distance: bool,
+        eye in eye(), pixels in 1f32..400., relief in 0f32..30., seed in 0u32..99,
         x in -0.5f32..0.5, z in -0.5f32..0.5, turn in -4f32..4., cells in 0.5f32..60.
     ) {
         let lod = land(257, 1.0, relief, seed);
         let field = &*lod.field;
-        let sight = Sight::of(&lod, eye * field.extent_m(), reach(&lod, pixels, by_distance));
+        let sight = Sight::of(&lod, eye * field.extent_m(), pixels);
         let here = Vec2::new(x, z) * field.extent_m();
         let limit = Vec2::splat(0.5 * field.extent_m());
         let there = (here + Vec2::from_angle(turn) * cells * field.spacing_m).clamp(-limit, limit);
-        let [before, after] = [here, there].map(|at| libm::exp2f(sight.lambda(field, at)));
+        let [before, after] = [here, there].map(|at| libm::exp2f(sight.detail.lambda(at)));
         let allowed = here.distance(there) / (8.0 * std::f32::consts::SQRT_2 * field.spacing_m);
         prop_assert!((after - before).abs() <= allowed + 1e-3, "{before} to {after} from {here} to {there}");
     }
@@ -208,7 +231,7 @@ proptest! {
     fn a_look_along_the_land_meets_blocks_in_their_order(eye in eye(), pixels in 1f32..400., yaw in -4f32..4.) {
         let lod = land(257, 1.0, 10.0, 7);
         let field = &*lod.field;
-        let sight = Sight::of(&lod, eye * field.extent_m(), reach(&lod, pixels, false));
+        let sight = Sight::of(&lod, eye * field.extent_m(), pixels);
         let holds = |block: &Block, place_m: Vec2| {
             let side = CELLS << block.level;
             let [low, high] = [0, side].map(|by| Vec2::new(field.place_m(block.i + by), field.place_m(block.j + by)));
@@ -238,7 +261,7 @@ proptest! {
     #[test]
     fn land_moves_little_when_the_eye_does(eye in eye(), pixels in 1f32..20., seed in 0u32..99) {
         let lod = land(65, 1.0, 30.0, seed);
-        let field = &*lod.field;
+        let (field, nested) = (&*lod.field, Nested::of(&lod.field));
         let steps = (0..64u32).flat_map(|j| (0..64).map(move |i| [i, j]));
         let steepest = steps.fold(0f32, |most, [i, j]| {
             let here = field.at(i, j);
@@ -246,35 +269,42 @@ proptest! {
         });
         let (start, step_m) = (eye * field.extent_m(), 0.05);
         let places: Vec<Vec2> = (0..20).map(|n| Vec2::new((n * 7 % 20) as f32, n as f32) * 3.1 - 30.0).collect();
-        let mut before: Option<(Vec<Vec3>, Vec<f32>)> = None;
+        let heights = |mesh: &[Triangle]| -> Vec<f32> {
+            places.iter().map(|&at| height_in(mesh, at).expect("the mesh covers the square")).collect()
+        };
+        // A sample rises by its own height over P·E·(1 − 1/k) metres at the least, E being no less.
+        let fastest = 1.0 / (pixels * (1.0 - 1.0 / nested::RATIO));
+        let mut before: Option<(Vec<Vec3>, Vec<f32>, Vec<f32>)> = None;
         for step in 0..12 {
             let eye_m = start + Vec3::new(0.6, 0.0, 0.8) * (step_m * step as f32);
-            let sight = Sight::of(&lod, eye_m, reach(&lod, pixels, false));
-            let mesh = sight.drawn(field);
+            let sight = Sight::of(&lod, eye_m, pixels);
             let vertices: Vec<Vec3> =
-                (0..65 * 65).map(|n| sight.detail.drawn_m(&sight.reach, field, 0, [n % 65, n / 65])).collect();
-            let heights: Vec<f32> =
-                places.iter().map(|&at| height_in(&mesh, at).expect("the mesh covers the square")).collect();
-            if let Some((vertices_before, heights_before)) = &before {
+                (0..65 * 65).map(|n| sight.detail.drawn_m(field, [n % 65, n / 65])).collect();
+            let slid = heights(&sight.drawn(field));
+            let rising = heights(&risen(field, &nested, &nested::Sight { eye_m, pixels }, None));
+            if let Some((vertices_before, slid_before, rising_before)) = &before {
                 for (now, then) in vertices.iter().zip(vertices_before) {
                     prop_assert!(now.distance(*then) < 0.5 * (1.0 + steepest) * step_m, "{then} to {now}");
                 }
-                for (now, then) in heights.iter().zip(heights_before) {
+                for (now, then) in slid.iter().zip(slid_before) {
                     prop_assert!((now - then).abs() < steepest * step_m, "{then} to {now}, slope {steepest}");
                 }
+                for (now, then) in rising.iter().zip(rising_before) {
+                    prop_assert!((now - then).abs() <= 1.01 * fastest * step_m + 1e-4, "{then} to {now}, {pixels}");
+                }
             }
-            before = Some((vertices, heights));
+            before = Some((vertices, slid, rising));
         }
     }
 
     #[test]
     fn blocks_look_as_near_to_the_land_as_asked(
-        eye in eye(), relief in 1f32..20., error_px in 0.5f32..8., seed in 0u32..99, by_distance: bool
+        eye in eye(), relief in 1f32..20., error_px in 0.5f32..8., seed in 0u32..99
     ) {
         let lod = land(129, 1.0, relief, seed);
         let field = &*lod.field;
         let eye_m = eye * field.extent_m();
-        let sight = Sight::of(&lod, eye_m, reach(&lod, 300.0 / error_px, by_distance));
+        let sight = Sight::of(&lod, eye_m, 300.0 / error_px);
         let mesh = sight.drawn(field);
         for n in 0..1000u32 {
             let land_m = sample_m(field, [n * 37 % 129, n * 53 % 128]);
@@ -282,6 +312,23 @@ proptest! {
             let height = height_in(&mesh, at).expect("the mesh covers the square");
             let seen_px = (height - land_m.y).abs() * 300.0 / sight.detail.distance_squared_m2(at).sqrt();
             prop_assert!(seen_px <= error_px, "{seen_px} of {error_px} px at {land_m}");
+        }
+    }
+
+    /// All samples, while corners are on their way as well.
+    #[test]
+    fn triangles_that_rise_look_as_near_to_the_land_as_asked(
+        eye in eye(), relief in 1f32..20., error_px in 0.2f32..8., seed in 0u32..99
+    ) {
+        let lod = land(65, 1.0, relief, seed);
+        let field = &*lod.field;
+        let sight = nested::Sight { eye_m: eye * field.extent_m(), pixels: 300.0 / error_px };
+        let mesh = risen(field, &Nested::of(field), &sight, None);
+        for n in 0..65 * 65 {
+            let land_m = sample_m(field, [n % 65, n / 65]);
+            let height = height_in(&mesh, Vec2::new(land_m.x, land_m.z)).expect("the mesh covers the square");
+            let seen_px = (height - land_m.y).abs() * 300.0 / land_m.distance(sight.eye_m);
+            prop_assert!(seen_px <= 1.001 * error_px + 1e-3, "{seen_px} of {error_px} px at {land_m}");
         }
     }
 }
@@ -369,15 +416,34 @@ fn more_error_and_less_sight_mean_fewer_triangles() {
         .map(|error_px| triangulate(&lod, &camera, PICTURE, error_px, true, &mut strip))
         .to_vec();
     assert!(counts.is_sorted_by(|a, b| a > b), "{counts:?}");
-    let reach = reach(&lod, 100.0, false);
-    let detail = quadtree::detail(&lod, &reach, camera.position_m, false, f32::MAX);
+    let levels_m = Nested::of(field).levels_m;
+    let detail = |exact| quadtree::detail(&lod, &levels_m, 100.0, camera.position_m, exact, f32::MAX);
     let mut count = |frustum: Option<&Frustum>| {
-        quadtree::select(&lod, &reach, &detail, frustum, &mut blocks);
+        quadtree::select(&lod, &detail(false), frustum, &mut blocks);
         blocks.len()
     };
     let (all, seen) = (count(None), count(Some(&camera.frustum(1.5))));
     assert!(seen < all && seen > 0, "{seen} of {all}");
-    let exact = quadtree::detail(&lod, &reach, camera.position_m, true, f32::MAX);
-    quadtree::select(&lod, &reach, &exact, None, &mut blocks);
+    quadtree::select(&lod, &detail(true), None, &mut blocks);
     assert_eq!(quadtree::triangles(field, &blocks), 128 * 128 * 2);
+}
+
+/// What nobody should notice costs little: fewer triangles where land is flat, and than all of ROAM's for the same bound.
+#[test]
+fn rough_places_get_the_triangles() {
+    let flat = terrain_lod::lod(&Heightfield { side: 129, spacing_m: 1.0, heights_m: vec![3.0; 129 * 129] });
+    let rough = land(129, 2.0, 40.0, 3);
+    let camera =
+        Camera { position_m: Vec3::new(0.0, 30.0, 100.0), yaw_rad: 0.0, pitch_rad: -0.2, fov_y_rad: 1.0 };
+    let count = |lod: &TerrainLod, error_px: f32| {
+        let sight = nested::Sight { eye_m: camera.position_m, pixels: camera.focal_px(PICTURE.1) / error_px };
+        risen(&lod.field, &Nested::of(&lod.field), &sight, Some(&camera.frustum(PICTURE.0))).len()
+    };
+    assert_eq!(count(&flat, 0.1), 2);
+    let mut strip = Vec::new();
+    for error_px in [0.5, 2.0, 8.0] {
+        let roam = triangulate(&rough, &camera, PICTURE, error_px, true, &mut strip) as usize;
+        let ours = count(&rough, error_px);
+        assert!(ours < roam, "{ours} and {roam} at {error_px} px");
+    }
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::plants::PlantDraw;
-use super::{Binding, BoundMirror, BoundReach, BoundShade, CullUniform, Layouts, bind};
+use super::{Binding, BoundMirror, BoundShade, CullUniform, Layouts, bind};
 use crate::gpu::Gpu;
 use crate::upload::{SceneBuffers, TreeSet};
 
@@ -15,8 +15,6 @@ pub struct BoundScene {
     pub view_group: wgpu::BindGroup,
     pub ground_group: wgpu::BindGroup,
     trees: Option<BoundTrees>,
-    /// How near each level of the land's detail may come.
-    pub reach: BoundReach,
     /// Shade of near trees on the ground.
     pub shade: BoundShade,
     /// None without a lake.
@@ -69,7 +67,7 @@ impl BoundScene {
         use Binding::{Buffer, Sampler};
         let (sky, land) = (&scene.sky_textures, &scene.land);
         let shade = BoundShade::new(gpu, layouts, &scene);
-        let view = |uniform: &wgpu::Buffer, reach: &BoundReach| {
+        let view = |uniform: &wgpu::Buffer| {
             let bound = [
                 Buffer(uniform),
                 Sampler(&layouts.repeating),
@@ -82,20 +80,18 @@ impl BoundScene {
                 Sampler(&layouts.nearest),
                 Binding::texture(&land.heights),
                 Binding::texture(&land.light),
-                Binding::layers(&reach.texture),
+                Binding::texture(&land.bounds),
                 Binding::texture(&shade.texture),
             ];
             bind(gpu, "view", &layouts.view, (0..).zip(bound))
         };
-        let ground = [&land.color, &land.weights, &land.details];
+        let ground = [&land.color, &land.weights, &land.details, &land.normals];
         let ground = (0..).zip(ground.map(|texture| Binding::texture(texture)));
-        let reach = BoundReach::new(gpu, &land.roughness);
         Self {
-            view_group: view(uniform, &reach),
+            view_group: view(uniform),
             ground_group: bind(gpu, "ground", &layouts.ground, ground),
             trees: scene.trees.as_ref().map(|set| BoundTrees::new(gpu, layouts, set)),
             mirror: BoundMirror::new(gpu, layouts, &scene, view),
-            reach,
             shade,
             terrain: Elements::new(gpu, "terrain"),
             part: 1.0,
@@ -118,6 +114,12 @@ impl Elements {
 
     pub(super) fn new(gpu: &Gpu, label: &str) -> Self {
         Self { buffer: gpu.empty_buffer(label, 64 * 1024, Self::USAGE), count: 0 }
+    }
+
+    /// Draws what its numbers are the indices of.
+    pub(super) fn draw_as_indices(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_index_buffer(self.buffer.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..self.count, 0, 0..1);
     }
 
     pub fn write<T: bytemuck::NoUninit>(&mut self, gpu: &Gpu, elements: &[T]) {

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::{Mat4, Vec3};
 
-use super::{Binding, BoundReach, BoundTrees, DEPTH, Elements, Layouts, RADIANCE, ViewUniform, bind};
+use super::{Binding, BoundTrees, DEPTH, Elements, Layouts, RADIANCE, ViewUniform, bind};
 use crate::camera::{Camera, Frustum};
 use crate::gpu::{Gpu, cleared, flat};
 use crate::upload::{Lake, SceneBuffers};
@@ -21,10 +21,8 @@ pub struct BoundMirror {
     pub(super) view_group: wgpu::BindGroup,
     /// None if the landscape has none, or no pictures of them.
     pub trees: Option<BoundTrees>,
-    /// How near each level of the mirrored land's detail may come.
-    pub reach: BoundReach,
-    /// Blocks of the terrain.
-    pub blocks: Elements,
+    /// Numbers of samples: triangles of the land.
+    pub land: Elements,
     /// What is drawn of the ring's indices.
     pub ring: Vec<Range<u32>>,
     targets: Option<Targets>,
@@ -83,36 +81,34 @@ impl Reflection {
 
     /// The numbers of the mirrored view, from those of the view.
     pub fn numbers(&self, of_view: ViewUniform) -> ViewUniform {
-        let [x, y, z] = self.eye_m.to_array();
+        let mirrored = |[x, y, z]: [f32; 3]| [x, 2.0 * self.level_m - y, z];
         ViewUniform {
             clip_from_world: self.clip_from_world.to_cols_array_2d(),
-            eye: [x, 2.0 * self.level_m - y, z],
+            eye: mirrored(of_view.eye),
+            lod_eye: mirrored(of_view.lod_eye),
             focal_px: self.focal_px(of_view.focal_px),
-            morph_terrain: 1,
             ..of_view
         }
     }
 }
 
 impl BoundMirror {
-    /// `None` where there is no lake. `bind_view` makes a view's group from its uniform and reaches.
+    /// `None` where there is no lake. `bind_view` makes a view's group from its uniform.
     pub(super) fn new(
         gpu: &Gpu,
         layouts: &Layouts,
         scene: &SceneBuffers,
-        bind_view: impl Fn(&wgpu::Buffer, &BoundReach) -> wgpu::BindGroup,
+        bind_view: impl Fn(&wgpu::Buffer) -> wgpu::BindGroup,
     ) -> Option<Self> {
         scene.land.lake.as_ref()?;
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
         let uniform = gpu.empty_buffer("mirror", size_of::<ViewUniform>() as u64, usage);
         let pictured = scene.trees.as_ref().filter(|set| set.impostors.is_some());
-        let reach = BoundReach::new(gpu, &scene.land.roughness);
         Some(Self {
-            view_group: bind_view(&uniform, &reach),
-            reach,
+            view_group: bind_view(&uniform),
             uniform,
             trees: pictured.map(|set| BoundTrees::new(gpu, layouts, set)),
-            blocks: Elements::new(gpu, "mirrored terrain"),
+            land: Elements::new(gpu, "mirrored terrain"),
             ring: Vec::new(),
             targets: None,
             reflection: None,

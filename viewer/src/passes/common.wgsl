@@ -19,11 +19,12 @@ struct View {
     water_level: f32,
     // Pixels that one radian covers in the middle of the picture.
     focal_px: f32,
-    // 1 if it is so: colours say the level of detail, clouds drift, the terrain morphs. For `select`: no `if` or loop may
+    // 1 if it is so: colours say the level of detail, clouds drift. For `select`: no `if` or loop may
     // depend on a uniform buffer alone, or Mesa's software driver (22.3) compiles the shader for each draw and leaks it.
     tint_levels: u32,
     drift_clouds: u32,
-    morph_terrain: u32,
+    // Pixels a radian for each pixel by which the land may be off.
+    lod_pixels: f32,
     // Altitude and extent in metres of the cumulus layer, then of the cirrus layer; extent 0 if there is none.
     clouds: vec4f,
     // The eye for which levels of detail are chosen: that of the walker, also when one looks on from above.
@@ -41,8 +42,8 @@ struct View {
     lod_top: f32,
     // Sides of the picture as a part of full resolution.
     part: f32,
-    // How far in metres one goes while the terrain's level 0 becomes level 1.
-    lod_morph: f32,
+    // Up to so many metres the terrain's blocks have level 0.
+    lod_unit: f32,
 }
 
 @group(0) @binding(0) var<uniform> view: View;

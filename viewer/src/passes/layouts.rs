@@ -58,7 +58,6 @@ const LAYERS: BindingType = texture(FILTERED, TextureViewDimension::D2Array);
 const CUBE: BindingType = texture(FILTERED, TextureViewDimension::Cube);
 const UNFILTERED: TextureSampleType = TextureSampleType::Float { filterable: false };
 const DATA: BindingType = texture(UNFILTERED, TextureViewDimension::D2);
-const DATA_LAYERS: BindingType = texture(UNFILTERED, TextureViewDimension::D2Array);
 const DEPTH_MAP: BindingType = texture(TextureSampleType::Depth, TextureViewDimension::D2);
 
 const fn buffer(ty: BufferBindingType) -> BindingType {
@@ -90,7 +89,7 @@ impl Layouts {
             UNFILTERING,
             DATA,
             IMAGE,
-            DATA_LAYERS,
+            DATA,
             IMAGE,
         ];
         let sun_view = SUN_VIEW.map(|binding| (binding, view[binding as usize]));
@@ -100,7 +99,7 @@ impl Layouts {
             camera: all("camera", both, &[UNIFORM]),
             studio: all("studio", both, &[UNIFORM, READ]),
             surface: all("surface", fragment, &[&[UNIFORM][..], &[IMAGE; 5], &[FILTERING; 5]].concat()),
-            ground: all("ground", both, &[IMAGE, IMAGE, LAYERS]),
+            ground: all("ground", both, &[IMAGE, IMAGE, LAYERS, IMAGE]),
             trees: all("trees", ShaderStages::VERTEX, &[READ]),
             impostors: all("pictures of trees", both, &[READ, READ, LAYERS, LAYERS]),
             material: all("material", fragment, &[UNIFORM, IMAGE, IMAGE]),

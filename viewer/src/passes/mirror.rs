@@ -3,19 +3,17 @@
 
 use super::bound_mirror::{BoundMirror, Reflection};
 use super::shaders::ShaderError;
-use super::terrain::{self, BLOCK, BlockIndices, RING};
+use super::terrain::{self, RING};
 use super::trees::VISIBLE;
 use super::{BoundScene, Compiler, PipelineDesc, Target, buffer_layout, impostors};
-use crate::lod::block;
 use crate::options::Options;
 use crate::upload::RingVertex;
 
 #[derive(Debug)]
 pub struct Mirror {
-    blocks: wgpu::RenderPipeline,
+    land: wgpu::RenderPipeline,
     ring: wgpu::RenderPipeline,
     trees: wgpu::RenderPipeline,
-    block_indices: BlockIndices,
 }
 
 impl Mirror {
@@ -23,21 +21,20 @@ impl Mirror {
 
     pub(super) fn new(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
         use wgpu::VertexStepMode::{Instance, Vertex};
-        let (land, trees) = (compiler.module(&terrain::SHADER)?, compiler.module(&impostors::SHADER)?);
+        let (ground, trees) = (compiler.module(&terrain::SHADER)?, compiler.module(&impostors::SHADER)?);
         let layouts = compiler.layouts;
         let on_land = [&layouts.view, &layouts.ground];
         let pictures = [&layouts.view, &layouts.impostors];
         let pipeline = |vertex: &str, fragment: &str, cull, buffers: &[_]| {
-            let usual = PipelineDesc::new(&land, &on_land);
+            let usual = PipelineDesc::new(&ground, &on_land);
             let (fragment, target) = (Some(fragment), Target::Mirror);
             compiler.pipeline(&PipelineDesc { vertex, fragment, cull, buffers, target, ..usual })
         };
         // A mirror turns triangles round.
         let outside = Some(wgpu::Face::Front);
-        let blocks = [buffer_layout::<block::Block>(Instance, &BLOCK)];
         let ring = [buffer_layout::<RingVertex>(Vertex, &RING)];
         Ok(Self {
-            blocks: pipeline("block_vertex", "mirrored_ground", outside, &blocks),
+            land: pipeline("risen_vertex", "mirrored_ground", outside, &[]),
             ring: pipeline("ring_vertex", "mirrored_ring", outside, &ring),
             trees: compiler.pipeline(&PipelineDesc {
                 fragment: Some("mirrored"),
@@ -45,7 +42,6 @@ impl Mirror {
                 target: Target::Mirror,
                 ..PipelineDesc::new(&trees, &pictures)
             }),
-            block_indices: BlockIndices::new(compiler.gpu),
         })
     }
 
@@ -63,8 +59,8 @@ impl Mirror {
         pass.set_bind_group(0, &mirror.view_group, &[]);
         let trees = if options.draw_trees { self.draw_trees(pass, bound, mirror) } else { 0 };
         pass.set_bind_group(1, &bound.ground_group, &[]);
-        pass.set_pipeline(&self.blocks);
-        self.block_indices.draw(pass, &mirror.blocks);
+        pass.set_pipeline(&self.land);
+        mirror.land.draw_as_indices(pass);
         pass.set_pipeline(&self.ring);
         trees + 1 + bound.scene.land.ring.draw(pass, &mirror.ring)
     }

@@ -1,9 +1,8 @@
 //! Draws the terrain in one draw, whatever the LOD mode, and the coarse ring around it in another.
 
 use super::shaders::ShaderError;
-use super::{BoundScene, Compiler, DrawPass, Elements, FilledOrWire, PipelineDesc, Shader, buffer_layout};
-use crate::gpu::Gpu;
-use crate::lod::{block, morph};
+use super::{BoundScene, Compiler, DrawPass, FilledOrWire, PipelineDesc, Shader, buffer_layout};
+use crate::lod::{block, morph, nested};
 use crate::lod_mode::TerrainLodMode;
 use crate::options::Options;
 use crate::upload::RingVertex;
@@ -11,7 +10,11 @@ use crate::upload::RingVertex;
 pub const SHADER: Shader = Shader {
     name: "terrain",
     source: include_str!("terrain.wgsl"),
-    constants: &[("GAP", morph::GAP as f64), ("BLOCK_VERTICES", (1 << block::BLOCK_BITS) as f64 + 1.0)],
+    constants: &[
+        ("GAP", morph::GAP as f64),
+        ("BLOCK_VERTICES", (1 << block::BLOCK_BITS) as f64 + 1.0),
+        ("RATIO", nested::RATIO as f64),
+    ],
 };
 
 /// Attributes of [`block::Block`].
@@ -23,35 +26,16 @@ pub const RING: [wgpu::VertexAttribute; 3] =
 #[derive(Debug)]
 pub struct Terrain {
     pipelines: FilledOrWire<Pipelines>,
-    block_indices: BlockIndices,
-}
-
-/// The triangles of any block.
-#[derive(Debug)]
-pub(super) struct BlockIndices {
-    buffer: wgpu::Buffer,
-    count: u32,
-}
-
-impl BlockIndices {
-    pub fn new(gpu: &Gpu) -> Self {
-        let indices = block::block_indices(1 << block::BLOCK_BITS);
-        let buffer = gpu.buffer("block triangles", &indices, wgpu::BufferUsages::INDEX);
-        Self { buffer, count: indices.len() as u32 }
-    }
-
-    /// All of these blocks in one draw.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, blocks: &Elements) {
-        pass.set_vertex_buffer(0, blocks.buffer.slice(..));
-        pass.set_index_buffer(self.buffer.slice(..), wgpu::IndexFormat::Uint16);
-        pass.draw_indexed(0..self.count, 0, 0..blocks.count);
-    }
+    /// The triangles of any block.
+    block_indices: wgpu::Buffer,
+    block_index_count: u32,
 }
 
 #[derive(Debug)]
 struct Pipelines {
     blocks: wgpu::RenderPipeline,
     strip: wgpu::RenderPipeline,
+    risen: wgpu::RenderPipeline,
     ring: wgpu::RenderPipeline,
 }
 
@@ -72,14 +56,18 @@ impl Terrain {
             let topology = PrimitiveTopology::TriangleStrip;
             let blocks = PipelineDesc { vertex: "block_vertex", buffers: blocks, ..usual() };
             let strip = PipelineDesc { vertex: "sample_vertex", topology, ..usual() };
+            let risen = PipelineDesc { vertex: "risen_vertex", ..usual() };
             let ring =
                 PipelineDesc { vertex: "ring_vertex", fragment: Some("ring"), buffers: ring, ..usual() };
-            let [blocks, strip, ring] = [blocks, strip, ring].map(|desc| compiler.pipeline(&desc));
-            Pipelines { blocks, strip, ring }
+            let [blocks, strip, risen, ring] =
+                [blocks, strip, risen, ring].map(|desc| compiler.pipeline(&desc));
+            Pipelines { blocks, strip, risen, ring }
         };
+        let indices = block::block_indices(1 << block::BLOCK_BITS);
         Ok(Self {
             pipelines: FilledOrWire::new(compiler.gpu, pipelines),
-            block_indices: BlockIndices::new(compiler.gpu),
+            block_indices: compiler.gpu.buffer("block triangles", &indices, wgpu::BufferUsages::INDEX),
+            block_index_count: indices.len() as u32,
         })
     }
 }
@@ -92,13 +80,21 @@ impl DrawPass for Terrain {
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, bound: &BoundScene, options: &Options) -> u32 {
         let (pipelines, terrain) = (self.pipelines.get(options.wireframe), &bound.terrain);
         pass.set_bind_group(1, &bound.ground_group, &[]);
-        if options.terrain_lod == TerrainLodMode::Roam {
-            pass.set_pipeline(&pipelines.strip);
-            pass.set_index_buffer(terrain.buffer.slice(..), wgpu::IndexFormat::Uint32);
-            pass.draw_indexed(0..terrain.count, 0, 0..1);
-        } else {
-            pass.set_pipeline(&pipelines.blocks);
-            self.block_indices.draw(pass, terrain);
+        match options.terrain_lod {
+            TerrainLodMode::Morph => {
+                pass.set_pipeline(&pipelines.risen);
+                terrain.draw_as_indices(pass);
+            }
+            TerrainLodMode::Roam => {
+                pass.set_pipeline(&pipelines.strip);
+                terrain.draw_as_indices(pass);
+            }
+            TerrainLodMode::Distance | TerrainLodMode::Off => {
+                pass.set_pipeline(&pipelines.blocks);
+                pass.set_vertex_buffer(0, terrain.buffer.slice(..));
+                pass.set_index_buffer(self.block_indices.slice(..), wgpu::IndexFormat::Uint16);
+                pass.draw_indexed(0..self.block_index_count, 0, 0..terrain.count);
+            }
         }
         pass.set_pipeline(&pipelines.ring);
         1 + bound.scene.land.ring.draw(pass, &bound.ring)

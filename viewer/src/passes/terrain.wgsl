@@ -1,5 +1,6 @@
-// The land: blocks of a quadtree whose vertices slide into their parents with distance (thesis 3.2.2, after Vlietinck),
-// or any triangles of samples (ROAM), or every sample; and the coarse ring around it. Then what covers it.
+// The land: triangles whose corners rise as one comes near, or blocks of a quadtree whose vertices slide into their parents with
+// distance (thesis 3.2.2, after Vlietinck), or any triangles of samples (ROAM), or every sample; and the coarse ring around it.
+// Then what covers it.
 
 struct Block {
     // First sample, and level: 8 × 8 cells of 2^level samples.
@@ -10,15 +11,18 @@ struct Block {
 struct Out {
     @builtin(position) clip: vec4f,
     @location(0) world: vec3f,
-    @location(1) normal: vec3f,
-    @location(2) level: f32,
+    // That of the first corner.
+    @location(1) @interpolate(flat) level: f32,
 }
 
-@group(0) @binding(11) var reach: texture_2d_array<f32>;
+// Error and radius of each sample, as `lod::nested` has them.
+@group(0) @binding(11) var bounds: texture_2d<f32>;
 @group(1) @binding(0) var ground_color: texture_2d<f32>;
 @group(1) @binding(1) var ground_weights: texture_2d<f32>;
 // Tiling textures: red and blue of the factor on the colour, which is 1 at 128, then the first two parts of the normal.
 @group(1) @binding(2) var details: texture_2d_array<f32>;
+// x and z of the land's normals, however coarse its triangles.
+@group(1) @binding(3) var ground_normals: texture_2d<f32>;
 
 fn sample_place(s: vec2u) -> vec3f {
     return vec3f(place_m(f32(s.x)), textureLoad(heights, vec2i(s), 0).r, place_m(f32(s.y)));
@@ -30,37 +34,11 @@ override GAP: f32;
 // Of a block, along a side.
 override BLOCK_VERTICES: u32;
 
-// Four neighbouring levels' reaches, from that of a block on, at a place: between the nodes in straight lines.
-fn reach_at(place: vec2f, level: u32) -> vec4f {
-    let last = textureDimensions(reach).x - 1u;
-    let at = clamp((place / view.field.z * 0.5 + 0.5) * f32(last), vec2f(0.0), vec2f(f32(last)));
-    let node = min(vec2u(at), vec2u(last - 1u));
-    let part = at - vec2f(node);
-    let north = mix(
-        textureLoad(reach, node, level, 0),
-        textureLoad(reach, node + vec2u(1u, 0u), level, 0),
-        part.x,
-    );
-    let south = mix(
-        textureLoad(reach, node + vec2u(0u, 1u), level, 0),
-        textureLoad(reach, node + vec2u(1u, 1u), level, 0),
-        part.x,
-    );
-    return mix(north, south, part.y);
-}
-
-// λ: which level of detail a sample's place calls for, between a block's own and two more. It depends on the place alone, so
-// that neighbours agree: whichever block asks, the same two reaches decide.
-fn lambda_at(s: vec2u, level: u32) -> f32 {
+// λ: which level of detail a sample's place calls for. It depends on the place alone, so that neighbours agree.
+fn lambda_at(s: vec2u) -> f32 {
     let place = vec2f(place_m(f32(s.x)), place_m(f32(s.y)));
     let distance = length(vec3f(place - view.lod_eye.xz, view.lod_above));
-    let d = reach_at(place, level);
-    let second = distance >= d.y;
-    let third = distance >= d.z;
-    let next = select(select(d.y, d.z, second), d.w, third);
-    let band = level + select(select(0u, 1u, second), 2u, third);
-    let part = 1.0 + (distance - next) / (view.lod_morph * f32(1u << band));
-    return min(f32(band) + log2(1.0 + clamp(part, 0.0, 1.0)), view.lod_top);
+    return min(log2(max(distance / view.lod_unit, 1.0)), view.lod_top);
 }
 
 // The coarsest level that uses a sample.
@@ -85,19 +63,19 @@ fn parent(s: vec2u) -> vec2u {
 }
 
 // The way that a vertex has gone to its parent.
-fn slide(s: vec2u, level: u32) -> f32 {
-    return clamp((lambda_at(s, level) - f32(level_of(s))) / (1.0 - GAP), 0.0, 1.0);
+fn slide(s: vec2u) -> f32 {
+    return clamp((lambda_at(s) - f32(level_of(s))) / (1.0 - GAP), 0.0, 1.0);
 }
 
 // Where a vertex is drawn: at the first ancestor that has not arrived at its own parent, on the way there. No block needs
 // more than two steps.
-fn drawn_place(sample: vec2u, level: u32) -> vec3f {
+fn slid_place(sample: vec2u) -> vec3f {
     var s = sample;
-    var way = slide(s, level);
+    var way = slide(s);
     for (var i = 0; i < 2; i++) {
         if (way >= 1.0) {
             s = parent(s);
-            way = slide(s, level);
+            way = slide(s);
         }
     }
     let place = sample_place(s);
@@ -107,35 +85,59 @@ fn drawn_place(sample: vec2u, level: u32) -> vec3f {
     return mix(place, sample_place(parent(s)), way);
 }
 
-fn normal_at(s: vec2u) -> vec3f {
-    let last = i32(view.field.x) - 1;
-    let c = vec2i(s);
-    let west = vec2i(max(c.x - 1, 0), c.y);
-    let east = vec2i(min(c.x + 1, last), c.y);
-    let north = vec2i(c.x, max(c.y - 1, 0));
-    let south = vec2i(c.x, min(c.y + 1, last));
-    let dx = (textureLoad(heights, east, 0).r - textureLoad(heights, west, 0).r) / f32(east.x - west.x);
-    let dz = (textureLoad(heights, south, 0).r - textureLoad(heights, north, 0).r) / f32(south.y - north.y);
-    return normalize(vec3f(-dx, view.field.y, -dz));
+// What the samples around one that is in use must have of its error, at least, as a factor.
+override RATIO: f32;
+
+// Where a sample that is in use is drawn: on its way from the middle of the edge that it splits. The rule of `lod::nested` in
+// Rust, which says why the ends of that edge stand; a test of pictures keeps the two alike.
+fn risen_place(s: vec2u) -> vec3f {
+    let place = sample_place(s);
+    let first = parent(s);
+    let flat = 0.5 * (sample_place(first).y + sample_place(2u * s - first).y);
+    let own = textureLoad(bounds, vec2i(s), 0).rg;
+    let part = (distance(place, view.lod_eye) - own.g) / (view.lod_pixels * own.r);
+    let risen = clamp((1.0 - part) / (1.0 - 1.0 / RATIO), 0.0, 1.0);
+    return vec3f(place.x, mix(flat, place.y, risen), place.z);
 }
 
-fn out_at(world: vec3f, normal: vec3f, level: f32) -> Out {
-    return Out(view.clip_from_world * vec4f(world, 1.0), world, normal, level);
+fn normal_at(place: vec2f) -> vec3f {
+    let side = view.field.x;
+    // Samples are the middles of texels.
+    let uv = (field_uv(place) * (side - 1.0) + 0.5) / side;
+    let xz = textureSample(ground_normals, clamped, uv).rg * 2.0 - 1.0;
+    return vec3f(xz.x, sqrt(saturate(1.0 - dot(xz, xz))), xz.y);
+}
+
+fn out_at(world: vec3f, level: f32) -> Out {
+    return Out(view.clip_from_world * vec4f(world, 1.0), world, level);
+}
+
+fn sample_of(index: u32) -> vec2u {
+    let side = u32(view.field.x);
+    return vec2u(index % side, index / side);
 }
 
 @vertex
 fn block_vertex(block: Block, @builtin(vertex_index) index: u32) -> Out {
     let s = block.origin + (vec2u(index % BLOCK_VERTICES, index / BLOCK_VERTICES) << vec2u(block.level));
-    let world = select(sample_place(s), drawn_place(s, block.level), view.morph_terrain != 0u);
-    return out_at(world, normal_at(s), f32(block.level));
+    return out_at(slid_place(s), f32(block.level));
 }
 
 // Any sample, by its number.
 @vertex
 fn sample_vertex(@builtin(vertex_index) index: u32) -> Out {
-    let side = u32(view.field.x);
-    let s = vec2u(index % side, index / side);
-    return out_at(sample_place(s), normal_at(s), f32(level_of(s)));
+    let s = sample_of(index);
+    return out_at(sample_place(s), f32(level_of(s)));
+}
+
+@vertex
+fn risen_vertex(@builtin(vertex_index) index: u32) -> Out {
+    let s = sample_of(index);
+    let last = u32(view.field.x) - 1u;
+    // The field's corners always stand, and split nothing.
+    let is_corner = s.x % last == 0u && s.y % last == 0u;
+    let inner = select(s, vec2u(1u), is_corner);
+    return out_at(select(risen_place(inner), sample_place(s), is_corner), f32(level_of(s)));
 }
 
 struct Tiles {
@@ -282,7 +284,7 @@ fn ground(in: Out) -> @location(0) vec4f {
     let shade = mix(light.a, textureSample(near_shade, clamped, near.xy).r, near.z);
     let dx = dpdx(in.world);
     let dy = dpdy(in.world);
-    var normal = normalize(in.normal);
+    var normal = normal_at(place);
     var relief = 1.0;
     if (away < 240.0) {
         let shorter = less_stretched(dx, dy);
@@ -348,7 +350,7 @@ fn mirrored_ground(in: Out) -> @location(0) vec4f {
     if (is_sunk(in.world)) {
         discard;
     }
-    let up = 0.6 + 0.4 * normalize(in.normal).y;
+    let up = 0.6 + 0.4 * normal_at(in.world.xz).y;
     let irradiance = view.sun_irradiance * (light.g * light.a) + view.sky_irradiance * light.r * up;
     return vec4f(hazed(air_before(in.world), albedo * wetness(in.world.y) / PI * irradiance), 1.0);
 }

@@ -8,18 +8,22 @@ use rayon::prelude::*;
 use super::texture::mip_levels;
 use super::{ImageUse, Lake, PlantBuffers, Ring, Uploader};
 use crate::lod::block;
-use crate::lod::reach::Roughness;
-use crate::scene::{Ground, GroundDetail, Image};
+use crate::lod::nested::Nested;
+use crate::scene::{Ground, GroundDetail, Heightfield, Image};
 
 /// The land on the device.
 #[derive(Debug)]
 pub struct GroundBuffers {
     /// How far its coarser triangulations are from it, and where.
-    pub roughness: Roughness,
+    pub nested: Nested,
+    /// The same on the device: error and radius of each sample.
+    pub bounds: Arc<wgpu::Texture>,
     /// One float a sample.
     pub heights: Arc<wgpu::Texture>,
     /// Albedo over the field.
     pub color: Arc<wgpu::Texture>,
+    /// x and z of its normals, a texel a sample.
+    pub normals: Arc<wgpu::Texture>,
     /// Parts of the tiling textures 1 to 4.
     pub weights: Arc<wgpu::Texture>,
     /// Light that arrives: sky, sun, what the land leaves visible of the sun, what trees let through of it.
@@ -46,9 +50,24 @@ impl Uploader {
             let side = ground.field.side;
             return Err(format!("a heightfield of {side} samples a side is too small to be drawn"));
         }
+        let (field, nested) = (&ground.field, Nested::of(&ground.field));
         Ok(GroundBuffers {
-            roughness: Roughness::of(&ground.field),
-            heights: self.heights(&ground.name, ground.field.side, &ground.field.heights_m),
+            heights: self.samples(
+                "heights",
+                &ground.name,
+                field.side,
+                wgpu::TextureFormat::R32Float,
+                &field.heights_m,
+            ),
+            bounds: self.samples(
+                "bounds",
+                &ground.name,
+                field.side,
+                wgpu::TextureFormat::Rg32Float,
+                &nested.bounds,
+            ),
+            nested,
+            normals: self.image(&normals(&ground.name, field), ImageUse::Data),
             color: self.image(&surface.color, ImageUse::Color),
             weights: self.image(&surface.weights, ImageUse::Data),
             light: self.image(&surface.light, ImageUse::Data),
@@ -77,6 +96,31 @@ impl Uploader {
             let packed: Vec<Image> = details.par_iter().map(packed).collect();
             self.array(&packed.iter().collect::<Vec<_>>(), ImageUse::Data, 1)
         }))
+    }
+}
+
+/// x and z of the normal at each sample, by the samples beside it, from −1 to 1.
+fn normals(name: &str, field: &Heightfield) -> Image {
+    let last = field.side - 1;
+    let around = |line: u32| [line.saturating_sub(1), (line + 1).min(last)];
+    let slope = |low_m: f32, high_m: f32, [from, to]: [u32; 2]| {
+        (high_m - low_m) / ((to - from) as f32 * field.spacing_m)
+    };
+    let texel = |n: u32| {
+        let (i, j) = (n % field.side, n / field.side);
+        let (columns, rows) = (around(i), around(j));
+        let dx = slope(field.at(columns[0], j), field.at(columns[1], j), columns);
+        let dz = slope(field.at(i, rows[0]), field.at(i, rows[1]), rows);
+        let normal = Vec3::new(-dx, 1.0, -dz).normalize();
+        let [x, z] = [normal.x, normal.z].map(|part| (127.5 + 127.5 * part).round() as u8);
+        [x, z, 0, 255]
+    };
+    let texels: Vec<[u8; 4]> = (0..field.side * field.side).into_par_iter().map(texel).collect();
+    Image {
+        name: format!("normals of {name}"),
+        width_px: field.side,
+        height_px: field.side,
+        levels: vec![texels.into_flattened().into()],
     }
 }
 

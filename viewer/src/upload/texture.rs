@@ -73,12 +73,18 @@ impl Uploader {
         })
     }
 
-    /// A square of heights, one float a texel, for `textureLoad`.
-    pub(super) fn heights(&self, name: &str, side: u32, heights_m: &[f32]) -> Arc<wgpu::Texture> {
-        self.shared(format!("heights {name}"), || {
-            let (format, usage) = (wgpu::TextureFormat::R32Float, wgpu::TextureUsages::TEXTURE_BINDING);
-            let texture = flat("heights", [side, side], format, usage);
-            self.gpu.texture(&texture, bytemuck::cast_slice(heights_m))
+    /// A square of numbers that each sample of a named field has, for `textureLoad`.
+    pub(super) fn samples<T: bytemuck::NoUninit>(
+        &self,
+        what: &str,
+        name: &str,
+        side: u32,
+        format: wgpu::TextureFormat,
+        samples: &[T],
+    ) -> Arc<wgpu::Texture> {
+        self.shared(format!("{what} {name}"), || {
+            let texture = flat(what, [side, side], format, wgpu::TextureUsages::TEXTURE_BINDING);
+            self.gpu.texture(&texture, bytemuck::cast_slice(samples))
         })
     }
 }

@@ -2,13 +2,13 @@
 
 use crate::camera::Camera;
 use crate::gpu::Gpu;
-use crate::lod::{block, quadtree};
-use crate::lod_mode::TerrainLodMode;
+use crate::lod::nested::Sight;
+use crate::lod::quadtree;
 use crate::options::FrameInput;
 use crate::passes::{BoundMirror, BoundScene, Cull, CullUniform, Mirror, Passes, Reflection, ViewUniform};
 use crate::upload::SceneBuffers;
 
-use super::terrain::MAX_BLOCK_M;
+use super::terrain::{MAX_BLOCK_M, pixels};
 
 /// The smallest error of the mirrored land in pixels of the mirror, also where the picture allows none.
 const MIN_ERROR_PX: f32 = 1.0;
@@ -16,7 +16,7 @@ const MIN_ERROR_PX: f32 = 1.0;
 /// Lists that are kept from frame to frame.
 #[derive(Debug, Default)]
 pub(super) struct MirrorChoice {
-    blocks: Vec<block::Block>,
+    triangles: Vec<[u32; 3]>,
 }
 
 impl MirrorChoice {
@@ -39,13 +39,15 @@ impl MirrorChoice {
         let error_px = frame.options.terrain_error_px.max(MIN_ERROR_PX);
         let (lod, eye_m) = (&scene.ground.lod, lod_camera.position_m);
         let focal_px = reflection.focal_px(lod_camera.focal_px(size_px[1] as f32));
-        mirror.reach.set(gpu, &scene.land.roughness, TerrainLodMode::Morph, focal_px, error_px);
-        let detail = quadtree::detail(lod, &mirror.reach.reach, eye_m, false, MAX_BLOCK_M);
+        let (nested, pixels) = (&scene.land.nested, pixels(focal_px, error_px));
+        let detail = quadtree::detail(lod, &nested.levels_m, pixels, eye_m, false, MAX_BLOCK_M);
         let numbers =
             ViewUniform::new(scene, camera, lod_camera, size_px, frame, &detail, bound.shade.place());
-        mirror.set(gpu, &passes.layouts, size_px, &reflection.numbers(numbers));
-        quadtree::select(lod, &mirror.reach.reach, &detail, Some(&reflection.frustum), &mut self.blocks);
-        mirror.blocks.write(gpu, &self.blocks);
+        let numbers = reflection.numbers(numbers);
+        mirror.set(gpu, &passes.layouts, size_px, &numbers);
+        let sight = Sight { eye_m: numbers.lod_eye.into(), pixels };
+        nested.select(&lod.field, &sight, Some(&reflection.frustum), &mut self.triangles);
+        mirror.land.write(gpu, self.triangles.as_flattened());
         scene.land.ring.seen(&reflection.frustum, &mut mirror.ring);
         if frame.options.draw_trees {
             cull(gpu, scope, passes, scene, mirror, &reflection);

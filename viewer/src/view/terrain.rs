@@ -3,6 +3,7 @@
 use crate::camera::Camera;
 use crate::gpu::Gpu;
 use crate::lod::morph::Detail;
+use crate::lod::nested::Sight;
 use crate::lod::{block, quadtree, roam};
 use crate::lod_mode::TerrainLodMode;
 use crate::options::Options;
@@ -10,12 +11,15 @@ use crate::passes::BoundScene;
 
 /// No block of the terrain is wider, so that what is not seen can be left out.
 pub const MAX_BLOCK_M: f32 = 256.0;
+/// The smallest error that is told from none, in pixels.
+const MIN_ERROR_PX: f32 = 1e-4;
 
 /// Lists that are kept from frame to frame.
 #[derive(Debug, Default)]
 pub(super) struct TerrainChoice {
     blocks: Vec<block::Block>,
     strip: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
 }
 
 impl TerrainChoice {
@@ -30,27 +34,40 @@ impl TerrainChoice {
         options: &Options,
     ) -> (Detail, u32) {
         let (scene, mode) = (&bound.scene, options.terrain_lod);
-        let lod = &scene.ground.lod;
+        let (lod, nested) = (&scene.ground.lod, &scene.land.nested);
         let (focal_px, eye_m) = (camera.focal_px(height), camera.position_m);
         // Without levels of detail no error is allowed.
         let error_px = if mode == TerrainLodMode::Off { 0.0 } else { options.terrain_error_px };
+        let pixels = pixels(focal_px, error_px);
         let is_exact = error_px.is_nan() || error_px <= 0.0;
-        if mode != TerrainLodMode::Roam {
-            bound.reach.set(gpu, &scene.land.roughness, mode, focal_px, error_px);
-        }
-        let detail = quadtree::detail(lod, &bound.reach.reach, eye_m, is_exact, MAX_BLOCK_M);
+        let detail = quadtree::detail(lod, &nested.levels_m, pixels, eye_m, is_exact, MAX_BLOCK_M);
         let aspect = width / height;
-        let triangles = if mode == TerrainLodMode::Roam {
-            let picture = (aspect, height);
-            let triangles = roam::triangulate(lod, camera, picture, error_px, options.cull, &mut self.strip);
-            bound.terrain.write(gpu, &self.strip);
-            triangles
-        } else {
-            let frustum = options.cull.then(|| camera.frustum(aspect));
-            quadtree::select(lod, &bound.reach.reach, &detail, frustum.as_ref(), &mut self.blocks);
-            bound.terrain.write(gpu, &self.blocks);
-            quadtree::triangles(&lod.field, &self.blocks)
+        let frustum = options.cull.then(|| camera.frustum(aspect));
+        let triangles = match mode {
+            TerrainLodMode::Morph => {
+                let sight = Sight { eye_m, pixels };
+                nested.select(&lod.field, &sight, frustum.as_ref(), &mut self.triangles);
+                bound.terrain.write(gpu, self.triangles.as_flattened());
+                self.triangles.len() as u32
+            }
+            TerrainLodMode::Roam => {
+                let picture = (aspect, height);
+                let triangles =
+                    roam::triangulate(lod, camera, picture, error_px, options.cull, &mut self.strip);
+                bound.terrain.write(gpu, &self.strip);
+                triangles
+            }
+            TerrainLodMode::Distance | TerrainLodMode::Off => {
+                quadtree::select(lod, &detail, frustum.as_ref(), &mut self.blocks);
+                bound.terrain.write(gpu, &self.blocks);
+                quadtree::triangles(&lod.field, &self.blocks)
+            }
         };
         (detail, triangles)
     }
+}
+
+/// [`Sight::pixels`] of a picture in which a radian covers `focal_px` pixels and the land may be `error_px` off.
+pub(super) fn pixels(focal_px: f32, error_px: f32) -> f32 {
+    focal_px / error_px.max(MIN_ERROR_PX)
 }

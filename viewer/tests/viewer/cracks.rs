@@ -56,7 +56,7 @@ fn no_sky_shines_through(mode: TerrainLodMode) {
 
 #[test]
 #[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
-fn morphing_blocks_have_no_cracks() {
+fn triangles_that_rise_have_no_cracks() {
     no_sky_shines_through(TerrainLodMode::Morph);
 }
 

@@ -92,7 +92,7 @@ fn uniforms_are_laid_out_alike() {
             focal_px,
             tint_levels,
             drift_clouds,
-            morph_terrain,
+            lod_pixels,
             clouds,
             lod_eye,
             lod_above,
@@ -102,7 +102,7 @@ fn uniforms_are_laid_out_alike() {
             last_tile,
             lod_top,
             part,
-            lod_morph,
+            lod_unit,
         }
     );
     same!(
