@@ -36,6 +36,10 @@ pub struct Options {
     /// Error that the terrain may have on the screen, in pixels
     #[arg(long = "terrain-error", value_name = "PIXELS", default_value_t = Self::default().terrain_error_px, value_parser = pixels)]
     pub terrain_error_px: f32,
+    /// Triangles that the terrain may have in a picture: where they don't suffice, its error is larger
+    // Thesis 3.2.4. By distance alone and without levels of detail they are what they are.
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1000..))]
+    pub terrain_triangles: Option<u32>,
     /// Edges of triangles only
     #[arg(long)]
     pub wireframe: bool,
@@ -137,6 +141,7 @@ impl Default for Options {
             tree_error_px: 2.3,
             mesh_error_px: MESH_ERROR_PX,
             terrain_error_px: 2.0,
+            terrain_triangles: None,
             wireframe: false,
             bark_strips: false,
             tint_levels: false,

@@ -62,7 +62,7 @@ fn tell(bench: &mut Bench, scene: &Scene, error_px: f32) {
     let start = Instant::now();
     let picture = (PICTURE[0] / PICTURE[1], PICTURE[1]);
     for camera in &cameras {
-        counts.push(f64::from(roam::triangulate(lod, camera, picture, error_px, true, &mut strip)));
+        counts.push(f64::from(roam::triangulate(lod, camera, picture, error_px, true, None, &mut strip)));
     }
     let roam_ms = start.elapsed().as_secs_f64() * 1e3 / f64::from(CAMERAS);
     let mean = |counts: &Vec<f64>| counts.iter().sum::<f64>() / counts.len() as f64;

@@ -26,6 +26,9 @@ use crate::scene::Heightfield;
 /// k: the error of what a sample requires over its own, at least. The less, the fewer samples are in use for others' sake, and the
 /// sooner one rises. Land is smooth enough that errors fall by more from level to level nearly everywhere.
 pub const RATIO: f32 = 1.2;
+/// The least P that is tried to keep to a number of triangles, and how many are tried: to a part in a hundred.
+const MIN_PIXELS: f32 = 1e-2;
+const TRIES: u32 = 12;
 /// All planes of a frustum still to be tested.
 const ALL_PLANES: u32 = (1 << 5) - 1;
 
@@ -143,6 +146,31 @@ impl Nested {
             roots.reverse();
         }
         roots.into_iter().for_each(|root| selection.visit(root, planes));
+    }
+
+    /// The sight with the largest P, at most the one given, for which [`Self::select`] finds no more than `budget` triangles, or
+    /// nearly the largest. A few hundred around the eye are always there, for radii do not shrink with errors. Leaves a list of some sight in `triangles`.
+    pub fn within(
+        &self,
+        field: &Heightfield,
+        sight: Sight,
+        frustum: Option<&Frustum>,
+        budget: u32,
+        triangles: &mut Vec<[u32; 3]>,
+    ) -> Sight {
+        let mut fits = |pixels: f32| {
+            self.select(field, &Sight { pixels, ..sight }, frustum, triangles);
+            triangles.len() <= budget as usize
+        };
+        if fits(sight.pixels) {
+            return sight;
+        }
+        let (mut low, mut high) = (MIN_PIXELS, sight.pixels);
+        for _ in 0..TRIES {
+            let middle = (low * high).sqrt();
+            *(if fits(middle) { &mut low } else { &mut high }) = middle;
+        }
+        Sight { pixels: low, ..sight }
     }
 
     /// Where the shader draws a sample that is in use.

@@ -1,13 +1,17 @@
 //! A view of a heightfield → one generalised triangle strip of sample numbers (thesis 3.2, the ROAM-based algorithm).
 //! Metres, pixels.
 //!
-//! Every frame anew from the two root triangles down (Duchaineau et al., "ROAMing terrain", 1997, without its queues):
-//! a triangle is split while a vertical segment through its wedgie may look longer than the bound. A split first splits
+//! Every frame anew from the two root triangles down (Duchaineau et al., "ROAMing terrain", 1997): a triangle is split while a
+//! vertical segment through its wedgie may look longer than the bound. Where triangles are counted, those whose segments look
+//! longest are split first, by a queue, as long as the count lasts (thesis 3.2.4). A split first splits
 //! whatever it depends on, so that no T-junction appears. The land and the triangle drawn for it both lie in the slab of
 //! some triangle that passed, 2w thick; so nowhere do they look farther apart than the bound. Triangles out of sight are
 //! kept, but not refined, so the mesh always covers the square, and a walk of the hierarchy visits all triangles each
 //! across an edge of the one before: one strip (Lindstrom et al., "Real-time, continuous level of detail rendering of
 //! height fields", 1996), where a corner is turned by repeating a vertex.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
 
 use genescape_schema::scene::bintree::{Sample, requires};
 use glam::Vec3;
@@ -22,13 +26,15 @@ const ALL_PLANES: u32 = (1 << 5) - 1;
 /// Replaces `strip` by a triangle strip over the whole field: entries of its arrays, front faces counter-clockwise
 /// from above with the first triangle as written. `aspect` is the picture's width over its height, `height_px` its
 /// height; `error_px` is how far land and mesh may be apart in the picture: 0 uses every sample in sight that is not
-/// on the plane around it. `culls` leaves what is out of sight coarse. Tells how many triangles are not degenerate.
+/// on the plane around it. `culls` leaves what is out of sight coarse. At most `budget` triangles, but for the two that cover the
+/// field: where they don't suffice, the land is off by more. Tells how many triangles are not degenerate.
 pub fn triangulate(
     lod: &TerrainLod,
     camera: &Camera,
     (aspect, height_px): (f32, f32),
     error_px: f32,
     culls: bool,
+    budget: Option<u32>,
     strip: &mut Vec<u32>,
 ) -> u32 {
     let field = &lod.field;
@@ -40,13 +46,11 @@ pub fn triangulate(
     let roots = [[[last, last], [0, 0], [0, last]], [[0, 0], [last, last], [last, 0]]];
     let mut marks = Marks { used: vec![false; field.heights_m.len()], side: field.side };
     let metric = Metric::new(lod, camera, (aspect, height_px), error_px);
-    for root in roots {
-        refine(
-            &metric,
-            &mut marks,
-            root.map(|sample| metric.corner(sample)),
-            if culls { ALL_PLANES } else { 0 },
-        );
+    let planes = if culls { ALL_PLANES } else { 0 };
+    let corners = roots.map(|root| root.map(|sample| metric.corner(sample)));
+    match budget {
+        None => corners.into_iter().for_each(|root| refine(&metric, &mut marks, root, planes)),
+        Some(budget) => refine_worst(&metric, &mut marks, corners, planes, budget),
     }
     let mut walk = Walk { marks: &marks, strip, triangles: 0 };
     for root in roots {
@@ -77,6 +81,23 @@ impl Marks {
     #[inline]
     fn uses(&self, sample: Sample) -> bool {
         self.used[self.entry(sample)]
+    }
+
+    /// How many triangles more there would be if a sample (no corner of the field) were used.
+    fn would_add(&self, sample: Sample) -> u32 {
+        let last = self.side - 1;
+        let (mut open, mut found) = (vec![sample], Vec::new());
+        while let Some(sample) = open.pop() {
+            let is_corner = sample[0] % last == 0 && sample[1] % last == 0;
+            if is_corner || self.uses(sample) || found.contains(&sample) {
+                continue;
+            }
+            found.push(sample);
+            open.extend(requires(sample, last).into_iter().flatten());
+        }
+        // It splits two triangles, or one at the border.
+        let is_inside = |sample: &Sample| sample.iter().all(|line| line % last != 0);
+        found.iter().map(|sample| 1 + u32::from(is_inside(sample))).sum()
     }
 
     /// Uses a sample (no corner of the field), and first what it depends on.
@@ -157,17 +178,23 @@ impl<'a> Metric<'a> {
         Some(cutting)
     }
 
-    /// Whether a vertical segment of ±`half_m` within the slab may look longer than the bound. For a segment around
-    /// (p, q, r), half of it (a, b, c), that length is 2·√((ar − cp)² + (br − cq)²) / (r² − c²); over the slab the
-    /// greatest numerator and the least denominator are found at corners.
+    /// Whether a vertical segment of ±`half_m` within the slab may look longer than the bound.
     fn exceeds(&self, corners: &[Corner; 3], half_m: f32) -> bool {
+        let [numerator, denominator] = self.apparent(corners, half_m);
+        numerator > self.bound * denominator
+    }
+
+    /// The square of half the length that such a segment may have to the eye, as a fraction. For a segment around (p, q, r), half
+    /// of it (a, b, c), that length is 2·√((ar − cp)² + (br − cq)²) / (r² − c²); over the slab the greatest numerator and the
+    /// least denominator are found at corners.
+    fn apparent(&self, corners: &[Corner; 3], half_m: f32) -> [f32; 2] {
         if half_m <= 0.0 {
-            return false;
+            return [0.0, 1.0];
         }
         let half = self.vertical * half_m;
         let depth_m = corners.iter().fold(f32::MAX, |least, corner| least.min(corner.eye_m.z));
         if depth_m <= half.z.abs() {
-            return true;
+            return [1.0, 0.0];
         }
         let numerator = corners.iter().fold(0.0f32, |greatest, corner| {
             let (x, y) = (
@@ -177,7 +204,7 @@ impl<'a> Metric<'a> {
             greatest.max(x * x + y * y)
         });
         let denominator = depth_m * depth_m - half.z * half.z;
-        numerator > self.bound * denominator * denominator
+        [numerator, denominator * denominator]
     }
 }
 
@@ -194,6 +221,60 @@ fn refine(metric: &Metric<'_>, marks: &mut Marks, corners: [Corner; 3], planes: 
     let middle = metric.corner(sample);
     refine(metric, marks, [apex, a, middle], planes);
     refine(metric, marks, [b, apex, middle], planes);
+}
+
+/// A triangle that may be split, by how long its segment may look.
+struct Candidate {
+    apparent: f32,
+    corners: [Corner; 3],
+    sample: Sample,
+    planes: u32,
+}
+
+impl Ord for Candidate {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.apparent.total_cmp(&other.apparent).then_with(|| other.sample.cmp(&self.sample))
+    }
+}
+
+impl PartialOrd for Candidate {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Candidate {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Candidate {}
+
+/// Splits the triangles of a field, the worst first, down to the metric's bound or up to a number of triangles.
+fn refine_worst(metric: &Metric<'_>, marks: &mut Marks, roots: [[Corner; 3]; 2], planes: u32, budget: u32) {
+    let mut queue = BinaryHeap::new();
+    let candidate = |marks: &Marks, corners: [Corner; 3], planes: u32| {
+        let sample = middle(corners[0].sample, corners[1].sample)?;
+        let half_m = metric.lod.wedgies_m[marks.entry(sample)];
+        let planes = metric.cutting(&corners, half_m, planes)?;
+        let [numerator, denominator] = metric.apparent(&corners, half_m);
+        let is_off = numerator > metric.bound * denominator;
+        is_off.then(|| Candidate { apparent: numerator / denominator, corners, sample, planes })
+    };
+    queue.extend(roots.into_iter().filter_map(|root| candidate(marks, root, planes)));
+    let mut triangles = 2;
+    while let Some(Candidate { corners: [a, b, apex], sample, planes, .. }) = queue.pop() {
+        let added = marks.would_add(sample);
+        if triangles + added > budget {
+            return;
+        }
+        triangles += added;
+        marks.enable(sample);
+        let middle = metric.corner(sample);
+        let halves = [[apex, a, middle], [b, apex, middle]];
+        queue.extend(halves.into_iter().filter_map(|half| candidate(marks, half, planes)));
+    }
 }
 
 /// Writes the strip.

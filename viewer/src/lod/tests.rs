@@ -368,7 +368,7 @@ proptest! {
         let field = &*lod.field;
         camera.position_m *= field.extent_m();
         let mut strip = Vec::new();
-        let triangles = triangulate(&lod, &camera, PICTURE, error_px, true, &mut strip);
+        let triangles = triangulate(&lod, &camera, PICTURE, error_px, true, None, &mut strip);
         let mesh = strip_triangles(field, &strip);
         check_closed(field, &mesh)?;
         prop_assert_eq!(triangles as usize, mesh.len());
@@ -385,13 +385,57 @@ proptest! {
         }
     }
 
+    /// As many as are allowed, or a few less; and closed.
+    #[test]
+    fn a_budget_is_kept_and_used(
+        depth in 1u32..7, mut camera in camera(), relief in 0f32..20., budget in 2u32..4000, seed in 0u32..99
+    ) {
+        let lod = land((1 << depth) + 1, 1.0, relief, seed);
+        let field = &*lod.field;
+        camera.position_m *= field.extent_m();
+        let (mut strip, mut all) = (Vec::new(), Vec::new());
+        let triangles = triangulate(&lod, &camera, PICTURE, 0.5, true, Some(budget), &mut strip);
+        let unbounded = triangulate(&lod, &camera, PICTURE, 0.5, true, None, &mut all);
+        check_closed(field, &strip_triangles(field, &strip))?;
+        prop_assert!(triangles <= budget, "{triangles} of {budget}");
+        match unbounded <= budget {
+            // What is split in another order is split all the same.
+            true => prop_assert_eq!(strip, all),
+            // A split may ask for two on each level.
+            false => prop_assert!(triangles + 8 * depth > budget, "{triangles} of {budget}"),
+        }
+    }
+
+    /// The more triangles, the less the greatest error.
+    #[test]
+    fn a_budget_goes_to_the_worst_places(mut camera in camera(), seed in 0u32..99) {
+        let lod = land(65, 1.0, 12.0, seed);
+        let field = &*lod.field;
+        camera.position_m *= field.extent_m();
+        let mut strip = Vec::new();
+        let mut greatest_px = |budget: u32| {
+            triangulate(&lod, &camera, PICTURE, 0.1, true, Some(budget), &mut strip);
+            let mesh = strip_triangles(field, &strip);
+            let frustum = camera.frustum(PICTURE.0);
+            let seen = (0..65 * 65).map(|n| sample_m(field, [n % 65, n / 65]));
+            let off = seen.filter(|land_m| frustum.sees_sphere(*land_m, 0.0)).filter_map(|land_m| {
+                let height = height_in(&mesh, Vec2::new(land_m.x, land_m.z))?;
+                let [seen, drawn] = [land_m, land_m.with_y(height)].map(|p| project_px(&camera, p));
+                Some(seen?.distance(drawn?))
+            });
+            off.fold(0.0f32, f32::max)
+        };
+        let [few, many] = [40, 4000].map(&mut greatest_px);
+        prop_assert!(many <= few + 1e-3, "{few} px, then {many} px");
+    }
+
     #[test]
     fn without_an_allowed_error_all_that_is_seen_is_drawn(mut camera in camera(), seed in 0u32..99) {
         let lod = land(33, 1.0, 20.0, seed);
         let field = &*lod.field;
         camera.position_m *= field.extent_m();
         let mut strip = Vec::new();
-        triangulate(&lod, &camera, PICTURE, 0.0, true, &mut strip);
+        triangulate(&lod, &camera, PICTURE, 0.0, true, None, &mut strip);
         let frustum = camera.frustum(PICTURE.0);
         for entry in 0..field.side * field.side {
             let sample = [entry % field.side, entry / field.side];
@@ -413,7 +457,7 @@ fn more_error_and_less_sight_mean_fewer_triangles() {
         Camera { position_m: Vec3::new(0.0, 30.0, 100.0), yaw_rad: 0.0, pitch_rad: -0.2, fov_y_rad: 1.0 };
     let (mut strip, mut blocks) = (Vec::new(), Vec::new());
     let counts: Vec<u32> = [0.0, 1.0, 4.0, 64.0, 1e9]
-        .map(|error_px| triangulate(&lod, &camera, PICTURE, error_px, true, &mut strip))
+        .map(|error_px| triangulate(&lod, &camera, PICTURE, error_px, true, None, &mut strip))
         .to_vec();
     assert!(counts.is_sorted_by(|a, b| a > b), "{counts:?}");
     let levels_m = Nested::of(field).levels_m;
@@ -426,6 +470,23 @@ fn more_error_and_less_sight_mean_fewer_triangles() {
     assert!(seen < all && seen > 0, "{seen} of {all}");
     quadtree::select(&lod, &detail(true), None, &mut blocks);
     assert_eq!(quadtree::triangles(field, &blocks), 128 * 128 * 2);
+}
+
+#[test]
+fn rising_triangles_keep_to_a_budget() {
+    let lod = land(129, 2.0, 40.0, 3);
+    let (field, nested) = (&*lod.field, Nested::of(&lod.field));
+    let sight = nested::Sight { eye_m: Vec3::new(0.0, 30.0, 100.0), pixels: 1000.0 };
+    let mut triangles = Vec::new();
+    nested.select(field, &sight, None, &mut triangles);
+    let all = triangles.len() as u32;
+    for budget in [all, all / 3, 1000] {
+        let within = nested.within(field, sight, None, budget, &mut triangles);
+        nested.select(field, &within, None, &mut triangles);
+        let found = triangles.len() as u32;
+        assert!(found <= budget && found > budget * 9 / 10, "{found} of {budget}");
+        assert_eq!(within.pixels == sight.pixels, budget == all);
+    }
 }
 
 /// What nobody should notice costs little: fewer triangles where land is flat, and than all of ROAM's for the same bound.
@@ -442,7 +503,7 @@ fn rough_places_get_the_triangles() {
     assert_eq!(count(&flat, 0.1), 2);
     let mut strip = Vec::new();
     for error_px in [0.5, 2.0, 8.0] {
-        let roam = triangulate(&rough, &camera, PICTURE, error_px, true, &mut strip) as usize;
+        let roam = triangulate(&rough, &camera, PICTURE, error_px, true, None, &mut strip) as usize;
         let ours = count(&rough, error_px);
         assert!(ours < roam, "{ours} and {roam} at {error_px} px");
     }

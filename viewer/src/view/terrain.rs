@@ -39,13 +39,19 @@ impl TerrainChoice {
         // Without levels of detail no error is allowed.
         let error_px = if mode == TerrainLodMode::Off { 0.0 } else { options.terrain_error_px };
         let pixels = pixels(focal_px, error_px);
+        let budget = options.terrain_triangles;
         let is_exact = error_px.is_nan() || error_px <= 0.0;
-        let detail = quadtree::detail(lod, &nested.levels_m, pixels, eye_m, is_exact, MAX_BLOCK_M);
+        let mut detail = quadtree::detail(lod, &nested.levels_m, pixels, eye_m, is_exact, MAX_BLOCK_M);
         let aspect = width / height;
         let frustum = options.cull.then(|| camera.frustum(aspect));
         let triangles = match mode {
             TerrainLodMode::Morph => {
-                let sight = Sight { eye_m, pixels };
+                let mut sight = Sight { eye_m, pixels };
+                if let Some(budget) = budget {
+                    let triangles = &mut self.triangles;
+                    sight = nested.within(&lod.field, sight, frustum.as_ref(), budget, triangles);
+                    detail.pixels = sight.pixels;
+                }
                 nested.select(&lod.field, &sight, frustum.as_ref(), &mut self.triangles);
                 bound.terrain.write(gpu, self.triangles.as_flattened());
                 self.triangles.len() as u32
@@ -53,7 +59,7 @@ impl TerrainChoice {
             TerrainLodMode::Roam => {
                 let picture = (aspect, height);
                 let triangles =
-                    roam::triangulate(lod, camera, picture, error_px, options.cull, &mut self.strip);
+                    roam::triangulate(lod, camera, picture, error_px, options.cull, budget, &mut self.strip);
                 bound.terrain.write(gpu, &self.strip);
                 triangles
             }
