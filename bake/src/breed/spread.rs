@@ -124,11 +124,11 @@ impl Spread<'_> {
             };
             let must = has_strangers && INDIVIDUALS - rows.len() <= STRANGERS.saturating_sub(strangers);
             let is_new = |one: &usize| !is_among(&pool[*one].at, shown, &set);
-            let most = |all: &mut dyn Iterator<Item = usize>| {
-                all.max_by(|a, b| with(&missed[*a]).total_cmp(&with(&missed[*b])))
-            };
-            let asked = || (0..pool.len()).filter(|one| !must || strange[*one]);
-            let best = most(&mut asked().filter(is_new)).or_else(|| most(&mut asked())).unwrap_or_default();
+            let all = (0..pool.len()).filter(|one| !must || strange[*one]);
+            let best = all.max_by(|a, b| {
+                is_new(a).cmp(&is_new(b)).then_with(|| with(&missed[*a]).total_cmp(&with(&missed[*b])))
+            });
+            let best = best.unwrap_or_default();
             strangers += usize::from(strange[best]);
             set.push(pool[best].clone());
             rows.push(missed[best].clone());

@@ -11,7 +11,6 @@ use glam::{Vec2, Vec3};
 use super::Bench;
 use super::report::Aim;
 use crate::camera::{Camera, Frustum};
-use crate::lod::block::{Block, block_cells, block_indices};
 use crate::lod::nested::{Nested, Sight};
 use crate::lod::quadtree;
 use crate::lod::roam;
@@ -101,8 +100,7 @@ fn by_roughness<'a>(
         let start = Instant::now();
         nested.select(field, &sight, Some(frustum), &mut chosen);
         let seconds = start.elapsed().as_secs_f64();
-        let place_m = |number: u32| nested.drawn_m(field, &sight, [number % field.side, number / field.side]);
-        Drawn { triangles: chosen.into_iter().map(|corners| corners.map(place_m)).collect(), seconds }
+        Drawn { triangles: nested.drawn(field, &sight, &chosen), seconds }
     }
 }
 
@@ -118,18 +116,7 @@ fn by_distance_alone<'a>(
         let detail = quadtree::detail(lod, &nested.levels_m, pixels, camera.position_m, false, MAX_BLOCK_M);
         quadtree::select(lod, &detail, Some(frustum), &mut blocks);
         let seconds = start.elapsed().as_secs_f64();
-        let cells = block_cells(field);
-        let indices = block_indices(cells);
-        let of_block = |block: &Block| {
-            let vertex = |number: u32| {
-                let (column, row) = (number % (cells + 1), number / (cells + 1));
-                detail.drawn_m(field, [block.i + (column << block.level), block.j + (row << block.level)])
-            };
-            let vertices: Vec<Vec3> = (0..(cells + 1) * (cells + 1)).map(vertex).collect();
-            let corners = indices.as_chunks::<3>().0.iter();
-            corners.map(|all| all.map(|corner| vertices[usize::from(corner)])).collect::<Vec<_>>()
-        };
-        Drawn { triangles: blocks.iter().flat_map(of_block).collect(), seconds }
+        Drawn { triangles: quadtree::drawn(field, &detail, &blocks), seconds }
     }
 }
 

@@ -148,9 +148,9 @@ impl Nested {
         roots.into_iter().for_each(|root| selection.visit(root, planes));
     }
 
-    /// The sight with the largest P, at most the one given, for which [`Self::select`] finds no more than `budget` triangles, or
-    /// nearly the largest. A few hundred around the eye are always there, for radii do not shrink with errors. Leaves a list of some sight in `triangles`.
-    pub fn within(
+    /// The same for the sight with nearly the largest P, at most the one given, that asks for no more than `budget` triangles; tells
+    /// which. A few hundred around the eye are always there, for radii do not shrink with errors.
+    pub fn select_within(
         &self,
         field: &Heightfield,
         sight: Sight,
@@ -170,11 +170,18 @@ impl Nested {
             let middle = (low * high).sqrt();
             *(if fits(middle) { &mut low } else { &mut high }) = middle;
         }
+        fits(low);
         Sight { pixels: low, ..sight }
     }
 
+    /// Where the shader draws the corners of triangles.
+    pub fn drawn(&self, field: &Heightfield, sight: &Sight, triangles: &[[u32; 3]]) -> Vec<[Vec3; 3]> {
+        let place_m = |number| self.drawn_m(field, sight, [number % field.side, number / field.side]);
+        triangles.iter().map(|corners| corners.map(place_m)).collect()
+    }
+
     /// Where the shader draws a sample that is in use.
-    pub fn drawn_m(&self, field: &Heightfield, sight: &Sight, sample: Sample) -> Vec3 {
+    fn drawn_m(&self, field: &Heightfield, sight: &Sight, sample: Sample) -> Vec3 {
         let at_m = sample_m(field, sample);
         if sample.map(|line| line % (field.side - 1)) == [0, 0] {
             return at_m;
@@ -235,22 +242,12 @@ fn columns(corners: [Sample; 3], row: u32) -> [u32; 2] {
     let mut note = |column: u32| span = [span[0].min(column), span[1].max(column)];
     for k in 0..3 {
         let (p, q) = (corners[k], corners[(k + 1) % 3]);
-        if (p[1] <= row) == (q[1] <= row) && p[1] != row && q[1] != row {
+        if !(p[1].min(q[1])..=p[1].max(q[1])).contains(&row) {
             continue;
         }
-        if p[1] == q[1] {
-            note(p[0]);
-            note(q[0]);
-        } else {
-            let along = p[1].abs_diff(row);
-            note(if q[0] > p[0] {
-                p[0] + along
-            } else if q[0] < p[0] {
-                p[0] - along
-            } else {
-                p[0]
-            });
-        }
+        // Where an edge runs along the row, the other two end at its ends.
+        let side = (i64::from(q[0]) - i64::from(p[0])).signum() as i32;
+        note(p[0].saturating_add_signed(side * p[1].abs_diff(row) as i32));
     }
     span
 }

@@ -15,7 +15,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::block::{Block, block_cells, block_number, top_level};
+use super::block::{Block, block_cells, block_indices, block_number, top_level};
 use super::morph::{Detail, unit_m};
 use crate::camera::Frustum;
 use crate::scene::{Heightfield, TerrainLod};
@@ -52,6 +52,22 @@ pub fn select(lod: &TerrainLod, detail: &Detail, frustum: Option<&Frustum>, bloc
 /// Triangles in blocks, those that have vanished included.
 pub fn triangles(field: &Heightfield, blocks: &[Block]) -> u32 {
     blocks.len() as u32 * 2 * block_cells(field).pow(2)
+}
+
+/// Where the shader draws the corners of blocks' triangles, those that have vanished included.
+pub fn drawn(field: &Heightfield, detail: &Detail, blocks: &[Block]) -> Vec<[Vec3; 3]> {
+    let cells = block_cells(field);
+    let indices = block_indices(cells);
+    let of_block = |block: &Block| {
+        let vertex = |number: u32| {
+            let (column, row) = (number % (cells + 1), number / (cells + 1));
+            detail.drawn_m(field, [block.i + (column << block.level), block.j + (row << block.level)])
+        };
+        let vertices: Vec<Vec3> = (0..(cells + 1) * (cells + 1)).map(vertex).collect();
+        let corners = indices.as_chunks::<3>().0.iter();
+        corners.map(|all| all.map(|corner| vertices[usize::from(corner)])).collect::<Vec<_>>()
+    };
+    blocks.iter().flat_map(of_block).collect()
 }
 
 struct Selection<'a> {

@@ -88,6 +88,7 @@ impl Marks {
         let last = self.side - 1;
         let (mut open, mut found) = (vec![sample], Vec::new());
         while let Some(sample) = open.pop() {
+            // The field's corners are always in use.
             let is_corner = sample[0] % last == 0 && sample[1] % last == 0;
             if is_corner || self.uses(sample) || found.contains(&sample) {
                 continue;
@@ -178,13 +179,17 @@ impl<'a> Metric<'a> {
         Some(cutting)
     }
 
-    /// Whether a vertical segment of ±`half_m` within the slab may look longer than the bound.
-    fn exceeds(&self, corners: &[Corner; 3], half_m: f32) -> bool {
-        let [numerator, denominator] = self.apparent(corners, half_m);
-        numerator > self.bound * denominator
+    /// Where to split a triangle that cuts the frustum by some of `planes`, if the bound asks for it.
+    fn candidate(&self, corners: [Corner; 3], planes: u32) -> Option<Candidate> {
+        let sample = middle(corners[0].sample, corners[1].sample)?;
+        let half_m = self.lod.wedgies_m[(sample[1] * self.lod.field.side + sample[0]) as usize];
+        let planes = self.cutting(&corners, half_m, planes)?;
+        let [numerator, denominator] = self.apparent(&corners, half_m);
+        let is_off = numerator > self.bound * denominator;
+        is_off.then(|| Candidate { apparent: numerator / denominator, corners, sample, planes })
     }
 
-    /// The square of half the length that such a segment may have to the eye, as a fraction. For a segment around (p, q, r), half
+    /// The square of half the length that a vertical segment of ±`half_m` within the slab may have to the eye, as a fraction. For a segment around (p, q, r), half
     /// of it (a, b, c), that length is 2·√((ar − cp)² + (br − cq)²) / (r² − c²); over the slab the greatest numerator and the
     /// least denominator are found at corners.
     fn apparent(&self, corners: &[Corner; 3], half_m: f32) -> [f32; 2] {
@@ -210,17 +215,9 @@ impl<'a> Metric<'a> {
 
 /// Splits a triangle (ends of the hypotenuse, apex) and its halves as far as the metric asks for.
 fn refine(metric: &Metric<'_>, marks: &mut Marks, corners: [Corner; 3], planes: u32) {
-    let [a, b, apex] = corners;
-    let Some(sample) = middle(a.sample, b.sample) else { return };
-    let half_m = metric.lod.wedgies_m[marks.entry(sample)];
-    let Some(planes) = metric.cutting(&corners, half_m, planes) else { return };
-    if !metric.exceeds(&corners, half_m) {
-        return;
-    }
-    marks.enable(sample);
-    let middle = metric.corner(sample);
-    refine(metric, marks, [apex, a, middle], planes);
-    refine(metric, marks, [b, apex, middle], planes);
+    let Some(candidate) = metric.candidate(corners, planes) else { return };
+    marks.enable(candidate.sample);
+    candidate.halves(metric).into_iter().for_each(|half| refine(metric, marks, half, candidate.planes));
 }
 
 /// A triangle that may be split, by how long its segment may look.
@@ -229,6 +226,13 @@ struct Candidate {
     corners: [Corner; 3],
     sample: Sample,
     planes: u32,
+}
+
+impl Candidate {
+    fn halves(&self, metric: &Metric<'_>) -> [[Corner; 3]; 2] {
+        let ([a, b, apex], middle) = (self.corners, metric.corner(self.sample));
+        [[apex, a, middle], [b, apex, middle]]
+    }
 }
 
 impl Ord for Candidate {
@@ -253,27 +257,18 @@ impl Eq for Candidate {}
 
 /// Splits the triangles of a field, the worst first, down to the metric's bound or up to a number of triangles.
 fn refine_worst(metric: &Metric<'_>, marks: &mut Marks, roots: [[Corner; 3]; 2], planes: u32, budget: u32) {
-    let mut queue = BinaryHeap::new();
-    let candidate = |marks: &Marks, corners: [Corner; 3], planes: u32| {
-        let sample = middle(corners[0].sample, corners[1].sample)?;
-        let half_m = metric.lod.wedgies_m[marks.entry(sample)];
-        let planes = metric.cutting(&corners, half_m, planes)?;
-        let [numerator, denominator] = metric.apparent(&corners, half_m);
-        let is_off = numerator > metric.bound * denominator;
-        is_off.then(|| Candidate { apparent: numerator / denominator, corners, sample, planes })
-    };
-    queue.extend(roots.into_iter().filter_map(|root| candidate(marks, root, planes)));
+    let mut queue: BinaryHeap<Candidate> =
+        roots.into_iter().filter_map(|root| metric.candidate(root, planes)).collect();
     let mut triangles = 2;
-    while let Some(Candidate { corners: [a, b, apex], sample, planes, .. }) = queue.pop() {
-        let added = marks.would_add(sample);
+    while let Some(worst) = queue.pop() {
+        let added = marks.would_add(worst.sample);
         if triangles + added > budget {
             return;
         }
         triangles += added;
-        marks.enable(sample);
-        let middle = metric.corner(sample);
-        let halves = [[apex, a, middle], [b, apex, middle]];
-        queue.extend(halves.into_iter().filter_map(|half| candidate(marks, half, planes)));
+        marks.enable(worst.sample);
+        let halves = worst.halves(metric).into_iter();
+        queue.extend(halves.filter_map(|half| metric.candidate(half, worst.planes)));
     }
 }
 

@@ -7,7 +7,7 @@ use genescape_schema::scene::bintree::{parents, requires};
 use glam::{Vec2, Vec3};
 use proptest::prelude::*;
 
-use super::block::{BLOCK_BITS, Block, block_cells, block_indices};
+use super::block::{BLOCK_BITS, Block};
 use super::morph::{Detail, sample_m};
 use super::nested::{self, Nested};
 use super::quadtree;
@@ -35,24 +35,6 @@ fn hash(i: u32, j: u32, seed: u32) -> f32 {
 }
 
 type Triangle = [Vec3; 3];
-
-/// What the GPU draws of some blocks.
-fn drawn(field: &Heightfield, detail: &Detail, blocks: &[Block]) -> Vec<Triangle> {
-    let cells = block_cells(field);
-    let indices = block_indices(cells);
-    let mut triangles = Vec::new();
-    for block in blocks {
-        let vertex = |number: u32| {
-            let step = 1 << block.level;
-            let (column, row) = (number % (cells + 1), number / (cells + 1));
-            detail.drawn_m(field, [block.i + column * step, block.j + row * step])
-        };
-        let vertices: Vec<Vec3> = (0..(cells + 1) * (cells + 1)).map(vertex).collect();
-        let corners = indices.chunks_exact(3).map(|t| [0, 1, 2].map(|c| vertices[t[c] as usize]));
-        triangles.extend(corners.filter(|[a, b, c]| a != b && b != c && c != a));
-    }
-    triangles
-}
 
 /// Twice the area seen from above; negative if clockwise.
 fn doubled_area_m2([a, b, c]: &Triangle) -> f64 {
@@ -109,7 +91,9 @@ impl Sight {
     }
 
     fn drawn(&self, field: &Heightfield) -> Vec<Triangle> {
-        drawn(field, &self.detail, &self.blocks)
+        let mut triangles = quadtree::drawn(field, &self.detail, &self.blocks);
+        triangles.retain(|[a, b, c]| a != b && b != c && c != a);
+        triangles
     }
 }
 
@@ -122,8 +106,7 @@ fn risen(
 ) -> Vec<Triangle> {
     let mut triangles = Vec::new();
     nested.select(field, sight, frustum, &mut triangles);
-    let place_m = |n: u32| nested.drawn_m(field, sight, [n % field.side, n / field.side]);
-    triangles.into_iter().map(|corners| corners.map(place_m)).collect()
+    nested.drawn(field, sight, &triangles)
 }
 
 prop_compose! {
@@ -481,9 +464,10 @@ fn rising_triangles_keep_to_a_budget() {
     nested.select(field, &sight, None, &mut triangles);
     let all = triangles.len() as u32;
     for budget in [all, all / 3, 1000] {
-        let within = nested.within(field, sight, None, budget, &mut triangles);
-        nested.select(field, &within, None, &mut triangles);
-        let found = triangles.len() as u32;
+        let within = nested.select_within(field, sight, None, budget, &mut triangles);
+        let (found, mut anew) = (triangles.len() as u32, Vec::new());
+        nested.select(field, &within, None, &mut anew);
+        assert_eq!(triangles, anew, "what is drawn is what the sight asks for");
         assert!(found <= budget && found > budget * 9 / 10, "{found} of {budget}");
         assert_eq!(within.pixels == sight.pixels, budget == all);
     }

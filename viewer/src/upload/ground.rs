@@ -51,23 +51,20 @@ impl Uploader {
             return Err(format!("a heightfield of {side} samples a side is too small to be drawn"));
         }
         let (field, nested) = (&ground.field, Nested::of(&ground.field));
+        let samples = |what: &str, format, bytes: &[u8]| {
+            self.samples(&format!("{what} {}", ground.name), field.side, format, bytes)
+        };
         Ok(GroundBuffers {
-            heights: self.samples(
+            heights: samples(
                 "heights",
-                &ground.name,
-                field.side,
                 wgpu::TextureFormat::R32Float,
-                &field.heights_m,
+                bytemuck::cast_slice(&field.heights_m),
             ),
-            bounds: self.samples(
-                "bounds",
-                &ground.name,
-                field.side,
-                wgpu::TextureFormat::Rg32Float,
-                &nested.bounds,
-            ),
+            bounds: samples("bounds", wgpu::TextureFormat::Rg32Float, bytemuck::cast_slice(&nested.bounds)),
             nested,
-            normals: self.image(&normals(&ground.name, field), ImageUse::Data),
+            normals: self.shared(format!("normals {}", ground.name), || {
+                self.array(&[&normals(field)], ImageUse::Data, 1)
+            }),
             color: self.image(&surface.color, ImageUse::Color),
             weights: self.image(&surface.weights, ImageUse::Data),
             light: self.image(&surface.light, ImageUse::Data),
@@ -99,29 +96,24 @@ impl Uploader {
     }
 }
 
-/// x and z of the normal at each sample, by the samples beside it, from −1 to 1.
-fn normals(name: &str, field: &Heightfield) -> Image {
-    let last = field.side - 1;
-    let around = |line: u32| [line.saturating_sub(1), (line + 1).min(last)];
-    let slope = |low_m: f32, high_m: f32, [from, to]: [u32; 2]| {
-        (high_m - low_m) / ((to - from) as f32 * field.spacing_m)
-    };
+/// x and z of the normal at each sample.
+fn normals(field: &Heightfield) -> Image {
     let texel = |n: u32| {
-        let (i, j) = (n % field.side, n / field.side);
-        let (columns, rows) = (around(i), around(j));
-        let dx = slope(field.at(columns[0], j), field.at(columns[1], j), columns);
-        let dz = slope(field.at(i, rows[0]), field.at(i, rows[1]), rows);
-        let normal = Vec3::new(-dx, 1.0, -dz).normalize();
-        let [x, z] = [normal.x, normal.z].map(|part| (127.5 + 127.5 * part).round() as u8);
-        [x, z, 0, 255]
+        let normal = field.normal_at(n % field.side, n / field.side);
+        [byte(normal.x), byte(normal.z), 0, 255]
     };
     let texels: Vec<[u8; 4]> = (0..field.side * field.side).into_par_iter().map(texel).collect();
     Image {
-        name: format!("normals of {name}"),
+        name: "normals".into(),
         width_px: field.side,
         height_px: field.side,
         levels: vec![texels.into_flattened().into()],
     }
+}
+
+/// A part of a unit vector.
+fn byte(part: f32) -> u8 {
+    (127.5 + 127.5 * part).round() as u8
 }
 
 /// Colour and normal in one image: red and blue, of which the shader makes green, then x and y of the normal, of which it makes z.
@@ -142,7 +134,7 @@ fn packed(detail: &GroundDetail<Image>) -> Image {
 fn leaning([x, y, z, _]: [u8; 4]) -> [u8; 2] {
     let mean = Vec3::new(f32::from(x), f32::from(y), f32::from(z)) - 127.5;
     let normal = mean.normalize_or(Vec3::Z);
-    [normal.x, normal.y].map(|part| (127.5 + 127.5 * part).round() as u8)
+    [normal.x, normal.y].map(byte)
 }
 
 #[cfg(test)]

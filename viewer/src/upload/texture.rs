@@ -73,18 +73,17 @@ impl Uploader {
         })
     }
 
-    /// A square of numbers that each sample of a named field has, for `textureLoad`.
-    pub(super) fn samples<T: bytemuck::NoUninit>(
+    /// A square of numbers that each sample of a field has, for `textureLoad`.
+    pub(super) fn samples(
         &self,
-        what: &str,
         name: &str,
         side: u32,
         format: wgpu::TextureFormat,
-        samples: &[T],
+        texels: &[u8],
     ) -> Arc<wgpu::Texture> {
-        self.shared(format!("{what} {name}"), || {
-            let texture = flat(what, [side, side], format, wgpu::TextureUsages::TEXTURE_BINDING);
-            self.gpu.texture(&texture, bytemuck::cast_slice(samples))
+        self.shared(name.into(), || {
+            let texture = flat(name, [side, side], format, wgpu::TextureUsages::TEXTURE_BINDING);
+            self.gpu.texture(&texture, texels)
         })
     }
 }

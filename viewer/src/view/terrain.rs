@@ -46,15 +46,17 @@ impl TerrainChoice {
         let frustum = options.cull.then(|| camera.frustum(aspect));
         let triangles = match mode {
             TerrainLodMode::Morph => {
-                let mut sight = Sight { eye_m, pixels };
-                if let Some(budget) = budget {
-                    let triangles = &mut self.triangles;
-                    sight = nested.within(&lod.field, sight, frustum.as_ref(), budget, triangles);
-                    detail.pixels = sight.pixels;
+                let (sight, triangles) = (Sight { eye_m, pixels }, &mut self.triangles);
+                match budget {
+                    None => nested.select(&lod.field, &sight, frustum.as_ref(), triangles),
+                    Some(budget) => {
+                        let within =
+                            nested.select_within(&lod.field, sight, frustum.as_ref(), budget, triangles);
+                        detail.pixels = within.pixels;
+                    }
                 }
-                nested.select(&lod.field, &sight, frustum.as_ref(), &mut self.triangles);
-                bound.terrain.write(gpu, self.triangles.as_flattened());
-                self.triangles.len() as u32
+                bound.terrain.write(gpu, triangles.as_flattened());
+                triangles.len() as u32
             }
             TerrainLodMode::Roam => {
                 let picture = (aspect, height);

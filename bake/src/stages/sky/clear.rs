@@ -19,8 +19,8 @@ const COLUMNS: usize = 32;
 const NOON_SUN: f32 = 7.5;
 /// `key` in `adapt` at noon, for a sun of irradiance 1.
 const NOON_KEY: f32 = 0.115;
-/// Degree to which the eye takes the light's colour for white, as D in CIECAM02; 1 would make a sunset grey. Who sees a picture
-/// sits in another light, and adapts to it less than who stands in it: about .7 there.
+/// Degree to which the eye takes the light's colour for white, as D in CIECAM02; 1 would make a sunset grey. Who sees a
+/// picture sits in another light, and adapts to it less than who stands in it.
 const WHITE_ADAPTED: f32 = 0.3;
 
 /// The cloudless sky.
