@@ -133,7 +133,7 @@ fn add_scene(
     let tree: TreeParams = genome.read(space)?;
 
     let landform = graph.add(scene, LandStage { params: genome.read(space)?, side });
-    let tree_textures = graph.add(scene, TreeTexturesStage { params: genome.read(space)? });
+    let tree_textures = graph.add(scene, TreeTexturesStage::new(genome.read(space)?));
     let embedded = graph.part(tree_textures, TreeTexturesStage::without_mip_levels);
     let trees = [0, 1, 2, 3, 4]
         .map(|index| graph.add(scene, TreeStage { params: tree.clone(), index, textures: embedded }));

@@ -36,6 +36,7 @@ fn images(pictures: &[Vec<u8>; 3]) -> TreeTextures<Picture<'_>> {
         leaf: vec![embedded(&pictures[2])],
         blossom: Vec::new(),
         bark_linear: [0.1; 3],
+        is_thin: false,
         leaf_small: Image8::default(),
         blossom_small: Image8::default(),
         alpha_cutoff: 0.5,

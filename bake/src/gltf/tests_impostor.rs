@@ -74,6 +74,7 @@ fn no_mesh_is_shown_that_is_farther_from_the_tree_than_its_pictures() {
         leaf: vec![picture()],
         blossom: Vec::new(),
         bark_linear: [0.1; 3],
+        is_thin: false,
         leaf_small: Image8::default(),
         blossom_small: Image8::default(),
         alpha_cutoff: 0.5,

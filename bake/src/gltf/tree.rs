@@ -43,7 +43,9 @@ pub fn tree_materials<'a>(
         let Some(picture) = card_picture(levels).filter(|_| used(slot)) else { continue };
         set.slots.push(slot);
         let number = set.add_cards(name, picture, textures.alpha_cutoff, 0.65);
-        set.add_transmission(number, tint);
+        if !(slot == Material::Leaf && textures.is_thin) {
+            set.add_transmission(number, tint);
+        }
     }
     set
 }

@@ -50,12 +50,14 @@ const MASK_SIDE: usize = 32;
 pub struct AlphaMask {
     /// A word a row from the top, a bit a texel from the left.
     rows: [u32; MASK_SIDE],
+    /// The same of texels in which anything is.
+    reach: [u32; MASK_SIDE],
 }
 
 impl Default for AlphaMask {
     /// Nothing is cut away.
     fn default() -> Self {
-        Self { rows: [u32::MAX; MASK_SIDE] }
+        Self { rows: [u32::MAX; MASK_SIDE], reach: [u32::MAX; MASK_SIDE] }
     }
 }
 
@@ -66,11 +68,16 @@ impl AlphaMask {
             return Self::default();
         }
         let opaque = |pixel: &[u8]| f32::from(pixel[3]) >= 255.0 * cutoff;
-        let mut mask = Self { rows: [0; MASK_SIDE] };
+        let mut rows = [0; MASK_SIDE];
         for (i, _) in image.data.chunks_exact(4).enumerate().filter(|(_, pixel)| opaque(pixel)) {
-            mask.rows[i / MASK_SIDE] |= 1 << (i % MASK_SIDE);
+            rows[i / MASK_SIDE] |= 1 << (i % MASK_SIDE);
         }
-        mask
+        Self { rows, reach: rows }
+    }
+
+    /// The same of lines thinner than the picture's texels, which reach wherever alpha is above 0.
+    pub fn of_lines(image: &Image8, cutoff: f32) -> Self {
+        Self { reach: Self::of(image, 1.0 / 255.0).rows, ..Self::of(image, cutoff) }
     }
 
     /// Whether the texture is opaque at texture coordinates; it is nowhere outside of [0, 1], but for rounding.
@@ -96,14 +103,14 @@ impl AlphaMask {
         *self == Self::default()
     }
 
-    /// Texture coordinates of the corners of the first and the last opaque texel of each row: all of the texture's convex
-    /// hull is among them.
+    /// Texture coordinates of the corners of the first and the last texel of each row in which anything is: all of the convex
+    /// hull of what is shown is among them.
     pub fn outline(&self) -> impl Iterator<Item = [f32; 2]> {
         let of_row = |(y, row): (usize, &u32)| {
             let ends = [row.trailing_zeros(), 32 - row.leading_zeros()];
             ends.map(|x| [y, y + 1].map(|y| [x as f32, y as f32].map(|t| t / MASK_SIDE as f32)))
         };
-        let rows = self.rows.iter().enumerate().filter(|(_, row)| **row != 0);
+        let rows = self.reach.iter().enumerate().filter(|(_, row)| **row != 0);
         rows.flat_map(of_row).flatten()
     }
 }

@@ -27,14 +27,17 @@ pub struct TreeTextures<P> {
     /// Tiling tangent-space bark normals, RGB.
     pub bark_normal: P,
     /// Leaf card with its mip levels, sRGB with alpha, RGBA; colour bled under the transparent texels. Every level's
-    /// alpha keeps the coverage of level 0 at the cutoff. Empty on a bare tree.
+    /// alpha keeps the coverage of level 0 at the cutoff; only level 0 of what is thin, since alpha of plain averages is the
+    /// share that is covered.
     pub leaf: Vec<P>,
     /// Blossom card, likewise.
     pub blossom: Vec<P>,
+    /// Whether the leaf card holds bare twigs, lines thinner than the texels of most of its mip levels.
+    pub is_thin: bool,
     /// Mean colour of the bark, linear RGB.
     pub bark_linear: [f32; 3],
     /// The leaf card's mip level of 32 × 32 pixels, from which templates are simplified and their impostors made: these
-    /// need a card's shape and colours, but nothing finer. Empty on a bare tree.
+    /// need a card's shape and colours, but nothing finer.
     pub leaf_small: Image8,
     /// Blossom card, likewise.
     pub blossom_small: Image8,
@@ -62,6 +65,7 @@ impl<P> TreeTextures<P> {
             bark_normal: f(&self.bark_normal)?,
             leaf: self.leaf.iter().map(&mut f).collect::<Result<_, _>>()?,
             blossom: self.blossom.iter().map(&mut f).collect::<Result<_, _>>()?,
+            is_thin: self.is_thin,
             bark_linear: self.bark_linear,
             leaf_small: self.leaf_small.clone(),
             blossom_small: self.blossom_small.clone(),

@@ -32,9 +32,9 @@ const LOOKED_AT: usize = 160;
 pub fn traits(tree: &TreeParams, placement: &PlacementParams) -> Vec<Vec<f32>> {
     let measures = measure(tree);
     let TreeMeasures { height_m, crown_radius_m, density, trunk_radius_m, .. } = measures;
-    // Bark is seen where leaves are not.
     let leafy = 1.0 - libm::expf(-density);
-    let crown = oklab(lerp_array(bark(tree.bark_tone), measures.foliage_linear, leafy));
+    // Bark is seen where leaves and twigs are not.
+    let crown = oklab(lerp_array(bark(tree.bark_tone), measures.foliage_linear, measures.veil));
     let trunk = oklab(bark(tree.bark_tone));
     let standing = standing(placement, &measures);
     vec![

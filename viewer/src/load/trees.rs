@@ -102,14 +102,15 @@ fn build(
             if template.materials.len() < materials.len() {
                 let material = read_material(document, &material)?;
                 let clusters = material.alpha_cutoff.is_some() && Some(number as u32) == template.clusters;
-                template.materials.push(Material { clusters, ..material });
+                template.materials.push(Material { clusters, thin: material.thin && !clusters, ..material });
             }
             let first_vertex = template.vertices.len() as u32 - base_vertex;
             let delta = if last { None } else { level.texcoord_deltas.get(number_of_part).copied() };
             let mut part = vertices(document, &primitive, delta)?;
             let is_masked = template.materials[slot].alpha_cutoff.is_some();
             let strip = level.strips.get(number_of_part).filter(|_| !is_masked);
-            if is_masked {
+            // What is thin gives no shade.
+            if is_masked && !template.materials[slot].thin {
                 shade_crown(&mut part);
             }
             let count = part.len();
@@ -336,15 +337,18 @@ fn read_material(document: &Document, material: &gltf::Material<'_>) -> Result<M
         let (resource, mipmaps) = image_files(document, &image)?;
         images::with_mips(document, &resource, &mipmaps)
     };
+    let color = pbr.base_color_texture().map(|info| read(info.texture())).transpose()?;
+    let alpha_cutoff = match material.alpha_mode() {
+        gltf::material::AlphaMode::Opaque => None,
+        _ => Some(material.alpha_cutoff().unwrap_or(0.5)),
+    };
     Ok(Material {
         name: material.name().unwrap_or("unnamed").to_owned(),
-        color: pbr.base_color_texture().map(|info| read(info.texture())).transpose()?,
+        thin: alpha_cutoff.is_some() && color.as_ref().is_some_and(|color| color.levels.len() == 1),
+        color,
         color_factor: pbr.base_color_factor(),
         normal: material.normal_texture().map(|info| read(info.texture())).transpose()?,
-        alpha_cutoff: match material.alpha_mode() {
-            gltf::material::AlphaMode::Opaque => None,
-            _ => Some(material.alpha_cutoff().unwrap_or(0.5)),
-        },
+        alpha_cutoff,
         clusters: false,
     })
 }

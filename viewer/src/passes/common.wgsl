@@ -74,7 +74,8 @@ struct Material {
     factor: vec4f,
     alpha_cutoff: f32,
     has_normal: f32,
-    unused: vec2f,
+    is_thin: f32,
+    unused: f32,
 }
 
 // A point of a template in the world.
@@ -183,6 +184,13 @@ fn samples_of(share: f32, noise: f32) -> u32 {
 fn cut_out(alpha: f32, cutoff: f32) -> u32 {
     let slope = length(vec2f(dpdx(alpha), dpdy(alpha)));
     return samples_of(saturate((alpha - cutoff) / clamp(slope, 1e-4, 0.5) + 0.5), 0.375);
+}
+
+// A number in [0, 1) by chance, for each cell of a grid (Hoskins, "Hash without sine", 2014).
+fn scattered(cell: vec2f) -> f32 {
+    var p = fract(cell.xyx * 0.1031);
+    p += dot(p, p.yzx + 33.33);
+    return fract((p.x + p.y) * p.z);
 }
 
 // Whether a card shows its picture there: a triangle that holds all of it reaches beyond.

@@ -115,13 +115,6 @@ fn vertex(@location(8) tree: u32, @location(10) shown: vec4f, @builtin(vertex_in
     return out;
 }
 
-// A number in [0, 1) for each cell of a grid, without a pattern (Hoskins 2014).
-fn scattered(cell: vec2f) -> f32 {
-    var p = fract(cell.xyx * 0.1031);
-    p += dot(p, p.yzx + 33.33);
-    return fract((p.x + p.y) * p.z);
-}
-
 // The light of the leaf at a place of a picture, `place` in leaves' widths: one of those that are known, of two that which shows
 // more of itself to the eye more often. Single leaves gleam and are dark, also where all are of one size with the pixels; where
 // they are smaller, and `sharp` less than 1, nearly their mean is seen.

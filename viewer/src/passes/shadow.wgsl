@@ -24,7 +24,8 @@ fn tree(
 
 @fragment
 fn leaf(in: Out) {
-    if (textureSample(color_map, clamped, in.uv).a < material.alpha_cutoff || !is_on_picture(in.uv)) {
+    let cutoff = select(material.alpha_cutoff, scattered(in.clip.xy), material.is_thin == 1.0);
+    if (textureSample(color_map, clamped, in.uv).a <= cutoff || !is_on_picture(in.uv)) {
         discard;
     }
 }

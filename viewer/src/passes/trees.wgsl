@@ -113,8 +113,8 @@ fn leaf_light(in: Out, card: Card, normal: vec3f, bias_m: f32) -> Pixel {
     let toward_sun = dot(normal, view.sun_direction);
     let same_side = toward_sun * dot(normal, to_eye) > 0.0;
     let lit = abs(toward_sun) * 0.75 + 0.25;
-    // Chlorophyll takes red and blue on the way through.
-    let through = albedo * vec3f(0.75, 0.9, 0.3);
+    // Chlorophyll takes red and blue on the way through; wood lets none through.
+    let through = albedo * vec3f(0.75, 0.9, 0.3) * (1.0 - material.is_thin);
     let reflected = select(through * 0.6, albedo * 0.8, same_side) * lit;
     let facing = max(dot(-to_eye, view.sun_direction), 0.0);
     let glow = 0.6 * facing * facing * facing * facing * facing * facing;
@@ -134,7 +134,11 @@ struct Card {
 fn card_at(in: Out) -> Card {
     let texel = textureSample(color_map, clamped, in.uv);
     let albedo = vec4f(in.color, 1.0) * material.factor * texel;
-    let samples = cut_out(albedo.a, material.alpha_cutoff);
+    var samples = cut_out(albedo.a, material.alpha_cutoff);
+    if (material.is_thin == 1.0) {
+        // By another number for each card that may lie there.
+        samples = samples_of(albedo.a, scattered(floor(in.clip.xy) + 61.7 * floor(4.0 * in.world.xy)));
+    }
     if (samples == 0u || !is_on_picture(in.uv) || !is_shown(in.clip.xy, in.shown) || is_beyond(in.color)) {
         discard;
     }

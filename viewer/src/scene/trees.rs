@@ -100,6 +100,9 @@ pub struct Material {
     pub normal: Option<Image>,
     /// Pixels below this alpha are not drawn; `None` for opaque materials.
     pub alpha_cutoff: Option<f32>,
+    /// Whether it shows lines thinner than its texels: its mip levels are plain averages, so that alpha is the share that is
+    /// covered.
+    pub thin: bool,
     /// Whether it shows pictures of clusters of leaves.
     pub clusters: bool,
 }

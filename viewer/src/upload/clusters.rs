@@ -126,6 +126,7 @@ mod tests {
             color_factor: [1.0; 4],
             normal: None,
             alpha_cutoff: Some(0.5),
+            thin: false,
             clusters: true,
         };
         let corner = |uv| TreeVertex { uv, ..TreeVertex::default() };

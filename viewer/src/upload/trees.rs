@@ -78,8 +78,10 @@ pub struct MaterialUniform {
     pub alpha_cutoff: f32,
     /// 1 if there is a normal texture.
     pub has_normal: f32,
+    /// 1 if alpha is the share that is covered.
+    pub is_thin: f32,
     /// Unused.
-    pub unused: [f32; 2],
+    pub unused: f32,
 }
 
 /// All trees of a landscape on the device.
@@ -179,7 +181,8 @@ impl Uploader {
             factor: material.color_factor,
             alpha_cutoff: material.alpha_cutoff.unwrap_or(0.0),
             has_normal: if material.normal.is_some() { 1.0 } else { 0.0 },
-            unused: [0.0; 2],
+            is_thin: if material.thin { 1.0 } else { 0.0 },
+            unused: 0.0,
         };
         let image = |image: &Option<Image>, otherwise: [u8; 4], kind: ImageUse| match image {
             Some(image) if material.clusters => self.sheet(image, kind),
@@ -187,7 +190,7 @@ impl Uploader {
             None => self.image(&Image::of_one_pixel(otherwise), kind),
         };
         let masked = material.alpha_cutoff.is_some();
-        let cutout_or_color = if masked { ImageUse::Cutout } else { ImageUse::Color };
+        let cutout_or_color = if masked && !material.thin { ImageUse::Cutout } else { ImageUse::Color };
         TreeMaterial {
             name: material.name.clone(),
             masked,

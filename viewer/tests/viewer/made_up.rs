@@ -150,6 +150,7 @@ pub fn template(name: &str, errors_m: &[f32]) -> Template {
             color_factor: [1.0; 4],
             normal: None,
             alpha_cutoff: None,
+            thin: false,
             clusters: false,
         }],
         clusters: None,

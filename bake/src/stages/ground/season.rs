@@ -34,7 +34,7 @@ const DORMANT: [Rgb; 2] = [[0.090, 0.098, 0.034], [0.265, 0.220, 0.104]];
 const FRESH: [Rgb; 2] = [[0.040, 0.092, 0.016], [0.090, 0.140, 0.032]];
 /// Bare twigs, and bracken that has turned.
 const TWIGS: Rgb = [0.105, 0.078, 0.055];
-const BRACKEN: Rgb = [0.165, 0.085, 0.034];
+const BRACKEN: Rgb = [0.140, 0.086, 0.045];
 
 /// How far leaves of a hue have turned: 1 where they are yellow or red, 0 where they are green.
 pub(super) fn turned(leaf_hue_deg: f32) -> f32 {

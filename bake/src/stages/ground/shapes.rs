@@ -151,7 +151,7 @@ pub(super) fn flower() -> PlantShape {
 pub(super) fn fern() -> PlantShape {
     let mut d = Drawing::new(62);
     let fronds: Vec<(f32, f32)> =
-        (0..7).map(|k| (k as f32 / 7.0 * TAU + 0.5 * d.unit(), 0.8 + 0.4 * d.unit())).collect();
+        (0..8).map(|k| (k as f32 / 8.0 * TAU + 0.5 * d.unit(), 0.75 + 0.5 * d.unit())).collect();
     // Along a frond, 0 to 1.
     let spine = |turn: f32, long: f32, t: f32| {
         heading(turn) * (0.52 * long * t) + Vec3::Y * (0.42 * long * libm::sinf(2.3 * t) + 0.02)
@@ -159,19 +159,22 @@ pub(super) fn fern() -> PlantShape {
     for &(turn, long) in &fronds {
         let side = Vec3::new(-libm::sinf(turn), 0.0, libm::cosf(turn));
         let [a, b, c] = [0.0, 0.45, 1.0].map(|t| spine(turn, long, t));
-        d.leaf([a, b + 0.02 * side, b - 0.02 * side], [0.0, 0.5, 0.5]);
-        d.leaf([b - 0.02 * side, b + 0.02 * side, c], [0.5, 0.5, 1.0]);
+        d.leaf([a, b + 0.013 * side, b - 0.013 * side], [0.0, 0.5, 0.5]);
+        d.leaf([b - 0.013 * side, b + 0.013 * side, c], [0.5, 0.5, 1.0]);
     }
     d.coarse();
     for &(turn, long) in &fronds {
         let side = Vec3::new(-libm::sinf(turn), -0.12, libm::cosf(turn));
-        for k in 0..9 {
-            let t = 0.12 + 0.095 * k as f32;
-            let reach = 0.15 * long * (1.0 - t) + 0.025;
-            let (near, far) = (spine(turn, long, t - 0.028), spine(turn, long, t + 0.034));
+        for k in 0..13 {
+            // Longest at a third of the frond; each hangs a little more or less and has a tint of its own.
+            let t = 0.12 + 0.067 * k as f32;
+            let reach = 0.17 * long * (1.0 - t) * (0.45 + 1.8 * t).min(1.0) + 0.012;
+            let (near, far) = (spine(turn, long, t - 0.012), spine(turn, long, t + 0.026));
             for way in [-1.0, 1.0] {
-                let side = Vec3::new(way * side.x, side.y, way * side.z);
-                d.leaf([near, far, spine(turn, long, t + 0.06) + reach * side], [t, t, (t + 0.5).min(1.0)]);
+                let hang = side.y - 0.5 * d.unit();
+                let side = Vec3::new(way * side.x, hang, way * side.z);
+                let (at_rib, at_tip) = (0.7 * t * d.unit(), (0.2 + 0.5 * t + 0.5 * d.unit()).min(1.0));
+                d.leaf([near, far, spine(turn, long, t + 0.07) + reach * side], [at_rib, at_rib, at_tip]);
             }
         }
     }

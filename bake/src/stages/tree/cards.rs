@@ -12,6 +12,8 @@ use super::params::{Habit, TreeParams, autumn, card_length_m};
 use super::skeleton::{Skeleton, Stem, perpendicular};
 use crate::seed::Dice;
 
+/// Cards on each outermost branch of a tree in winter.
+const BARE_TWIGS: u32 = 3;
 /// Golden angle: successive twigs around a stem.
 const GOLDEN_RAD: f32 = 2.399_963;
 /// How much a card may grow to make up for cards that the budget does not allow.
@@ -64,7 +66,7 @@ pub(super) fn place(params: &TreeParams, budget: &Budget, skeleton: &Skeleton, d
     let (clump, clump_tint, cards) = (u32::MAX, Vec2::ZERO, Vec::with_capacity(budget.max_cards as usize));
     let mut placer = Placer { params, budget, skeleton, dice, length_m, clump, clump_tint, cards };
     match (budget.levels, budget.habit) {
-        _ if budget.bare => {}
+        _ if budget.dead => {}
         (1, _) => placer.palm(),
         (_, Habit::Frond) => placer.tufts(),
         _ => placer.twigs(),
@@ -142,7 +144,8 @@ impl Placer<'_> {
         let (budget, skeleton) = (self.budget, self.skeleton);
         let bearers = bearers(budget, skeleton);
         let outer = skeleton.stems.iter().filter(|stem| stem.level == budget.levels - 1).count();
-        let wish = (self.params.leaves_per_stem * outer as u32) as f32 * 1.15;
+        let per_stem = if budget.habit == Habit::Twigs { BARE_TWIGS } else { self.params.leaves_per_stem };
+        let wish = (per_stem * outer as u32) as f32 * 1.15;
         // However few its stems, a tree in leaf has a crown.
         let wish = wish.max(0.12 * budget.max_cards as f32);
         let count = wish.min(budget.max_cards as f32);
@@ -266,7 +269,11 @@ impl Placer<'_> {
         let blossom = if habit == Habit::Frond { 0.0 } else { self.params.blossom };
         card.blossom = self.dice.unit() < blossom;
         card.mirrored = self.dice.unit() < 0.5;
-        let spread = if card.blossom { 0.03 } else { 0.05 + 0.13 * autumn(self.params.leaf_hue_deg) };
+        let spread = match habit {
+            _ if card.blossom => 0.03,
+            Habit::Twigs => 0.05,
+            _ => 0.05 + 0.13 * autumn(self.params.leaf_hue_deg),
+        };
         let light = 0.9 + 0.06 * bright;
         card.tint = Vec3::new(1.0 + spread * hue, 1.0 - 0.4 * spread * hue, 1.0 - spread * hue) * light;
         // Blossom comes before the leaves are grown.

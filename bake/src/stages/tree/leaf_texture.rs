@@ -17,10 +17,12 @@ use crate::seed::Dice;
 const SIZE: usize = 256;
 /// Albedo of young wood, linear.
 const TWIG: Vec3 = Vec3::new(0.10, 0.062, 0.033);
+/// The same in winter, when nothing green is among it.
+pub(super) const WINTER_TWIG: Vec3 = Vec3::new(0.078, 0.053, 0.038);
 
 /// The blossom card; one transparent texel if the template does not blossom.
 pub(super) fn paint_blossom(params: &TreeTextureParams) -> Vec<Image8> {
-    let habit = Habit::of(params.leaf_shape, params.levels);
+    let habit = params.habit();
     if params.blossom <= 0.0 || habit == Habit::Frond {
         return vec![Image8::new(1, 1, 4)];
     }
@@ -31,7 +33,7 @@ pub(super) fn paint_blossom(params: &TreeTextureParams) -> Vec<Image8> {
 
 /// The leaf card.
 pub(super) fn paint_leaves(params: &TreeTextureParams) -> Vec<Image8> {
-    let habit = Habit::of(params.leaf_shape, params.levels);
+    let habit = params.habit();
     let mut brush = Brush::new(params, habit, Outline::new(params.leaf_shape, params.leaf_aspect), 0);
     let card_m = card_length_m(habit, params.levels, params.height_m, params.leaf_size_m);
     let leaf = (params.leaf_size_m / card_m).clamp(0.16, 0.36);
@@ -40,6 +42,7 @@ pub(super) fn paint_leaves(params: &TreeTextureParams) -> Vec<Image8> {
         Habit::Needle => brush.needles(leaf),
         Habit::Willow => brush.willow(leaf.clamp(0.2, 0.3)),
         Habit::Broad => brush.broad(leaf),
+        Habit::Twigs => brush.bare_twigs(),
     }
     brush.finished()
 }
@@ -51,6 +54,7 @@ struct Brush {
     hue_deg: f32,
     /// Pairs of side veins of a leaf.
     pairs: f32,
+    twig: Vec3,
 }
 
 /// The side of the kth leaf of a twig: 1 or −1.
@@ -75,6 +79,7 @@ impl Brush {
             outline,
             dice: Dice::new(params.tree_seed, "tree texture", card),
             hue_deg: params.leaf_hue_deg,
+            twig: if habit == Habit::Twigs { WINTER_TWIG } else { TWIG },
             pairs: [7.0, 8.0, 9.0, 8.0, 6.0, 6.0, 0.0, 0.0][params.leaf_shape.min(7) as usize],
         }
     }
@@ -110,7 +115,7 @@ impl Brush {
             let t = step as f32 / STEPS as f32;
             let next = at + towards(angle) * (length / STEPS as f32);
             let radii = (radius * (1.0 - 0.7 * t), radius * (1.0 - 0.7 * (t + 1.0 / STEPS as f32)));
-            self.canvas.stroke(at, next, radii, TWIG * (0.9 + 0.2 * t));
+            self.canvas.stroke(at, next, radii, self.twig * (0.9 + 0.2 * t));
             angle += bend / STEPS as f32;
             at = next;
             points.push((at, angle));
@@ -141,6 +146,25 @@ impl Brush {
         }
         self.spots(&main, leaf, if fine { 0.45 } else { 0.16 }, &mut spots);
         self.leaves(&spots, leaf, (0.95, 0.15));
+    }
+
+    /// A twig in winter, which forks and forks again: few lines, for what is finer than a texel of the mip levels would clot.
+    fn bare_twigs(&mut self) {
+        const SIDE_TWIGS: usize = 7;
+        let bend = 0.3 * self.dice.signed();
+        let main = self.twig(Vec2::ZERO, -0.4 * bend, 0.95, bend, 0.0095);
+        for k in 0..SIDE_TWIGS {
+            let place = (k as f32 + 0.3 * self.dice.signed()).max(0.0) / SIDE_TWIGS as f32;
+            let (at, angle) = point(&main, 0.08 + 0.85 * place);
+            let sign = alternating(k);
+            let turn = angle + sign * (0.7 + 0.2 * self.dice.signed());
+            let length = (0.55 - 0.38 * place) * (1.0 + 0.2 * self.dice.signed());
+            let side = self.twig(at, turn, length, -0.5 * sign, 0.0075);
+            if length > 0.3 {
+                let (at, angle) = point(&side, 0.45 + 0.1 * self.dice.signed());
+                self.twig(at, angle + 0.75 * sign, 0.4 * length, -0.4 * sign, 0.006);
+            }
+        }
     }
 
     /// Leaves at these places; those laid on later are lighter.

@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use super::budget::Budget;
 use super::cards::{self, Card};
+use super::leaf_texture::WINTER_TWIG;
 use super::params::{Habit, TreeParams};
 use super::skeleton;
 use crate::model::leaf_color;
@@ -25,7 +26,9 @@ pub struct TreeMeasures {
     pub profile: [f32; PROFILE],
     /// Area of leaves over that of the crown's outline: 0 for a bare tree, about 5 for a dense one.
     pub density: f32,
-    /// Mean colour of leaves and blossom, linear RGB.
+    /// Part of the crown's outline that leaves fill, or twigs of a tree in winter, from 0 to 1.
+    pub veil: f32,
+    /// Mean colour of leaves and blossom, or of twigs, linear RGB.
     pub foliage_linear: [f32; 3],
     /// Part of the leaves that is blossom.
     pub blossom: f32,
@@ -60,15 +63,22 @@ pub fn measure(params: &TreeParams) -> TreeMeasures {
     let (base_m, top_m) = (at(0.03), at(0.99));
     let height_m = skeleton.nodes.iter().map(|node| node.at.y).fold(top_m, f32::max).max(0.1);
     let outline_m2 = (1.6 * crown_radius_m * (top_m - base_m).max(crown_radius_m)).max(0.1);
-    let leaf_m2: f32 = cards.iter().map(|card| LEAFY * card.length_m * card.width_m).sum();
+    let cards_m2: f32 = cards.iter().map(|card| card.length_m * card.width_m).sum();
+    let in_winter = budget.habit == Habit::Twigs;
+    let covered = if in_winter { budget.habit.covered() } else { LEAFY };
+    let depth = covered * cards_m2 / outline_m2;
     let count = cards.len().max(1) as f32;
     TreeMeasures {
         height_m,
         crown_radius_m,
         crown_base: (base_m / height_m).clamp(0.0, 1.0),
         profile: profile(&points, base_m, top_m),
-        density: leaf_m2 / outline_m2,
-        foliage_linear: foliage(params.leaf_hue_deg, &cards),
+        density: if in_winter { 0.0 } else { depth },
+        veil: 1.0 - libm::expf(-depth),
+        foliage_linear: foliage(
+            if in_winter { WINTER_TWIG } else { leaf_color(params.leaf_hue_deg) },
+            &cards,
+        ),
         blossom: cards.iter().filter(|card| card.blossom).count() as f32 / count,
         upward: cards.iter().map(|card| card.axis.y - 0.5 * card.droop_rad).sum::<f32>() / count,
         trunk_radius_m,
@@ -91,10 +101,9 @@ fn profile(points: &[Vec3], base_m: f32, top_m: f32) -> [f32; PROFILE] {
     widths.map(|width| width / widest)
 }
 
-/// What cards of leaves, and of blossom among leaves, look like from afar.
-fn foliage(hue_deg: f32, cards: &[Card]) -> [f32; 3] {
+/// What cards of leaves of this colour, and of blossom among leaves, look like from afar.
+fn foliage(leaf: Vec3, cards: &[Card]) -> [f32; 3] {
     const BLOSSOM: Vec3 = Vec3::new(0.72, 0.55, 0.58);
-    let leaf = leaf_color(hue_deg);
     let of = |card: &Card| card.tint * if card.blossom { BLOSSOM } else { leaf };
     let sum: Vec3 = cards.iter().map(of).sum();
     if cards.is_empty() { leaf.to_array() } else { (sum / cards.len() as f32).to_array() }

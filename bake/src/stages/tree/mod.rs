@@ -43,6 +43,7 @@ pub use crease::crease_normals;
 pub use impostor::{drawn_from_afar, impostor};
 pub use levelled::{Levelled, levelled};
 pub use measure::{TreeMeasures, measure};
+use params::Habit;
 pub use params::{TreeParams, TreeTextureParams};
 
 /// Texels of leaf and blossom cards with less alpha than this are not drawn.
@@ -61,7 +62,7 @@ pub fn template(params: &TreeParams, index: u32) -> TreeTemplate {
     let budget = Budget::new(params);
     let skeleton = skeleton::grow(params, &budget, &mut dice);
     let cards = cards::place(params, &budget, &skeleton, &mut dice);
-    let shade = shade::Shade::new(&skeleton, &cards);
+    let shade = shade::Shade::new(&skeleton, &cards, budget.habit.covered());
 
     let mut mesh = bark::skin(params, &budget, &skeleton, &shade);
     for blossom in [false, true] {
@@ -78,7 +79,7 @@ pub fn template(params: &TreeParams, index: u32) -> TreeTemplate {
 /// Paints the textures that all templates of a scene share: tiling bark with its normals, and cards of leaves
 /// and of blossom with mip chains that keep their coverage. Square; sRGB where the field's name says so.
 pub fn textures(params: &TreeTextureParams) -> TreeTextures<Image8> {
-    let ((bark_color, bark_normal), (leaf, blossom)) = join(
+    let ((bark_color, bark_normal), (mut leaf, blossom)) = join(
         || bark_texture::paint(params),
         || join(|| leaf_texture::paint_leaves(params), || leaf_texture::paint_blossom(params)),
     );
@@ -86,12 +87,17 @@ pub fn textures(params: &TreeTextureParams) -> TreeTextures<Image8> {
         let small = levels.get(SMALL_LEVEL).or(levels.last());
         small.cloned().unwrap_or_default()
     });
+    let is_thin = params.habit() == Habit::Twigs;
+    if is_thin {
+        leaf.truncate(1);
+    }
     TreeTextures {
         bark_linear: bark_texture::mean_linear(&bark_color),
         bark_color,
         bark_normal,
         leaf,
         blossom,
+        is_thin,
         leaf_small,
         blossom_small,
         alpha_cutoff: ALPHA_CUTOFF,

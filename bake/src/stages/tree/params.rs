@@ -48,6 +48,10 @@ impl TreeParams {
     pub(super) fn is_cane(&self) -> bool {
         self.radius_ratio < CANE_RATIO
     }
+
+    pub(super) fn habit(&self) -> Habit {
+        Habit::of(self.leaf_shape, self.levels, self.leaves_per_stem)
+    }
 }
 
 /// Genes of leaf, blossom and bark textures, for [`super::textures`].
@@ -58,6 +62,8 @@ pub struct TreeTextureParams {
     pub height_m: f32,
     /// With 1, every leaf shape is set out along a frond.
     pub levels: u32,
+    /// With 0, a card holds bare twigs; else all is the same.
+    pub leaves_per_stem: u32,
     pub leaf_shape: u32,
     /// How many leaves fit on a card.
     pub leaf_size_m: f32,
@@ -68,6 +74,12 @@ pub struct TreeTextureParams {
     /// 0 paints no blossom (an image of one texel).
     pub blossom: f32,
     pub bark_tone: f32,
+}
+
+impl TreeTextureParams {
+    pub(super) fn habit(&self) -> Habit {
+        Habit::of(self.leaf_shape, self.levels, self.leaves_per_stem)
+    }
 }
 
 /// How foliage is set out on cards.
@@ -81,12 +93,15 @@ pub(super) enum Habit {
     Needle,
     /// Fronds: folded, arching strips.
     Frond,
+    /// Bare twigs of a tree in winter: flat cards.
+    Twigs,
 }
 
 impl Habit {
-    /// From the genes `leaf_shape` and `levels`.
-    pub fn of(leaf_shape: u32, levels: u32) -> Self {
+    /// From genes.
+    fn of(leaf_shape: u32, levels: u32, leaves_per_stem: u32) -> Self {
         match (levels, leaf_shape) {
+            (2.., _) if leaves_per_stem == 0 => Self::Twigs,
             (0 | 1, _) | (_, 7) => Self::Frond,
             (_, 2) => Self::Willow,
             (_, 6) => Self::Needle,
@@ -97,7 +112,7 @@ impl Habit {
     /// Rows of vertices along a card, and vertices in a row.
     pub fn grid(self) -> (u32, u32) {
         match self {
-            Self::Broad => (2, 2),
+            Self::Broad | Self::Twigs => (2, 2),
             Self::Willow | Self::Needle => (3, 2),
             Self::Frond => (6, 3),
         }
@@ -109,10 +124,15 @@ impl Habit {
         (rows - 1) * (columns - 1) * 2
     }
 
+    /// The part of a card that is not gaps.
+    pub fn covered(self) -> f32 {
+        if self == Self::Twigs { 0.1 } else { 0.5 }
+    }
+
     /// Width of a card over its length.
     pub fn card_aspect(self) -> f32 {
         match self {
-            Self::Broad => 0.92,
+            Self::Broad | Self::Twigs => 0.92,
             Self::Needle => 0.78,
             Self::Willow | Self::Frond => 0.42,
         }
@@ -128,6 +148,7 @@ pub(super) fn card_length_m(habit: Habit, levels: u32, height_m: f32, leaf_size_
         Habit::Broad => (leaf_size_m * 4.5).clamp(0.16 + 0.022 * height_m, 0.25 + 0.05 * height_m),
         Habit::Willow => (leaf_size_m * 7.0).clamp(0.3 + 0.04 * height_m, 0.4 + 0.075 * height_m),
         Habit::Needle => (leaf_size_m * 10.0).clamp(0.25 + 0.038 * height_m, 0.35 + 0.055 * height_m),
+        Habit::Twigs => 0.25 + 0.035 * height_m,
         Habit::Frond if levels <= 1 => (1.1 + 0.17 * height_m + 3.5 * leaf_size_m).min(0.7 * height_m),
         Habit::Frond => 0.35 + 0.035 * height_m + 1.5 * leaf_size_m,
     }

@@ -227,7 +227,7 @@ impl<'a> Drawing<'a> {
         let sunlit = normal.dot(SUN).max(0.0);
         let (color, sunlit, leaf) = match triangle.surface {
             Surface::Wood(color) => (color, sunlit, false),
-            Surface::Card(card) => (card.at(u, v), sunlit, true),
+            Surface::Card(card) => (card.at(u, v), sunlit, !card.is_wood),
             Surface::Atlas(atlas) => {
                 let (color, sunlit) = atlas.at(u, v);
                 (color, sunlit, true)

@@ -23,8 +23,8 @@ pub(super) struct Shade {
 }
 
 impl Shade {
-    /// Gathers the cards.
-    pub fn new(skeleton: &Skeleton, cards: &[Card]) -> Self {
+    /// Gathers the cards, of which so much is not gaps.
+    pub fn new(skeleton: &Skeleton, cards: &[Card], covered: f32) -> Self {
         let nodes = skeleton.nodes.iter().map(|node| node.at);
         let points = nodes.chain(cards.iter().map(Card::middle));
         let (lo, hi) = points.fold((Vec3::MAX, Vec3::MIN), |(lo, hi), p| (lo.min(p), hi.max(p)));
@@ -33,8 +33,7 @@ impl Shade {
         for card in cards {
             let g = (card.middle() - lo) / cell_m;
             let [x, y, z] = g.to_array().map(|v| (v.max(0.0) as usize).min(SIDE - 1));
-            // Half of a card is gaps.
-            area[(y * SIDE + z) * SIDE + x] += 0.5 * card.length_m * card.width_m;
+            area[(y * SIDE + z) * SIDE + x] += covered * card.length_m * card.width_m;
         }
         Self { low: lo, cell_m, light: fall(&area, cell_m) }
     }

@@ -457,7 +457,7 @@ impl Grower<'_> {
         let radius_m = parent.radius_m * libm::powf(ratio, self.params.radius_power);
         let thin = [0.0, 0.007, 0.0055, 0.005][level as usize];
         // Without leaves, only twigs are seen.
-        let min_m = if self.budget.bare { 0.005 + 0.0003 * self.params.height_m } else { 0.0025 };
+        let min_m = if self.budget.dead { 0.005 + 0.0003 * self.params.height_m } else { 0.0025 };
         radius_m.clamp(thin * length_m, (0.045 * length_m).max(0.004)).min(0.8 * parent_radius_m).max(min_m)
     }
 

@@ -17,12 +17,12 @@ const MIN_MIP_PX: u32 = 16;
 /// Tree genes → bark, leaf and blossom.
 #[derive(Serialize)]
 pub struct TreeTexturesStage {
-    pub params: TreeTextureParams,
+    params: TreeTextureParams,
 }
 
 impl Stage for TreeTexturesStage {
     const NAME: &'static str = "tree textures";
-    const VERSION: u32 = 6;
+    const VERSION: u32 = 7;
     type Output = TreeTextures<File>;
 
     fn run(&self, context: &Context<'_>) -> Result<TreeTextures<File>, StageError> {
@@ -42,6 +42,7 @@ impl Stage for TreeTexturesStage {
             bark_normal,
             leaf,
             blossom,
+            is_thin: textures.is_thin,
             bark_linear: textures.bark_linear,
             leaf_small: textures.leaf_small,
             blossom_small: textures.blossom_small,
@@ -51,6 +52,11 @@ impl Stage for TreeTexturesStage {
 }
 
 impl TreeTexturesStage {
+    /// How many leaves a tree has is nothing to its textures.
+    pub fn new(params: TreeTextureParams) -> Self {
+        Self { params: TreeTextureParams { leaves_per_stem: params.leaves_per_stem.min(1), ..params } }
+    }
+
     /// The textures that a template's own file embeds.
     pub fn without_mip_levels(textures: &TreeTextures<File>) -> TreeTextures<File> {
         let mut textures = textures.clone();
@@ -81,7 +87,7 @@ pub struct TreeFiles {
 
 impl Stage for TreeStage {
     const NAME: &'static str = "tree";
-    const VERSION: u32 = 31;
+    const VERSION: u32 = 32;
     type Output = TreeFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<TreeFiles, StageError> {

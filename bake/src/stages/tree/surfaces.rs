@@ -15,6 +15,8 @@ static LINEAR: LazyLock<[f32; 256]> =
 /// A card's colours, and where it is cut away.
 pub(super) struct Card {
     pub mask: AlphaMask,
+    /// Whether it is of wood.
+    pub is_wood: bool,
     texels: Texels,
 }
 
@@ -57,8 +59,8 @@ impl Texels {
 
 impl Card {
     /// A card's small picture, ready to be drawn; white and opaque where there is none.
-    fn of(image: &Image8) -> Self {
-        Self { mask: AlphaMask::of(image, ALPHA_CUTOFF), texels: Texels::of(image) }
+    fn of(image: &Image8, is_wood: bool) -> Self {
+        Self { mask: AlphaMask::of(image, ALPHA_CUTOFF), is_wood, texels: Texels::of(image) }
     }
 
     pub fn at(&self, u: f32, v: f32) -> Vec3 {
@@ -110,8 +112,8 @@ impl Surfaces {
     pub fn of<P>(textures: &TreeTextures<P>) -> Self {
         Self {
             bark: Vec3::from_array(textures.bark_linear),
-            leaf: Card::of(&textures.leaf_small),
-            blossom: Card::of(&textures.blossom_small),
+            leaf: Card::of(&textures.leaf_small, textures.is_thin),
+            blossom: Card::of(&textures.blossom_small, false),
             clusters: None,
         }
     }

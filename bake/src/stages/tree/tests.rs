@@ -52,6 +52,7 @@ pub(super) fn plain(bark_linear: [f32; 3]) -> TreeTextures<()> {
         leaf: Vec::new(),
         blossom: Vec::new(),
         bark_linear,
+        is_thin: false,
         leaf_small: Image8::default(),
         blossom_small: Image8::default(),
         alpha_cutoff: ALPHA_CUTOFF,
@@ -257,10 +258,34 @@ fn coverage(image: &crate::model::Image8) -> f32 {
 }
 
 #[test]
+fn a_tree_in_winter_bears_twigs_and_dead_wood_nothing() {
+    let (_, winter) = presets().into_iter().find(|(name, _)| name == "winter").expect("a preset");
+    let params: TreeParams = read(&winter);
+    let cards = |params: &TreeParams| {
+        let mesh = template(params, 0).mesh;
+        let parts = mesh.parts.iter().filter(|part| part.material.is_card());
+        parts.map(|part| part.triangles.len()).sum::<usize>()
+    };
+    assert!(cards(&params) > 1000, "{}", cards(&params));
+    assert_eq!(cards(&TreeParams { secondary_branches: 0, ..params.clone() }), 0);
+
+    let params: TreeTextureParams = read(&winter);
+    let made = textures(&params);
+    assert!(made.is_thin && !textures(&TreeTextureParams { leaves_per_stem: 1, ..params }).is_thin);
+    let whole = coverage(&made.leaf[0]);
+    assert!((0.04..0.2).contains(&whole), "twigs leave gaps: {whole}");
+    let brown = |p: &[u8]| p[3] == 0 || (p[0] > p[1] && p[1] > p[2]);
+    assert!(made.leaf[0].data.chunks_exact(4).all(brown), "no leaf is left");
+}
+
+#[test]
 fn mips_keep_their_coverage() {
     for (name, genome) in presets() {
         let made = textures(&read(&genome));
-        for chain in [&made.leaf, &made.blossom] {
+        assert!(!made.is_thin || made.leaf.len() == 1, "{name}: levels of twigs are plain averages");
+        let chains = [&made.leaf, &made.blossom].into_iter().skip(made.is_thin.into());
+        assert!((coverage(&made.leaf_small) - coverage(&made.leaf[0])).abs() < 0.02, "{name}");
+        for chain in chains {
             let whole = coverage(&chain[0]);
             assert_eq!(chain.last().map(|image| image.width), Some(1));
             for level in chain.iter().filter(|level| level.width >= 16) {

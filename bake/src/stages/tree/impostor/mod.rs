@@ -12,7 +12,7 @@ use super::raster::{Drawing, Look};
 use super::surfaces::Surfaces;
 use crate::model::{Impostor, Level, Mesh, TreeTextures};
 
-/// Pixels a side of one picture, of a tree with leaves and of a bare one, whose twigs need more.
+/// Pixels a side of one picture, of a tree with leaves and of one without, whose twigs need more.
 const SIDE: usize = 128;
 const BARE_SIDE: usize = 256;
 /// Each picture is drawn this many times as wide and high, and reduced.
@@ -37,8 +37,7 @@ struct Frame {
 }
 
 impl Frame {
-    fn of(mesh: &Mesh) -> Self {
-        let has_cards = mesh.has_cards();
+    fn of<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> Self {
         let bounds = mesh.bounds();
         let axis = 0.5 * (bounds.min + bounds.max);
         let from_axis = |p: &[f32; 3]| {
@@ -48,7 +47,7 @@ impl Frame {
         let reach_m = mesh.positions.iter().map(from_axis).fold(0.0, f32::max).sqrt();
         let height_m = bounds.max.y - bounds.min.y;
         let size_m = [2.0 * reach_m, height_m].map(|m| (MARGIN * m).max(MIN_SIZE_M));
-        let side = if has_cards { SIDE } else { BARE_SIDE };
+        let side = if mesh.has_cards() && !textures.is_thin { SIDE } else { BARE_SIDE };
         Self { foot_m: axis.with_y(axis.y - 0.5 * size_m[1]), size_m, side }
     }
 
@@ -59,7 +58,7 @@ impl Frame {
 
 /// Draws a template, whose finest or next level `mesh` is, from four sides: the same bytes for any number of threads.
 pub fn impostor<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> Impostor {
-    let frame = Frame::of(mesh);
+    let frame = Frame::of(mesh, textures);
     let surfaces = Surfaces::of(textures);
     let draw = |k: usize| {
         let look = Look::new(k, frame.foot_m, frame.size_m, SAMPLES * frame.side);
@@ -79,8 +78,8 @@ pub fn impostor<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> Impostor {
 }
 
 /// The error in metres that pictures of a template will have.
-pub fn impostor_error_m(mesh: &Mesh) -> f32 {
-    Frame::of(mesh).error_m()
+pub fn impostor_error_m<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> f32 {
+    Frame::of(mesh, textures).error_m()
 }
 
 /// The level of which pictures are drawn: with half of the leaves, which cover as much, in half of the time; a leaf is less
