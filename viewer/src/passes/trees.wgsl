@@ -134,11 +134,9 @@ struct Card {
 fn card_at(in: Out) -> Card {
     let texel = textureSample(color_map, clamped, in.uv);
     let albedo = vec4f(in.color, 1.0) * material.factor * texel;
-    var samples = cut_out(albedo.a, material.alpha_cutoff);
-    if (material.is_thin == 1.0) {
-        // By another number for each card that may lie there.
-        samples = samples_of(albedo.a, scattered(floor(in.clip.xy) + 61.7 * floor(4.0 * in.world.xy)));
-    }
+    // By another number for each card that may lie there.
+    let thin = samples_of(albedo.a, scattered(floor(in.clip.xy) + 61.7 * floor(4.0 * in.world.xy)));
+    let samples = select(cut_out(albedo.a, material.alpha_cutoff), thin, material.is_thin == 1.0);
     if (samples == 0u || !is_on_picture(in.uv) || !is_shown(in.clip.xy, in.shown) || is_beyond(in.color)) {
         discard;
     }
