@@ -327,8 +327,8 @@ fn ferns(palette: &Palette) -> Vec<[Rgb; 2]> {
     let lush = palette.season.fern(palette.growth[1]);
     let tip = |other: Rgb| lerp(lush, palette.season.fern(other), 0.6);
     vec![
-        [lush.map(|c| 0.4 * c), tip([0.055, 0.095, 0.020])],
-        [lush.map(|c| 0.55 * c), tip([0.085, 0.105, 0.030])],
+        [lush.map(|c| 0.6 * c), tip([0.055, 0.095, 0.020])],
+        [lush.map(|c| 0.75 * c), tip([0.085, 0.105, 0.030])],
     ]
 }
 

@@ -5,16 +5,15 @@ use glam::Vec3;
 
 use super::LodOptions;
 use super::aggregate::Aggregate;
-use super::coverage::{Camera, Canvas, Elements, Surfaces};
+use super::coverage::{Camera, Canvas, Detail, Elements, Surfaces};
 use super::state::State;
 use crate::math::{is_close, matching, matching_with};
 use crate::model::AlphaMask;
 
-/// Pixels a side of the views in which many leaves are counted, with the twigs among them, and of those of fewer, as a palm's,
-/// or of bare twigs, which are thin.
-const MANY_PX: usize = 128;
-const FEW_PX: usize = 320;
+/// So many leaves are many; a palm has fewer.
 const MANY: usize = 1000;
+/// Elements of which less than this part is opaque are thin, as bare twigs are.
+const THIN: f32 = 0.25;
 /// Twigs may grow by this part of the mesh's diagonal.
 const MAX_OFFSET: f32 = 0.0025;
 /// Elements may shrink to this part of their scale: flat ones cover more than bent ones.
@@ -71,9 +70,13 @@ impl Calibration {
     ) -> Self {
         let thickens = options.thickens;
         let elements: usize = aggregates.iter().map(Aggregate::living).sum();
+        let is_thin = options.masks.iter().any(|mask| mask.opaque_share() < THIN);
         let diagonal_m = (high - low).max(Vec3::ZERO).length();
         let mut calibration = Self {
-            camera: Camera::of([low, high], if elements < MANY { FEW_PX } else { MANY_PX }),
+            camera: Camera::of(
+                [low, high],
+                if elements < MANY || is_thin { Detail::Few } else { Detail::Many },
+            ),
             masks: options.masks.clone(),
             full_elements: Vec::new(),
             full: 0,

@@ -98,7 +98,7 @@ pub(super) enum Habit {
 }
 
 impl Habit {
-    /// From genes.
+    /// From the genes of these names.
     fn of(leaf_shape: u32, levels: u32, leaves_per_stem: u32) -> Self {
         match (levels, leaf_shape) {
             (2.., _) if leaves_per_stem == 0 => Self::Twigs,
