@@ -44,10 +44,17 @@ impl Drawing {
         self.lit(corners, Vec3::Y + 0.6 * if across.y < 0.0 { -across } else { across }, tints);
     }
 
-    /// A triangle that is lit as if it faced along `normal`, of any length.
+    /// A triangle that is lit as if it faced along `normal`, of any length. Its front is on that side: renderers turn the normal of
+    /// what is seen from behind, and leaves of which one sees the front would be dark.
     pub(super) fn lit(&mut self, corners: [Vec3; 3], normal: Vec3, tints: [f32; 3]) {
         let triangle = [0, 1, 2].map(|k| self.vertex(corners[k], normal, tints[k]));
-        self.shape.triangles.push(triangle);
+        self.triangle(triangle, corners, normal);
+    }
+
+    /// A triangle of vertices that lie there, with its front on the side of `normal`.
+    fn triangle(&mut self, [a, b, c]: [u32; 3], [at_a, at_b, at_c]: [Vec3; 3], normal: Vec3) {
+        let front = (at_b - at_a).cross(at_c - at_a);
+        self.shape.triangles.push(if front.dot(normal) < 0.0 { [a, c, b] } else { [a, b, c] });
     }
 
     /// A stem or a twig of tint 0: two crossed slivers that end in a point, lit from the side.
@@ -303,7 +310,7 @@ pub(super) fn stone(rings: u32) -> PlantShape {
             let round = (p - Vec3::Y * 0.16).normalize_or(Vec3::Y);
             d.vertex(p, outward + 1.1 * round, tint)
         });
-        d.shape.triangles.push(triangle);
+        d.triangle(triangle, corners, outward);
     };
     let n = around as usize;
     for k in 0..n {

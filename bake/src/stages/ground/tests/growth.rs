@@ -231,7 +231,12 @@ fn shapes_stand_on_the_ground_and_are_made_of_proper_triangles() {
         assert!((-0.25..=0.03).contains(&low), "{name} begins at {low} m");
         for corners in &shape.triangles {
             let [a, b, c] = corners.map(|v| glam::Vec3::from_array(shape.positions_m[v as usize]));
-            assert!((b - a).cross(c - a).length() > 1e-6, "{name}: {a} {b} {c}");
+            let front = (b - a).cross(c - a);
+            assert!(front.length() > 1e-6, "{name}: {a} {b} {c}");
+            let lit: glam::Vec3 =
+                corners.map(|v| glam::Vec3::from_array(shape.normals[v as usize])).iter().sum();
+            // Normals are rounded.
+            assert!(front.normalize().dot(lit) > -0.01, "{name} is lit from behind: {a} {b} {c}");
         }
         assert!(scale[0] > 0.0 && scale[0] <= scale[1] && *per_m2 > 0.0, "{name}");
         assert!(shape.tints.iter().all(|tint| (0.0..=1.0).contains(tint)), "{name}");
