@@ -103,7 +103,7 @@ pub(super) fn template_steps(space: &Space, genome: &Genome) -> Result<Templates
                 Step::Records => "records",
             });
         });
-        let impostor = tree::impostor(tree::drawn_from_afar(&made.mesh.levels), &textures);
+        let impostor = tree::impostor(tree::drawn_from_afar(&made.mesh.levels, &textures), &textures);
         ended("pictures from four sides");
         // The textures are made once a scene, and timed there.
         let pictures = textures.map(|_| Picture::Embedded { bytes: &[], mime_type: "image/png" });

@@ -98,10 +98,9 @@ impl AlphaMask {
         u64::from((bit(0) | bit(1) | bit(2) | bit(3)) & (inside(uv[0]) & inside(uv[1])).bitmask())
     }
 
-    /// Which part of the texture is opaque, 0 to 1.
-    pub fn opaque_share(&self) -> f32 {
-        let opaque: u32 = self.rows.iter().map(|row| row.count_ones()).sum();
-        opaque as f32 / (MASK_SIDE * MASK_SIDE) as f32
+    /// Whether it is of lines thinner than its texels.
+    pub fn is_of_lines(&self) -> bool {
+        self.reach != self.rows
     }
 
     /// Whether nothing of the texture is cut away.

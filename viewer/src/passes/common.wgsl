@@ -74,8 +74,7 @@ struct Material {
     factor: vec4f,
     alpha_cutoff: f32,
     has_normal: f32,
-    is_thin: f32,
-    unused: f32,
+    unused: vec2f,
 }
 
 // A point of a template in the world.
@@ -184,6 +183,14 @@ fn samples_of(share: f32, noise: f32) -> u32 {
 fn cut_out(alpha: f32, cutoff: f32) -> u32 {
     let slope = length(vec2f(dpdx(alpha), dpdy(alpha)));
     return samples_of(saturate((alpha - cutoff) / clamp(slope, 1e-4, 0.5) + 0.5), 0.375);
+}
+
+// Of the light that falls on a matt surface in all directions, what an eye sees of it receives so much on average; the cosine
+// is that of the angle between light and eye.
+fn phase(cosine: f32) -> f32 {
+    let c = clamp(cosine, -1.0, 1.0);
+    let angle = acos(c);
+    return 2.0 / (3.0 * PI) * (sqrt(1.0 - c * c) + (PI - angle) * c);
 }
 
 // A number in [0, 1) by chance, for each cell of a grid (Hoskins, "Hash without sine", 2014).

@@ -135,14 +135,6 @@ const SHADOW_BIAS_M = 1.1;
 // than others have more sun, too. By so much farther out a leaf would be that is as bright as all of them.
 const OUTWARD = 1.08;
 
-// Of the light that falls on a matt surface in all directions, what an eye sees of it receives so much on average; the cosine
-// is that of the angle between light and eye.
-fn phase(cosine: f32) -> f32 {
-    let c = clamp(cosine, -1.0, 1.0);
-    let angle = acos(c);
-    return 2.0 / (3.0 * PI) * (sqrt(1.0 - c * c) + (PI - angle) * c);
-}
-
 // How far the middle of a tree lies to the right, at a height, as a part of its picture's width: as it is seen from `ahead` beyond
 // what the picture from a side shows.
 fn shift(template_index: u32, v: f32, ahead: vec2f, side: u32) -> f32 {

@@ -41,6 +41,7 @@ impl Shadow {
                 // The sides of a trunk that face away bound its shadow (second-depth shadow mapping).
                 opaque: trees(None, Some(wgpu::Face::Front)),
                 masked: trees(Some("leaf"), None),
+                thin: trees(Some("twig"), None),
                 clusters: trees(Some("leaf"), None),
             },
             land: compiler.pipeline(&land),

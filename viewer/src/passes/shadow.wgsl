@@ -24,8 +24,15 @@ fn tree(
 
 @fragment
 fn leaf(in: Out) {
-    let cutoff = select(material.alpha_cutoff, scattered(in.clip.xy), material.is_thin == 1.0);
-    if (textureSample(color_map, clamped, in.uv).a <= cutoff || !is_on_picture(in.uv)) {
+    if (textureSample(color_map, clamped, in.uv).a < material.alpha_cutoff || !is_on_picture(in.uv)) {
+        discard;
+    }
+}
+
+// Alpha is the share that twigs cover.
+@fragment
+fn twig(in: Out) {
+    if (textureSample(color_map, clamped, in.uv).a <= scattered(in.clip.xy) || !is_on_picture(in.uv)) {
         discard;
     }
 }

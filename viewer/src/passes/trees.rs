@@ -19,6 +19,7 @@ pub struct Trees {
 pub(super) struct TreePipelines {
     pub opaque: wgpu::RenderPipeline,
     pub masked: wgpu::RenderPipeline,
+    pub thin: wgpu::RenderPipeline,
     pub clusters: wgpu::RenderPipeline,
 }
 
@@ -54,7 +55,7 @@ impl Trees {
                 compiler.pipeline(&PipelineDesc { fragment: Some(fragment), ..cards })
             };
             let opaque = compiler.pipeline(&bark(wireframe));
-            TreePipelines { opaque, masked: cards("leaf"), clusters: cards("cluster") }
+            TreePipelines { opaque, masked: cards("leaf"), thin: cards("twig"), clusters: cards("cluster") }
         };
         let bark_strips = |wireframe: bool| {
             let topology = wgpu::PrimitiveTopology::TriangleStrip;
@@ -99,6 +100,7 @@ impl TreePipelines {
             let (pipeline, draw) = match strips {
                 Some(strips) if !material.masked => (strips, lists + slot),
                 _ if material.clusters => (&self.clusters, slot),
+                _ if material.thin => (&self.thin, slot),
                 _ => (if material.masked { &self.masked } else { &self.opaque }, slot),
             };
             pass.set_pipeline(pipeline);

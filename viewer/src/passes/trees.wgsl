@@ -113,8 +113,8 @@ fn leaf_light(in: Out, card: Card, normal: vec3f, bias_m: f32) -> Pixel {
     let toward_sun = dot(normal, view.sun_direction);
     let same_side = toward_sun * dot(normal, to_eye) > 0.0;
     let lit = abs(toward_sun) * 0.75 + 0.25;
-    // Chlorophyll takes red and blue on the way through; wood lets none through.
-    let through = albedo * vec3f(0.75, 0.9, 0.3) * (1.0 - material.is_thin);
+    // Chlorophyll takes red and blue on the way through.
+    let through = albedo * vec3f(0.75, 0.9, 0.3);
     let reflected = select(through * 0.6, albedo * 0.8, same_side) * lit;
     let facing = max(dot(-to_eye, view.sun_direction), 0.0);
     let glow = 0.6 * facing * facing * facing * facing * facing * facing;
@@ -131,21 +131,43 @@ struct Card {
     samples: u32,
 }
 
+// Colour, and alpha.
+fn picture_at(in: Out) -> vec4f {
+    return vec4f(in.color, 1.0) * material.factor * textureSample(color_map, clamped, in.uv);
+}
+
+fn is_drawn(in: Out, samples: u32) -> bool {
+    return samples != 0u && is_on_picture(in.uv) && is_shown(in.clip.xy, in.shown) && !is_beyond(in.color);
+}
+
 fn card_at(in: Out) -> Card {
-    let texel = textureSample(color_map, clamped, in.uv);
-    let albedo = vec4f(in.color, 1.0) * material.factor * texel;
-    // By another number for each card that may lie there.
-    let thin = samples_of(albedo.a, scattered(floor(in.clip.xy) + 61.7 * floor(4.0 * in.world.xy)));
-    let samples = select(cut_out(albedo.a, material.alpha_cutoff), thin, material.is_thin == 1.0);
-    if (samples == 0u || !is_on_picture(in.uv) || !is_shown(in.clip.xy, in.shown) || is_beyond(in.color)) {
+    let picture = picture_at(in);
+    let samples = cut_out(picture.a, material.alpha_cutoff);
+    if (!is_drawn(in, samples)) {
         discard;
     }
-    return Card(albedo.rgb, samples);
+    return Card(picture.rgb, samples);
 }
 
 @fragment
 fn leaf(in: Out) -> Pixel {
     return leaf_light(in, card_at(in), normalize(in.normal), 0.4);
+}
+
+// Twigs in winter are thinner than the texels of their picture, whose alpha is the share that they cover, and than pixels, so that
+// their sides cannot be told: light as in a picture of the whole tree, `pixel` of `impostors.wgsl`.
+@fragment
+fn twig(in: Out) -> Pixel {
+    let picture = picture_at(in);
+    // By another number for each card that may lie there.
+    let samples = samples_of(picture.a, scattered(floor(in.clip.xy) + 61.7 * floor(4.0 * in.world.xy)));
+    if (!is_drawn(in, samples)) {
+        discard;
+    }
+    let cosine = dot(normalize(view.eye - in.world), view.sun_direction);
+    let sun = view.sun_irradiance * phase(cosine) * sun_visibility(in.world, 0.4);
+    let radiance = picture.rgb / PI * (0.8 * ambient_light(0.5) + sun);
+    return Pixel(vec4f(hazed(in.air, radiance), 1.0), samples);
 }
 
 // So far before a card are the outermost of the leaves that it shows, which are not in their own shade.

@@ -78,10 +78,8 @@ pub struct MaterialUniform {
     pub alpha_cutoff: f32,
     /// 1 if there is a normal texture.
     pub has_normal: f32,
-    /// 1 if alpha is the share that is covered.
-    pub is_thin: f32,
     /// Unused.
-    pub unused: f32,
+    pub unused: [f32; 2],
 }
 
 /// All trees of a landscape on the device.
@@ -125,6 +123,8 @@ pub struct TreeMaterial {
     pub name: String,
     /// True if it has holes and two sides.
     pub masked: bool,
+    /// True if its alpha is the share that is covered.
+    pub thin: bool,
     /// True if it shows pictures of clusters of leaves.
     pub clusters: bool,
     /// [`MaterialUniform`].
@@ -181,8 +181,7 @@ impl Uploader {
             factor: material.color_factor,
             alpha_cutoff: material.alpha_cutoff.unwrap_or(0.0),
             has_normal: if material.normal.is_some() { 1.0 } else { 0.0 },
-            is_thin: if material.thin { 1.0 } else { 0.0 },
-            unused: 0.0,
+            unused: [0.0; 2],
         };
         let image = |image: &Option<Image>, otherwise: [u8; 4], kind: ImageUse| match image {
             Some(image) if material.clusters => self.sheet(image, kind),
@@ -194,6 +193,7 @@ impl Uploader {
         TreeMaterial {
             name: material.name.clone(),
             masked,
+            thin: material.thin,
             clusters: material.clusters,
             uniform: self.gpu.buffer("material", &[uniform], wgpu::BufferUsages::UNIFORM),
             color: image(&material.color, [255; 4], cutout_or_color),

@@ -122,11 +122,7 @@ fn uniforms_are_laid_out_alike() {
             first,
         }
     );
-    same!(
-        ["trees", "shadow"],
-        "Material",
-        MaterialUniform { factor, alpha_cutoff, has_normal, is_thin, unused }
-    );
+    same!(["trees", "shadow"], "Material", MaterialUniform { factor, alpha_cutoff, has_normal, unused });
 }
 
 #[test]

@@ -12,8 +12,6 @@ use crate::model::AlphaMask;
 
 /// So many leaves are many; a palm has fewer.
 const MANY: usize = 1000;
-/// Elements of which less than this part is opaque are thin, as bare twigs are.
-const THIN: f32 = 0.25;
 /// Twigs may grow by this part of the mesh's diagonal.
 const MAX_OFFSET: f32 = 0.0025;
 /// Elements may shrink to this part of their scale: flat ones cover more than bent ones.
@@ -70,13 +68,11 @@ impl Calibration {
     ) -> Self {
         let thickens = options.thickens;
         let elements: usize = aggregates.iter().map(Aggregate::living).sum();
-        let is_thin = options.masks.iter().any(|mask| mask.opaque_share() < THIN);
+        let are_many = elements >= MANY && !options.masks.iter().any(AlphaMask::is_of_lines);
+        let detail = if are_many { Detail::Many } else { Detail::Few };
         let diagonal_m = (high - low).max(Vec3::ZERO).length();
         let mut calibration = Self {
-            camera: Camera::of(
-                [low, high],
-                if elements < MANY || is_thin { Detail::Few } else { Detail::Many },
-            ),
+            camera: Camera::of([low, high], detail),
             masks: options.masks.clone(),
             full_elements: Vec::new(),
             full: 0,

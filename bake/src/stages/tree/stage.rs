@@ -87,14 +87,14 @@ pub struct TreeFiles {
 
 impl Stage for TreeStage {
     const NAME: &'static str = "tree";
-    const VERSION: u32 = 33;
+    const VERSION: u32 = 34;
     type Output = TreeFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<TreeFiles, StageError> {
         let template = template(&self.params, self.index);
         let textures = context.get(&self.textures)?.try_map(|file| context.bytes(file))?;
         let Levelled { mesh, clusters, caster } = levelled(&template.mesh, &textures, &mut |_| ());
-        let impostor = impostor(drawn_from_afar(&mesh.levels), &textures);
+        let impostor = impostor(drawn_from_afar(&mesh.levels, &textures), &textures);
         let embedded = textures.map(|bytes| Picture::Embedded { bytes, mime_type: "image/png" });
         let pictures = TreePictures { impostor: Some(&impostor), clusters: clusters.as_ref() };
         let glb = tree_glb(&format!("tree-{}", self.index), &mesh, &embedded, &pictures)?;

@@ -47,7 +47,7 @@ impl Frame {
         let reach_m = mesh.positions.iter().map(from_axis).fold(0.0, f32::max).sqrt();
         let height_m = bounds.max.y - bounds.min.y;
         let size_m = [2.0 * reach_m, height_m].map(|m| (MARGIN * m).max(MIN_SIZE_M));
-        let side = if mesh.has_cards() && !textures.is_thin { SIDE } else { BARE_SIDE };
+        let side = if has_leaves(mesh, textures) { SIDE } else { BARE_SIDE };
         Self { foot_m: axis.with_y(axis.y - 0.5 * size_m[1]), size_m, side }
     }
 
@@ -77,13 +77,17 @@ pub fn impostor<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> Impostor {
     }
 }
 
+fn has_leaves<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> bool {
+    mesh.has_cards() && !textures.is_thin
+}
+
 /// The error in metres that pictures of a template will have.
 pub fn impostor_error_m<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> f32 {
     Frame::of(mesh, textures).error_m()
 }
 
 /// The level of which pictures are drawn: with half of the leaves, which cover as much, in half of the time; a leaf is less
-/// than a pixel of them. A bare tree has no leaf to spare.
-pub fn drawn_from_afar(levels: &[Level]) -> &Mesh {
-    &levels[usize::from(levels[0].mesh.has_cards() && levels.len() > 1)].mesh
+/// than a pixel of them. A tree without leaves has no twig to spare.
+pub fn drawn_from_afar<'a, P>(levels: &'a [Level], textures: &TreeTextures<P>) -> &'a Mesh {
+    &levels[usize::from(has_leaves(&levels[0].mesh, textures) && levels.len() > 1)].mesh
 }
