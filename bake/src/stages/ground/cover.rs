@@ -2,7 +2,7 @@
 //! reflectance.
 
 use super::GroundParams;
-use super::palette::{Palette, Rgb, petals, step};
+use super::palette::{Palette, Rgb, UMBELS, petals, spires, step};
 use super::snow::Snow;
 use super::traits::Traits;
 use super::woods::{Litter, Offspring, Woods};
@@ -104,6 +104,7 @@ const FLOODED_MUD: f32 = 0.5;
 const PATH: Rgb = [0.150, 0.125, 0.068];
 /// Part of the light from a meadow in full bloom that comes from petals, most of which stand beyond where they are drawn.
 const IN_BLOOM: f32 = 0.05;
+const IN_DRIFT: f32 = 0.09;
 /// Kinds of rock: granite, limestone, basalt, sandstone, slate.
 const ROCKS: [Rgb; 5] = [
     [0.205, 0.195, 0.185],
@@ -136,6 +137,10 @@ pub(super) struct Painter {
     rice_seed: u32,
     /// Most flowers of the land.
     bloom: Rgb,
+    /// How many tall flowers there are, and the petals of most of them.
+    spires: f32,
+    spire: Rgb,
+    umbels: f32,
     shore: Rgb,
     /// Shores of low lands are lower: 1 or more.
     shore_scale: f32,
@@ -154,6 +159,9 @@ impl Painter {
         let other = (kind + 1 + (chance(3) * 4.0) as usize) % ROCKS.len();
         let [rock, other] = [kind.min(ROCKS.len() - 1), other].map(|kind| palette.rock(ROCKS[kind]));
         let talus = libm::tanf(params.talus_angle_deg.to_radians());
+        let wet = 1.0 - palette.thirst;
+        let mild = wet * wet * (1.0 - 0.6 * palette.frost) * (1.0 - 0.5 * palette.rain);
+        let tall = palette.season.bloom() * mild;
         let shore = lerp(lerp(WET_MUD, GRAVEL, 0.5), SAND, step(0.25, 0.6, thirst));
         Self {
             litter: woods.litter,
@@ -173,6 +181,9 @@ impl Painter {
             shore_scale: (80.0 / (hi - lo).max(1.0)).clamp(1.6, 3.2),
             shore: palette.shore(shore),
             bloom: petals(params.terrain_seed)[0],
+            spires: tall * step(0.15, 0.7, chance(6)),
+            spire: spires(params.terrain_seed)[0],
+            umbels: tall * step(0.2, 0.8, chance(7)),
             climate,
             palette,
         }
@@ -256,6 +267,21 @@ impl Painter {
             * (1.0 - 0.75 * thirst)
             * (1.0 - 0.35 * frost)
             * (1.0 - step(0.1, 0.6, t.shade))
+    }
+
+    /// How densely flowers on tall spikes stand, 0 to 1: in drifts of their own, at the edge of woods, too; some lands have many
+    /// and some have none.
+    #[inline]
+    pub fn spires(&self, t: &Traits, n: &Noise) -> f32 {
+        let drift = step(0.15, 0.6, 0.75 * n.broad + 0.45 * n.fine + 0.3 * t.tuft);
+        self.spires * drift * (1.0 - step(0.5, 0.9, t.shade))
+    }
+
+    /// How densely flowers in flat heads on tall stalks stand, 0 to 1: where it is neither dry nor dark, and spikes don't.
+    #[inline]
+    pub fn umbels(&self, t: &Traits, n: &Noise) -> f32 {
+        let drift = step(0.12, 0.75, 0.45 * n.fine - 0.75 * n.broad + 0.6 * self.damp(t));
+        self.umbels * drift * (1.0 - step(0.3, 0.8, t.shade))
     }
 
     /// Where heath grows, 0 to 1.
@@ -343,6 +369,8 @@ impl Painter {
         let k = dry as usize;
         let grass = lerp(growth[k], growth[k + 1], dry - k as f32);
         let grass = lerp(lerp(grass, HEATH, 0.6 * self.heath(t, n)), self.bloom, IN_BLOOM * self.bloom(t, n));
+        let grass = lerp(grass, self.spire, IN_DRIFT * self.spires(t, n));
+        let grass = lerp(grass, UMBELS[0], IN_DRIFT * self.umbels(t, n));
         scale(grass, 1.0 + 0.16 * n.fine + 0.10 * n.broad + 0.18 * n.grain)
     }
 

@@ -90,6 +90,19 @@ pub(super) fn petals(terrain_seed: u32) -> [Rgb; 5] {
     [0, 0, 0, 1, 3].map(|step| PETALS[(first + step) % PETALS.len()])
 }
 
+/// Of flowers on tall spikes: lupins, foxgloves, willowherb, mullein, asphodel.
+const SPIRES: [Rgb; 5] =
+    [[0.20, 0.15, 0.48], [0.44, 0.13, 0.29], [0.38, 0.09, 0.30], [0.60, 0.44, 0.07], [0.62, 0.58, 0.55]];
+/// Of cow parsley, yarrow and hogweed.
+pub(super) const UMBELS: [Rgb; 3] = [[0.70, 0.71, 0.64], [0.62, 0.64, 0.54], [0.72, 0.66, 0.62]];
+
+/// Petals of a land's spikes: most have one colour.
+pub(super) fn spires(terrain_seed: u32) -> [Rgb; 4] {
+    let seed = noise_seed(terrain_seed.into(), "ground plants", 1);
+    let first = (hash01(seed, 1, 0, 0) * SPIRES.len() as f32) as usize;
+    [0, 0, 0, 1].map(|step| SPIRES[(first + step) % SPIRES.len()])
+}
+
 /// Six colours through three: lush, usual, bare.
 const fn ramp(lush: Rgb, usual: Rgb, bare: Rgb) -> Ramp {
     let mut ramp = [lush, lush, usual, usual, usual, bare];

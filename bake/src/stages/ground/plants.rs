@@ -7,7 +7,7 @@ use super::GroundParams;
 use super::cover::{Cover, MOSS, Noise, Painter, in_patches};
 use super::grain::Grain;
 use super::palette::Palette;
-use super::palette::{Rgb, petals, step};
+use super::palette::{Rgb, UMBELS, petals, spires, step};
 use super::shapes;
 use super::traits::{Traits, TraitsMap};
 use super::woody::{self, Foliage};
@@ -28,12 +28,17 @@ const BUSH: usize = 8;
 const SAPLING: usize = 9;
 const LOG: usize = 10;
 const STUMP: usize = 11;
-const CHANNELS: usize = 12;
+const SPIRE: usize = 12;
+const UMBEL: usize = 13;
+const HAY: usize = 14;
+const HERB: usize = 15;
+const CHANNELS: usize = 16;
 /// Of a map.
 const IN_MAP: usize = 4;
 
 /// Those that stand in no water.
-const ON_LAND: [usize; 9] = [FLOWER, FERN, SHRUB, TUSSOCK, LITTER, BUSH, SAPLING, LOG, STUMP];
+const ON_LAND: [usize; 13] =
+    [FLOWER, FERN, SHRUB, TUSSOCK, LITTER, BUSH, SAPLING, LOG, STUMP, SPIRE, UMBEL, HAY, HERB];
 
 /// Those that are as large as their trees make them.
 const OF_TREES: [usize; 3] = [SAPLING, LOG, STUMP];
@@ -60,6 +65,10 @@ const HABITS: [Habit; CHANNELS] = [
     Habit { name: "sapling", per_m2: 0.07, scale: [0.3, 1.0], reach_m: 90.0, sway: 0.04 },
     Habit { name: "log", per_m2: 0.008, scale: [0.6, 1.3], reach_m: 90.0, sway: 0.0 },
     Habit { name: "stump", per_m2: 0.006, scale: [0.6, 1.2], reach_m: 70.0, sway: 0.0 },
+    Habit { name: "spire", per_m2: 2.0, scale: [0.5, 1.15], reach_m: 56.0, sway: 0.08 },
+    Habit { name: "umbel", per_m2: 1.1, scale: [0.6, 1.3], reach_m: 50.0, sway: 0.10 },
+    Habit { name: "hay", per_m2: 1.6, scale: [0.6, 1.3], reach_m: 44.0, sway: 0.14 },
+    Habit { name: "herb", per_m2: 0.9, scale: [0.45, 1.1], reach_m: 40.0, sway: 0.05 },
 ];
 
 /// Metres uphill of a place where a cliff may stand from which stones fell.
@@ -188,12 +197,25 @@ impl Painter {
         let patch = in_patches(t, n);
         let (cold, dry) = (palette.frost, palette.thirst);
         growth[FLOWER] = green * self.bloom(t, n);
+        growth[SPIRE] = green * self.spires(t, n);
+        growth[UMBEL] = green * self.umbels(t, n);
+        // Dead stalks stand through the winter.
+        growth[HAY] = green
+            * (1.0 - cold)
+            * (1.0 - step(0.75, 1.0, dry))
+            * (1.0 - step(0.1, 0.6, t.shade))
+            * step(0.0, 0.9, 0.7 * n.fine + 0.5 * n.broad + 0.4 * t.patch + 0.8 * dry - 0.3 * palette.rain);
         let moist = (damp + 0.25 + 0.5 * palette.rain) * (1.0 - 2.0 * dry).max(0.0) * (1.0 - cold);
         // In the open they stand in rainforests alone.
         let shady = step(0.05, 0.45, t.shade).max(palette.rain * step(0.5, 1.0, palette.rain + damp - 0.3));
         growth[FERN] = (green + 0.6 * cover.litter()).min(1.0)
             * shady
             * step(0.2, 0.6, moist + 0.4 * n.broad - 0.3 * t.patch);
+        growth[HERB] = green
+            * (1.0 - palette.season.winter())
+            * (1.0 - step(0.1, 0.5, dry))
+            * (1.0 - step(0.3, 0.8, cold))
+            * step(0.1, 0.7, 0.8 * moist + 0.5 * n.fine - 0.4 * n.broad - 0.2 * t.tuft + 0.3 * t.shade - 0.1);
         let heath = self.heath(t, n) * (1.0 - t.shade);
         let bushes = step(0.0, 0.8, 0.5 * t.patch - 0.4 * t.tuft + 0.5 * n.broad + 0.5 * damp);
         // Scrub belongs to where it is too dry or too cold for trees to close.
@@ -278,6 +300,10 @@ fn kinds(params: &GroundParams, painter: &Painter) -> Vec<PlantKind> {
         (woody::sapling(painter.offspring.map_or(Foliage::Bare, |young| young.foliage)), saplings(painter)),
         (woody::log(), logs(palette)),
         (woody::stump(), logs(palette).into_iter().map(|[bark, _]| [bark, HEARTWOOD]).collect()),
+        (shapes::spire(), spires(params.terrain_seed).map(|petals| [growth[1], petals]).into()),
+        (shapes::umbel(), UMBELS.map(|petals| [growth[1], petals]).into()),
+        (shapes::hay(), hay(palette)),
+        (shapes::herb(), herbs(palette)),
     ];
     let young = painter.offspring;
     let kind = |(channel, (habit, (shape, colors))): (u32, (Habit, _))| {
@@ -294,6 +320,8 @@ fn kinds(params: &GroundParams, painter: &Painter) -> Vec<PlantKind> {
 const BARK: Rgb = [0.105, 0.085, 0.066];
 const DRIFTWOOD: Rgb = [0.185, 0.168, 0.145];
 const HEARTWOOD: Rgb = [0.240, 0.175, 0.100];
+/// Ears of grass.
+const RIPE: Rgb = [0.300, 0.235, 0.125];
 
 /// Three greens of the climate.
 fn bushes(palette: &Palette) -> Vec<[Rgb; 2]> {
@@ -321,6 +349,18 @@ fn logs(palette: &Palette) -> Vec<[Rgb; 2]> {
 /// Flowers of a land, most of them of one kind, and the green of their stalks.
 fn flowers(terrain_seed: u32, stalk: Rgb) -> Vec<[Rgb; 2]> {
     petals(terrain_seed).map(|petals| [stalk, petals]).into()
+}
+
+/// Meadow grass in seed.
+fn hay(palette: &Palette) -> Vec<[Rgb; 2]> {
+    let growth = palette.growth;
+    [RIPE, lerp(RIPE, growth[3], 0.5)].map(|head| [lerp(growth[2], growth[3], 0.5), head]).into()
+}
+
+/// Broad leaves in the green of lush grass.
+fn herbs(palette: &Palette) -> Vec<[Rgb; 2]> {
+    let leaf = lerp(palette.growth[1], [0.075, 0.120, 0.032], 0.3);
+    [1.0, 1.3].map(|light| [leaf.map(|c| 0.7 * light * c), leaf.map(|c| 1.2 * light * c)]).into()
 }
 
 fn ferns(palette: &Palette) -> Vec<[Rgb; 2]> {

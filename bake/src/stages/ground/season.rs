@@ -74,6 +74,11 @@ impl Season {
         (1.0 - self.winter) * lerp(1.0, 0.15, self.autumn)
     }
 
+    /// How deep the winter is, 0 to 1.
+    pub(super) fn winter(&self) -> f32 {
+        self.winter
+    }
+
     /// Leaves of bushes, which fall, and of those some that stay green.
     pub(super) fn bush(&self, leaf: Rgb) -> Rgb {
         let turned = lerp_array(leaf, BRACKEN, 0.55 * self.autumn);

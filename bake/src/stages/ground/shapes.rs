@@ -65,6 +65,11 @@ impl Drawing {
         }
     }
 
+    /// A thin stem of tint 0, seen from one side and its other.
+    fn stem(&mut self, root: Vec3, tip: Vec3, radius: f32) {
+        self.leaf([root - radius * Vec3::X, root + radius * Vec3::X, tip], [0.0; 3]);
+    }
+
     /// A blade that bends from `root` outwards in the direction of a turn and ends in a point.
     pub(super) fn blade(&mut self, root: Vec3, turn: f32, [height, lean, width]: [f32; 3], tints: [f32; 2]) {
         let out = heading(turn);
@@ -142,7 +147,7 @@ pub(super) fn flower() -> PlantShape {
     for head in heads {
         (0..6).step_by(2).for_each(|k| petal(&mut d, head, k));
         let root = head.with_y(0.0) * 0.2;
-        d.leaf([root - Vec3::X * 0.003, root + Vec3::X * 0.003, head], [0.0; 3]);
+        d.stem(root, head, 0.003);
     }
     d.coarse();
     for head in heads {
@@ -257,6 +262,128 @@ pub(super) fn tussock() -> PlantShape {
         let root = heading(turn) * (0.05 * d.unit());
         let lean = 0.08 + 0.3 * d.unit();
         d.blade(root, turn, [0.46 * long, lean * long, width], [0.0, 1.0]);
+        if k == 4 {
+            d.coarse();
+        }
+    }
+    d.done()
+}
+
+/// Three spikes of flowers over a rosette, the lowest flowers open widest; tint 1 is the petals'.
+pub(super) fn spire() -> PlantShape {
+    let mut d = Drawing::new(71);
+    let spikes = [([0.0, 0.82, 0.03], 1.0), ([0.09, 0.61, -0.05], 0.8), ([-0.07, 0.50, -0.06], 0.7)]
+        .map(|(top, wide)| (Vec3::from_array(top), wide));
+    let foot = |top: Vec3| top.with_y(0.0) * 0.3;
+    for (top, wide) in spikes {
+        let low = foot(top).lerp(top, 0.45);
+        for side in [Vec3::X, Vec3::Z] {
+            let half = 0.024 * wide * side;
+            d.leaf([low - half, low + half, top], [0.95, 0.95, 0.6]);
+        }
+        d.stem(foot(top), top, 0.005);
+    }
+    d.coarse();
+    for (top, wide) in spikes {
+        for k in 0..24 {
+            let part = k as f32 / 24.0;
+            let from = foot(top).lerp(top, 0.40 + 0.58 * part);
+            let (turn, reach) = (2.4 * k as f32 + 0.8 * d.unit(), 0.042 * wide * (1.1 - 0.8 * part));
+            let out = heading(turn) * reach;
+            let side = Vec3::new(-out.z, 0.0, out.x) * 0.62;
+            let tip = from + out - Vec3::Y * (0.55 * reach * (1.0 - part));
+            let tint = 0.7 + 0.3 * d.unit();
+            // Buds at the top are green.
+            let open = (1.3 - part).min(1.0);
+            d.leaf([from + 0.014 * Vec3::Y, tip + side, tip - side], [0.5 * open, tint * open, tint * open]);
+        }
+    }
+    for k in 0..7 {
+        let (high, lean) = (0.12 + 0.1 * d.unit(), 0.14 + 0.08 * d.unit());
+        d.blade(Vec3::ZERO, 0.9 * k as f32, [high, lean, 0.030], [0.0, 0.08]);
+    }
+    d.done()
+}
+
+/// Stalks that branch into flat heads of tiny flowers, over feathery leaves; tint 1 is the petals'.
+pub(super) fn umbel() -> PlantShape {
+    let mut d = Drawing::new(72);
+    let heads = [([0.03, 0.80, 0.0], 0.085), ([-0.12, 0.64, 0.07], 0.065), ([0.10, 0.57, -0.11], 0.060)]
+        .map(|(middle, reach)| (Vec3::from_array(middle), reach));
+    for (head, reach) in heads {
+        let root = head.with_y(0.0) * 0.2;
+        d.stem(root, head, 0.004);
+        // Three leaves of a disc.
+        for k in 0..3 {
+            let out = |turn: f32| head + reach * heading(turn + head.x * 20.0);
+            let turn = k as f32 / 3.0 * TAU;
+            d.leaf([head, out(turn), out(turn + 0.6)], [0.8, 1.0, 1.0]);
+        }
+    }
+    d.coarse();
+    for (head, reach) in heads {
+        for k in 0..9 {
+            let from = if k == 0 { 0.0 } else { reach * (0.5 + 0.45 * d.unit()) };
+            let middle = head + from * heading(2.4 * k as f32) + Vec3::Y * (0.012 + 0.014 * d.unit());
+            let small = 0.3 * reach;
+            let out = |k: usize| middle + small * heading(k as f32 / 3.0 * TAU + 9.0 * from);
+            let tint = 0.86 + 0.14 * d.unit();
+            d.leaf([out(0), out(1), out(2)], [tint; 3]);
+        }
+    }
+    for k in 0..7 {
+        let (turn, lean) = (0.9 * k as f32 + 0.2, 0.16 + 0.08 * d.unit());
+        let up = 0.10 + 0.16 * d.unit();
+        d.blade(Vec3::Y * up, turn, [0.06, lean, 0.03], [0.0, 0.06]);
+    }
+    d.done()
+}
+
+/// Tall grass in seed: stalks that nod under their ears; tint 1 is the ears'.
+pub(super) fn hay() -> PlantShape {
+    let mut d = Drawing::new(73);
+    for k in 0..11 {
+        let (turn, high) = (2.4 * k as f32 + d.unit(), 0.55 + 0.33 * d.unit());
+        let root = heading(d.unit() * TAU) * (0.14 * d.unit());
+        let (out, lean) = (heading(turn), 0.10 + 0.16 * d.unit());
+        let side = Vec3::new(-out.z, 0.0, out.x);
+        let top = root + out * lean + Vec3::Y * high;
+        let wide = if k < 5 { 0.006 } else { 0.004 };
+        d.leaf([root - wide * side, root + wide * side, top], [0.0, 0.0, 0.5]);
+        let (ear, tip) = (root.lerp(top, 0.78), top + out * 0.05 - Vec3::Y * 0.01);
+        let half = side * (1.2 * wide);
+        d.diamond([ear, top.lerp(ear, 0.4), tip], half, Vec3::Y + 0.6 * out, [0.6, 1.0, 0.9]);
+        if k == 4 {
+            d.coarse();
+        }
+    }
+    d.done()
+}
+
+/// A rosette of broad leaves, as dock and plantain have it: inner ones stand, outer ones lie.
+pub(super) fn herb() -> PlantShape {
+    let mut d = Drawing::new(74);
+    for k in 0..13 {
+        // Those that are drawn from afar, too, are spread over all.
+        let age = ((5 * k) % 13) as f32 / 13.0;
+        let (turn, long) = (2.4 * k as f32 + 0.5 * d.unit(), 0.30 + 0.16 * d.unit());
+        let (out, up) = (heading(turn), 0.95 - 0.75 * age);
+        let at = |along: f32, high: f32| {
+            out * (long * along * (1.1 - 0.7 * up)) + Vec3::Y * (long * up * high + 0.01)
+        };
+        let [root, low, high, tip] =
+            [at(0.1, 0.1), at(0.45, 0.62), at(0.78, 0.88), at(1.05, 0.86 - 0.3 * age)];
+        let across = Vec3::new(-out.z, 0.0, out.x);
+        let (pale, rib) = (0.45 + 0.55 * d.unit(), 0.35);
+        for way in [-1.0, 1.0] {
+            let edge = |middle: Vec3, wide: f32| middle + (way * across + 0.25 * Vec3::Y) * (wide * long);
+            let (a, b) = (edge(low, 0.12), edge(high, 0.13));
+            let normal = Vec3::Y - 0.45 * way * across + 0.3 * out;
+            d.lit([root, a, low], normal, [0.0, 0.7 * pale, rib]);
+            d.lit([low, a, b], normal, [rib, 0.7 * pale, pale]);
+            d.lit([low, b, high], normal, [rib, pale, rib]);
+            d.lit([high, b, tip], normal, [rib, pale, pale]);
+        }
         if k == 4 {
             d.coarse();
         }

@@ -25,7 +25,7 @@ fn reeds_stand_at_the_shore_and_flowers_where_it_is_dry() {
         there
     };
     assert!(grow("reed").iter().all(|above_m| (-0.6..0.6).contains(above_m)));
-    for name in ["flower", "tussock", "shrub"] {
+    for name in ["flower", "tussock", "shrub", "spire", "umbel", "hay", "herb"] {
         assert!(grow(name).iter().all(|&above_m| above_m > -0.05), "{name}");
     }
     assert!(grow("boulder").iter().all(|&above_m| above_m > -0.6));
@@ -110,7 +110,7 @@ fn the_foreground_has_no_more_plants_than_a_file_can_bear() {
 fn few_enough_stand_within_reach_to_draw_them_each_frame() {
     let kinds = plants::all_kinds(&PARAMS, &LAND);
     let most = |kind: &PlantKind| kind.per_m2 * std::f32::consts::PI * kind.reach_m * kind.reach_m;
-    assert!(kinds.len() == 12 && kinds.iter().all(|kind| most(kind) < 20_000.0));
+    assert!(kinds.len() == 16 && kinds.iter().all(|kind| most(kind) < 20_000.0));
     assert!(kinds.iter().all(|kind| kind.shape.triangles.len() <= 300 && kind.shape.coarse <= 100));
 }
 
@@ -284,6 +284,40 @@ fn the_ground_has_the_season_of_its_trees() {
         Season::of(&leafy),
         Season::of(&LitterParams { leaf_hue_deg: 85.0, leaves_per_stem: 9, ..leafy })
     );
+}
+
+#[test]
+fn tall_flowers_stand_in_drifts_and_hay_stands_through_the_winter() {
+    let summer = LitterParams { leaf_hue_deg: 100.0, ..MAPLE };
+    let winter = LitterParams { leaves_per_stem: 0, ..summer.clone() };
+    let grown = |trees: &LitterParams, terrain_seed: u32| {
+        let params = GroundParams { terrain_seed, ..PARAMS };
+        maps(&params, &Woods::new(trees, &LAND, &[], &[]), &LAND, 256).plants
+    };
+    let amount = |plants: &GroundPlants<Image8>, name: &str| {
+        stands(plants, name).iter().map(|(part, _)| u64::from(*part)).sum::<u64>()
+    };
+    let (green, asleep) = (grown(&summer, PARAMS.terrain_seed), grown(&winter, PARAMS.terrain_seed));
+    for name in ["spire", "umbel", "herb"] {
+        assert!(amount(&green, name) > 0 && amount(&asleep, name) == 0, "{name} in winter");
+    }
+    assert!(amount(&asleep, "hay") == amount(&green, "hay"));
+    // Where one kind is thick the other is not.
+    let densest = |plants: &GroundPlants<Image8>, name: &str| {
+        stands(plants, name).iter().map(|(part, _)| *part).max().unwrap_or(0)
+    };
+    let has_both =
+        |plants: &GroundPlants<Image8>| ["spire", "umbel"].iter().all(|name| densest(plants, name) > 200);
+    let rich = (0..40).map(|seed| grown(&summer, seed)).find(has_both).expect("a land with many of both");
+    let [mut spires, mut mixed] = [0; 2];
+    for ((spire, _), (umbel, _)) in stands(&rich, "spire").into_iter().zip(stands(&rich, "umbel")) {
+        spires += usize::from(spire > 90);
+        mixed += usize::from(spire > 90 && umbel > 90);
+    }
+    assert!(spires > 50 && mixed * 20 < spires, "{mixed} of {spires}");
+    // Some lands have many, some have none.
+    let many: Vec<u64> = (0..8).map(|seed| amount(&grown(&summer, seed), "spire")).collect();
+    assert!(many.contains(&0) && many.iter().any(|&sum| sum > 50_000), "{many:?}");
 }
 
 #[test]
