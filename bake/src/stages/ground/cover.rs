@@ -104,6 +104,7 @@ const FLOODED_MUD: f32 = 0.5;
 const PATH: Rgb = [0.150, 0.125, 0.068];
 /// Part of the light from a meadow in full bloom that comes from petals, most of which stand beyond where they are drawn.
 const IN_BLOOM: f32 = 0.05;
+/// The same of a drift of tall flowers.
 const IN_DRIFT: f32 = 0.09;
 /// Kinds of rock: granite, limestone, basalt, sandstone, slate.
 const ROCKS: [Rgb; 5] = [

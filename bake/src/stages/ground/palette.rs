@@ -85,9 +85,7 @@ const PETALS: [Rgb; 7] = [
 
 /// Petals of a land's flowers: of the colours that there are most have one, and some its neighbours.
 pub(super) fn petals(terrain_seed: u32) -> [Rgb; 5] {
-    let seed = noise_seed(terrain_seed.into(), "ground plants", 0);
-    let first = (hash01(seed, 1, 0, 0) * PETALS.len() as f32) as usize;
-    [0, 0, 0, 1, 3].map(|step| PETALS[(first + step) % PETALS.len()])
+    mostly_one(&PETALS, terrain_seed, 0, [0, 0, 0, 1, 3])
 }
 
 /// Of flowers on tall spikes: lupins, foxgloves, willowherb, mullein, asphodel.
@@ -98,9 +96,14 @@ pub(super) const UMBELS: [Rgb; 3] = [[0.70, 0.71, 0.64], [0.62, 0.64, 0.54], [0.
 
 /// Petals of a land's spikes: most have one colour.
 pub(super) fn spires(terrain_seed: u32) -> [Rgb; 4] {
-    let seed = noise_seed(terrain_seed.into(), "ground plants", 1);
-    let first = (hash01(seed, 1, 0, 0) * SPIRES.len() as f32) as usize;
-    [0, 0, 0, 1].map(|step| SPIRES[(first + step) % SPIRES.len()])
+    mostly_one(&SPIRES, terrain_seed, 1, [0, 0, 0, 1])
+}
+
+/// Of these colours those that lie so many steps after one that a land's seed chooses.
+fn mostly_one<const N: usize>(colors: &[Rgb], terrain_seed: u32, item: u64, steps: [usize; N]) -> [Rgb; N] {
+    let seed = noise_seed(terrain_seed.into(), "ground plants", item);
+    let first = (hash01(seed, 1, 0, 0) * colors.len() as f32) as usize;
+    steps.map(|step| colors[(first + step) % colors.len()])
 }
 
 /// Six colours through three: lush, usual, bare.
