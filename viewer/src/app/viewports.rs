@@ -16,6 +16,7 @@ use super::ui_painter::UiPainter;
 use super::viewport::Viewport;
 use crate::gpu::Gpu;
 use crate::image_file;
+use crate::measure::timed;
 use crate::options::FrameInput;
 use crate::passes::{Passes, ShaderError, Shaders};
 use crate::scene_loader::Loaded;
@@ -236,16 +237,4 @@ fn pass_times(views: &[GpuTimerQueryResult]) -> Vec<PassTime> {
         }
     }
     passes
-}
-
-/// Names and milliseconds; of a pass that is timed in parts, those of its parts.
-fn timed(queries: &[GpuTimerQueryResult]) -> Vec<(String, f32)> {
-    let of = |query: &GpuTimerQueryResult| {
-        if query.nested_queries.iter().any(|part| part.time.is_some()) {
-            return timed(&query.nested_queries);
-        }
-        let ms = query.time.as_ref().map(|time| ((time.end - time.start) * 1e3) as f32);
-        ms.map(|ms| (query.label.clone(), ms)).into_iter().collect()
-    };
-    queries.iter().flat_map(of).collect()
 }

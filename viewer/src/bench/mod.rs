@@ -5,13 +5,14 @@
 //! levels of detail against pictures without, and how far apart they are ([`detail`]; thesis section 7); the land's triangles and their
 //! greatest error ([`land`]); four views
 //! against four single ones ([`views`]); a walk's frames and what they are made of ([`walk`]); those around the
-//! swap of a landscape ([`swap`]); memory after many frames ([`memory`]); and, where there is a graphics card, the slowest
+//! swap of a landscape ([`swap`]); the device's time by pass ([`passes`]); memory after many frames ([`memory`]); and, where there is a graphics card, the slowest
 //! frames of four large forests ([`card`]). [`serve`] lets another program measure beside its own pictures.
 
 mod card;
 mod detail;
 mod land;
 mod memory;
+mod passes;
 mod record;
 mod report;
 mod serve;
@@ -88,6 +89,8 @@ pub enum Measure {
     Walk,
     /// Frames around the swap of a landscape
     Swap,
+    /// The device's time, pass by pass
+    Passes,
     /// Memory after 100 and after 2,000 frames
     Memory,
     /// Four views of 10,000 trees each at 1920 × 1080, on a graphics card
@@ -120,6 +123,7 @@ pub fn run(args: &BenchArgs) -> Result<()> {
             Measure::Views => views::measure(&mut bench)?,
             Measure::Walk => walk::measure(&mut bench)?,
             Measure::Swap => swap::measure(&mut bench)?,
+            Measure::Passes => passes::measure(&mut bench)?,
             Measure::Memory => memory::measure(&mut bench)?,
             Measure::Card => card::measure(&mut bench)?,
         }

@@ -10,8 +10,9 @@ use crate::options::FrameInput;
 
 /// Trees of the two forests.
 const TREES: [usize; 2] = [100, 100_000];
-/// Pictures that are recorded but not drawn: as many as give a steady median.
-const RECORDED: usize = 400;
+/// Pictures that are recorded but not drawn, each a few metres on from the last as for someone who flies: as many as give
+/// a steady median.
+const RECORDED: u32 = 400;
 /// Pictures that are drawn, too.
 const DRAWN: usize = 8;
 /// What recording costs does not depend on the size, but drawing does.
@@ -23,7 +24,7 @@ pub(super) fn measure(bench: &mut Bench) -> Result<()> {
         "Recording a picture of {few} and of {many} trees: milliseconds of this thread, median"
     ));
     let scene = bench.first_scene()?;
-    let cameras = camera_path(&scene, bench.steps);
+    let cameras = camera_path(&scene, RECORDED);
     let mut views = Vec::new();
     for count in TREES {
         views.push([bench.view(&forest(&scene, count), SIZE_PX)?]);
@@ -31,7 +32,7 @@ pub(super) fn measure(bench: &mut Bench) -> Result<()> {
     let (headless, frame) = (&bench.headless, FrameInput::default());
     let mut draws = 0;
     let (mut recorded, mut drawn) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
-    for camera in cameras.iter().cycle().take(RECORDED) {
+    for camera in &cameras {
         for (view, times) in views.iter_mut().zip(&mut recorded) {
             let (ms, (commands, one)) = Cost::of_thread(|| headless.record(view, &frame, camera, camera));
             drop(commands);
@@ -42,7 +43,7 @@ pub(super) fn measure(bench: &mut Bench) -> Result<()> {
         }
         headless.gpu.wait();
     }
-    for camera in cameras.iter().cycle().take(DRAWN) {
+    for camera in &cameras[..DRAWN] {
         for (view, times) in views.iter_mut().zip(&mut drawn) {
             let submit = || headless.gpu.queue.submit([headless.record(view, &frame, camera, camera).0]);
             times.push(Cost::of_thread(submit).0);

@@ -8,6 +8,7 @@ mod flip;
 mod machine;
 mod path;
 mod statistics;
+mod timed;
 
 pub use cost::Cost;
 pub use counters::{Counted, Counters};
@@ -15,6 +16,7 @@ pub use flip::flip;
 pub use machine::{Machine, load_average};
 pub use path::{camera_path, fly_out_path, forest};
 pub use statistics::{TTest, deviation, mean, median, quantile, spearman, t_test};
+pub use timed::timed;
 
 use anyhow::Result;
 

@@ -3,7 +3,6 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::plants::PlantDraw;
 use super::{Binding, BoundMirror, BoundShade, CullUniform, Layouts, bind};
 use crate::gpu::Gpu;
 use crate::upload::{SceneBuffers, TreeSet};
@@ -27,12 +26,13 @@ pub struct BoundScene {
     pub clumps: Elements,
     /// What is drawn of the ring's indices.
     pub ring: Vec<Range<u32>>,
-    /// Small plants and stones, and which of them are drawn together.
+    /// Small plants and stones.
     pub plants: Elements,
-    pub plant_draws: Vec<PlantDraw>,
+    /// Which of them are drawn together: [`super::plants::PlantDraw`].
+    pub plant_draws: Elements,
 }
 
-/// A buffer of vertices, instances or indices that is written anew for each frame and grows as needed.
+/// A buffer of vertices, instances, indices or draws that is written anew for each frame and grows as needed.
 #[derive(Debug)]
 pub struct Elements {
     pub buffer: wgpu::Buffer,
@@ -98,7 +98,7 @@ impl BoundScene {
             clumps: Elements::new(gpu, "clumps of grass"),
             ring: Vec::new(),
             plants: Elements::new(gpu, "small plants"),
-            plant_draws: Vec::new(),
+            plant_draws: Elements::new(gpu, "draws of small plants"),
             scene,
         }
     }
@@ -109,8 +109,10 @@ impl BoundScene {
 }
 
 impl Elements {
-    const USAGE: wgpu::BufferUsages =
-        wgpu::BufferUsages::VERTEX.union(wgpu::BufferUsages::INDEX).union(wgpu::BufferUsages::COPY_DST);
+    const USAGE: wgpu::BufferUsages = wgpu::BufferUsages::VERTEX
+        .union(wgpu::BufferUsages::INDEX)
+        .union(wgpu::BufferUsages::INDIRECT)
+        .union(wgpu::BufferUsages::COPY_DST);
 
     pub(super) fn new(gpu: &Gpu, label: &str) -> Self {
         Self { buffer: gpu.empty_buffer(label, 64 * 1024, Self::USAGE), count: 0 }

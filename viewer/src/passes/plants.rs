@@ -1,11 +1,13 @@
 //! The land around the eye → small plants and stones: an instance each, drawn kind by kind; metres. Where they stand is the
 //! scene's matter (`PlantKind::in_cell`); here it is decided which of them are near enough, in view, and how finely to
-//! draw them. They shrink into the ground before they are left out.
+//! draw them. They shrink into the ground before they are left out. Those of a block are worked out when it comes within
+//! reach and kept while it is.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
-use genescape_schema::scene::{Plant, PlantKind};
-use glam::{Vec2, Vec3};
+use genescape_schema::scene::{DensityMap, Plant, PlantKind};
+use glam::{Vec2, Vec3, Vec3Swizzles};
 use half::f16;
 
 use super::shaders::ShaderError;
@@ -13,7 +15,7 @@ use super::{BoundScene, Compiler, DrawPass, PipelineDesc, Shader, buffer_layout}
 use crate::camera::Frustum;
 use crate::options::Options;
 use crate::scene::Ground;
-use crate::upload::{PLANT_BLOCK_M, PlantBuffers, PlantVertex};
+use crate::upload::{PLANT_BLOCK_M, PlantBuffersOfKind, PlantVertex};
 
 pub const SHADER: Shader = Shader { name: "plants", source: include_str!("plants.wgsl"), constants: &[] };
 
@@ -46,11 +48,15 @@ pub const INSTANCE: [wgpu::VertexAttribute; 4] =
 pub const VERTEX: [wgpu::VertexAttribute; 3] =
     wgpu::vertex_attr_array![4 => Float32x3, 5 => Float32x3, 6 => Float32];
 
-/// Plants that are drawn together: of one kind, equally fine.
-#[derive(Clone, Debug, PartialEq)]
+/// Plants that are drawn together, of one kind and equally fine: what `vkCmdDrawIndexedIndirect` reads.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct PlantDraw {
-    indices: Range<u32>,
-    instances: Range<u32>,
+    indices: u32,
+    instances: u32,
+    first_index: u32,
+    base_vertex: i32,
+    first_instance: u32,
 }
 
 /// What is drawn of a landscape's plants, kept from frame to frame.
@@ -59,7 +65,22 @@ pub struct PlantChoice {
     pub instances: Vec<PlantInstance>,
     pub draws: Vec<PlantDraw>,
     coarse: Vec<PlantInstance>,
+    /// The plants of blocks that are or were within reach, by number of their kind and block.
+    known: HashMap<(usize, [i32; 2]), Box<[Standing]>>,
+    /// How many blocks were left when those out of reach were last forgotten.
+    kept: usize,
 }
+
+/// A plant of full size where it stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Standing {
+    instance: PlantInstance,
+    /// [`Plant::rank`].
+    rank: f32,
+}
+
+/// Blocks that come to be known before those out of reach are forgotten, at least.
+const FORGETFUL: usize = 512;
 
 #[derive(Debug)]
 pub struct Plants {
@@ -81,7 +102,7 @@ impl Plants {
 
 impl DrawPass for Plants {
     fn is_needed(&self, bound: &BoundScene, options: &Options) -> bool {
-        options.draw_terrain && !bound.plant_draws.is_empty()
+        options.draw_terrain && bound.plant_draws.count > 0
     }
 
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, bound: &BoundScene, _: &Options) -> u32 {
@@ -90,14 +111,13 @@ impl DrawPass for Plants {
         pass.set_vertex_buffer(0, bound.plants.buffer.slice(..));
         pass.set_vertex_buffer(1, shapes.vertices.slice(..));
         pass.set_index_buffer(shapes.indices.slice(..), wgpu::IndexFormat::Uint32);
-        for draw in &bound.plant_draws {
-            pass.draw_indexed(draw.indices.clone(), 0, draw.instances.clone());
-        }
-        bound.plant_draws.len() as u32
+        pass.multi_draw_indexed_indirect(&bound.plant_draws.buffer, 0, bound.plant_draws.count);
+        1
     }
 }
 
 impl PlantChoice {
+    /// Draws none; what is known of them stays known.
     pub fn clear(&mut self) {
         self.instances.clear();
         self.draws.clear();
@@ -107,56 +127,88 @@ impl PlantChoice {
     pub fn choose(
         &mut self,
         ground: &Ground,
-        buffers: &PlantBuffers,
+        buffers: &[PlantBuffersOfKind],
         eye_m: Vec3,
         frustum: &Frustum,
         part: f32,
     ) {
         self.clear();
-        for (kind, shape) in ground.surface.plants.kinds.iter().zip(&buffers.kinds) {
+        self.forget(ground, eye_m);
+        for (number, (kind, shape)) in ground.surface.plants.kinds.iter().zip(buffers).enumerate() {
             let Some(map) = ground.plant_map(kind) else { continue };
             // What has as few pixels at full resolution is so far away.
             let reach_m = kind.reach_m * part;
-            let half_m = 0.5 * ground.field.extent_m();
-            let density =
-                |x: f32, z: f32| map.at(kind.channel, 0.5 + 0.5 * x / half_m, 0.5 + 0.5 * z / half_m);
             let first = self.instances.len() as u32;
             self.coarse.clear();
-            let seen = |middle: Vec3| frustum.sees_sphere(middle, 0.75 * PLANT_BLOCK_M + AROUND_M);
             for block in blocks(reach_m, ground, eye_m).filter(|&block| shape.grows_in(block)) {
-                let middle = (Vec2::new(block[0] as f32, block[1] as f32) + 0.5) * PLANT_BLOCK_M;
+                let middle = block_middle_m(block);
                 let middle = Vec3::new(middle.x, ground.field.height_m(middle.x, middle.y), middle.y);
-                if !seen(middle) {
+                if !frustum.sees_sphere(middle, 0.75 * PLANT_BLOCK_M + AROUND_M) {
                     continue;
                 }
-                for plant in cells(kind, block).filter_map(|cell| kind.in_cell(cell, density)) {
-                    let height_m = ground.field.height_m(plant.x_m, plant.z_m);
-                    let away = Vec3::new(plant.x_m, height_m, plant.z_m).distance(eye_m) / reach_m;
-                    let size = plant.scale * presence(&plant, away);
+                let known = self.known.entry((number, block));
+                let plants = known.or_insert_with(|| standing(ground, kind, &map, block));
+                for plant in plants {
+                    let away = Vec3::from(plant.instance.place).xzy().distance(eye_m) / reach_m;
+                    let size = presence(plant.rank, away);
                     if size > 0.0 {
                         let list = if away < FINE { &mut self.instances } else { &mut self.coarse };
-                        list.push(instance(&plant, kind, height_m, size));
+                        let turn = plant.instance.turn.map(|along| along * size);
+                        list.push(PlantInstance { turn, ..plant.instance });
                     }
                 }
             }
             let fine = self.instances.len() as u32;
             self.instances.append(&mut self.coarse);
             let all = self.instances.len() as u32;
-            for (indices, instances) in [(&shape.fine, first..fine), (&shape.coarse, fine..all)] {
-                if !instances.is_empty() {
-                    self.draws.push(PlantDraw { indices: indices.clone(), instances });
-                }
-            }
+            let draws = [(&shape.fine, first..fine), (&shape.coarse, fine..all)];
+            self.draws.extend(draws.into_iter().filter(|(_, plants)| !plants.is_empty()).map(PlantDraw::of));
+        }
+    }
+
+    /// Forgets blocks that are out of reach, when many are known.
+    fn forget(&mut self, ground: &Ground, eye_m: Vec3) {
+        if self.known.len() < 2 * self.kept.max(FORGETFUL) {
+            return;
+        }
+        let kinds = &ground.surface.plants.kinds;
+        self.known.retain(|&(number, block), _| {
+            kinds.get(number).is_some_and(|kind| is_near(block, 2.0 * kind.reach_m, eye_m))
+        });
+        self.kept = self.known.len();
+    }
+}
+
+impl PlantDraw {
+    fn of((indices, plants): (&Range<u32>, Range<u32>)) -> Self {
+        Self {
+            indices: indices.end - indices.start,
+            instances: plants.end - plants.start,
+            first_index: indices.start,
+            base_vertex: 0,
+            first_instance: plants.start,
         }
     }
 }
 
-fn instance(plant: &Plant, kind: &PlantKind, height_m: f32, size: f32) -> PlantInstance {
+/// The plants of a kind in a block.
+fn standing(ground: &Ground, kind: &PlantKind, map: &DensityMap<'_>, block: [i32; 2]) -> Box<[Standing]> {
+    let half_m = 0.5 * ground.field.extent_m();
+    let density = |x: f32, z: f32| map.at(kind.channel, 0.5 + 0.5 * x / half_m, 0.5 + 0.5 * z / half_m);
+    let plants = cells(kind, block).filter_map(|cell| kind.in_cell(cell, density));
+    let standing = |plant: Plant| {
+        let height_m = ground.field.height_m(plant.x_m, plant.z_m);
+        Standing { instance: instance(&plant, kind, height_m), rank: plant.rank }
+    };
+    plants.map(standing).collect()
+}
+
+fn instance(plant: &Plant, kind: &PlantKind, height_m: f32) -> PlantInstance {
     let [root, tip] = kind.colors.get(plant.color as usize).copied().unwrap_or_default();
     let with = |[r, g, b]: [f32; 3], more: f32| [r, g, b, more].map(f16::from_f32);
     PlantInstance {
         place: [plant.x_m, plant.z_m, height_m],
-        turn: (size * Vec2::from_angle(plant.turn_rad)).to_array(),
+        turn: (plant.scale * Vec2::from_angle(plant.turn_rad)).to_array(),
         root: with(root, kind.sway),
         tip: with(tip, if kind.sway > 0.0 { 1.0 } else { 0.0 }),
     }
@@ -165,12 +217,12 @@ fn instance(plant: &Plant, kind: &PlantKind, height_m: f32, size: f32) -> PlantI
 /// Part of all plants that are growing up at once as one comes nearer.
 const GROWS: f32 = 0.15;
 
-/// The part of its size that a plant has at a part of its kind's reach.
-fn presence(plant: &Plant, away: f32) -> f32 {
+/// The part of its size that a plant of a rank has at a part of its kind's reach.
+fn presence(rank: f32, away: f32) -> f32 {
     let far = ((away - FULL) / (1.0 - FULL)).clamp(0.0, 1.0);
     let share = 1.0 - (1.0 - FEWEST) * far;
     // Where all stand, the last has its full size, too.
-    ((share * (1.0 + GROWS) - plant.rank) / GROWS).clamp(0.0, 1.0) * ((1.0 - away) / 0.2).clamp(0.0, 1.0)
+    ((share * (1.0 + GROWS) - rank) / GROWS).clamp(0.0, 1.0) * ((1.0 - away) / 0.2).clamp(0.0, 1.0)
 }
 
 /// The blocks within a reach: numbers of their north-west corners in blocks.
@@ -178,11 +230,18 @@ fn blocks(reach_m: f32, ground: &Ground, eye_m: Vec3) -> impl Iterator<Item = [i
     let half_m = 0.5 * ground.field.extent_m();
     let line = move |m: f32| (m.clamp(-half_m, half_m - 0.01) / PLANT_BLOCK_M).floor() as i32;
     let lines = move |m: f32| line(m - reach_m)..=line(m + reach_m);
-    let near = move |block: &[i32; 2]| {
-        let middle = (Vec2::new(block[0] as f32, block[1] as f32) + 0.5) * PLANT_BLOCK_M;
-        middle.distance(Vec2::new(eye_m.x, eye_m.z)) < reach_m + PLANT_BLOCK_M
-    };
+    let near = move |&block: &[i32; 2]| is_near(block, reach_m, eye_m);
     lines(eye_m.z).flat_map(move |z| lines(eye_m.x).map(move |x| [x, z])).filter(near)
+}
+
+/// Whether any of a block may be within reach of an eye.
+fn is_near(block: [i32; 2], reach_m: f32, eye_m: Vec3) -> bool {
+    block_middle_m(block).distance(eye_m.xz()) < reach_m + PLANT_BLOCK_M
+}
+
+/// x and z.
+fn block_middle_m([x, z]: [i32; 2]) -> Vec2 {
+    (Vec2::new(x as f32, z as f32) + 0.5) * PLANT_BLOCK_M
 }
 
 /// The cells of a kind whose corners lie in a block.
@@ -195,8 +254,82 @@ fn cells(kind: &PlantKind, [x, z]: [i32; 2]) -> impl Iterator<Item = [i32; 2]> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
+    use crate::camera::Camera;
+    use crate::scene::{Apron, GroundSurface, Heightfield, Image};
+    use genescape_schema::scene::{GroundPlants, PlantShape};
     use proptest::prelude::*;
+
+    /// 1,024 m of level land with two kinds of plants, neither of which grows everywhere.
+    fn meadow() -> Ground {
+        let field =
+            Heightfield { side: 3, spacing_m: 512.0, heights_m: vec![2.0; 9], ..Heightfield::default() };
+        let picture = |pixels: Vec<u8>| Image {
+            name: String::new(),
+            width_px: 64,
+            height_px: 64,
+            levels: vec![pixels.as_slice().into()],
+        };
+        let growth = |n: u32| [(n % 64 * 4) as u8, if n / 64 % 9 < 5 { 90 } else { 0 }, 0, 0];
+        let none = || picture(vec![0; 4 * 64 * 64]);
+        let kind = |channel, per_m2, reach_m| PlantKind {
+            channel,
+            per_m2,
+            reach_m,
+            scale: [0.5, 1.5],
+            colors: vec![[[0.1; 3]; 2]],
+            shape: PlantShape { triangles: vec![[0, 1, 2]; 2], coarse: 1, ..PlantShape::default() },
+            ..PlantKind::default()
+        };
+        let plants = GroundPlants {
+            maps: vec![picture((0..64 * 64).flat_map(growth).collect())],
+            kinds: vec![kind(0, 1.5, 40.0), kind(1, 0.2, 90.0)],
+        };
+        Ground {
+            name: String::new(),
+            field: Arc::new(field),
+            lod: Arc::default(),
+            water_level_m: None,
+            surface: GroundSurface {
+                color: none(),
+                weights: none(),
+                light: none(),
+                details: Vec::new(),
+                plants,
+            },
+            apron: Arc::new(Apron::default()),
+        }
+    }
+
+    #[test]
+    fn what_is_known_from_before_is_what_stands_there() {
+        let ground = meadow();
+        let kinds = &ground.surface.plants.kinds;
+        let buffers: Vec<_> = kinds.iter().map(|kind| PlantBuffersOfKind::new(&ground, kind, 0..6)).collect();
+        let (mut walker, mut most) = (PlantChoice::default(), 0);
+        for step in 0..400u16 {
+            // There, and back on the same way.
+            let along = 1.0 - (f32::from(step) / 200.0 - 1.0).abs();
+            let camera = Camera {
+                position_m: Vec3::new(900.0 * along - 450.0, 3.7, 300.0 * along),
+                yaw_rad: 0.1 * f32::from(step),
+                pitch_rad: -0.1,
+                fov_y_rad: 1.0,
+            };
+            let part = if step % 3 == 0 { 0.5 } else { 1.0 };
+            let mut stranger = PlantChoice::default();
+            for choice in [&mut walker, &mut stranger] {
+                choice.choose(&ground, &buffers, camera.position_m, &camera.frustum(1.6), part);
+            }
+            assert_eq!(walker.instances, stranger.instances, "step {step}");
+            assert_eq!(walker.draws, stranger.draws, "step {step}");
+            most = most.max(walker.known.len());
+        }
+        assert!(most < 4 * FORGETFUL, "{most} blocks known at once");
+        assert!(walker.kept > 0, "blocks were forgotten");
+    }
 
     proptest! {
         #[test]
@@ -211,12 +344,11 @@ mod tests {
 
         #[test]
         fn plants_neither_pop_up_nor_stand_beyond_their_reach(rank in 0f32..1., away in 0f32..1.2) {
-            let plant = Plant { x_m: 0.0, z_m: 0.0, turn_rad: 0.0, scale: 1.0, color: 0, rank };
-            let here = presence(&plant, away);
-            prop_assert!((here - presence(&plant, away + 0.002)).abs() < 0.03);
-            prop_assert!(here >= presence(&plant, away + 0.002));
-            prop_assert_eq!(presence(&plant, 1.0), 0.0);
-            prop_assert_eq!(presence(&plant, FINE), 1.0);
+            let here = presence(rank, away);
+            prop_assert!((here - presence(rank, away + 0.002)).abs() < 0.03);
+            prop_assert!(here >= presence(rank, away + 0.002));
+            prop_assert_eq!(presence(rank, 1.0), 0.0);
+            prop_assert_eq!(presence(rank, FINE), 1.0);
         }
     }
 }

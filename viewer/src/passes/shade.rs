@@ -38,18 +38,22 @@ impl Shade {
         bound: &BoundShade,
     ) {
         let Some((set, trees)) = scene.trees.as_ref().zip(bound.trees.as_ref()) else { return };
-        let mut scope = scope.scope(Self::NAME);
         passes.cull.dispatch(&mut scope.scoped_compute_pass(Cull::NAME), trees);
         {
-            let mut pass = shadow::begin(scope.recorder, &bound.depth, wgpu::LoadOp::Clear(1.0));
+            let descriptor = wgpu::RenderPassDescriptor {
+                depth_stencil_attachment: Some(shadow::attached(&bound.depth, wgpu::LoadOp::Clear(1.0))),
+                ..Default::default()
+            };
+            let mut pass = scope.scoped_render_pass("trees seen by the sun", descriptor);
             pass.set_bind_group(0, &bound.sun_group, &[]);
             passes.shadow.trees.draw(&mut pass, set, trees, None);
         }
         for (level, target) in bound.levels.iter().enumerate() {
-            let mut pass = scope.recorder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            let descriptor = wgpu::RenderPassDescriptor {
                 color_attachments: &[cleared(&target.view, None, wgpu::Color::WHITE)],
                 ..Default::default()
-            });
+            };
+            let mut pass = scope.scoped_render_pass(Self::NAME, descriptor);
             pass.set_pipeline(if level == 0 { &self.look_up } else { &self.halve });
             pass.set_bind_group(0, &bound.sun_group, &[]);
             pass.set_bind_group(1, &target.source, &[]);

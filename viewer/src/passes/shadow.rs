@@ -129,18 +129,19 @@ impl ShadowBake<'_> {
     }
 }
 
-pub(super) fn begin<'a>(
-    encoder: &'a mut CommandEncoder,
-    map: &TextureView,
-    load: LoadOp<f32>,
-) -> RenderPass<'a> {
+fn begin<'a>(encoder: &'a mut CommandEncoder, map: &TextureView, load: LoadOp<f32>) -> RenderPass<'a> {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("shadows"),
-        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-            view: map,
-            depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Store }),
-            stencil_ops: None,
-        }),
+        depth_stencil_attachment: Some(attached(map, load)),
         ..Default::default()
     })
+}
+
+/// What a pass draws into that draws what the sun sees.
+pub(super) fn attached(map: &TextureView, load: LoadOp<f32>) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    wgpu::RenderPassDepthStencilAttachment {
+        view: map,
+        depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Store }),
+        stencil_ops: None,
+    }
 }

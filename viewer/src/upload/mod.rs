@@ -25,7 +25,7 @@ pub use exhibit::{Exhibit, WeakExhibit};
 pub use ground::GroundBuffers;
 pub use impostors::{ImpostorData, ImpostorSet};
 pub use lake::{Lake, Window};
-pub use plants::{PLANT_BLOCK_M, PlantBuffers, PlantVertex};
+pub use plants::{PLANT_BLOCK_M, PlantBuffers, PlantBuffersOfKind, PlantVertex};
 pub use ring::{Ring, RingVertex};
 pub use sky::SkyTextures;
 pub use texture::ImageUse;

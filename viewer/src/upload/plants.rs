@@ -47,6 +47,13 @@ pub struct PlantVertex {
 }
 
 impl PlantBuffersOfKind {
+    /// `indices`: those of its shape within all.
+    pub fn new(ground: &Ground, kind: &PlantKind, indices: Range<u32>) -> Self {
+        let side = 2 * (0.5 * ground.field.extent_m() / PLANT_BLOCK_M).ceil() as i32;
+        let coarse = indices.start..(indices.start + 3 * kind.shape.coarse).min(indices.end);
+        Self { fine: indices, coarse, side, grows: grows(ground, kind, side) }
+    }
+
     /// Whether the kind grows in a block, which is numbered from the middle of the field.
     pub fn grows_in(&self, [x, z]: [i32; 2]) -> bool {
         let (column, row) = (x + self.side / 2, z + self.side / 2);
@@ -68,14 +75,7 @@ impl Uploader {
                 tint,
             }));
             indices.extend(shape.triangles.as_flattened().iter().map(|v| v + base));
-            let coarse = shape.coarse.min(shape.triangles.len() as u32);
-            let side = 2 * (0.5 * ground.field.extent_m() / PLANT_BLOCK_M).ceil() as i32;
-            kinds.push(PlantBuffersOfKind {
-                fine: first..indices.len() as u32,
-                coarse: first..first + 3 * coarse,
-                side,
-                grows: grows(ground, kind, side),
-            });
+            kinds.push(PlantBuffersOfKind::new(ground, kind, first..indices.len() as u32));
         }
         PlantBuffers {
             vertices: self.gpu.buffer("plants", &vertices, wgpu::BufferUsages::VERTEX),

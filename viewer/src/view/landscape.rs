@@ -62,12 +62,12 @@ impl LandscapeChoice {
         if options.grass && !options.wireframe && !options.tint_levels && !options.overhead {
             let (ground, eye_m) = (&bound.scene.ground, lod_camera.position_m);
             grass::clumps(ground, eye_m, &frustum, frame.part, &mut self.clumps);
-            self.plants.choose(ground, &bound.scene.land.plants, eye_m, &frustum, frame.part);
+            self.plants.choose(ground, &bound.scene.land.plants.kinds, eye_m, &frustum, frame.part);
         }
         bound.part = frame.part;
         bound.clumps.write(gpu, &self.clumps);
         bound.plants.write(gpu, &self.plants.instances);
-        bound.plant_draws.clone_from(&self.plants.draws);
+        bound.plant_draws.write(gpu, &self.plants.draws);
         bound.scene.land.ring.seen(&camera.frustum(size[0] / size[1]), &mut bound.ring);
         let mirrored = self.mirror.record(bound, gpu, scope, passes, size_px, frame, [camera, lod_camera]);
         let draws = mirrored + draw(scope, passes, bound, targets, options);
