@@ -21,6 +21,9 @@ const SCATTER: f32 = 0.7;
 const HEADINGS: usize = 24;
 const PLACES: usize = CELLS * CELLS;
 
+/// Scores of the landscape that a shared view suits worst that are as good as each other, while the rest see the more.
+const NEARLY: u8 = 12;
+
 const MAGIC: &[u8; 4] = b"GSCL";
 const VERSION: u32 = 1;
 const HEADER_BYTES: usize = 16;
@@ -117,15 +120,17 @@ impl Lookouts {
         self.0[lookout.0]
     }
 
-    /// The view that suits the worst of these landscapes best, then all of them together; of equal ones the first.
-    /// `None` of no landscapes.
+    /// The view that suits all of these landscapes together best, of those that suit the worst of them nearly as well as any;
+    /// of equal ones the first. `None` of no landscapes.
     pub fn shared(lands: &[&Self]) -> Option<SharedView> {
-        let merit = |lookout: &Lookout| {
-            let scores = lands.iter().map(|land| land.prospect(*lookout).score);
-            (scores.clone().min(), scores.map(u32::from).sum::<u32>())
+        let best = Lookout::all().filter_map(|lookout| Self::worst(lands, lookout)).max()?;
+        let bearable = |lookout: &Lookout| Self::worst(lands, *lookout) >= Some(best.saturating_sub(NEARLY));
+        let sum = |lookout: &Lookout| {
+            lands.iter().map(|land| u32::from(land.prospect(*lookout).score)).sum::<u32>()
         };
         // Of equal ones `max_by_key` takes the last.
-        let lookout = Lookout::all().collect::<Vec<_>>().into_iter().rev().max_by_key(merit)?;
+        let lookout =
+            Lookout::all().filter(bearable).collect::<Vec<_>>().into_iter().rev().max_by_key(sum)?;
         let worst = Self::worst(lands, lookout)?;
         let sum: i32 = lands.iter().map(|land| i32::from(land.prospect(lookout).pitch_deg)).sum();
         Some(SharedView { lookout, pitch_rad: (sum as f32 / lands.len() as f32).to_radians(), worst })
@@ -206,15 +211,17 @@ mod tests {
     }
 
     #[test]
-    fn the_shared_view_is_the_best_of_the_worst() {
-        // What each likes best the other cannot stand; 70 is good enough for both, 90 suits them a little better.
-        let one =
-            lookouts(|k| [(5, 255), (70, 100), (90, 101)].into_iter().find(|x| x.0 == k).map_or(1, |x| x.1));
-        let other =
-            lookouts(|k| [(8, 255), (70, 100), (90, 100)].into_iter().find(|x| x.0 == k).map_or(2, |x| x.1));
+    fn the_shared_view_suits_the_worst_nearly_best_and_then_all() {
+        let with = |scores: &[(usize, u8)], rest: u8| {
+            lookouts(|k| scores.iter().find(|(lookout, _)| *lookout == k).map_or(rest, |(_, score)| *score))
+        };
+        // What each likes best the other cannot stand; 70 suits the worst best, 90 nearly so and the other far better; 95 suits
+        // both together best, but one of them too badly.
+        let one = with(&[(5, 255), (70, 100), (90, 200), (95, 255)], 1);
+        let other = with(&[(8, 255), (70, 100), (90, 100 - NEARLY), (95, 99 - NEARLY)], 2);
         assert_eq!(Lookouts::shared(&[&one]).unwrap().lookout, Lookout(5));
         let shared = Lookouts::shared(&[&one, &other]).unwrap();
-        assert_eq!((shared.lookout, shared.worst), (Lookout(90), 100));
+        assert_eq!((shared.lookout, shared.worst), (Lookout(90), 100 - NEARLY));
         assert_eq!(
             Lookouts::shared(&[&lookouts(|_| 7)]).unwrap().lookout,
             Lookout(0),
