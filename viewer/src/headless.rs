@@ -53,7 +53,12 @@ impl Headless {
 
     /// A view of a landscape or of anyone's file.
     pub fn view(&self, exhibit: impl Into<Exhibit>, size_px: [u32; 2]) -> View {
-        let mut view = View::new(&self.gpu, &self.passes, "headless", size_px);
+        self.view_of_four(0, exhibit, size_px)
+    }
+
+    /// The same, as one of four that move together.
+    pub fn view_of_four(&self, number: usize, exhibit: impl Into<Exhibit>, size_px: [u32; 2]) -> View {
+        let mut view = View::new(&self.gpu, &self.passes, "headless", number, size_px);
         view.show(&self.passes, exhibit);
         view
     }

@@ -57,7 +57,7 @@ impl Viewport {
     pub fn new(gpu: &Gpu, passes: &Passes, number: usize, label: &str) -> Self {
         Self {
             number: number as u64,
-            view: View::new(gpu, passes, label, FIRST_SIZE_PX),
+            view: View::new(gpu, passes, label, number, FIRST_SIZE_PX),
             land: None,
             picture: None,
             part: 1.0,

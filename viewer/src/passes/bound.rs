@@ -62,11 +62,17 @@ pub struct BoundTrees {
 }
 
 impl BoundScene {
-    /// `uniform` holds the view's [`super::ViewUniform`].
-    pub fn new(gpu: &Gpu, layouts: &Layouts, scene: Arc<SceneBuffers>, uniform: &wgpu::Buffer) -> Self {
+    /// `uniform` holds the view's [`super::ViewUniform`]; `turn`: which of the four views it is.
+    pub fn new(
+        gpu: &Gpu,
+        layouts: &Layouts,
+        scene: Arc<SceneBuffers>,
+        uniform: &wgpu::Buffer,
+        turn: usize,
+    ) -> Self {
         use Binding::{Buffer, Sampler};
         let (sky, land) = (&scene.sky_textures, &scene.land);
-        let shade = BoundShade::new(gpu, layouts, &scene);
+        let shade = BoundShade::new(gpu, layouts, &scene, turn);
         let view = |uniform: &wgpu::Buffer| {
             let bound = [
                 Buffer(uniform),

@@ -3,6 +3,8 @@
 
 use glam::{Vec2, Vec3, Vec3Swizzles};
 
+use genescape_schema::INDIVIDUALS;
+
 use super::{Binding, BoundTrees, CullUniform, Layouts, SHADE, SHADOW, SunView, ViewUniform, bind, sun_view};
 use crate::gpu::{Gpu, flat};
 use crate::upload::SceneBuffers;
@@ -16,8 +18,14 @@ const ERROR_TEXELS: f32 = 1.5;
 /// How wide the square is. Shaders look up less of it (`near_shade_at` of `common.wgsl`): by as much as the eye may be beside its
 /// middle.
 const EXTENT_M: f32 = 104.0;
-/// The eye may be so far from the middle.
-const MAX_ASIDE_M: f32 = 3.5;
+/// Middles are that far from each other, east and south: views that move together draw theirs one after the other, for each has a
+/// lattice of its own. So a picture does not wait for four.
+const STEP_M: f32 = 5.0;
+/// Where those of the four lie, in steps: different along both ways.
+const TURNS: [[f32; 2]; INDIVIDUALS] = [[0.0, 0.0], [0.25, 0.5], [0.5, 0.25], [0.75, 0.75]];
+/// The eye may be so far from the middle: a little farther than from the nearest of the lattice, so that one who stands between two
+/// stays with one.
+const MAX_ASIDE_M: f32 = 0.72 * STEP_M;
 /// Sine of the sun's elevation below which shadows on the ground are too long to have any edges.
 const MIN_ELEVATION: f32 = 0.03;
 
@@ -33,6 +41,7 @@ pub struct BoundShade {
     /// None where there are none, or no sun to shade from.
     pub(super) trees: Option<BoundTrees>,
     uniform: wgpu::Buffer,
+    turn: usize,
     /// Of the square, x and z; none before it is first drawn.
     middle_m: Option<Vec2>,
 }
@@ -46,7 +55,8 @@ pub(super) struct Level {
 }
 
 impl BoundShade {
-    pub(super) fn new(gpu: &Gpu, layouts: &Layouts, scene: &SceneBuffers) -> Self {
+    /// `turn`: which of the four views it is for.
+    pub(super) fn new(gpu: &Gpu, layouts: &Layouts, scene: &SceneBuffers, turn: usize) -> Self {
         let set = scene.trees.as_ref().filter(|_| scene.sky.sun_direction.y > MIN_ELEVATION);
         let (side, levels) = if set.is_some() { (SIDE[usize::from(!gpu.software)], LEVELS) } else { (1, 1) };
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
@@ -86,20 +96,21 @@ impl BoundShade {
             levels,
             depth,
             uniform,
+            turn,
             middle_m: None,
         }
     }
 
     /// Follows the eye and says whether the square has to be drawn anew. Once it is drawn it only follows if it may.
     pub fn follow(&mut self, gpu: &Gpu, scene: &SceneBuffers, eye_m: Vec3, may_move: bool) -> bool {
-        let is_near = |middle_m: Vec2| middle_m.distance(eye_m.xz()) <= MAX_ASIDE_M;
-        let stays = self.middle_m.is_some_and(|middle_m| is_near(middle_m) || !may_move);
+        let eye_m = eye_m.xz();
+        let stays = self.middle_m.is_some_and(|middle_m| is_near(middle_m, eye_m) || !may_move);
         let Some((set, trees)) = scene.trees.as_ref().zip(self.trees.as_ref()).filter(|_| !stays) else {
             return false;
         };
         // By whole texels, so that edges of shadows stay where they are.
         let texel_m = EXTENT_M / self.texture.width() as f32;
-        let middle_m = (eye_m.xz() / texel_m).round() * texel_m;
+        let middle_m = (nearest_m(eye_m, self.turn) / texel_m).round() * texel_m;
         self.middle_m = Some(middle_m);
         let sun_view = SunView::of_ground(scene, middle_m, 0.5 * EXTENT_M);
         let numbers = ViewUniform { shade: self.place(), ..ViewUniform::for_sun(scene, &sun_view) };
@@ -112,5 +123,42 @@ impl BoundShade {
     /// `shade` of `common.wgsl`'s `View`.
     pub fn place(&self) -> [f32; 4] {
         self.middle_m.map_or([0.0, 0.0, 1.0, 0.0], |middle_m| [middle_m.x, middle_m.y, EXTENT_M, 1.0])
+    }
+}
+
+fn is_near(middle_m: Vec2, eye_m: Vec2) -> bool {
+    middle_m.distance(eye_m) <= MAX_ASIDE_M
+}
+
+/// The middle nearest to an eye on the lattice of one of the four views.
+fn nearest_m(eye_m: Vec2, turn: usize) -> Vec2 {
+    let phase_m = STEP_M * Vec2::from(TURNS[turn % INDIVIDUALS]);
+    ((eye_m - phase_m) / STEP_M).round() * STEP_M + phase_m
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn views_that_walk_together_take_turns() {
+        for direction in 0..48u8 {
+            let ahead = Vec2::from_angle(f32::from(direction) / 48.0 * std::f32::consts::TAU);
+            let mut middles = [0, 1, 2, 3].map(|turn| nearest_m(Vec2::ZERO, turn));
+            let (mut drawn, mut together) = (0, 0);
+            for step in 1..4000u16 {
+                let eye_m = 0.05 * f32::from(step) * ahead;
+                let moved: Vec<usize> = (0..4).filter(|&turn| !is_near(middles[turn], eye_m)).collect();
+                for &turn in &moved {
+                    middles[turn] = nearest_m(eye_m, turn);
+                    assert!(is_near(middles[turn], eye_m), "it would be drawn in every picture");
+                }
+                drawn += moved.len();
+                together += moved.len().saturating_sub(2);
+            }
+            // Each about every step of the lattice.
+            assert!((100..280).contains(&drawn), "{drawn} times in 200 m, direction {direction}");
+            assert!(together <= 2, "{together} times more than two at once, direction {direction}");
+        }
     }
 }

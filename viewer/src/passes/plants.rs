@@ -148,7 +148,8 @@ impl PlantChoice {
                 }
                 let known = self.known.entry((number, block));
                 let plants = known.or_insert_with(|| standing(ground, kind, &map, block));
-                for plant in plants {
+                let nearest = (middle.distance(eye_m) - 0.75 * PLANT_BLOCK_M - AROUND_M).max(0.0) / reach_m;
+                for plant in plants.iter().take_while(|plant| presence(plant.rank, nearest) > 0.0) {
                     let away = Vec3::from(plant.instance.place).xzy().distance(eye_m) / reach_m;
                     let size = presence(plant.rank, away);
                     if size > 0.0 {
@@ -191,7 +192,7 @@ impl PlantDraw {
     }
 }
 
-/// The plants of a kind in a block.
+/// The plants of a kind in a block, in the order of their ranks.
 fn standing(ground: &Ground, kind: &PlantKind, map: &DensityMap<'_>, block: [i32; 2]) -> Box<[Standing]> {
     let half_m = 0.5 * ground.field.extent_m();
     let density = |x: f32, z: f32| map.at(kind.channel, 0.5 + 0.5 * x / half_m, 0.5 + 0.5 * z / half_m);
@@ -200,7 +201,9 @@ fn standing(ground: &Ground, kind: &PlantKind, map: &DensityMap<'_>, block: [i32
         let height_m = ground.field.height_m(plant.x_m, plant.z_m);
         Standing { instance: instance(&plant, kind, height_m), rank: plant.rank }
     };
-    plants.map(standing).collect()
+    let mut plants: Vec<Standing> = plants.map(standing).collect();
+    plants.sort_unstable_by(|a, b| a.rank.total_cmp(&b.rank));
+    plants.into()
 }
 
 fn instance(plant: &Plant, kind: &PlantKind, height_m: f32) -> PlantInstance {

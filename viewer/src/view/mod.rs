@@ -22,6 +22,7 @@ use crate::upload::{Exhibit, TreeSet};
 pub struct View {
     gpu: Gpu,
     label: String,
+    turn: usize,
     uniform: wgpu::Buffer,
     targets: Targets,
     /// The targets were made anew, and no caller knows yet.
@@ -51,13 +52,14 @@ pub struct Drawn {
 }
 
 impl View {
-    /// A view of nothing.
-    pub fn new(gpu: &Gpu, passes: &Passes, label: &str, size_px: [u32; 2]) -> Self {
+    /// A view of nothing. `turn`: which of the four it is, for views that move together do some of their work in turn.
+    pub fn new(gpu: &Gpu, passes: &Passes, label: &str, turn: usize, size_px: [u32; 2]) -> Self {
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
         let uniform = gpu.empty_buffer(label, size_of::<ViewUniform>() as u64, usage);
         Self {
             gpu: gpu.clone(),
             label: label.to_owned(),
+            turn,
             camera_group: camera_group(gpu, passes, &uniform),
             uniform,
             targets: Targets::new(gpu, passes, label, size_px),
@@ -97,7 +99,7 @@ impl View {
         let (gpu, layouts, exhibit) = (&self.gpu, &passes.layouts, exhibit.into());
         self.bound = Some(match exhibit.clone() {
             Exhibit::Landscape(scene) => {
-                let bound = BoundScene::new(gpu, layouts, scene, &self.uniform);
+                let bound = BoundScene::new(gpu, layouts, scene, &self.uniform, self.turn);
                 Bound::Landscape(Box::new(bound), LandscapeChoice::default())
             }
             Exhibit::Asset(asset) => {
