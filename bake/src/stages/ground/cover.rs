@@ -106,6 +106,10 @@ const PATH: Rgb = [0.150, 0.125, 0.068];
 const IN_BLOOM: f32 = 0.05;
 /// The same of a drift of tall flowers.
 const IN_DRIFT: f32 = 0.09;
+/// Part of the ground that tussocks hide where they stand densest, seen from far away.
+const IN_TUSSOCKS: f32 = 0.45;
+/// Dead blades of last year, which tussocks keep.
+const STRAW: Rgb = [0.330, 0.270, 0.150];
 /// Kinds of rock: granite, limestone, basalt, sandstone, slate.
 const ROCKS: [Rgb; 5] = [
     [0.205, 0.195, 0.185],
@@ -142,6 +146,11 @@ pub(super) struct Painter {
     spires: f32,
     spire: Rgb,
     umbels: f32,
+    /// How many tussocks there are, and the colour of their tips.
+    tussocks: f32,
+    pub tussock: Rgb,
+    /// How many boulders lie about that ice or floods have left.
+    erratics: f32,
     shore: Rgb,
     /// Shores of low lands are lower: 1 or more.
     shore_scale: f32,
@@ -163,6 +172,10 @@ impl Painter {
         let wet = 1.0 - palette.thirst;
         let mild = wet * wet * (1.0 - 0.6 * palette.frost) * (1.0 - 0.5 * palette.rain);
         let tall = palette.season.bloom() * mild;
+        // Where grass has the land to itself: it is too dry or too cold for other plants to cover it.
+        let poor = (3.0 * palette.thirst * (1.0 - 0.65 * palette.thirst)).max(0.9 * palette.frost).min(1.0);
+        let many = 0.5 + 0.5 * step(0.1, 0.6, chance(8));
+        let tussocks = (0.3 + 0.7 * poor) * (1.0 - 0.7 * palette.rain) * many;
         let shore = lerp(lerp(WET_MUD, GRAVEL, 0.5), SAND, step(0.25, 0.6, thirst));
         Self {
             litter: woods.litter,
@@ -185,6 +198,9 @@ impl Painter {
             spires: tall * step(0.15, 0.7, chance(6)),
             spire: spires(params.terrain_seed)[0],
             umbels: tall * step(0.2, 0.8, chance(7)),
+            tussocks,
+            tussock: lerp(palette.growth[2], STRAW, 0.35 + 0.4 * poor),
+            erratics: (0.5 + 0.5 * palette.frost) * step(0.4, 0.8, chance(9)),
             climate,
             palette,
         }
@@ -285,6 +301,19 @@ impl Painter {
         self.umbels * drift * (1.0 - step(0.3, 0.8, t.shade))
     }
 
+    /// How densely tussocks stand, 0 to 1: in patches, in the sun.
+    #[inline]
+    pub fn tussocks(&self, t: &Traits, n: &Noise) -> f32 {
+        let patch = step(-0.5, 0.4, 0.55 * n.broad + 0.4 * n.fine + 0.35 * t.tuft - 0.2 * t.patch);
+        self.tussocks * patch * (1.0 - step(0.2, 0.7, t.shade))
+    }
+
+    /// How densely boulders lie that no cliff has dropped, 0 to 1: in groups.
+    #[inline]
+    pub fn erratics(&self, t: &Traits, n: &Noise) -> f32 {
+        self.erratics * step(0.0, 0.6, 0.5 * t.tuft + 0.4 * t.outcrop + 0.45 * n.broad)
+    }
+
     /// Where heath grows, 0 to 1.
     #[inline]
     pub fn heath(&self, t: &Traits, n: &Noise) -> f32 {
@@ -372,6 +401,7 @@ impl Painter {
         let grass = lerp(lerp(grass, HEATH, 0.6 * self.heath(t, n)), self.bloom, IN_BLOOM * self.bloom(t, n));
         let grass = lerp(grass, self.spire, IN_DRIFT * self.spires(t, n));
         let grass = lerp(grass, UMBELS[0], IN_DRIFT * self.umbels(t, n));
+        let grass = lerp(grass, self.tussock, IN_TUSSOCKS * self.tussocks(t, n));
         scale(grass, 1.0 + 0.16 * n.fine + 0.10 * n.broad + 0.18 * n.grain)
     }
 

@@ -60,7 +60,7 @@ const HABITS: [Habit; CHANNELS] = [
     Habit { name: "stone", per_m2: 1.6, scale: [0.05, 0.30], reach_m: 22.0, sway: 0.0 },
     Habit { name: "boulder", per_m2: 0.03, scale: [0.5, 2.6], reach_m: 160.0, sway: 0.0 },
     Habit { name: "litter", per_m2: 3.0, scale: [0.8, 1.2], reach_m: 11.0, sway: 0.0 },
-    Habit { name: "tussock", per_m2: 0.8, scale: [0.5, 1.3], reach_m: 40.0, sway: 0.2 },
+    Habit { name: "tussock", per_m2: 1.4, scale: [0.45, 1.5], reach_m: 60.0, sway: 0.15 },
     Habit { name: "bush", per_m2: 0.09, scale: [0.6, 1.9], reach_m: 120.0, sway: 0.03 },
     Habit { name: "sapling", per_m2: 0.07, scale: [0.3, 1.0], reach_m: 90.0, sway: 0.04 },
     Habit { name: "log", per_m2: 0.008, scale: [0.6, 1.3], reach_m: 90.0, sway: 0.0 },
@@ -221,9 +221,9 @@ impl Painter {
         // Scrub belongs to where it is too dry or too cold for trees to close.
         let scrub = (dry * (1.0 - 0.7 * dry) * 2.4 + 0.7 * cold * (1.0 - 0.5 * cold)).min(1.0) * bushes;
         growth[SHRUB] = (green * heath.max(scrub)).max(0.25 * scrub * cover.soil());
-        growth[TUSSOCK] = green
-            * (0.12 + 1.6 * dry * (1.0 - 0.6 * dry) + 0.5 * cold + 0.25 * heath)
-            * step(-0.6, 0.5, n.broad - 0.5 * patch);
+        // On soil, too, but for deserts.
+        let open = green.max(0.5 * cover.soil() * (1.0 - step(0.7, 1.0, dry)));
+        growth[TUSSOCK] = open * self.tussocks(t, n).max(0.25 * heath);
         let shore = step(-0.45, -0.15, above_m) * (1.0 - step(0.15, 0.45, above_m));
         growth[REED] = shore
             * step(0.0, 0.5, patch + 0.15)
@@ -240,7 +240,7 @@ impl Painter {
             * (1.0 - step(0.6, 0.95, t.slope))
             * (fallen * (1.0 - rock)
                 + 0.35 * scree * step(0.2, 0.8, n.fine)
-                + 0.03 * green * step(0.5, 0.9, t.outcrop))
+                + green * (0.03 * step(0.5, 0.9, t.outcrop)).max(0.5 * self.erratics(t, n)))
             .min(1.0);
         growth[LITTER] = cover.litter() * (0.35 + 0.65 * t.shade);
         self.wood(t, n, green, cover, &mut growth);
@@ -289,13 +289,13 @@ fn kinds(params: &GroundParams, painter: &Painter) -> Vec<PlantKind> {
         (shapes::fern(), ferns(palette)),
         (shapes::shrub(), shrubs(palette)),
         (shapes::reed(), reeds()),
-        (shapes::stone(3), stones.clone()),
-        (shapes::stone(6), stones),
+        (shapes::stone(3), stones),
+        (shapes::boulder(), boulders(painter)),
         (
             shapes::litter(litter.leaf_m, litter.is_needles),
             vec![litter.colors, litter.colors.map(|c| c.map(|c| 0.7 * c))],
         ),
-        (shapes::tussock(), vec![[growth[1], growth[3]], [growth[2], growth[4]]]),
+        (shapes::tussock(), tussocks(painter)),
         (woody::bush(), bushes(palette)),
         (woody::sapling(painter.offspring.map_or(Foliage::Bare, |young| young.foliage)), saplings(painter)),
         (woody::log(), logs(palette)),
@@ -355,6 +355,24 @@ fn flowers(terrain_seed: u32, stalk: Rgb) -> Vec<[Rgb; 2]> {
 fn hay(palette: &Palette) -> Vec<[Rgb; 2]> {
     let growth = palette.growth;
     [RIPE, lerp(RIPE, growth[3], 0.5)].map(|head| [lerp(growth[2], growth[3], 0.5), head]).into()
+}
+
+/// Rock, in rainy lands under moss.
+fn boulders(painter: &Painter) -> Vec<[Rgb; 2]> {
+    let top = |rock: Rgb, more: f32| {
+        let moss = (0.5 * painter.palette.rain + more - painter.palette.thirst).clamp(0.0, 0.7);
+        lerp(rock.map(|c| 1.15 * c), MOSS, moss)
+    };
+    [(painter.rock, 0.0), (painter.rock, 0.25), (painter.rock_band, 0.1)]
+        .map(|(rock, more)| [rock.map(|c| 0.42 * c), top(rock, more)])
+        .into()
+}
+
+/// Green at the root, and at the tips as pale as the land's are, or half so.
+fn tussocks(painter: &Painter) -> Vec<[Rgb; 2]> {
+    let (growth, tip) = (painter.palette.growth, painter.tussock);
+    let root = growth[1].map(|c| 0.55 * c);
+    vec![[root, tip], [growth[2].map(|c| 0.55 * c), lerp(growth[2], tip, 0.5)], [root, tip.map(|c| 1.2 * c)]]
 }
 
 /// Broad leaves in the green of lush grass.

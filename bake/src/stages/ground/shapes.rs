@@ -253,16 +253,18 @@ pub(super) fn reed() -> PlantShape {
     d.done()
 }
 
-/// A tuft of long arching grass.
+/// A tuft of long arching grass: blades within stand, those around them lean out.
 pub(super) fn tussock() -> PlantShape {
     let mut d = Drawing::new(65);
-    for k in 0..13 {
-        let (turn, long) = (d.unit() * TAU, 0.7 + 0.6 * d.unit());
-        let width = if k < 5 { 0.02 } else { 0.012 };
-        let root = heading(turn) * (0.05 * d.unit());
-        let lean = 0.08 + 0.3 * d.unit();
-        d.blade(root, turn, [0.46 * long, lean * long, width], [0.0, 1.0]);
-        if k == 4 {
+    for k in 0..32 {
+        // Those that are drawn from afar, too, are spread over all.
+        let out = ((5 * k) % 32) as f32 / 32.0;
+        let (turn, long) = (2.4 * k as f32 + 0.7 * d.unit(), 0.75 + 0.5 * d.unit());
+        let width = if k < 7 { 0.028 } else { 0.013 };
+        let root = heading(turn) * (0.02 + 0.11 * out);
+        let lean = 0.05 + 0.46 * out;
+        d.blade(root, turn, [(0.58 - 0.24 * out) * long, lean * long, width], [0.0, 1.0]);
+        if k == 6 {
             d.coarse();
         }
     }
@@ -448,4 +450,86 @@ pub(super) fn stone(rings: u32) -> PlantShape {
         }
     }
     d.done()
+}
+
+/// A boulder, broken along a few planes and worn since: dark where it stands in the ground, pale on top.
+pub(super) fn boulder() -> PlantShape {
+    let mut d = Drawing::new(76);
+    // Spread evenly over all directions (Fibonacci's lattice), and moved a little.
+    let planes: Vec<(Vec3, f32)> = (0..11)
+        .map(|k| {
+            let up = 1.0 - 2.0 * (k as f32 + 0.5) / 11.0;
+            let level = heading(2.4 * k as f32 + 0.9 * d.unit()) * (1.0 - up * up).sqrt();
+            ((level + Vec3::Y * (up + 0.4 * d.unit() - 0.2)).normalize(), 0.30 + 0.16 * d.unit())
+        })
+        .collect();
+    let surface = |way: Vec3| {
+        let reach =
+            planes.iter().map(|(normal, away)| away / way.dot(*normal).max(0.05)).fold(0.54, f32::min);
+        way * reach * Vec3::new(1.0, 0.64, 0.86) + Vec3::Y * 0.12
+    };
+    // From afar a coarse one is enough, which the fine one hides.
+    worn(&mut d, 5, 8, |way| surface(way) * 0.93);
+    d.coarse();
+    worn(&mut d, 9, 13, surface);
+    d.done()
+}
+
+/// A closed surface that is seen from its middle in all directions, rough and mottled: from pole to pole in so many rings.
+fn worn(d: &mut Drawing, rings: usize, around: usize, surface: impl Fn(Vec3) -> Vec3) {
+    let way = |ring: usize, k: usize| {
+        let polar = ring as f32 / rings as f32 * 0.5 * TAU;
+        let turn = (k as f32 + 0.5 * ring as f32) / around as f32 * TAU;
+        heading(turn) * libm::sinf(polar) + Vec3::Y * libm::cosf(polar)
+    };
+    let mut rough = |ring: usize, k: usize| surface(way(ring, k)) * (0.96 + 0.08 * d.unit());
+    let grid: Vec<Vec<Vec3>> =
+        (0..=rings).map(|ring| (0..around).map(|k| rough(ring, k)).collect()).collect();
+    let mut triangles = Vec::new();
+    for ring in 0..rings {
+        for k in 0..around {
+            let next = (k + 1) % around;
+            let [a, b, c, e] = [(ring, k), (ring, next), (ring + 1, k), (ring + 1, next)];
+            // At the poles rings are points.
+            triangles.extend((ring > 0).then_some([a, b, c]));
+            triangles.extend((ring + 1 < rings).then_some([b, e, c]));
+        }
+    }
+    let at = |(ring, k): (usize, usize)| match ring {
+        0 => (0, 0),
+        ring if ring == rings => (rings, 0),
+        _ => (ring, k),
+    };
+    let place = |at: (usize, usize)| grid[at.0][at.1];
+    let mut normals = vec![vec![Vec3::ZERO; around]; rings + 1];
+    for corners in &triangles {
+        let corners = corners.map(at);
+        let [a, b, c] = corners.map(place);
+        let front = (b - a).cross(c - a);
+        let outward = if front.dot(a + b + c - Vec3::Y * 0.36) < 0.0 { -front } else { front };
+        corners.iter().for_each(|&(ring, k)| normals[ring][k] += outward);
+    }
+    let tints: Vec<Vec<f32>> = (0..=rings)
+        .map(|ring| {
+            let tint = |k: usize| {
+                let k = at((ring, k)).1;
+                0.3 + 0.4 * normals[ring][k].normalize_or(Vec3::Y).y - (0.3 - 2.0 * grid[ring][k].y).max(0.0)
+            };
+            (0..around).map(tint).collect()
+        })
+        .collect();
+    for corners in triangles.into_iter().map(|corners| corners.map(at)) {
+        let [a, b, c] = corners.map(place);
+        let smooth = corners.map(|(ring, k)| normals[ring][k].normalize_or(Vec3::Y));
+        let front = (b - a).cross(c - a).normalize_or(Vec3::Y);
+        let outward = if front.dot(smooth.iter().sum()) < 0.0 { -front } else { front };
+        // Its edges are worn, not gone; lichen and stains are on some of its faces.
+        let (edge, stain) = (0.9, 0.5 * d.unit() - 0.15);
+        let triangle = [0, 1, 2].map(|k| {
+            let (ring, corner) = corners[k];
+            let tint = (tints[ring][corner] + stain + 0.2 * d.unit()).clamp(0.0, 1.0);
+            d.vertex(place(corners[k]), outward + edge * smooth[k], tint)
+        });
+        d.triangle(triangle, [a, b, c], outward);
+    }
 }

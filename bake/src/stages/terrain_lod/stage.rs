@@ -32,7 +32,7 @@ pub struct TerrainFiles {
 
 impl Stage for TerrainStage {
     const NAME: &'static str = "terrain";
-    const VERSION: u32 = 12;
+    const VERSION: u32 = 14;
     type Output = TerrainFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<TerrainFiles, StageError> {

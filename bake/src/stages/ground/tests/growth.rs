@@ -365,3 +365,24 @@ fn water_stands_in_fields_alone() {
         );
     }
 }
+
+#[test]
+fn tussocks_stand_where_little_else_grows_and_boulders_in_some_lands_alone() {
+    let grown = |terrain_seed: u32, temperature_c: f32, rain_mm: f32| {
+        let params = GroundParams { terrain_seed, temperature_c, rain_mm, ..PARAMS };
+        maps(&params, &Woods::none(Season::default()), &LAND, 128).plants
+    };
+    let amount = |plants: &GroundPlants<Image8>, name: &str| {
+        stands(plants, name).iter().map(|(part, _)| u64::from(*part)).sum::<u64>()
+    };
+    let of = |temperature_c: f32, rain_mm: f32| -> u64 {
+        (0..6).map(|seed| amount(&grown(seed, temperature_c, rain_mm), "tussock")).sum()
+    };
+    let (meadow, steppe, forest) = (of(10.0, 900.0), of(9.0, 380.0), of(26.0, 3000.0));
+    assert!(steppe > meadow + meadow / 2 && 2 * meadow > 3 * forest, "{steppe} {meadow} {forest}");
+    let boulders: Vec<u64> = (0..10).map(|seed| amount(&grown(seed, 4.0, 700.0), "boulder")).collect();
+    // Below cliffs they lie in all of them.
+    let least = *boulders.iter().min().expect("ten");
+    let beside = |part: u64| boulders.iter().filter(|&&sum| sum > least + least / part).count();
+    assert!(least > 0 && (3..8).contains(&beside(10)) && beside(25) < 8, "{boulders:?}");
+}
