@@ -267,8 +267,7 @@ mod tests {
 
     /// 1,024 m of level land with two kinds of plants, neither of which grows everywhere.
     fn meadow() -> Ground {
-        let field =
-            Heightfield { side: 3, spacing_m: 512.0, heights_m: vec![2.0; 9], ..Heightfield::default() };
+        let field = Heightfield { side: 3, spacing_m: 512.0, heights_m: vec![2.0; 9] };
         let picture = |pixels: Vec<u8>| Image {
             name: String::new(),
             width_px: 64,
