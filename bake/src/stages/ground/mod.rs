@@ -20,6 +20,7 @@ mod shapes;
 mod snow;
 mod stage;
 mod standing;
+mod stones;
 #[cfg(test)]
 mod tests;
 mod textures;

@@ -9,6 +9,7 @@ use super::grain::Grain;
 use super::palette::Palette;
 use super::palette::{Rgb, UMBELS, petals, spires, step};
 use super::shapes;
+use super::stones;
 use super::traits::{Traits, TraitsMap};
 use super::woody::{self, Foliage};
 use crate::math::lerp_array as lerp;
@@ -281,7 +282,7 @@ fn kinds(params: &GroundParams, painter: &Painter) -> Vec<PlantKind> {
     let palette = &painter.palette;
     let growth = palette.growth;
     let stone = |tone: f32| [0.75, 1.15].map(|shade| painter.rock.map(|c| c * tone * shade));
-    let stones = vec![stone(1.0), stone(0.85), [painter.rock_band.map(|c| 0.8 * c), painter.rock_band]];
+    let stone_colors = vec![stone(1.0), stone(0.85), [painter.rock_band.map(|c| 0.8 * c), painter.rock_band]];
     let litter = painter.litter;
     // In the order of the channels.
     let looks: [(PlantShape, Vec<[Rgb; 2]>); CHANNELS] = [
@@ -289,8 +290,8 @@ fn kinds(params: &GroundParams, painter: &Painter) -> Vec<PlantKind> {
         (shapes::fern(), ferns(palette)),
         (shapes::shrub(), shrubs(palette)),
         (shapes::reed(), reeds()),
-        (shapes::stone(3), stones),
-        (shapes::boulder(), boulders(painter)),
+        (stones::stone(3), stone_colors),
+        (stones::boulder(), boulders(painter)),
         (
             shapes::litter(litter.leaf_m, litter.is_needles),
             vec![litter.colors, litter.colors.map(|c| c.map(|c| 0.7 * c))],

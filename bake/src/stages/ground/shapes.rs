@@ -1,4 +1,4 @@
-//! Nothing → the shapes of herbs, dwarf shrubs and stones, and what all shapes are drawn with: a few triangles each,
+//! Nothing → the shapes of herbs and dwarf shrubs, and what all shapes are drawn with: a few triangles each,
 //! coarse ones first. Metres.
 
 use glam::Vec3;
@@ -28,7 +28,7 @@ impl Drawing {
         hash01(self.seed, self.dice, 7, 1)
     }
 
-    fn vertex(&mut self, position: Vec3, normal: Vec3, tint: f32) -> u32 {
+    pub(super) fn vertex(&mut self, position: Vec3, normal: Vec3, tint: f32) -> u32 {
         // Scenes hold these numbers as text: millimetres will do.
         let round = |x: f32| (1000.0 * x).round() / 1000.0;
         self.shape.positions_m.push(position.to_array().map(round));
@@ -52,7 +52,7 @@ impl Drawing {
     }
 
     /// A triangle of vertices that lie there, with its front on the side of `normal`.
-    fn triangle(&mut self, [a, b, c]: [u32; 3], [at_a, at_b, at_c]: [Vec3; 3], normal: Vec3) {
+    pub(super) fn triangle(&mut self, [a, b, c]: [u32; 3], [at_a, at_b, at_c]: [Vec3; 3], normal: Vec3) {
         let front = (at_b - at_a).cross(at_c - at_a);
         self.shape.triangles.push(if front.dot(normal) < 0.0 { [a, c, b] } else { [a, b, c] });
     }
@@ -124,13 +124,13 @@ pub(super) fn heading(turn: f32) -> Vec3 {
 }
 
 /// Where two rings of as many points have their `k`-th quadrangle: two corners on the first, two on the second.
-fn corners(pair: &[Vec<Vec3>], k: usize) -> [Vec3; 4] {
+pub(super) fn corners(pair: &[Vec<Vec3>], k: usize) -> [Vec3; 4] {
     let next = (k + 1) % pair[0].len();
     [pair[0][k], pair[0][next], pair[1][k], pair[1][next]]
 }
 
 /// The triangles of a quadrangle.
-fn halves<T: Copy>([a, b, c, d]: [T; 4]) -> [[T; 3]; 2] {
+pub(super) fn halves<T: Copy>([a, b, c, d]: [T; 4]) -> [[T; 3]; 2] {
     [[a, b, c], [b, d, c]]
 }
 
@@ -410,126 +410,4 @@ pub(super) fn litter(leaf_m: f32, is_needles: bool) -> PlantShape {
         d.leaf([root, tip, left], [tint * 0.8; 3]);
     }
     d.done()
-}
-
-/// A stone of about a metre, a fifth of it in the ground: a sphere of `rings` rings that was knocked about.
-pub(super) fn stone(rings: u32) -> PlantShape {
-    let mut d = Drawing::new(67 + rings);
-    let around = rings + 3;
-    let point = |d: &mut Drawing, ring: u32, k: u32| {
-        let polar = ring as f32 / rings as f32 * 0.5 * TAU;
-        let turn = (k as f32 + 0.5 * ring as f32) / around as f32 * TAU;
-        let bulge = 0.9 + 0.2 * d.unit();
-        let round = heading(turn) * libm::sinf(polar) + Vec3::Y * libm::cosf(polar);
-        // Squared off a little: stones break along planes.
-        let corner = round.abs().max_element().max(0.62);
-        round * (0.5 * bulge / corner) * Vec3::new(1.0, 0.62, 0.84) + Vec3::Y * 0.16
-    };
-    let top = point(&mut d, 0, 0);
-    let bottom = point(&mut d, rings, 0);
-    let grid: Vec<Vec<Vec3>> =
-        (1..rings).map(|ring| (0..around).map(|k| point(&mut d, ring, k)).collect()).collect();
-    let mut facet = |corners: [Vec3; 3]| {
-        let [a, b, c] = corners;
-        let normal = (b - a).cross(c - a).normalize_or(Vec3::Y);
-        let outward = if normal.dot(a + b + c - Vec3::Y * 0.48) < 0.0 { -normal } else { normal };
-        let tint = d.unit();
-        // Smoothed a little towards a sphere's.
-        let triangle = corners.map(|p| {
-            let round = (p - Vec3::Y * 0.16).normalize_or(Vec3::Y);
-            d.vertex(p, outward + 1.1 * round, tint)
-        });
-        d.triangle(triangle, corners, outward);
-    };
-    let n = around as usize;
-    for k in 0..n {
-        facet([top, grid[0][(k + 1) % n], grid[0][k]]);
-        facet([bottom, grid[grid.len() - 1][k], grid[grid.len() - 1][(k + 1) % n]]);
-        for pair in grid.windows(2) {
-            halves(corners(pair, k)).into_iter().for_each(&mut facet);
-        }
-    }
-    d.done()
-}
-
-/// A boulder, broken along a few planes and worn since: dark where it stands in the ground, pale on top.
-pub(super) fn boulder() -> PlantShape {
-    let mut d = Drawing::new(76);
-    // Spread evenly over all directions (Fibonacci's lattice), and moved a little.
-    let planes: Vec<(Vec3, f32)> = (0..11)
-        .map(|k| {
-            let up = 1.0 - 2.0 * (k as f32 + 0.5) / 11.0;
-            let level = heading(2.4 * k as f32 + 0.9 * d.unit()) * (1.0 - up * up).sqrt();
-            ((level + Vec3::Y * (up + 0.4 * d.unit() - 0.2)).normalize(), 0.30 + 0.16 * d.unit())
-        })
-        .collect();
-    let surface = |way: Vec3| {
-        let reach =
-            planes.iter().map(|(normal, away)| away / way.dot(*normal).max(0.05)).fold(0.54, f32::min);
-        way * reach * Vec3::new(1.0, 0.64, 0.86) + Vec3::Y * 0.12
-    };
-    // From afar a coarse one is enough, which the fine one hides.
-    worn(&mut d, 5, 8, |way| surface(way) * 0.93);
-    d.coarse();
-    worn(&mut d, 9, 13, surface);
-    d.done()
-}
-
-/// A closed surface that is seen from its middle in all directions, rough and mottled: from pole to pole in so many rings.
-fn worn(d: &mut Drawing, rings: usize, around: usize, surface: impl Fn(Vec3) -> Vec3) {
-    let way = |ring: usize, k: usize| {
-        let polar = ring as f32 / rings as f32 * 0.5 * TAU;
-        let turn = (k as f32 + 0.5 * ring as f32) / around as f32 * TAU;
-        heading(turn) * libm::sinf(polar) + Vec3::Y * libm::cosf(polar)
-    };
-    let mut rough = |ring: usize, k: usize| surface(way(ring, k)) * (0.96 + 0.08 * d.unit());
-    let grid: Vec<Vec<Vec3>> =
-        (0..=rings).map(|ring| (0..around).map(|k| rough(ring, k)).collect()).collect();
-    let mut triangles = Vec::new();
-    for ring in 0..rings {
-        for k in 0..around {
-            let next = (k + 1) % around;
-            let [a, b, c, e] = [(ring, k), (ring, next), (ring + 1, k), (ring + 1, next)];
-            // At the poles rings are points.
-            triangles.extend((ring > 0).then_some([a, b, c]));
-            triangles.extend((ring + 1 < rings).then_some([b, e, c]));
-        }
-    }
-    let at = |(ring, k): (usize, usize)| match ring {
-        0 => (0, 0),
-        ring if ring == rings => (rings, 0),
-        _ => (ring, k),
-    };
-    let place = |at: (usize, usize)| grid[at.0][at.1];
-    let mut normals = vec![vec![Vec3::ZERO; around]; rings + 1];
-    for corners in &triangles {
-        let corners = corners.map(at);
-        let [a, b, c] = corners.map(place);
-        let front = (b - a).cross(c - a);
-        let outward = if front.dot(a + b + c - Vec3::Y * 0.36) < 0.0 { -front } else { front };
-        corners.iter().for_each(|&(ring, k)| normals[ring][k] += outward);
-    }
-    let tints: Vec<Vec<f32>> = (0..=rings)
-        .map(|ring| {
-            let tint = |k: usize| {
-                let k = at((ring, k)).1;
-                0.3 + 0.4 * normals[ring][k].normalize_or(Vec3::Y).y - (0.3 - 2.0 * grid[ring][k].y).max(0.0)
-            };
-            (0..around).map(tint).collect()
-        })
-        .collect();
-    for corners in triangles.into_iter().map(|corners| corners.map(at)) {
-        let [a, b, c] = corners.map(place);
-        let smooth = corners.map(|(ring, k)| normals[ring][k].normalize_or(Vec3::Y));
-        let front = (b - a).cross(c - a).normalize_or(Vec3::Y);
-        let outward = if front.dot(smooth.iter().sum()) < 0.0 { -front } else { front };
-        // Its edges are worn, not gone; lichen and stains are on some of its faces.
-        let (edge, stain) = (0.9, 0.5 * d.unit() - 0.15);
-        let triangle = [0, 1, 2].map(|k| {
-            let (ring, corner) = corners[k];
-            let tint = (tints[ring][corner] + stain + 0.2 * d.unit()).clamp(0.0, 1.0);
-            d.vertex(place(corners[k]), outward + edge * smooth[k], tint)
-        });
-        d.triangle(triangle, [a, b, c], outward);
-    }
 }
