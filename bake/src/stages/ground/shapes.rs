@@ -70,16 +70,24 @@ impl Drawing {
         self.leaf([root - radius * Vec3::X, root + radius * Vec3::X, tip], [0.0; 3]);
     }
 
-    /// A blade that bends from `root` outwards in the direction of a turn and ends in a point.
+    /// A blade that bends from `root` outwards in the direction of a turn and ends in a point. Where it stands its front is the outer
+    /// side: of a tuft one sees that of the nearest blades, and within it is dark.
     pub(super) fn blade(&mut self, root: Vec3, turn: f32, [height, lean, width]: [f32; 3], tints: [f32; 2]) {
         let out = heading(turn);
         let side = Vec3::new(-out.z, 0.0, out.x) * (0.5 * width);
         let middle = root + out * (0.3 * lean) + Vec3::Y * (0.62 * height);
         let tip = root + out * lean + Vec3::Y * height;
         let half = lerp(tints[0], tints[1], 0.6);
-        self.leaf([root - side, root + side, middle + 0.8 * side], [tints[0], tints[0], half]);
-        self.leaf([root - side, middle + 0.8 * side, middle - 0.8 * side], [tints[0], half, half]);
-        self.leaf([middle - 0.8 * side, middle + 0.8 * side, tip], [half, half, tints[1]]);
+        let (left, right) = (middle - 0.8 * side, middle + 0.8 * side);
+        let mut part = |corners: [Vec3; 3], tints: [f32; 3]| {
+            let [a, b, c] = corners;
+            let across = (b - a).cross(c - a).normalize_or(Vec3::Y);
+            let outer = if across.dot(out) < 0.0 { -across } else { across };
+            self.lit(corners, Vec3::Y + 0.6 * if outer.y < -0.5 { -outer } else { outer }, tints);
+        };
+        part([root - side, root + side, right], [tints[0], tints[0], half]);
+        part([root - side, right, left], [tints[0], half, half]);
+        part([left, right, tip], [half, half, tints[1]]);
     }
 
     /// Two halves of a leaf or of a spray of leaves: from root to tip, widest at `middle` ± `side`, each with its tint.
