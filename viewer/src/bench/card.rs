@@ -8,11 +8,11 @@ use crate::measure::{camera_path, forest, median, quantile};
 use crate::options::FrameInput;
 
 /// Trees of each landscape.
-const TREES: usize = 10_000;
+pub(super) const TREES: usize = 10_000;
 /// Of the four views together.
-const SIZE_PX: [u32; 2] = [1920, 1080];
+pub(super) const SIZE_PX: [u32; 2] = [1920, 1080];
 /// Places of the camera there, and as many back.
-const PLACES: u32 = 600;
+pub(super) const PLACES: u32 = 600;
 /// Frames before that, at its first places.
 const WARMING: usize = 60;
 

@@ -5,8 +5,9 @@
 //! levels of detail against pictures without, and how far apart they are ([`detail`]; thesis section 7); the land's triangles and their
 //! greatest error ([`land`]); four views
 //! against four single ones ([`views`]); a walk's frames and what they are made of ([`walk`]); those around the
-//! swap of a landscape ([`swap`]); the device's time by pass ([`passes`]); memory after many frames ([`memory`]); and, where there is a graphics card, the slowest
-//! frames of four large forests ([`card`]). [`serve`] lets another program measure beside its own pictures.
+//! swap of a landscape ([`swap`]); the device's time by pass ([`passes`]); memory after many frames ([`memory`]); and, where
+//! there is a graphics card, the slowest frames of four large forests ([`card`]). [`serve`] lets another program measure beside
+//! its own pictures.
 
 mod card;
 mod detail;

@@ -7,20 +7,15 @@ use anyhow::Result;
 use wgpu_profiler::{GpuProfiler, GpuProfilerSettings};
 
 use super::Bench;
+use super::card::{PLACES, SIZE_PX, TREES};
 use crate::camera::Camera;
 use crate::measure::{Cost, camera_path, forest, median, quantile, timed};
 use crate::options::FrameInput;
 use crate::scene::Scene;
 use crate::view::View;
 
-/// Of the four views together.
-const SIZE_PX: [u32; 2] = [1920, 1080];
-/// Places on the whole path, of which a part in its middle is walked.
-const PLACES: u32 = 600;
-/// Frames for each step that is asked for.
+/// Frames for each step that is asked for: in the middle of the way that [`super::card`] goes.
 const FRAMES: u32 = 8;
-/// Trees of the forests.
-const TREES: usize = 10_000;
 
 /// Milliseconds by name of the pass, all views together.
 type Times = BTreeMap<String, f64>;

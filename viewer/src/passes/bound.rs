@@ -28,7 +28,7 @@ pub struct BoundScene {
     pub ring: Vec<Range<u32>>,
     /// Small plants and stones.
     pub plants: Elements,
-    /// Which of them are drawn together: [`super::plants::PlantDraw`].
+    /// Which of them are drawn together: [`crate::upload::DrawCommand`].
     pub plant_draws: Elements,
 }
 

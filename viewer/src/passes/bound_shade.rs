@@ -23,9 +23,9 @@ const EXTENT_M: f32 = 104.0;
 const STEP_M: f32 = 5.0;
 /// Where those of the four lie, in steps: different along both ways.
 const TURNS: [[f32; 2]; INDIVIDUALS] = [[0.0, 0.0], [0.25, 0.5], [0.5, 0.25], [0.75, 0.75]];
-/// The eye may be so far from the middle: a little farther than from the nearest of the lattice, so that one who stands between two
-/// stays with one.
-const MAX_ASIDE_M: f32 = 0.72 * STEP_M;
+/// The eye may be so far from the middle: a little farther than from the nearest of the lattice, which whole texels move by up to a
+/// decimetre, so that one who stands between two stays with one.
+const MAX_ASIDE_M: f32 = 0.74 * STEP_M;
 /// Sine of the sun's elevation below which shadows on the ground are too long to have any edges.
 const MIN_ELEVATION: f32 = 0.03;
 
@@ -108,9 +108,7 @@ impl BoundShade {
         let Some((set, trees)) = scene.trees.as_ref().zip(self.trees.as_ref()).filter(|_| !stays) else {
             return false;
         };
-        // By whole texels, so that edges of shadows stay where they are.
-        let texel_m = EXTENT_M / self.texture.width() as f32;
-        let middle_m = (nearest_m(eye_m, self.turn) / texel_m).round() * texel_m;
+        let middle_m = nearest_m(eye_m, self.turn, self.texture.width());
         self.middle_m = Some(middle_m);
         let sun_view = SunView::of_ground(scene, middle_m, 0.5 * EXTENT_M);
         let numbers = ViewUniform { shade: self.place(), ..ViewUniform::for_sun(scene, &sun_view) };
@@ -130,10 +128,13 @@ fn is_near(middle_m: Vec2, eye_m: Vec2) -> bool {
     middle_m.distance(eye_m) <= MAX_ASIDE_M
 }
 
-/// The middle nearest to an eye on the lattice of one of the four views.
-fn nearest_m(eye_m: Vec2, turn: usize) -> Vec2 {
+/// The middle nearest to an eye on the lattice of one of the four views, whose square has so many texels a side.
+fn nearest_m(eye_m: Vec2, turn: usize, texels: u32) -> Vec2 {
     let phase_m = STEP_M * Vec2::from(TURNS[turn % INDIVIDUALS]);
-    ((eye_m - phase_m) / STEP_M).round() * STEP_M + phase_m
+    let middle_m = ((eye_m - phase_m) / STEP_M).round() * STEP_M + phase_m;
+    // By whole texels, so that edges of shadows stay where they are.
+    let texel_m = EXTENT_M / texels as f32;
+    (middle_m / texel_m).round() * texel_m
 }
 
 #[cfg(test)]
@@ -141,16 +142,35 @@ mod tests {
     use super::*;
 
     #[test]
+    fn no_eye_is_so_far_from_its_middle_that_it_is_drawn_in_every_picture() {
+        for (turn, texels) in (0..INDIVIDUALS).flat_map(|turn| SIDE.map(|texels| (turn, texels))) {
+            let lines = || (-60..60i16).map(|k| f32::from(k) + 0.5);
+            for (x, z) in lines().flat_map(|x| lines().map(move |z| (x, z))) {
+                // Between four of the lattice, on each side.
+                let corner_m = STEP_M * (Vec2::new(x, z) + Vec2::from(TURNS[turn]));
+                for aside_m in [[-0.001, -0.001], [-0.001, 0.001], [0.001, -0.001], [0.001, 0.001]] {
+                    let eye_m = corner_m + Vec2::from(aside_m);
+                    let middle_m = nearest_m(eye_m, turn, texels);
+                    assert!(
+                        is_near(middle_m, eye_m),
+                        "{eye_m} from {middle_m}, view {turn}, {texels} texels"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
     fn views_that_walk_together_take_turns() {
         for direction in 0..48u8 {
             let ahead = Vec2::from_angle(f32::from(direction) / 48.0 * std::f32::consts::TAU);
-            let mut middles = [0, 1, 2, 3].map(|turn| nearest_m(Vec2::ZERO, turn));
+            let mut middles = [0, 1, 2, 3].map(|turn| nearest_m(Vec2::ZERO, turn, SIDE[0]));
             let (mut drawn, mut together) = (0, 0);
             for step in 1..4000u16 {
                 let eye_m = 0.05 * f32::from(step) * ahead;
                 let moved: Vec<usize> = (0..4).filter(|&turn| !is_near(middles[turn], eye_m)).collect();
                 for &turn in &moved {
-                    middles[turn] = nearest_m(eye_m, turn);
+                    middles[turn] = nearest_m(eye_m, turn, SIDE[0]);
                     assert!(is_near(middles[turn], eye_m), "it would be drawn in every picture");
                 }
                 drawn += moved.len();

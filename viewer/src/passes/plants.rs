@@ -15,7 +15,7 @@ use super::{BoundScene, Compiler, DrawPass, PipelineDesc, Shader, buffer_layout}
 use crate::camera::Frustum;
 use crate::options::Options;
 use crate::scene::Ground;
-use crate::upload::{PLANT_BLOCK_M, PlantBuffersOfKind, PlantVertex};
+use crate::upload::{DrawCommand, PLANT_BLOCK_M, PlantBuffersOfKind, PlantVertex};
 
 pub const SHADER: Shader = Shader { name: "plants", source: include_str!("plants.wgsl"), constants: &[] };
 
@@ -48,22 +48,12 @@ pub const INSTANCE: [wgpu::VertexAttribute; 4] =
 pub const VERTEX: [wgpu::VertexAttribute; 3] =
     wgpu::vertex_attr_array![4 => Float32x3, 5 => Float32x3, 6 => Float32];
 
-/// Plants that are drawn together, of one kind and equally fine: what `vkCmdDrawIndexedIndirect` reads.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct PlantDraw {
-    indices: u32,
-    instances: u32,
-    first_index: u32,
-    base_vertex: i32,
-    first_instance: u32,
-}
-
 /// What is drawn of a landscape's plants, kept from frame to frame.
 #[derive(Debug, Default)]
 pub struct PlantChoice {
     pub instances: Vec<PlantInstance>,
-    pub draws: Vec<PlantDraw>,
+    /// Of plants of one kind, equally fine.
+    pub draws: Vec<DrawCommand>,
     coarse: Vec<PlantInstance>,
     /// The plants of blocks that are or were within reach, by number of their kind and block.
     known: HashMap<(usize, [i32; 2]), Box<[Standing]>>,
@@ -163,7 +153,7 @@ impl PlantChoice {
             self.instances.append(&mut self.coarse);
             let all = self.instances.len() as u32;
             let draws = [(&shape.fine, first..fine), (&shape.coarse, fine..all)];
-            self.draws.extend(draws.into_iter().filter(|(_, plants)| !plants.is_empty()).map(PlantDraw::of));
+            self.draws.extend(draws.into_iter().filter(|(_, plants)| !plants.is_empty()).map(command));
         }
     }
 
@@ -180,15 +170,14 @@ impl PlantChoice {
     }
 }
 
-impl PlantDraw {
-    fn of((indices, plants): (&Range<u32>, Range<u32>)) -> Self {
-        Self {
-            indices: indices.end - indices.start,
-            instances: plants.end - plants.start,
-            first_index: indices.start,
-            base_vertex: 0,
-            first_instance: plants.start,
-        }
+/// What draws some plants with these of the shapes' indices.
+fn command((indices, plants): (&Range<u32>, Range<u32>)) -> DrawCommand {
+    DrawCommand {
+        indices: indices.end - indices.start,
+        instances: plants.end - plants.start,
+        first_index: indices.start,
+        first_instance: plants.start,
+        ..DrawCommand::default()
     }
 }
 

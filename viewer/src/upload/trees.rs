@@ -56,15 +56,15 @@ pub struct TemplateData {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct DrawCommand {
-    /// Indices of the mesh.
+    /// How many indices of a mesh.
     pub indices: u32,
-    /// Number of trees; written by the device.
+    /// Number of trees, written by the device, or of plants.
     pub instances: u32,
     /// Where the mesh's indices start.
     pub first_index: u32,
     /// What is added to each.
     pub base_vertex: i32,
-    /// Where the list of visible trees starts.
+    /// Where they start in the list of those that are visible.
     pub first_instance: u32,
 }
 

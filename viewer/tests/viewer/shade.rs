@@ -122,7 +122,9 @@ fn far_from_the_eye_shade_is_that_of_the_light_map() {
     // Rows of 80 m and of 20 m away, and what is between them.
     let row_at = |away_m: f32| (200.0 + (libm::atanf(4.0 / away_m) - 0.2) / 0.8 * 400.0) as usize - 120;
     let (far, near) = (middle[row_at(80.0)], middle[row_at(20.0)]);
-    assert!(near > far + 55.0, "{far} far away, {near} near");
+    // A card's edges and filters are its own.
+    let least = if studio.gpu.software { 60.0 } else { 55.0 };
+    assert!(near > far + least, "{far} far away, {near} near");
     let rising = middle[row_at(80.0)..row_at(20.0)].windows(2).all(|rows| rows[1] >= rows[0] - 3.0);
     assert!(rising, "{middle:?}");
     // A picture of part of full resolution, while one walks, does not wait for it.
