@@ -290,7 +290,7 @@ fn kinds(params: &GroundParams, painter: &Painter) -> Vec<PlantKind> {
         (shapes::fern(), ferns(palette)),
         (shapes::shrub(), shrubs(palette)),
         (shapes::reed(), reeds()),
-        (stones::stone(3), stone_colors),
+        (stones::stone(), stone_colors),
         (stones::boulder(), boulders(painter)),
         (
             shapes::litter(litter.leaf_m, litter.is_needles),

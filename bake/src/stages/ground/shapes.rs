@@ -39,8 +39,7 @@ impl Drawing {
 
     /// A triangle that is lit as if it faced half upwards, as leaves among others are.
     fn leaf(&mut self, corners: [Vec3; 3], tints: [f32; 3]) {
-        let [a, b, c] = corners;
-        let across = (b - a).cross(c - a).normalize_or(Vec3::Y);
+        let across = across(corners);
         self.lit(corners, Vec3::Y + 0.6 * if across.y < 0.0 { -across } else { across }, tints);
     }
 
@@ -80,8 +79,7 @@ impl Drawing {
         let half = lerp(tints[0], tints[1], 0.6);
         let (left, right) = (middle - 0.8 * side, middle + 0.8 * side);
         let mut part = |corners: [Vec3; 3], tints: [f32; 3]| {
-            let [a, b, c] = corners;
-            let across = (b - a).cross(c - a).normalize_or(Vec3::Y);
+            let across = across(corners);
             let outer = if across.dot(out) < 0.0 { -across } else { across };
             self.lit(corners, Vec3::Y + 0.6 * if outer.y < -0.5 { -outer } else { outer }, tints);
         };
@@ -129,6 +127,11 @@ impl Drawing {
 /// Level, from +x towards +z.
 pub(super) fn heading(turn: f32) -> Vec3 {
     Vec3::new(libm::cosf(turn), 0.0, libm::sinf(turn))
+}
+
+/// Across a triangle, to one of its sides; unit length.
+pub(super) fn across([a, b, c]: [Vec3; 3]) -> Vec3 {
+    (b - a).cross(c - a).normalize_or(Vec3::Y)
 }
 
 /// Where two rings of as many points have their `k`-th quadrangle: two corners on the first, two on the second.

@@ -4,13 +4,13 @@ use std::f32::consts::{PI, TAU};
 
 use glam::Vec3;
 
-use super::shapes::{Drawing, corners, halves, heading};
+use super::shapes::{Drawing, across, corners, halves, heading};
 use crate::model::PlantShape;
 
-/// A stone of about a metre, a fifth of it in the ground: a sphere of `rings` rings that was knocked about.
-pub(super) fn stone(rings: u32) -> PlantShape {
-    let mut d = Drawing::new(67 + rings);
-    let around = rings + 3;
+/// A stone of about a metre, a fifth of it in the ground: a sphere of few rings that was knocked about.
+pub(super) fn stone() -> PlantShape {
+    let mut d = Drawing::new(70);
+    let (rings, around) = (3, 6);
     let point = |d: &mut Drawing, ring: u32, k: u32| {
         let polar = ring as f32 / rings as f32 * 0.5 * TAU;
         let turn = (k as f32 + 0.5 * ring as f32) / around as f32 * TAU;
@@ -25,9 +25,8 @@ pub(super) fn stone(rings: u32) -> PlantShape {
     let grid: Vec<Vec<Vec3>> =
         (1..rings).map(|ring| (0..around).map(|k| point(&mut d, ring, k)).collect()).collect();
     let mut facet = |corners: [Vec3; 3]| {
-        let [a, b, c] = corners;
-        let normal = (b - a).cross(c - a).normalize_or(Vec3::Y);
-        let outward = if normal.dot(a + b + c - Vec3::Y * 0.48) < 0.0 { -normal } else { normal };
+        let (normal, from_middle) = (across(corners), corners.iter().sum::<Vec3>() - Vec3::Y * 0.48);
+        let outward = if normal.dot(from_middle) < 0.0 { -normal } else { normal };
         let tint = d.unit();
         // Smoothed a little towards a sphere's.
         let triangle = corners.map(|p| {
