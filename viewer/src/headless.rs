@@ -11,7 +11,7 @@ use crate::camera::Camera;
 use crate::gpu::Gpu;
 use crate::image_file;
 use crate::options::FrameInput;
-use crate::passes::{Passes, Shaders};
+use crate::passes::{Passes, Shaders, pictures};
 use crate::scene::Scene;
 use crate::scene_loader::{Loaded, SceneLoader};
 use crate::upload::{Exhibit, SceneBuffers};
@@ -90,6 +90,23 @@ impl Headless {
         lod_camera: &Camera,
     ) -> Drawn {
         view.record(encoder, &self.passes, frame, camera, lod_camera, &self.profiler)
+    }
+
+    /// Draws what a still picture becomes and fetches it: the mean of several, unless that is not wanted.
+    pub fn shoot_still(
+        &self,
+        view: &mut View,
+        frame: &FrameInput,
+        camera: &Camera,
+        lod_camera: &Camera,
+    ) -> Result<RgbaImage> {
+        let last = if frame.options.refine { pictures(self.passes.samples) - 1 } else { 0 };
+        for accumulated in 0..last {
+            let frame = FrameInput { accumulated, ..*frame };
+            let (commands, _) = self.record(std::slice::from_mut(view), &frame, camera, lod_camera);
+            self.gpu.queue.submit([commands]);
+        }
+        self.shoot(view, &FrameInput { accumulated: last, ..*frame }, camera, lod_camera)
     }
 
     /// Draws one picture and fetches it.

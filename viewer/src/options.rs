@@ -53,6 +53,9 @@ pub struct Options {
     /// Sides of pictures while the camera moves, as a part of full resolution; `None` follows the frame time
     #[arg(skip)]
     pub moving_resolution: Option<f32>,
+    /// One picture, not the mean of several with their pixels' middles a little beside
+    #[arg(long = "no-refine", action = ArgAction::SetFalse)]
+    pub refine: bool,
     /// Clouds move
     #[arg(skip = true)]
     pub drift_clouds: bool,
@@ -97,12 +100,15 @@ pub const LOD_SWITCHES: [Switch; 3] = [
 
 const GRASS_HELP: &str = "Blades around you; a tenth to a quarter of the time where the processor draws";
 
+const REFINE_HELP: &str = "While nothing moves, edges and fine twigs become smooth";
+
 /// What is in the picture.
-pub const PICTURE_SWITCHES: [Switch; 4] = [
+pub const PICTURE_SWITCHES: [Switch; 5] = [
     ("Trees", "", |options| &mut options.draw_trees),
     ("Terrain", "", |options| &mut options.draw_terrain),
     ("Grass", GRASS_HELP, |options| &mut options.grass),
     ("Clouds drift", "", |options| &mut options.drift_clouds),
+    ("Refine at rest", REFINE_HELP, |options| &mut options.refine),
 ];
 
 /// The same of a file that is no landscape.
@@ -147,6 +153,7 @@ impl Default for Options {
             tint_levels: false,
             overhead: false,
             moving_resolution: None,
+            refine: true,
             drift_clouds: true,
             draw_trees: true,
             grass: true,
@@ -167,10 +174,12 @@ pub struct FrameInput {
     pub time_s: f32,
     /// Sides of the picture as a part of full resolution, (0, 1]: less of what its pixels do not show is drawn, too.
     pub part: f32,
+    /// How many pictures of the same have been drawn before: the mean of them and this one is shown.
+    pub accumulated: u32,
 }
 
 impl Default for FrameInput {
     fn default() -> Self {
-        Self { options: Options::default(), time_s: 0.0, part: 1.0 }
+        Self { options: Options::default(), time_s: 0.0, part: 1.0, accumulated: 0 }
     }
 }

@@ -139,9 +139,9 @@ impl Log {
         self.behind
     }
 
-    /// Whether nothing will be drawn before something happens.
-    pub fn rest(&mut self, resting: bool) {
-        self.state("rest", json!({ "resting": resting }));
+    /// Whether nothing else will be seen before something happens, and whether that becomes finer until then.
+    pub fn rest(&mut self, resting: bool, refining: bool) {
+        self.state("rest", json!({ "resting": resting, "refining": refining }));
     }
 
     fn landscape(&mut self, view: usize, exhibit: Option<&Exhibit>, generation: u32) {

@@ -392,7 +392,7 @@ impl App {
     fn draw(&mut self, model: &Model) -> Option<(ui::Output, Shown)> {
         let Live { screen, gpu, viewports, .. } = self.live.as_mut()?;
         let options = self.file.settings.options;
-        let frame = FrameInput { options, time_s: self.pace.drifted_s(), part: 1.0 };
+        let frame = FrameInput { options, time_s: self.pace.drifted_s(), ..FrameInput::default() };
         let sharpness = if self.screenshot { Sharpness::Full } else { self.pace.sharpness(&options) };
         if let Err(error) = viewports.set_samples(options.samples) {
             self.editor.shaders(Some(error.to_string()));
@@ -408,8 +408,9 @@ impl App {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let (slots, painter) = (&output.views.slots, &mut screen.painter);
         let is_outdated = |view: usize| self.pace.is_shared() && model.views[view].state.is_to_come();
-        let wish = Wish { frame, sharpness, outdated: std::array::from_fn(is_outdated) };
-        let (drawn, blurred) = viewports.record(&mut encoder, painter, slots, &wish, &self.camera);
+        let refines = options.refine && self.pace.refines();
+        let wish = Wish { frame, sharpness, refines, outdated: std::array::from_fn(is_outdated) };
+        let shown = viewports.record(&mut encoder, painter, slots, &wish, &self.camera);
         let again = if (0..model.views.len()).any(|view| viewports.picture(view) != model.views[view].picture)
         {
             // A first picture, which the user interface did not know of yet.
@@ -429,7 +430,7 @@ impl App {
         if !visible {
             std::thread::sleep(Duration::from_millis(50));
         }
-        Some((output, Shown { drawn, blurred, again }))
+        Some((output, Shown { again, ..shown }))
     }
 
     /// Dragging a picture looks around without locking the pointer: what is grabbed follows it. Around what an orbit circles
@@ -455,8 +456,12 @@ impl App {
         let unsaved = (self.last_save < self.pace.frame_began()).then_some(self.last_save + SAVE_EVERY);
         let untold = (live.viewports.awaits_stats() || self.log.is_behind()).then_some(now + LOOK_AGAIN);
         let unheard = self.camera.has_gamepad().then_some(now + GAMEPAD_EVERY);
-        let next = if let Next::At(at) = next { Some(at) } else { None };
-        self.log.rest(next.is_none() && untold.is_none());
+        let (is_due, refining) = (matches!(next, Next::At(_)), matches!(next, Next::Finer(_)));
+        self.log.rest(!is_due && untold.is_none(), refining);
+        let next = match next {
+            Next::At(at) | Next::Finer(at) => Some(at),
+            Next::OnEvent => None,
+        };
         match [next, unsaved, untold, unheard].into_iter().flatten().min() {
             Some(at) if at <= now => {
                 // Or a moment that has passed would wake the loop again and again.

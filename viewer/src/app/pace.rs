@@ -37,6 +37,8 @@ pub struct Shown {
     pub drawn: bool,
     /// Some picture is not at full resolution.
     pub blurred: bool,
+    /// Some picture may become finer.
+    pub rough: bool,
     /// When the user interface wants the next frame; `None` if it can wait for an event.
     pub again: Option<Duration>,
 }
@@ -45,6 +47,8 @@ pub struct Shown {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Next {
     At(Instant),
+    /// Then, but all that it shows will be finer.
+    Finer(Instant),
     /// Not before something happens.
     OnEvent,
 }
@@ -165,6 +169,11 @@ impl Pace {
         }
     }
 
+    /// Whether pictures become finer in this frame: while nothing moves, and nobody waits for the processor.
+    pub fn refines(&self) -> bool {
+        !self.shared && !self.drifting && self.until_sharp(self.now) == Duration::ZERO
+    }
+
     /// Ends a frame: when the next is due.
     pub fn end(&mut self, now: Instant, shown: Shown) -> Next {
         if shown.drawn {
@@ -184,7 +193,15 @@ impl Pace {
         let wait = [at_once, wait_for_sharpness, shown.again].into_iter().flatten().min();
         let pause = wait.map(|wait| wait.max(rest).max(MIN_FRAME.saturating_sub(took)));
         // "Never" is a duration to egui.
-        pause.and_then(|pause| now.checked_add(pause)).map_or(Next::OnEvent, Next::At)
+        let after = |pause: Duration| now.checked_add(pause);
+        let next = pause.and_then(after);
+        let finer = (shown.rough && !self.shared && !self.running).then(|| self.until_sharp(now));
+        match (next, finer.map(|wait| wait.max(MIN_FRAME.saturating_sub(took))).and_then(after)) {
+            (Some(next), Some(finer)) if finer < next => Next::Finer(finer),
+            (Some(next), _) => Next::At(next),
+            (None, Some(finer)) => Next::Finer(finer),
+            (None, None) => Next::OnEvent,
+        }
     }
 
     /// How long pictures that are not sharp stay so, as seen at `now`.
@@ -253,7 +270,7 @@ mod tests {
                 Sharpness::Sharpen(_) | Sharpness::Full => 1.0,
             };
             self.now += MS.mul_f32(self.base_ms + self.pixels_ms * part * part);
-            let shown = Shown { drawn: true, blurred: part < 1.0, again: None };
+            let shown = Shown { drawn: true, blurred: part < 1.0, ..Shown::default() };
             (sharpness, self.pace.end(self.now, shown))
         }
 
@@ -262,7 +279,7 @@ mod tests {
             for count in 0..limit {
                 moving = moving.saturating_sub(1);
                 match self.frame(moving > 0).1 {
-                    Next::At(at) => self.now = self.now.max(at),
+                    Next::At(at) | Next::Finer(at) => self.now = self.now.max(at),
                     Next::OnEvent => return count + 1,
                 }
             }
@@ -316,6 +333,35 @@ mod tests {
     }
 
     #[test]
+    fn pictures_become_finer_at_rest_alone() {
+        let mut device = Device::new(10.0, 20.0);
+        device.options.drift_clouds = false;
+        let mut finer = |moving: bool, shared: bool, after: Duration| {
+            device.now += after;
+            device.pace.begin(device.now);
+            device.pace.share(shared);
+            device.pace.camera(moving, &device.options);
+            let refines = device.pace.refines();
+            let shown = Shown { drawn: true, rough: true, ..Shown::default() };
+            (refines, device.pace.end(device.now, shown))
+        };
+        assert!(matches!(finer(true, false, MS), (false, Next::At(_))), "moving");
+        let (refines, next) = finer(false, false, MS);
+        assert!(!refines && matches!(next, Next::Finer(_)), "not between two steps: {next:?}");
+        assert_eq!(
+            finer(false, true, SHARP_AFTER),
+            (false, Next::OnEvent),
+            "the processor is needed elsewhere"
+        );
+        let (refines, next) = finer(false, false, SHARP_AFTER);
+        assert!(refines && matches!(next, Next::Finer(_)), "one after the other: {next:?}");
+        device.options.drift_clouds = true;
+        device.pace.touch(device.now);
+        device.pace.camera(false, &device.options);
+        assert!(!device.pace.refines(), "what drifts is never the same");
+    }
+
+    #[test]
     fn the_first_step_after_a_rest_is_none() {
         let mut device = Device::new(2.0, 3.0);
         device.options.drift_clouds = false;
@@ -331,7 +377,7 @@ mod tests {
         device.pace.share(true);
         device.pace.camera(true, &device.options);
         let end = device.now + 80 * MS;
-        let shown = Shown { drawn: true, blurred: true, again: Some(Duration::ZERO) };
+        let shown = Shown { drawn: true, blurred: true, again: Some(Duration::ZERO), ..Shown::default() };
         assert_eq!(device.pace.end(end, shown), Next::At(end + 80 * MS));
     }
 

@@ -29,6 +29,8 @@ pub struct Viewport {
     shadows: Shadows,
     /// What the picture shows.
     seen: Option<Seen>,
+    /// Of so many pictures of the same it is the mean.
+    pub accumulated: u32,
     /// What it took.
     pub drawn: Drawn,
     /// It was recorded in this frame.
@@ -63,6 +65,7 @@ impl Viewport {
             part: 1.0,
             shadows: Shadows::All,
             seen: None,
+            accumulated: 0,
             drawn: Drawn::default(),
             fresh: false,
         }
@@ -139,7 +142,7 @@ impl Viewport {
         self.seen.is_some()
     }
 
-    /// Records the picture.
+    /// Records the picture; one that shows the same already becomes finer.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -148,8 +151,11 @@ impl Viewport {
         profiler: &wgpu_profiler::GpuProfiler,
     ) {
         let seen = Seen { frame: FrameInput { part: self.part, ..wanted.frame }, ..wanted };
-        let Seen { frame, camera, lod_camera } = &seen;
-        self.drawn = self.view.record(encoder, passes, frame, camera, lod_camera, profiler);
+        let accumulated = if self.shows(&seen) { self.accumulated } else { 0 };
+        let (Seen { frame, camera, lod_camera }, view) = (&seen, &mut self.view);
+        let frame = FrameInput { accumulated, ..*frame };
+        self.drawn = view.record(encoder, passes, &frame, camera, lod_camera, profiler);
+        self.accumulated = accumulated + 1;
         (self.seen, self.fresh) = (Some(seen), true);
     }
 }

@@ -11,6 +11,7 @@ use wgpu_profiler::{GpuProfiler, GpuProfilerSettings, GpuTimerQueryResult};
 
 use super::camera_control::CameraControl;
 use super::lod_readback::LodReadback;
+use super::pace::Shown;
 use super::sharpness::{Before, Sharpness};
 use super::ui_painter::UiPainter;
 use super::viewport::Viewport;
@@ -18,7 +19,7 @@ use crate::gpu::Gpu;
 use crate::image_file;
 use crate::measure::timed;
 use crate::options::FrameInput;
-use crate::passes::{Passes, ShaderError, Shaders};
+use crate::passes::{Passes, ShaderError, Shaders, pictures};
 use crate::scene_loader::Loaded;
 use crate::ui::arrange::Slot;
 use crate::ui::model::{PassTime, Stats};
@@ -34,6 +35,8 @@ const LABELS: [&str; INDIVIDUALS] = ["view 1", "view 2", "view 3", "view 4"];
 pub struct Wish {
     pub frame: FrameInput,
     pub sharpness: Sharpness,
+    /// Where no picture has to be drawn, one becomes finer.
+    pub refines: bool,
     /// Those whose landscape another is about to replace: only what the camera's motion demands is drawn of them.
     pub outdated: [bool; INDIVIDUALS],
 }
@@ -147,8 +150,7 @@ impl Viewports {
         if samples == self.passes.samples { Ok(()) } else { self.reload_shaders(samples) }
     }
 
-    /// Records the pictures that are on the screen and not yet as they should be. Whether any was recorded, and whether any
-    /// is not at full resolution.
+    /// Records the pictures that are on the screen and not yet as they should be; what came of it.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -156,10 +158,10 @@ impl Viewports {
         slots: &[Slot],
         wish: &Wish,
         control: &CameraControl,
-    ) -> (bool, bool) {
-        let Wish { frame, sharpness, outdated } = wish;
+    ) -> Shown {
+        let Wish { frame, sharpness, outdated, .. } = wish;
         let start = Instant::now();
-        let (mut drawn, mut blurred) = (false, false);
+        let mut shown = Shown::default();
         (self.stats.triangles, self.stats.draws) = Default::default();
         self.each.iter_mut().for_each(|one| one.fresh = false);
         let mut sharpened = false;
@@ -175,14 +177,42 @@ impl Viewports {
             if !stays && !one.shows(&wanted) {
                 one.record(encoder, &self.passes, wanted, &self.profiler);
             }
-            blurred |= part.is_some_and(|part| part < 1.0);
-            drawn |= one.fresh;
+            shown.blurred |= part.is_some_and(|part| part < 1.0);
+            shown.drawn |= one.fresh;
             self.stats.draws[slot.view] = one.drawn.draws;
             self.stats.triangles[slot.view] = u64::from(one.drawn.triangles);
         }
+        if wish.refines && !shown.drawn {
+            shown.drawn = self.refine(encoder, slots, frame, control);
+        }
+        shown.rough = frame.options.refine && slots.iter().any(|slot| self.is_rough(slot.view));
         self.profiler.resolve_queries(encoder);
         self.stats.cpu_record_ms = start.elapsed().as_secs_f32() * 1e3;
-        (drawn, blurred)
+        shown
+    }
+
+    /// Makes that picture finer which is the least fine: one a frame, so that none takes long. Whether there was any.
+    fn refine(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        slots: &[Slot],
+        frame: &FrameInput,
+        control: &CameraControl,
+    ) -> bool {
+        let rough = slots.iter().map(|slot| slot.view).filter(|view| self.is_rough(*view));
+        let Some(view) = rough.min_by_key(|view| self.each[*view].accumulated) else { return false };
+        let one = &mut self.each[view];
+        let Some(wanted) = one.wanted(frame, control).filter(|wanted| one.shows(wanted)) else {
+            return false;
+        };
+        one.record(encoder, &self.passes, wanted, &self.profiler);
+        true
+    }
+
+    /// Whether a view's picture may become finer.
+    fn is_rough(&self, view: usize) -> bool {
+        let one = &self.each[view];
+        one.part >= 1.0 && one.shows_anything() && one.accumulated < pictures(self.passes.samples)
     }
 
     /// After the frame was submitted: gathers what the device has measured of this and earlier ones. Trees are counted only

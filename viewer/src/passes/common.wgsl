@@ -44,6 +44,8 @@ struct View {
     part: f32,
     // Up to so many metres the terrain's blocks have level 0.
     lod_unit: f32,
+    // Moves numbers by chance, [0, 1): another in each of the pictures of which a still one is the mean.
+    noise: f32,
 }
 
 @group(0) @binding(0) var<uniform> view: View;
@@ -155,7 +157,7 @@ fn openness(place: vec3f) -> f32 {
 
 // A number in [0, 1) for each pixel, evenly spread among neighbours: interleaved gradient noise (Jimenez 2014).
 fn dither(pixel: vec2f) -> f32 {
-    return fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715))));
+    return fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715))) + view.noise);
 }
 
 // Whether a pixel belongs to a share of all: those with a number of `dither` from the first to below the second, which counts
@@ -198,6 +200,14 @@ fn scattered(cell: vec2f) -> f32 {
     var p = fract(cell.xyx * 0.1031);
     p += dot(p, p.yzx + 33.33);
     return fract((p.x + p.y) * p.z);
+}
+
+// The same in each of the pictures of which a still one is the mean: each time as far on as others of its cell, once around in all, so
+// that what covers a share is covered in as many of them. By an odd number of steps, which differs from cell to cell: else it
+// would be hidden in all of them or in none by what lies before it and covers a share, too.
+fn scattered_anew(cell: vec2f) -> f32 {
+    let odd = 2.0 * floor(8.0 * scattered(cell + 19.3)) + 1.0;
+    return fract(scattered(cell) + odd * view.noise);
 }
 
 // Whether a card shows its picture there: a triangle that holds all of it reaches beyond.

@@ -51,6 +51,8 @@ struct Out {
     // Towards the eye and towards the sun in the template's space, of unit length.
     @location(10) @interpolate(flat) to_eye: vec3f,
     @location(11) @interpolate(flat) to_sun: vec3f,
+    // By chance, [0, 1): another for each tree.
+    @location(12) @interpolate(flat) chance: f32,
 }
 
 // What `leaf` of `trees.wgsl` makes of the sun and of a leaf's normal. Directions are in the template's space.
@@ -112,6 +114,7 @@ fn vertex(@location(8) tree: u32, @location(10) shown: vec4f, @builtin(vertex_in
     out.to_eye = normalize(back);
     out.to_sun = normalize(way_to_template(rows, view.sun_direction));
     out.leaf_light = leaf_light(template_index, out.to_eye, out.to_sun);
+    out.chance = scattered(vec2f(f32(tree), 5.3));
     return out;
 }
 
@@ -162,7 +165,7 @@ fn pixel(in: Out, is_kept: bool) -> Pixel {
     let seen = textureSampleLevel(colors, clamped, at, in.template_index, level);
     let relief = textureSampleLevel(reliefs, clamped, at, in.template_index, level).rgb;
     // Twigs are thinner than pixels, and so are fronds; crowns of small leaves have an edge.
-    let thin = samples_of(relief.b, scattered(floor(in.uv * 256.0)));
+    let thin = samples_of(relief.b, scattered_anew(floor(in.clip.xy) + 977.0 * in.chance));
     let cutoff = frames[in.template_index].alpha_cutoff;
     let full = cut_out(seen.a, cutoff);
     let samples = select(thin, full, relief.g > 0.5 && cutoff > 0.0);

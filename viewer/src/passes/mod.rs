@@ -1,7 +1,7 @@
 //! The passes: each an immutable set of pipelines that records its part of a picture, with its WGSL beside it.
 //!
 //! Order of a picture: the shade of near trees when the eye has come to another place, culling, where it shows a lake what
-//! that mirrors, then in one render pass what [`Passes::picture`] lists, then tone mapping. Shadows are drawn once for each
+//! that mirrors, then in one render pass what [`Passes::picture`] lists, of a still picture its mean with those before, then tone mapping. Shadows are drawn once for each
 //! landscape, before its first picture. A file that is no landscape has two passes of its own. A new pass is a file here with its WGSL, a line in [`SHADERS`],
 //! and a line in [`Passes::picture`].
 
@@ -14,6 +14,7 @@ mod cull;
 pub mod grass;
 pub mod impostors;
 mod layouts;
+mod mean;
 mod mirror;
 mod pipeline;
 pub mod plants;
@@ -36,6 +37,7 @@ pub use bound_mirror::{BoundMirror, Reflection};
 pub use bound_shade::BoundShade;
 pub use cull::{Cull, CullUniform};
 pub use layouts::{Binding, Layouts, bind};
+pub use mean::{Mean, Shift, pictures};
 pub use mirror::Mirror;
 pub use pipeline::Shader;
 pub use shade::Shade;
@@ -63,7 +65,7 @@ pub const SHADOW: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
 pub const SHADE: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
 /// The shaders of all passes.
-pub static SHADERS: [&Shader; 13] = [
+pub static SHADERS: [&Shader; 14] = [
     &cull::SHADER,
     &trees::SHADER,
     &impostors::SHADER,
@@ -72,6 +74,7 @@ pub static SHADERS: [&Shader; 13] = [
     &terrain::SHADER,
     &sky::SHADER,
     &water::SHADER,
+    &mean::SHADER,
     &tone::SHADER,
     &shadow::SHADER,
     &shade::SHADER,
@@ -105,6 +108,7 @@ pub struct Passes {
     /// Of files that are no landscapes.
     pub asset: AssetPass,
     pub studio: Studio,
+    pub mean: Mean,
     pub tone: Tone,
     /// Samples a pixel that they draw.
     pub samples: u32,
@@ -133,6 +137,7 @@ impl Passes {
             ],
             asset: AssetPass::new(&compiler)?,
             studio: Studio::new(&compiler)?,
+            mean: Mean::new(&compiler)?,
             tone: Tone::new(&compiler)?,
             layouts,
             samples,

@@ -38,6 +38,8 @@ pub(super) enum Target {
     Radiance,
     /// The same with one sample a pixel, whatever the picture has.
     Mirror,
+    /// The mean of radiance, one sample a pixel.
+    Mean,
     /// Values for the screen.
     Display,
     /// Depth from the sun alone.
@@ -117,6 +119,7 @@ impl Compiler<'_> {
         let (color, depth, samples) = match desc.target {
             Target::Radiance => (Some(RADIANCE), Some((DEPTH, GreaterEqual)), self.samples),
             Target::Mirror => (Some(RADIANCE), Some((DEPTH, GreaterEqual)), 1),
+            Target::Mean => (Some(RADIANCE), None, 1),
             Target::Display => (Some(DISPLAY), None, 1),
             Target::Shadow => (None, Some((SHADOW, Less)), 1),
             Target::Shade => (Some(SHADE), None, 1),

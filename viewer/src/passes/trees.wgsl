@@ -6,6 +6,7 @@
 @group(2) @binding(2) var normal_map: texture_2d<f32>;
 
 struct In {
+    @builtin(vertex_index) vertex: u32,
     @location(0) position: vec3f,
     @location(1) color: vec4f,
     @location(2) delta: vec3f,
@@ -35,6 +36,8 @@ struct Out {
     @location(6) @interpolate(flat) shown: vec2f,
     // See `air_before`.
     @location(7) @interpolate(flat) air: vec4f,
+    // By chance, [0, 1): another for each triangle.
+    @location(8) @interpolate(flat) chance: f32,
 }
 
 fn placed(in: In) -> Out {
@@ -53,6 +56,7 @@ fn placed(in: In) -> Out {
     out.open = in.color.a;
     out.shown = in.shown.xy;
     out.air = air_before(world);
+    out.chance = scattered(vec2f(f32(in.vertex), f32(in.tree)));
     return out;
 }
 
@@ -160,7 +164,7 @@ fn leaf(in: Out) -> Pixel {
 fn twig(in: Out) -> Pixel {
     let picture = picture_at(in);
     // By another number for each card that may lie there.
-    let samples = samples_of(picture.a, scattered(floor(in.clip.xy) + 61.7 * floor(4.0 * in.world.xy)));
+    let samples = samples_of(picture.a, scattered_anew(floor(in.clip.xy) + 977.0 * in.chance));
     if (!is_drawn(in, samples)) {
         discard;
     }

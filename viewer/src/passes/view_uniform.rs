@@ -1,8 +1,8 @@
 //! Camera, landscape and the person's wishes → the numbers that all shaders read (`View` in `common.wgsl`).
 
-use glam::Vec3;
+use glam::{Mat4, Vec3};
 
-use super::SunView;
+use super::{Shift, SunView};
 use crate::camera::Camera;
 use crate::lod::morph::Detail;
 use crate::options::FrameInput;
@@ -39,6 +39,9 @@ pub struct ViewUniform {
     pub lod_top: f32,
     pub part: f32,
     pub lod_unit: f32,
+    pub noise: f32,
+    /// WGSL rounds the size up.
+    pub unused: [f32; 3],
 }
 
 /// What stands for "no lake".
@@ -51,15 +54,20 @@ impl ViewUniform {
         // Directions don't depend on where the eye is.
         let at_origin = Camera { position_m: Vec3::ZERO, ..*camera };
         let options = &frame.options;
+        let Shift { middle_px: [x_px, y_px], noise } = Shift::of(frame.accumulated, options.samples);
+        // What is at a pixel's moved middle is drawn in its middle.
+        let moved = Mat4::from_translation(Vec3::new(-2.0 * x_px / width, -2.0 * y_px / height, 0.0));
+        let clip_from = |camera: &Camera| moved * camera.clip_from_world(width / height);
         Self {
-            clip_from_world: camera.clip_from_world(width / height).to_cols_array_2d(),
-            ray_from_clip: at_origin.clip_from_world(width / height).inverse().to_cols_array_2d(),
+            clip_from_world: clip_from(camera).to_cols_array_2d(),
+            ray_from_clip: clip_from(&at_origin).inverse().to_cols_array_2d(),
             eye: camera.position_m.into(),
             time_s: frame.time_s,
             exposure: exposure * options.exposure,
             focal_px: camera.focal_px(height),
             tint_levels: options.tint_levels.into(),
             part: frame.part,
+            noise,
             ..Default::default()
         }
     }

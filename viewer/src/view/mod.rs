@@ -15,7 +15,7 @@ use landscape::LandscapeChoice;
 use crate::camera::Camera;
 use crate::gpu::Gpu;
 use crate::options::FrameInput;
-use crate::passes::{Binding, BoundAsset, BoundScene, Passes, Tone, ViewUniform, bind};
+use crate::passes::{Binding, BoundAsset, BoundScene, Mean, Passes, Tone, ViewUniform, bind};
 use crate::upload::{Exhibit, TreeSet};
 
 #[derive(Debug)]
@@ -132,7 +132,8 @@ impl View {
     }
 
     /// Records one picture as `camera` sees it, with levels of detail chosen for `lod_camera` (the same, but when one
-    /// looks on from above).
+    /// looks on from above). Where `frame` says that others have been accumulated, the last calls have recorded them, and the
+    /// picture's size and what it shows have not changed since.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -143,11 +144,15 @@ impl View {
         profiler: &wgpu_profiler::GpuProfiler,
     ) -> Drawn {
         let Some(bound) = &mut self.bound else {
-            encoder.begin_render_pass(&display_pass(&self.targets.display()));
+            encoder.begin_render_pass(&colors(&self.targets.display()));
             return Drawn::default();
         };
         let mut scope = profiler.scope(self.label.as_str(), encoder);
         let (gpu, targets) = (&self.gpu, &self.targets);
+        if frame.accumulated == 1 {
+            // The one before was shown as it was, and is the first of the mean.
+            accumulate(&mut scope, passes, &self.camera_group, targets, 0);
+        }
         let drawn = match bound {
             Bound::Landscape(bound, choice) => {
                 let cameras = [camera, lod_camera];
@@ -161,20 +166,39 @@ impl View {
                 asset::draw(&mut scope, passes, bound, choice, &self.camera_group, targets, &frame.options)
             }
         };
-        let mut pass = scope.scoped_render_pass(Tone::NAME, display_pass(&self.targets.display()));
+        let mut radiance = &targets.radiance_group;
+        if frame.accumulated > 0 {
+            accumulate(&mut scope, passes, &self.camera_group, targets, frame.accumulated);
+            radiance = &targets.mean_group;
+        }
+        let mut pass = scope.scoped_render_pass(Tone::NAME, colors(&targets.display()));
         pass.set_bind_group(0, &self.camera_group, &[]);
         let like_film = matches!(self.exhibit, Some(Exhibit::Landscape(_)));
-        passes.tone.draw(&mut pass, &self.targets.radiance_group, like_film);
+        passes.tone.draw(&mut pass, radiance, like_film);
         drawn
     }
+}
+
+/// Takes the radiance of the last picture into the mean of `accumulated` others.
+fn accumulate(
+    scope: &mut wgpu_profiler::Scope<'_, wgpu::CommandEncoder>,
+    passes: &Passes,
+    camera: &wgpu::BindGroup,
+    targets: &Targets,
+    accumulated: u32,
+) {
+    let mut pass = scope.scoped_render_pass(Mean::NAME, colors(&targets.mean(accumulated)));
+    pass.set_bind_group(0, camera, &[]);
+    passes.mean.draw(&mut pass, &targets.radiance_group, accumulated);
 }
 
 fn camera_group(gpu: &Gpu, passes: &Passes, uniform: &wgpu::Buffer) -> wgpu::BindGroup {
     bind(gpu, "camera", &passes.layouts.camera, [(0, Binding::Buffer(uniform))])
 }
 
-fn display_pass<'a>(
-    display: &'a [Option<wgpu::RenderPassColorAttachment<'a>>],
+/// A pass without depth.
+fn colors<'a>(
+    attachments: &'a [Option<wgpu::RenderPassColorAttachment<'a>>],
 ) -> wgpu::RenderPassDescriptor<'a> {
-    wgpu::RenderPassDescriptor { color_attachments: display, ..Default::default() }
+    wgpu::RenderPassDescriptor { color_attachments: attachments, ..Default::default() }
 }

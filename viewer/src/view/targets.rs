@@ -13,13 +13,17 @@ pub struct Targets {
     /// Several samples a pixel, if the passes draw them.
     multisampled: Option<wgpu::TextureView>,
     depth: wgpu::TextureView,
+    /// The mean of radiance over pictures of the same.
+    mean: wgpu::TextureView,
     /// The finished picture.
     pub display: wgpu::Texture,
     display_view: wgpu::TextureView,
     /// What the pass that draws the landscape is counted by.
     pub(super) statistics: Option<wgpu::QuerySet>,
-    /// What tone mapping reads.
+    /// The radiance of one picture, for the passes that read it.
     pub(super) radiance_group: wgpu::BindGroup,
+    /// The same of the mean.
+    pub(super) mean_group: wgpu::BindGroup,
 }
 
 impl Targets {
@@ -30,18 +34,22 @@ impl Targets {
             gpu.device.create_texture(&wgpu::TextureDescriptor { sample_count: samples, ..flat })
         };
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
-        let radiance = view(&texture(RADIANCE, 1, Usage::TEXTURE_BINDING));
+        let [radiance, mean] = [(); 2].map(|()| view(&texture(RADIANCE, 1, Usage::TEXTURE_BINDING)));
         let display = texture(DISPLAY, 1, Usage::TEXTURE_BINDING | Usage::COPY_SRC);
         let samples = passes.samples;
-        let bound = [(0, Binding::View(radiance.clone()))];
+        let bound = |view: &wgpu::TextureView| {
+            bind(gpu, "radiance", &passes.layouts.radiance, [(0, Binding::View(view.clone()))])
+        };
         Self {
             size_px,
             multisampled: (samples > 1).then(|| view(&texture(RADIANCE, samples, Usage::empty()))),
             depth: view(&texture(DEPTH, samples, Usage::empty())),
             display_view: view(&display),
             display,
-            radiance_group: bind(gpu, "radiance", &passes.layouts.radiance, bound),
+            radiance_group: bound(&radiance),
+            mean_group: bound(&mean),
             radiance,
+            mean,
             statistics: None,
         }
     }
@@ -73,6 +81,16 @@ impl Targets {
             depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Discard }),
             stencil_ops: None,
         }
+    }
+
+    /// Where the mean is drawn to, over what it is of `accumulated` pictures.
+    pub(super) fn mean(&self, accumulated: u32) -> [Option<wgpu::RenderPassColorAttachment<'_>>; 1] {
+        let cleared = cleared(&self.mean, None, wgpu::Color::BLACK);
+        let kept = wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store };
+        [cleared.map(|mean| match accumulated {
+            0 => mean,
+            _ => wgpu::RenderPassColorAttachment { ops: kept, ..mean },
+        })]
     }
 
     /// Where the finished picture is drawn to.

@@ -21,6 +21,7 @@ mod shade;
 mod shaders;
 mod shadows;
 mod sky;
+mod still;
 mod validation;
 mod waits;
 mod water;

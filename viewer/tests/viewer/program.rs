@@ -133,9 +133,14 @@ impl Viewer {
         self.until("more frames", |viewer| viewer.frame() >= last + count || viewer.rests() && waited());
     }
 
-    /// Whether nothing will be drawn before something happens.
+    /// Whether nothing else will be seen before something happens.
     pub fn rests(&self) -> bool {
         *self.get("rest", "resting") == true
+    }
+
+    /// Whether nothing will be drawn before something happens.
+    pub fn is_still(&self) -> bool {
+        self.rests() && *self.get("rest", "refining") == false
     }
 
     /// How many frames were shown.

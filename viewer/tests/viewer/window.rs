@@ -105,6 +105,9 @@ fn the_first_landscapes_grow(stage: &Stage, viewer: &mut Viewer) {
 
 fn nothing_is_drawn_when_nothing_changes(viewer: &mut Viewer) {
     viewer.until("rest", Viewer::rests);
+    viewer.until("the finest pictures", Viewer::is_still);
+    let is_refining = |line: &&serde_json::Value| line["what"] == "rest" && line["refining"] == true;
+    assert!(viewer.lines.iter().any(|line| is_refining(&line)), "no picture became finer");
     let (frames, seconds) = (viewer.frame(), viewer.processor_s());
     std::thread::sleep(Duration::from_secs(3));
     viewer.read();
