@@ -5,6 +5,9 @@
 //! is spread over the whole; then the survivors pair up again. So no hole opens. Which of a pair is removed is left to
 //! chance, lest the crown become a shell; but where elements are few, the outer one stays, which carries the silhouette.
 
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
 use glam::Vec3;
 
 use super::flattening::{self, Change, Step};
@@ -16,8 +19,6 @@ use crate::model::AlphaMask;
 const MIN_ELEMENTS: usize = 6;
 /// An element may grow to this part of the extent of all.
 const MAX_GROWN: f32 = 0.3;
-/// Metres of error for each metre by which flattening moves a texel.
-const FLATTEN_WEIGHT: f64 = 0.5;
 /// Flattening that moves texels by at most this part of an element's radius comes before any element goes.
 const SLIGHT: f64 = 0.25;
 /// Aggregates of fewer elements keep the outer ones.
@@ -27,9 +28,14 @@ const MIN_RANDOM: usize = 200;
 pub struct Aggregate {
     /// Index of the part in the mesh.
     pub part: usize,
-    /// How all elements are flattened, and how many of them have been by the current step.
+    /// How elements are flattened: all by the same steps, each when it is its turn.
     steps: Vec<Step>,
-    flat: usize,
+    /// The next step of each element that is not gone, the least error first.
+    turns: BinaryHeap<Reverse<Turn>>,
+    /// By steps and elements, in metres.
+    step_errors_m: Vec<Vec<f64>>,
+    /// Where each element comes in `order`.
+    ranks: Vec<u32>,
     /// Elements in the order in which they are removed, then those that always stay.
     order: Vec<u32>,
     removable: usize,
@@ -40,6 +46,10 @@ pub struct Aggregate {
     radius_m: f64,
     max_scale: f32,
 }
+
+/// An element's next step: its error in metres, as bits, which are ordered as the numbers are; where the element comes in the order
+/// of removal; the step.
+type Turn = (u64, u32, u32);
 
 /// What an aggregate loses next.
 pub enum Loss {
@@ -61,19 +71,32 @@ impl Aggregate {
         });
         let extent = (high - low).max_element();
         let (order, removable) = removal_order(&places, (low + high) * 0.5);
-        let mut steps = if state.attributes.uvs { flattening::plan(state, span, mask) } else { Vec::new() };
-        steps.reverse();
-        Some(Self {
+        let steps = if state.attributes.uvs { flattening::plan(state, span, mask) } else { Vec::new() };
+        let mut ranks = vec![0; count];
+        (0..).zip(&order).for_each(|(rank, &element)| ranks[element as usize] = rank);
+        let mut aggregate = Self {
             part,
+            step_errors_m: flattening::errors_m(state, span, &steps),
             steps,
-            flat: 0,
+            turns: BinaryHeap::with_capacity(count),
+            ranks,
             order,
             removable,
             removed: 0,
             weight_m: f64::from(weight) * radius_m,
             radius_m,
             max_scale: (MAX_GROWN * extent / radius_m as f32).max(1.0),
-        })
+        };
+        (0..count as u32).for_each(|element| aggregate.queue(element, 0));
+        Some(aggregate)
+    }
+
+    /// Queues a step of an element, if there is such a step.
+    fn queue(&mut self, element: u32, step: u32) {
+        if let Some(errors_m) = self.step_errors_m.get(step as usize) {
+            let error_m = errors_m[element as usize];
+            self.turns.push(Reverse((error_m.to_bits(), self.ranks[element as usize], step)));
+        }
     }
 
     pub fn living(&self) -> usize {
@@ -91,31 +114,35 @@ impl Aggregate {
         if !flattens {
             let element = self.order[self.removed];
             self.removed += 1;
-            // One that is gone need not be flattened.
-            self.flat = self.flat.max(self.removed);
+            self.skip_gone();
             return Some(Loss::Element(element));
         }
-        let change = self.steps.last()?.change.clone();
-        let element = self.order[self.flat];
-        self.flat += 1;
-        if self.flat == self.order.len() {
-            self.steps.pop();
-            self.flat = self.removed;
+        let Reverse((_, rank, step)) = self.turns.pop()?;
+        let element = self.order[rank as usize];
+        self.queue(element, step + 1);
+        self.skip_gone();
+        Some(Loss::Vertex { element, change: self.steps[step as usize].change.clone() })
+    }
+
+    /// One that is gone need not be flattened.
+    fn skip_gone(&mut self) {
+        while self.turns.peek().is_some_and(|&Reverse((_, rank, _))| (rank as usize) < self.removed) {
+            self.turns.pop();
         }
-        Some(Loss::Vertex { element, change })
     }
 
     /// Whether the next loss flattens, and its cost in metres. Elements are flattened before any goes as long as their
-    /// picture hardly changes. Removal costs by the part that has gone.
+    /// picture hardly changes.
     fn next(&self) -> Option<(bool, f64)> {
-        let flatten = self.steps.last().map(|step| (true, FLATTEN_WEIGHT * step.error_m));
+        let moved_m = self.turns.peek().map(|&Reverse((error_m, ..))| f64::from_bits(error_m));
         let remove = (self.removed < self.removable).then(|| {
-            let part = (self.living() - 1) as f64 / self.order.len() as f64;
-            (false, self.weight_m * (1.0 - part))
+            let gone = (self.removed + 1) as f64 / self.order.len() as f64;
+            (false, self.weight_m * removal_cost(gone))
         });
-        let slight = |&(_, cost_m): &(bool, f64)| cost_m <= FLATTEN_WEIGHT * SLIGHT * self.radius_m;
+        let flatten = moved_m.map(|moved_m| (true, self.radius_m * flattening_cost(moved_m / self.radius_m)));
+        let is_slight = moved_m.is_some_and(|moved_m| moved_m <= SLIGHT * self.radius_m);
         match (flatten, remove) {
-            (Some(flatten), Some(remove)) if !slight(&flatten) && remove.1 < flatten.1 => Some(remove),
+            (Some(flatten), Some(remove)) if !is_slight && remove.1 < flatten.1 => Some(remove),
             (flatten, remove) => flatten.or(remove),
         }
     }
@@ -129,6 +156,20 @@ impl Aggregate {
     pub fn max_scale(&self, now: f32) -> f32 {
         (1.6 * self.same_area_scale()).min(self.max_scale).max(now)
     }
+}
+
+/// What it costs that a part of all elements has gone, when 1 is that of all: much at first, then hardly more. In fine levels it is
+/// bark that is missed least, which leaves hide; in coarse ones, of leaves that are few and large already, boughs are missed
+/// more. Of costs that rise in proportion, none keeps both: FLIP of the outlines of twelve trees at D_1 was .044 in the mean, and
+/// is .037 by this and [`flattening_cost`], .083 and .080 at D_2, the same from D_3 on.
+fn removal_cost(gone: f64) -> f64 {
+    (7.2 * gone).min(0.9 + 0.1 * gone)
+}
+
+/// The same of elements whose texels have moved by a part of their radius: the first bends that go cost most beside how far they
+/// move, and where all elements bend, the last cost less than a trunk does.
+fn flattening_cost(moved: f64) -> f64 {
+    (1.6 * moved).min(0.05).max(0.4 * moved)
 }
 
 struct Place {

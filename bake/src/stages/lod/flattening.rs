@@ -7,6 +7,7 @@
 use glam::{Vec2, Vec3};
 
 use super::fitting;
+use super::log::Vertex;
 use super::repair::repaired;
 use super::state::{PartSpan, State};
 use crate::model::{AlphaMask, Mesh};
@@ -49,20 +50,7 @@ pub fn plan(state: &State, span: &PartSpan, mask: &AlphaMask) -> Vec<Step> {
     let Some((elements, vertices, _)) = span.elements().filter(|&(elements, ..)| elements > 0) else {
         return Vec::new();
     };
-    let [ids, triangles] = span.element(0);
-    let first = ids.start as u32;
-    let mut element = Element {
-        triangles: state.triangles[triangles].iter().map(|t| Some(t.map(|v| v - first))).collect(),
-        uvs: state.vertices[ids].iter().map(|v| Vec2::from_array(v.uv)).collect(),
-        samples: (0..elements)
-            .step_by((elements as usize / SAMPLES).max(1))
-            .map(|e| {
-                let vertices = &state.vertices[span.element(e)[0].clone()];
-                vertices.iter().map(|v| Vec3::from_array(v.position)).collect()
-            })
-            .collect(),
-        gone: Vec::new(),
-    };
+    let mut element = Element::new(state, span, (elements as usize / SAMPLES).max(1));
     let area = element.area();
     let mut steps: Vec<Step> = Vec::new();
     // The first vertex stays: that it lives says that the element does.
@@ -79,6 +67,36 @@ pub fn plan(state: &State, span: &PartSpan, mask: &AlphaMask) -> Vec<Step> {
         step.error_m = worst_m;
     }
     steps
+}
+
+/// For each element of a part how far its own texels have moved, in metres, once it has taken each of the steps: rows by steps,
+/// none less than the one before.
+pub fn errors_m(state: &State, span: &PartSpan, steps: &[Step]) -> Vec<Vec<f64>> {
+    let Some((elements, ..)) = span.elements().filter(|&(elements, ..)| elements > 0) else {
+        return Vec::new();
+    };
+    let mut element = Element::new(state, span, 1);
+    let mut worst_m = vec![0.0_f64; elements as usize];
+    let after = |step: &Step| {
+        match &step.change {
+            Change::Merge(merge) => {
+                element.take(merge);
+                let moved = element.gone.iter().filter_map(|&vertex| element.moved_m(vertex));
+                moved.for_each(|moved| {
+                    worst_m.iter_mut().zip(moved).for_each(|(worst, m)| *worst = worst.max(m))
+                });
+            }
+            Change::Fit(_) => {
+                let living = element.living();
+                for (worst, e) in worst_m.iter_mut().zip(0..) {
+                    *worst = worst
+                        .max(fitting::error_m(&card(state, span, e, &living)).map_or(f64::MAX, f64::from));
+                }
+            }
+        }
+        worst_m.clone()
+    };
+    steps.iter().map(after).collect()
 }
 
 /// The same mesh with triangles in the place of flat cards: it shows nearly the same, and is drawn in less time.
@@ -112,7 +130,34 @@ struct Element {
     gone: Vec<u32>,
 }
 
+/// Those vertices of an element.
+fn card(state: &State, span: &PartSpan, element: u32, living: &[usize]) -> Vec<Vertex> {
+    let first = span.element(element)[0].start;
+    living.iter().map(|v| state.vertices[first + v]).collect()
+}
+
 impl Element {
+    /// Of a part with elements, of which every nth is looked at.
+    fn new(state: &State, span: &PartSpan, nth: usize) -> Self {
+        let [ids, triangles] = span.element(0);
+        let first = ids.start as u32;
+        let elements = span.elements().map_or(0, |(elements, ..)| elements);
+        let places = |e: u32| {
+            let vertices = &state.vertices[span.element(e)[0].clone()];
+            vertices.iter().map(|v| Vec3::from_array(v.position)).collect()
+        };
+        Self {
+            triangles: state.triangles[triangles].iter().map(|t| Some(t.map(|v| v - first))).collect(),
+            uvs: state.vertices[ids].iter().map(|v| Vec2::from_array(v.uv)).collect(),
+            samples: (0..elements).step_by(nth).map(places).collect(),
+            gone: Vec::new(),
+        }
+    }
+
+    fn living(&self) -> Vec<usize> {
+        (0..self.uvs.len()).filter(|&v| !self.gone.contains(&(v as u32))).collect()
+    }
+
     fn area(&self) -> f32 {
         self.triangles.iter().flatten().map(|t| self.signed_area(t).abs()).sum()
     }
@@ -171,7 +216,7 @@ impl Element {
 
     /// The triangle for elements that have become flat cards, and how far their vertices lie from it on average, in metres.
     fn fitted(&self, state: &State, span: &PartSpan, mask: &AlphaMask) -> Option<(f64, [Vec2; 3])> {
-        let living: Vec<usize> = (0..self.uvs.len()).filter(|&v| !self.gone.contains(&(v as u32))).collect();
+        let living = self.living();
         if living.len() != 4 || self.triangles.iter().flatten().count() != 2 {
             return None;
         }
@@ -180,25 +225,24 @@ impl Element {
         let step = (elements as usize / SAMPLES).max(1);
         let mut errors_m = Vec::new();
         for element in (0..elements).step_by(step) {
-            let first = span.element(element)[0].start;
-            let card: Vec<_> = living.iter().map(|v| state.vertices[first + v]).collect();
-            errors_m.push(f64::from(fitting::error_m(&card)?));
+            errors_m.push(f64::from(fitting::error_m(&card(state, span, element, &living))?));
         }
         Some((errors_m.iter().sum::<f64>() / errors_m.len() as f64, triangle))
     }
 
     /// The mean distance from where removed vertices were to where their texels now are, of the vertex that moved most.
     fn error_m(&self) -> Option<f64> {
-        let mut worst = 0.0_f64;
-        for &vertex in &self.gone {
-            let (corners, weights) = self.texel(self.uvs[vertex as usize])?;
-            let moved = |at: &Vec<Vec3>| {
-                let now: Vec3 = corners.iter().zip(weights).map(|(&v, weight)| at[v as usize] * weight).sum();
-                f64::from(now.distance(at[vertex as usize]))
-            };
-            worst = worst.max(self.samples.iter().map(moved).sum::<f64>() / self.samples.len() as f64);
-        }
-        Some(worst)
+        let mean = |vertex: &u32| Some(self.moved_m(*vertex)?.sum::<f64>() / self.samples.len() as f64);
+        self.gone.iter().map(mean).try_fold(0.0_f64, |worst, moved| Some(worst.max(moved?)))
+    }
+
+    /// How far a removed vertex's texel is from where the vertex was, in each sample.
+    fn moved_m(&self, vertex: u32) -> Option<impl Iterator<Item = f64>> {
+        let (corners, weights) = self.texel(self.uvs[vertex as usize])?;
+        Some(self.samples.iter().map(move |at| {
+            let now: Vec3 = corners.iter().zip(weights).map(|(&v, weight)| at[v as usize] * weight).sum();
+            f64::from(now.distance(at[vertex as usize]))
+        }))
     }
 
     /// The triangle with a point of the texture, and the point's barycentric coordinates.

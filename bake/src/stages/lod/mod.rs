@@ -57,8 +57,7 @@ pub struct LodOptions {
     pub max_levels: u32,
     /// No level gets fewer vertices than this.
     pub min_vertices: u32,
-    /// The error of removing all elements of an aggregate, as a part of their radius; that of removing some is in
-    /// proportion. Less removes leaves before bark.
+    /// The error of removing all elements of an aggregate, as a part of their radius. Less removes leaves before bark.
     pub aggregate_weight: f32,
     /// Metres of error for each metre of thickness of a whole piece (a twig) that is removed: less removes twigs
     /// sooner.
@@ -82,7 +81,7 @@ impl Default for LodOptions {
             max_levels: 8,
             surface_weight: 1.0,
             min_vertices: 100,
-            aggregate_weight: 0.3,
+            aggregate_weight: 0.165,
             piece_weight: 1.0,
             masks: Vec::new(),
             counted_levels: u32::MAX,

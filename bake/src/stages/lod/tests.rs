@@ -299,12 +299,12 @@ fn bare_branches_keep_covering_the_sky() {
     assert!(read.marks().last().unwrap().sizes()[0] > 0.0);
 }
 
-/// Cards of three rows, bent in the middle.
-fn bent_cards(count: u32) -> Mesh {
+/// Cards of three rows, of which the middle one is so far out of the plane.
+fn bent_cards(count: u32, bend: impl Fn(u32) -> f32) -> Mesh {
     let mut mesh = Mesh::default();
     for k in 0..count {
         let root = Vec3::new((k % 8) as f32, (k / 64) as f32, (k / 8 % 8) as f32);
-        for (row, bend) in [(0.0, 0.0), (1.0, 0.05), (2.0, 0.0)] {
+        for (row, bend) in [(0.0, 0.0), (1.0, bend(k)), (2.0, 0.0)] {
             for column in [0.0, 1.0] {
                 mesh.positions.push((root + Vec3::new(0.2 * column, 0.3 * row, bend)).to_array());
                 mesh.normals.push([0.0, 0.0, 1.0]);
@@ -323,7 +323,7 @@ fn bent_cards(count: u32) -> Mesh {
 
 #[test]
 fn bent_cards_are_flattened_before_any_goes() {
-    let mesh = bent_cards(300);
+    let mesh = bent_cards(300, |_| 0.05);
     let made = made(&mesh);
     let read = reader::decode(&made.progressive).unwrap();
     // Two of each card's six vertices, and not yet a card.
@@ -338,6 +338,31 @@ fn bent_cards_are_flattened_before_any_goes() {
     // Their texture is where it was.
     for (p, uv) in flat.positions.iter().zip(&flat.uvs) {
         assert!((p[1] % 1.0 - 0.6 * (1.0 - uv[1])).abs() < 1e-3 || uv[1] == 0.0, "{p:?} {uv:?}");
+    }
+}
+
+#[test]
+fn cards_are_flattened_in_the_order_of_their_own_bends() {
+    let bend = |k: u32| 0.0002 * (k * 7 % 300) as f32;
+    let made = made(&bent_cards(300, bend));
+    let read = reader::decode(&made.progressive).unwrap();
+    for gone in [100, 300, 500] {
+        let left = read.rebuild(6 * 300 - gone);
+        let still_bent: Vec<u32> = (0..300)
+            .filter(|&k| {
+                let root = [k % 8, k / 64, k / 8 % 8].map(|place| place as f32);
+                let is_bent = |p: &[f32; 3]| {
+                    let [x, y, z] = [0, 1, 2].map(|axis| p[axis] - root[axis]);
+                    (0.0..0.25).contains(&x) && (y - 0.3).abs() < 1e-3 && (z - bend(k)).abs() < 1e-4
+                };
+                left.positions.iter().filter(|&p| is_bent(p)).count() == 2
+            })
+            .collect();
+        let straightest = still_bent.iter().map(|&k| bend(k)).fold(f32::MAX, f32::min);
+        let flattened = (0..300).filter(|k| !still_bent.contains(k)).map(bend).fold(0.0, f32::max);
+        // One may be half-way.
+        assert!(flattened <= straightest + 0.0005, "{gone} gone: {flattened} and {straightest}");
+        assert!(still_bent.len().abs_diff(300 - gone / 2) <= 2, "{gone} gone: {}", still_bent.len());
     }
 }
 

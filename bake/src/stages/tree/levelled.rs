@@ -27,7 +27,7 @@ const FROND_SURFACE_WEIGHT: f32 = 2.0;
 
 /// Cards of twigs are all that is seen of a crown in winter, and stay longer than leaves: FLIP of the outlines of two bare oaks is
 /// .028 and .033 at D_1 by it, and .039 and .036 by the weight of leaves.
-const TWIG_WEIGHT: f32 = 0.6;
+const TWIG_WEIGHT: f32 = 0.33;
 
 /// A template with its levels.
 #[derive(Clone, Debug)]
