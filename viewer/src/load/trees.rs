@@ -151,7 +151,7 @@ fn impostor(document: &Document, value: &serde_json::Value, template: &Template)
     let wrong = |what: &str| document.wrong(format!("{} has pictures {what}", template.name));
     let primitive = mesh(document, cards)?.primitives().next();
     let material = primitive.ok_or_else(|| wrong("without cards"))?.material();
-    let Material { color, alpha_cutoff, .. } = read_material(document, &material)?;
+    let Material { color, .. } = read_material(document, &material)?;
     let color = color.ok_or_else(|| wrong("without colour"))?;
     let relief = images::png(document, &relief)?;
     let is_size = |m: f32| m.is_finite() && m > 0.0;
@@ -166,25 +166,11 @@ fn impostor(document: &Document, value: &serde_json::Value, template: &Template)
     if !is_strip || (relief.width_px, relief.height_px) != (color.width_px, color.height_px) {
         return Err(wrong("that are not four squares side by side, of one size with their relief"));
     }
-    // Fronds are seen one by one as far as the tree is.
-    let alpha_cutoff = template.clusters.map_or(0.0, |_| alpha_cutoff.unwrap_or(0.5));
     let places = leaf_vertices(template).map(|vertex| Vec3::from(vertex.position_m));
     let crown = Crown::around(places);
     let (leaves, leaf_m) = some_leaves(template);
     let middles_m = middles_m(&relief, size_m[0]);
-    Ok(Impostor {
-        color,
-        relief,
-        alpha_cutoff,
-        axis_m,
-        low_m,
-        size_m,
-        error_m,
-        crown,
-        leaves,
-        leaf_m,
-        middles_m,
-    })
+    Ok(Impostor { color, relief, axis_m, low_m, size_m, error_m, crown, leaves, leaf_m, middles_m })
 }
 
 /// The corners of the triangles of all leaves of D_0.

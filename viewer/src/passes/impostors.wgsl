@@ -20,8 +20,8 @@ struct Frame {
     crown_middle: vec3f,
     low: f32,
     crown_half: vec3f,
-    // Below it there is no leaf; 0 where leaves are seen one by one and cover pixels in part.
-    alpha_cutoff: f32,
+    // How wide a leaf is.
+    leaf_m: f32,
     // Of as many leaves as `LEAVES` in Rust: by which they are lit, and by which the eye sees more or less of them.
     leaf_normals: array<vec4f, 32>,
     leaf_faces: array<vec4f, 32>,
@@ -164,11 +164,8 @@ fn pixel(in: Out, is_kept: bool) -> Pixel {
     let level = log2(moved * f32(textureDimensions(colors).y));
     let seen = textureSampleLevel(colors, clamped, at, in.template_index, level);
     let relief = textureSampleLevel(reliefs, clamped, at, in.template_index, level).rgb;
-    // Twigs are thinner than pixels, and so are fronds; crowns of small leaves have an edge.
-    let thin = samples_of(relief.b, scattered_anew(floor(in.clip.xy) + 977.0 * in.chance));
-    let cutoff = frames[in.template_index].alpha_cutoff;
-    let full = cut_out(seen.a, cutoff);
-    let samples = select(thin, full, relief.g > 0.5 && cutoff > 0.0);
+    // The share of the pixel that the tree covers: leaves and twigs are smaller than it, and the sky shows between them.
+    let samples = samples_of(relief.b, scattered_anew(floor(in.clip.xy) + 977.0 * in.chance));
     if (samples == 0u || !is_kept) {
         discard;
     }
@@ -185,7 +182,7 @@ fn pixel(in: Out, is_kept: bool) -> Pixel {
     let through = albedo * vec3f(0.75, 0.9, 0.3);
     let facing = max(-cosine, 0.0);
     let glow = 0.6 * facing * facing * facing * facing * facing * facing;
-    let leaf_m = frames[in.template_index].leaf_faces[0].w;
+    let leaf_m = frames[in.template_index].leaf_m;
     let at_leaf = in.uv * frames[in.template_index].size / leaf_m;
     let sharp = saturate(leaf_m * view.focal_px / distance(view.eye, in.world));
     let leaf = one_leaf(in, at_leaf, sharp);

@@ -19,8 +19,6 @@ pub struct Impostor {
     /// Red: how far what is seen lies before the axis, ½ for none, 1 for half of the width. Green: share of leaves.
     /// Blue: share of the pixel that the tree covers.
     pub relief: Image,
-    /// Below this alpha there is no leaf; 0 where leaves are seen one by one, and cover pixels in part.
-    pub alpha_cutoff: f32,
     /// x and z of the vertical axis.
     pub axis_m: [f32; 2],
     /// y of the lower edge.

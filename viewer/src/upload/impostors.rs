@@ -22,11 +22,11 @@ pub struct ImpostorData {
     pub low: f32,
     /// Semi-axes of that ellipsoid.
     pub crown_half: [f32; 3],
-    /// Below this alpha nothing is drawn.
-    pub alpha_cutoff: f32,
+    /// The width of a leaf.
+    pub leaf_m: f32,
     /// Of some leaves, normals by which they are lit; the fourth number is unused.
     pub leaf_normals: [[f32; 4]; LEAVES],
-    /// Those of their triangles; the fourth number is the width of a leaf.
+    /// Those of their triangles; the fourth number is unused.
     pub leaf_faces: [[f32; 4]; LEAVES],
     /// Where the tree's middle is in each row from the top, x and z from the axis.
     pub middles: [[f32; 2]; IMPOSTOR_ROWS],
@@ -83,8 +83,8 @@ impl Uploader {
     }
 }
 
-fn with([x, y, z]: [f32; 3], fourth: f32) -> [f32; 4] {
-    [x, y, z, fourth]
+fn padded([x, y, z]: [f32; 3]) -> [f32; 4] {
+    [x, y, z, 0.0]
 }
 
 fn frame(pictures: &Impostor) -> ImpostorData {
@@ -94,9 +94,9 @@ fn frame(pictures: &Impostor) -> ImpostorData {
         crown_middle: pictures.crown.middle_m,
         low: pictures.low_m,
         crown_half: pictures.crown.half_m,
-        alpha_cutoff: pictures.alpha_cutoff,
-        leaf_normals: pictures.leaves.map(|leaf| with(leaf.normal, 0.0)),
-        leaf_faces: pictures.leaves.map(|leaf| with(leaf.face, pictures.leaf_m)),
+        leaf_m: pictures.leaf_m,
+        leaf_normals: pictures.leaves.map(|leaf| padded(leaf.normal)),
+        leaf_faces: pictures.leaves.map(|leaf| padded(leaf.face)),
         middles: pictures.middles_m,
     }
 }

@@ -169,8 +169,7 @@ pub fn impostor(name: &str, error_m: f32) -> Impostor {
     };
     Impostor {
         color: strip(format!("{name} colour"), &|r| [60, 120, 50, if r < 1.0 { 255 } else { 0 }]),
-        relief: strip(format!("{name} relief"), &|_| [160, 255, 0, 255]),
-        alpha_cutoff: 0.5,
+        relief: strip(format!("{name} relief"), &|r| [160, 255, if r < 1.0 { 255 } else { 0 }, 255]),
         axis_m: [0.0; 2],
         low_m: 0.4,
         size_m: [5.0, 6.0],
