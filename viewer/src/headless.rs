@@ -92,21 +92,19 @@ impl Headless {
         view.record(encoder, &self.passes, frame, camera, lod_camera, &self.profiler)
     }
 
-    /// Draws what a still picture becomes and fetches it: the mean of several, unless that is not wanted.
+    /// Draws what a still picture becomes and fetches it: the mean of several, unless that is not wanted. `cameras`: the one
+    /// that sees, and that for which levels of detail are chosen.
     pub fn shoot_still(
         &self,
         view: &mut View,
         frame: &FrameInput,
-        camera: &Camera,
-        lod_camera: &Camera,
+        cameras: [&Camera; 2],
     ) -> Result<RgbaImage> {
-        let last = if frame.options.refine { pictures(self.passes.samples) - 1 } else { 0 };
-        for accumulated in 0..last {
-            let frame = FrameInput { accumulated, ..*frame };
-            let (commands, _) = self.record(std::slice::from_mut(view), &frame, camera, lod_camera);
-            self.gpu.queue.submit([commands]);
+        let count = if frame.options.refine { pictures(self.passes.samples) } else { 1 };
+        for accumulated in 0..count {
+            self.draw(view, &FrameInput { accumulated, ..*frame }, cameras);
         }
-        self.shoot(view, &FrameInput { accumulated: last, ..*frame }, camera, lod_camera)
+        image_file::read(&self.gpu, &view.targets().display)
     }
 
     /// Draws one picture and fetches it.
@@ -117,9 +115,13 @@ impl Headless {
         camera: &Camera,
         lod_camera: &Camera,
     ) -> Result<RgbaImage> {
+        self.draw(view, frame, [camera, lod_camera]);
+        image_file::read(&self.gpu, &view.targets().display)
+    }
+
+    fn draw(&self, view: &mut View, frame: &FrameInput, [camera, lod_camera]: [&Camera; 2]) {
         let (commands, _) = self.record(std::slice::from_mut(view), frame, camera, lod_camera);
         self.gpu.queue.submit([commands]);
-        image_file::read(&self.gpu, &view.targets().display)
     }
 }
 

@@ -43,7 +43,7 @@ pub fn take(cli: &Cli, source: &Source, out: &Path) -> Result<()> {
         let mut view = headless.view(one.exhibit.clone(), size);
         let walker = camera(cli, &rig, &one.land, options.fov_y_deg.to_radians());
         let camera = if options.overhead { one.land.overhead(walker.fov_y_rad) } else { walker };
-        pictures.push(headless.shoot_still(&mut view, &frame, &camera, &walker)?);
+        pictures.push(headless.shoot_still(&mut view, &frame, [&camera, &walker])?);
     }
     let sheet = image_file::contact_sheet(&pictures, columns);
     let sheet = sheet.ok_or_else(|| anyhow!("there is nothing to draw"))?;

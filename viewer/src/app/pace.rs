@@ -191,16 +191,14 @@ impl Pace {
             (true, false) => BESIDE_WORK,
         };
         let wait = [at_once, wait_for_sharpness, shown.again].into_iter().flatten().min();
-        let pause = wait.map(|wait| wait.max(rest).max(MIN_FRAME.saturating_sub(took)));
         // "Never" is a duration to egui.
-        let after = |pause: Duration| now.checked_add(pause);
-        let next = pause.and_then(after);
-        let finer = (shown.rough && !self.shared && !self.running).then(|| self.until_sharp(now));
-        match (next, finer.map(|wait| wait.max(MIN_FRAME.saturating_sub(took))).and_then(after)) {
-            (Some(next), Some(finer)) if finer < next => Next::Finer(finer),
+        let after = |wait: Duration| now.checked_add(wait.max(MIN_FRAME.saturating_sub(took)));
+        let next = wait.and_then(|wait| after(wait.max(rest)));
+        let refines = shown.rough && !self.shared && !self.running;
+        match (next, refines.then(|| self.until_sharp(now)).and_then(after)) {
+            (next, Some(finer)) if next.is_none_or(|next| finer < next) => Next::Finer(finer),
             (Some(next), _) => Next::At(next),
-            (None, Some(finer)) => Next::Finer(finer),
-            (None, None) => Next::OnEvent,
+            (None, _) => Next::OnEvent,
         }
     }
 

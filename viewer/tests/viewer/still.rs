@@ -71,11 +71,11 @@ fn a_still_picture_comes_nearer_to_one_of_many_more_pixels_with_each_that_is_add
         assert!(last < left * first, "{samples} samples: {errors:?}");
         assert!(errors[1] < first, "the second: {errors:?}");
 
-        let still = studio.shoot_still(&mut studio.view(buffers.clone(), SIZE_PX), &frame, &camera, &camera);
+        let still = studio.shoot_still(&mut studio.view(buffers.clone(), SIZE_PX), &frame, [&camera; 2]);
         let still = still.expect("a picture");
         assert_eq!(error(&still, &truth), last, "what a screenshot is");
         let unrefined = FrameInput { options: Options { refine: false, ..frame.options }, ..frame };
-        let single = studio.shoot_still(&mut studio.view(buffers, SIZE_PX), &unrefined, &camera, &camera);
+        let single = studio.shoot_still(&mut studio.view(buffers, SIZE_PX), &unrefined, [&camera; 2]);
         assert_eq!(error(&single.expect("a picture"), &truth), first, "one picture, if that is wanted");
     }
 }

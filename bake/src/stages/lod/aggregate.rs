@@ -34,8 +34,6 @@ pub struct Aggregate {
     turns: BinaryHeap<Reverse<Turn>>,
     /// By steps and elements, in metres.
     step_errors_m: Vec<Vec<f64>>,
-    /// Where each element comes in `order`.
-    ranks: Vec<u32>,
     /// Elements in the order in which they are removed, then those that always stay.
     order: Vec<u32>,
     removable: usize,
@@ -72,14 +70,11 @@ impl Aggregate {
         let extent = (high - low).max_element();
         let (order, removable) = removal_order(&places, (low + high) * 0.5);
         let steps = if state.attributes.uvs { flattening::plan(state, span, mask) } else { Vec::new() };
-        let mut ranks = vec![0; count];
-        (0..).zip(&order).for_each(|(rank, &element)| ranks[element as usize] = rank);
         let mut aggregate = Self {
             part,
             step_errors_m: flattening::errors_m(state, span, &steps),
             steps,
             turns: BinaryHeap::with_capacity(count),
-            ranks,
             order,
             removable,
             removed: 0,
@@ -87,15 +82,15 @@ impl Aggregate {
             radius_m,
             max_scale: (MAX_GROWN * extent / radius_m as f32).max(1.0),
         };
-        (0..count as u32).for_each(|element| aggregate.queue(element, 0));
+        (0..count as u32).for_each(|rank| aggregate.queue(rank, 0));
         Some(aggregate)
     }
 
-    /// Queues a step of an element, if there is such a step.
-    fn queue(&mut self, element: u32, step: u32) {
+    /// Queues a step of the element that comes there in the order of removal, if there is such a step.
+    fn queue(&mut self, rank: u32, step: u32) {
         if let Some(errors_m) = self.step_errors_m.get(step as usize) {
-            let error_m = errors_m[element as usize];
-            self.turns.push(Reverse((error_m.to_bits(), self.ranks[element as usize], step)));
+            let error_m = errors_m[self.order[rank as usize] as usize];
+            self.turns.push(Reverse((error_m.to_bits(), rank, step)));
         }
     }
 
@@ -119,7 +114,7 @@ impl Aggregate {
         }
         let Reverse((_, rank, step)) = self.turns.pop()?;
         let element = self.order[rank as usize];
-        self.queue(element, step + 1);
+        self.queue(rank, step + 1);
         self.skip_gone();
         Some(Loss::Vertex { element, change: self.steps[step as usize].change.clone() })
     }

@@ -19,11 +19,12 @@ const AREA_TOLERANCE: f32 = 1e-3;
 /// Cards whose vertices lie this far out of a plane on average, in metres, are flat.
 const FLAT_M: f64 = 1e-3;
 
-/// What is done to all elements, one after the other.
+/// What is done to all elements, to each when it is its turn ([`errors_m`]).
 #[derive(Clone, Debug)]
 pub struct Step {
-    /// How far texels have moved once this and all steps before are done, in metres.
-    pub error_m: f64,
+    /// How far the texels of one vertex have moved once this and all steps before are done, in metres on average over the elements:
+    /// of that which moved most.
+    error_m: f64,
     pub change: Change,
 }
 
@@ -61,11 +62,6 @@ pub fn plan(state: &State, span: &PartSpan, mask: &AlphaMask) -> Vec<Step> {
     if let Some((error_m, triangle)) = element.fitted(state, span, mask) {
         steps.push(Step { error_m, change: Change::Fit(triangle) });
     }
-    let mut worst_m = 0.0_f64;
-    for step in &mut steps {
-        worst_m = worst_m.max(step.error_m);
-        step.error_m = worst_m;
-    }
     steps
 }
 
@@ -99,6 +95,12 @@ pub fn errors_m(state: &State, span: &PartSpan, steps: &[Step]) -> Vec<Vec<f64>>
     steps.iter().map(after).collect()
 }
 
+/// Those vertices of an element.
+fn card(state: &State, span: &PartSpan, element: u32, living: &[usize]) -> Vec<Vertex> {
+    let first = span.element(element)[0].start;
+    living.iter().map(|v| state.vertices[first + v]).collect()
+}
+
 /// The same mesh with triangles in the place of flat cards: it shows nearly the same, and is drawn in less time.
 pub fn fitted(mesh: &Mesh, masks: &[AlphaMask]) -> Mesh {
     let mut state = State::new(&repaired(mesh.clone()));
@@ -128,12 +130,6 @@ struct Element {
     uvs: Vec<Vec2>,
     samples: Vec<Vec<Vec3>>,
     gone: Vec<u32>,
-}
-
-/// Those vertices of an element.
-fn card(state: &State, span: &PartSpan, element: u32, living: &[usize]) -> Vec<Vertex> {
-    let first = span.element(element)[0].start;
-    living.iter().map(|v| state.vertices[first + v]).collect()
 }
 
 impl Element {
