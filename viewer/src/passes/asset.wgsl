@@ -168,7 +168,7 @@ fn sunlight(point: Point, light: Light) -> vec3f {
 }
 
 fn bumped(in: Out, normal: vec3f, uv: vec2f) -> vec3f {
-    let bump = (textureSample(normal_map, normal_sampler, uv).xyz * 2.0 - 1.0) * vec3f(vec2f(surface.normal_scale), 1.0);
+    let bump = (textureSampleBias(normal_map, normal_sampler, uv, view.mip_bias).xyz * 2.0 - 1.0) * vec3f(vec2f(surface.normal_scale), 1.0);
     // A file without tangents: where texture coordinates grow on the surface (Schüler 2013).
     let across = cross(dpdy(in.world), normal);
     let along = cross(normal, dpdx(in.world));
@@ -192,11 +192,11 @@ fn shade(in: Out, front: bool) -> vec4f {
     let bumps = bumped(in, normal, uv_of(surface.uv_maps[2], in.uvs));
     normal = select(normal, bumps, surface.has_normal > 0.5);
 
-    let texel = textureSample(color_map, color_sampler, uv_of(surface.uv_maps[0], in.uvs));
+    let texel = textureSampleBias(color_map, color_sampler, uv_of(surface.uv_maps[0], in.uvs), view.mip_bias);
     var base = surface.color * in.color * texel;
-    let metal = textureSample(metal_map, metal_sampler, uv_of(surface.uv_maps[1], in.uvs));
-    let occluded = textureSample(occlusion_map, occlusion_sampler, uv_of(surface.uv_maps[3], in.uvs)).r;
-    let glow = textureSample(emissive_map, emissive_sampler, uv_of(surface.uv_maps[4], in.uvs)).rgb;
+    let metal = textureSampleBias(metal_map, metal_sampler, uv_of(surface.uv_maps[1], in.uvs), view.mip_bias);
+    let occluded = textureSampleBias(occlusion_map, occlusion_sampler, uv_of(surface.uv_maps[3], in.uvs), view.mip_bias).r;
+    let glow = textureSampleBias(emissive_map, emissive_sampler, uv_of(surface.uv_maps[4], in.uvs), view.mip_bias).rgb;
     let tinted = view.tint_levels != 0u;
     base = vec4f(select(base.rgb, level_tint(in.normal_lambda.y), tinted), base.a);
     let metallic = select(clamp(surface.metallic * metal.b, 0.0, 1.0), 0.0, tinted);

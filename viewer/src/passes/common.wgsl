@@ -46,6 +46,8 @@ struct View {
     lod_unit: f32,
     // Moves numbers by chance, [0, 1): another in each of the pictures of which a still one is the mean.
     noise: f32,
+    // Added to the mip levels of textures that cover much of the picture: less than 0 in those pictures, whose mean is as smooth.
+    mip_bias: f32,
 }
 
 @group(0) @binding(0) var<uniform> view: View;

@@ -161,7 +161,7 @@ fn pixel(in: Out, is_kept: bool) -> Pixel {
     let at = vec2f((f32(side & 3u) + u) * 0.25, in.uv.y);
     // By `uv`: `at` leaps from place to place.
     let moved = max(length(dpdx(in.uv)), length(dpdy(in.uv)));
-    let level = log2(moved * f32(textureDimensions(colors).y));
+    let level = log2(moved * f32(textureDimensions(colors).y)) + view.mip_bias;
     let seen = textureSampleLevel(colors, clamped, at, in.template_index, level);
     let relief = textureSampleLevel(reliefs, clamped, at, in.template_index, level).rgb;
     // The share of the pixel that the tree covers: leaves and twigs are smaller than it, and the sky shows between them.

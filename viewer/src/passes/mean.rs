@@ -25,6 +25,8 @@ pub struct Shift {
     pub middle_px: [f32; 2],
     /// What numbers by chance are moved by, in [0, 1).
     pub noise: f32,
+    /// What is added to the mip levels of textures: the mean of all pictures averages what one has between its pixels' middles.
+    pub mip_bias: f32,
 }
 
 impl Shift {
@@ -38,7 +40,8 @@ impl Shift {
         };
         // Van der Corput's sequence: halves, quarters, eighths.
         let noise = f64::from(accumulated.reverse_bits()) / (1_u64 << u32::BITS) as f64;
-        Self { middle_px: SPREAD.map(beside), noise: noise as f32 }
+        let mip_bias = if accumulated == 0 { 0.0 } else { -0.5 * libm::log2f(pictures(samples) as f32) };
+        Self { middle_px: SPREAD.map(beside), noise: noise as f32, mip_bias }
     }
 }
 
@@ -93,6 +96,7 @@ mod tests {
             }
             let all = shifts.iter().flat_map(|shift| shift.middle_px);
             assert!(all.clone().all(|t| t.abs() <= 0.5 * reach) && all.fold(0.0, f32::max) > 0.4 * reach);
+            assert!(shifts[1..].iter().all(|shift| shift.mip_bias < 0.0));
             let mut noise: Vec<f32> = shifts.iter().map(|shift| shift.noise).collect();
             noise.sort_by(f32::total_cmp);
             assert!(

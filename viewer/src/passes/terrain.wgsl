@@ -104,7 +104,7 @@ fn normal_at(place: vec2f) -> vec3f {
     let side = view.field.x;
     // Samples are the middles of texels.
     let uv = (field_uv(place) * (side - 1.0) + 0.5) / side;
-    let xz = textureSample(ground_normals, clamped, uv).rg * 2.0 - 1.0;
+    let xz = textureSampleBias(ground_normals, clamped, uv, view.mip_bias).rg * 2.0 - 1.0;
     return vec3f(xz.x, sqrt(saturate(1.0 - dot(xz, xz))), xz.y);
 }
 
@@ -276,14 +276,15 @@ fn ground(in: Out) -> @location(0) vec4f {
     let place = in.world.xz;
     let uv = field_uv(place);
     let away = distance(in.world, view.eye);
-    let color = textureSample(ground_color, clamped, uv);
+    let color = textureSampleBias(ground_color, clamped, uv, view.mip_bias);
     var albedo = color.rgb;
-    let weights = textureSample(ground_weights, clamped, uv);
-    let light = textureSample(light_map, clamped, uv);
+    let weights = textureSampleBias(ground_weights, clamped, uv, view.mip_bias);
+    let light = textureSampleBias(light_map, clamped, uv, view.mip_bias);
     let near = near_shade_at(place);
     let shade = mix(light.a, textureSample(near_shade, clamped, near.xy).r, near.z);
-    let dx = dpdx(in.world);
-    let dy = dpdy(in.world);
+    let finer = exp2(view.mip_bias);
+    let dx = finer * dpdx(in.world);
+    let dy = finer * dpdy(in.world);
     var normal = normal_at(place);
     var relief = 1.0;
     if (away < 240.0) {
@@ -381,8 +382,8 @@ const CRAGS_LEAN: f32 = 0.8;
 
 // Crags at two scales: their bumps and a factor on the colour.
 fn crags(place: vec2f) -> Tiles {
-    let wide = tiles_of(textureSample(details, repeating, place / CRAGS_M, 1));
-    let fine = tiles_of(textureSample(details, repeating, TURN * place / (0.23 * CRAGS_M), 1));
+    let wide = tiles_of(textureSampleBias(details, repeating, place / CRAGS_M, 1, view.mip_bias));
+    let fine = tiles_of(textureSampleBias(details, repeating, TURN * place / (0.23 * CRAGS_M), 1, view.mip_bias));
     return Tiles(0.5 * (wide.factor + fine.factor), vec3f(wide.bump.xy + TURN * fine.bump.xy, 1.0));
 }
 

@@ -91,8 +91,8 @@ fn ambient(normal: vec3f, albedo: vec3f) -> vec3f {
 fn bark(in: Out) -> @location(0) vec4f {
     var albedo = in.color * material.factor.rgb;
     var normal = normalize(in.normal);
-    albedo *= textureSample(color_map, repeating, in.uv).rgb;
-    let bump = textureSample(normal_map, repeating, in.uv).xyz * 2.0 - 1.0;
+    albedo *= textureSampleBias(color_map, repeating, in.uv, view.mip_bias).rgb;
+    let bump = textureSampleBias(normal_map, repeating, in.uv, view.mip_bias).xyz * 2.0 - 1.0;
     // Not before its textures are read: their mip levels depend on the pixels around.
     if ((in.shown.x > 0.0 && !is_shown(in.clip.xy, in.shown)) || is_beyond(in.color)) {
         discard;
@@ -137,7 +137,7 @@ struct Card {
 
 // Colour, and alpha.
 fn picture_at(in: Out) -> vec4f {
-    return vec4f(in.color, 1.0) * material.factor * textureSample(color_map, clamped, in.uv);
+    return vec4f(in.color, 1.0) * material.factor * textureSampleBias(color_map, clamped, in.uv, view.mip_bias);
 }
 
 fn is_drawn(in: Out, samples: u32) -> bool {
@@ -179,7 +179,7 @@ const CLUSTER_BIAS_M = 0.45;
 
 @fragment
 fn cluster(in: Out) -> Pixel {
-    let bump = textureSample(normal_map, clamped, in.uv).xyz * 2.0 - 1.0;
+    let bump = textureSampleBias(normal_map, clamped, in.uv, view.mip_bias).xyz * 2.0 - 1.0;
     let right = normalize(in.tangent.xyz);
     let front = normalize(in.normal);
     let normal = normalize(right * bump.x + cross(front, right) * bump.y + front * bump.z);

@@ -40,8 +40,9 @@ pub struct ViewUniform {
     pub part: f32,
     pub lod_unit: f32,
     pub noise: f32,
+    pub mip_bias: f32,
     /// WGSL rounds the size up.
-    pub unused: [f32; 3],
+    pub unused: [f32; 2],
 }
 
 /// What stands for "no lake".
@@ -54,7 +55,8 @@ impl ViewUniform {
         // Directions don't depend on where the eye is.
         let at_origin = Camera { position_m: Vec3::ZERO, ..*camera };
         let options = &frame.options;
-        let Shift { middle_px: [x_px, y_px], noise } = Shift::of(frame.accumulated, options.samples);
+        let Shift { middle_px: [x_px, y_px], noise, mip_bias } =
+            Shift::of(frame.accumulated, options.samples);
         // What is at a pixel's moved middle is drawn in its middle.
         let moved = Mat4::from_translation(Vec3::new(-2.0 * x_px / width, -2.0 * y_px / height, 0.0));
         let clip_from = |camera: &Camera| moved * camera.clip_from_world(width / height);
@@ -68,6 +70,7 @@ impl ViewUniform {
             tint_levels: options.tint_levels.into(),
             part: frame.part,
             noise,
+            mip_bias,
             ..Default::default()
         }
     }

@@ -104,6 +104,7 @@ fn uniforms_are_laid_out_alike() {
             part,
             lod_unit,
             noise,
+            mip_bias,
         }
     );
     same!(

@@ -15,6 +15,8 @@ pub(super) struct Outline {
     centre: f32,
     /// Greatest half width.
     pub widest: f32,
+    /// Of both halves.
+    pub area: f32,
     /// How far lobes reach behind the base.
     pub back: f32,
 }
@@ -49,7 +51,8 @@ impl Outline {
         let values: Vec<f32> = (0..TABLE).map(|i| half * profile(i as f32 / (TABLE - 1) as f32)).collect();
         let widest = values.iter().copied().fold(0.0, f32::max);
         let table = with_slopes(&values, |_| 1.0 / (TABLE - 1) as f32);
-        Self { table, polar: false, centre: 0.0, widest, back: 0.02 }
+        let area = 2.0 * values.iter().sum::<f32>() / TABLE as f32;
+        Self { table, polar: false, centre: 0.0, widest, area, back: 0.02 }
     }
 
     fn polar(centre: f32, aspect: f32, radius: impl Fn(f32) -> f32) -> Self {
@@ -67,7 +70,8 @@ impl Outline {
             |f: fn(f32) -> f32| values.iter().enumerate().map(|(i, r)| r * f(angle(i))).fold(0.0, f32::max);
         let (widest, behind) = (reach(libm::sinf), reach(|a| -libm::cosf(a)));
         let table = with_slopes(&values, |r| r * PI / (TABLE - 1) as f32);
-        Self { table, polar: true, centre, widest, back: (behind - centre).max(0.0) + 0.02 }
+        let area = PI * values.iter().map(|r| r * r).sum::<f32>() / TABLE as f32;
+        Self { table, polar: true, centre, widest, area, back: (behind - centre).max(0.0) + 0.02 }
     }
 
     /// About the distance from (t, s) to the outline: positive inside.

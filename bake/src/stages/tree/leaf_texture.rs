@@ -93,7 +93,7 @@ impl Brush {
     /// One leaf's paint: no two are quite alike; those laid on later are lighter.
     fn paint(&mut self, light: f32) -> Paint {
         let hue = self.hue_deg + (8.0 + 8.0 * autumn(self.hue_deg)) * self.dice.signed();
-        let color = leaf_color(hue) * light * (1.0 + 0.18 * self.dice.signed());
+        let color = leaf_color(hue) * light * (1.0 + 0.26 * self.dice.signed());
         let fold = 0.13 * if self.dice.unit() < 0.5 { 1.0 } else { -1.0 };
         Paint { color, veins: 0.3, pairs: self.pairs, fold }
     }
@@ -132,7 +132,7 @@ impl Brush {
         if fine {
             // Side twigs in alternation; lower ones longer, so that the whole is round.
             // None like another, or the whole looks like one large lobed leaf.
-            let count = (1.7 / leaf).round().clamp(5.0, 10.0) as usize;
+            let count = (1.7 / leaf * (0.35 / self.outline.area).min(1.0)).round().clamp(4.0, 10.0) as usize;
             for k in 0..count {
                 let t = 0.10 + 0.78 * (k as f32 + 0.4 * self.dice.signed()).max(0.0) / count as f32;
                 let (at, angle) = point(&main, t);
@@ -178,7 +178,9 @@ impl Brush {
 
     /// Places of leaves along a twig: alternating, the last at its tip.
     fn spots(&mut self, twig: &[(Vec2, f32)], leaf: f32, from: f32, spots: &mut Vec<(Vec2, f32)>) {
-        let count = ((1.0 - from) * length(twig) / (0.35 * leaf)).round().max(2.0) as usize;
+        // Wide leaves stand farther apart: where all overlap, a card looks like one large leaf.
+        let apart = leaf * self.outline.area.max(0.35);
+        let count = ((1.0 - from) * length(twig) / apart).round().max(2.0) as usize;
         for k in 0..count {
             let t = from + (1.0 - from) * k as f32 / count as f32;
             let (at, angle) = point(twig, t);
