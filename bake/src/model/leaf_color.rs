@@ -11,8 +11,8 @@ pub fn leaf_color(hue_deg: f32) -> Vec3 {
         (48.0, Vec3::new(0.52, 0.32, 0.030)),
         (66.0, Vec3::new(0.30, 0.31, 0.042)),
         (90.0, Vec3::new(0.150, 0.245, 0.050)),
-        (115.0, Vec3::new(0.088, 0.182, 0.056)),
-        (150.0, Vec3::new(0.066, 0.132, 0.086)),
+        (115.0, Vec3::new(0.090, 0.158, 0.063)),
+        (150.0, Vec3::new(0.070, 0.118, 0.084)),
     ];
     let hue = hue_deg.clamp(15.0, 150.0);
     let above = STOPS.iter().position(|stop| stop.0 >= hue).unwrap_or(6).max(1);

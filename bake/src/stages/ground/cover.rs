@@ -90,7 +90,7 @@ const GRAVEL: Rgb = [0.185, 0.176, 0.150];
 const HEATH: Rgb = [0.086, 0.066, 0.036];
 pub(super) const MOSS: Rgb = [0.040, 0.060, 0.014];
 /// Rice from the planting to the harvest.
-const RICE: [Rgb; 5] = [
+pub(super) const RICE: [Rgb; 5] = [
     [0.058, 0.074, 0.040],
     [0.080, 0.136, 0.032],
     [0.056, 0.104, 0.024],
@@ -99,6 +99,8 @@ const RICE: [Rgb; 5] = [
 ];
 /// How far rice has come when its field is drained, and the part of a flooded field where none stands.
 const FLOODED_TILL: f32 = 0.36;
+/// From when on it has ears.
+const IN_EAR: f32 = 0.7;
 const FLOODED_MUD: f32 = 0.5;
 /// Trodden earth along the fields' edges.
 const PATH: Rgb = [0.150, 0.125, 0.068];
@@ -137,6 +139,8 @@ pub(super) struct Painter {
     bare_slope: f32,
     /// How dry it is beside other lands of its climate: 0 lush, 1 arid.
     thirst: f32,
+    /// Whether there are fields.
+    pub is_farmed: bool,
     /// How far rice has come, 0 planted, 1 ripe.
     ripe: f32,
     rice_seed: u32,
@@ -188,6 +192,7 @@ impl Painter {
             talus,
             bare_slope: 0.42 + 0.5 * talus,
             thirst,
+            is_farmed: land.paddies.is_some(),
             ripe: 0.05 + 0.75 * chance(5),
             rice_seed: seed,
             rock,
@@ -420,13 +425,20 @@ impl Painter {
         if rice <= 0.5 || self.ripe(t) > FLOODED_TILL { 0.0 } else { step(0.66, 0.86, rice) }
     }
 
+    /// How densely rice stands, and whether it bends under its ears: young rice stands apart.
+    #[inline]
+    pub fn rice(&self, t: &Traits, n: &Noise) -> (f32, bool) {
+        let (part, ripe) = (rice(t), self.ripe(t));
+        let inside = if part > 0.5 { planted(part, n) } else { 0.0 };
+        (inside * step(0.0, FLOODED_TILL, ripe + 0.2), ripe > IN_EAR)
+    }
+
     /// The colour of a place so much of which is rice. Paths lead along fields.
     #[inline]
     fn crop(&self, part: f32, t: &Traits, n: &Noise) -> Rgb {
         let ripe = (self.ripe(t) + 0.06 * n.broad).clamp(0.0, 0.999) * (RICE.len() - 1) as f32;
         let rice = lerp(RICE[ripe as usize], RICE[ripe as usize + 1], ripe.fract());
-        let inside = step(0.62, 0.82, part + 0.05 * n.fine);
-        scale(lerp(PATH, rice, inside), 1.0 + 0.1 * n.fine + 0.15 * n.grain)
+        scale(lerp(PATH, rice, planted(part, n)), 1.0 + 0.1 * n.fine + 0.15 * n.grain)
     }
 
     /// Bare earth or sand, paler on crests.
@@ -459,6 +471,12 @@ fn rice(t: &Traits) -> f32 {
 #[inline]
 pub(super) fn in_patches(t: &Traits, n: &Noise) -> f32 {
     0.6 * t.tuft + 0.4 * t.patch + 0.4 * n.broad
+}
+
+/// The share of a place so much of which is a field that is not a path along it.
+#[inline]
+fn planted(part: f32, n: &Noise) -> f32 {
+    step(0.62, 0.82, part + 0.05 * n.fine)
 }
 
 #[inline]

@@ -4,7 +4,7 @@ use genescape_schema::scene::Lookout;
 use glam::Vec2;
 
 use super::GroundParams;
-use super::cover::{Cover, MOSS, Noise, Painter, in_patches};
+use super::cover::{Cover, MOSS, Noise, Painter, RICE, in_patches};
 use super::grain::Grain;
 use super::palette::Palette;
 use super::palette::{Rgb, UMBELS, petals, spires, step};
@@ -70,6 +70,15 @@ const HABITS: [Habit; CHANNELS] = [
     Habit { name: "umbel", per_m2: 1.1, scale: [0.6, 1.3], reach_m: 50.0, sway: 0.10 },
     Habit { name: "hay", per_m2: 1.6, scale: [0.6, 1.3], reach_m: 44.0, sway: 0.14 },
     Habit { name: "herb", per_m2: 0.9, scale: [0.45, 1.1], reach_m: 40.0, sway: 0.05 },
+];
+
+/// Where there are fields, which are warm and wet, rice grows in them instead of these, which like it dry: in leaf and in ear.
+const RICE_IN_LEAF: usize = TUSSOCK;
+const RICE_IN_EAR: usize = HAY;
+
+const RICE_HABITS: [(usize, Habit); 2] = [
+    (RICE_IN_LEAF, Habit { name: "rice", per_m2: 7.0, scale: [0.65, 1.0], reach_m: 36.0, sway: 0.16 }),
+    (RICE_IN_EAR, Habit { name: "ripe rice", per_m2: 7.0, scale: [0.8, 1.1], reach_m: 36.0, sway: 0.12 }),
 ];
 
 /// Metres uphill of a place where a cliff may stand from which stones fell.
@@ -249,6 +258,11 @@ impl Painter {
         ON_LAND.into_iter().for_each(|kind| growth[kind] *= dry_land);
         let weeded = 1.0 - t.farmed;
         growth.iter_mut().for_each(|density| *density *= weeded);
+        if self.is_farmed {
+            let (density, is_in_ear) = self.rice(t, n);
+            growth[RICE_IN_LEAF] = if is_in_ear { 0.0 } else { density };
+            growth[RICE_IN_EAR] = if is_in_ear { density } else { 0.0 };
+        }
         growth
     }
 }
@@ -285,7 +299,7 @@ fn kinds(params: &GroundParams, painter: &Painter) -> Vec<PlantKind> {
     let stone_colors = vec![stone(1.0), stone(0.85), [painter.rock_band.map(|c| 0.8 * c), painter.rock_band]];
     let litter = painter.litter;
     // In the order of the channels.
-    let looks: [(PlantShape, Vec<[Rgb; 2]>); CHANNELS] = [
+    let mut looks: [(PlantShape, Vec<[Rgb; 2]>); CHANNELS] = [
         (shapes::flower(), flowers(params.terrain_seed, growth[1])),
         (shapes::fern(), ferns(palette)),
         (shapes::shrub(), shrubs(palette)),
@@ -306,6 +320,12 @@ fn kinds(params: &GroundParams, painter: &Painter) -> Vec<PlantKind> {
         (shapes::hay(), hay(palette)),
         (shapes::herb(), herbs(palette)),
     ];
+    let mut habits = HABITS;
+    if painter.is_farmed {
+        RICE_HABITS.into_iter().for_each(|(channel, habit)| habits[channel] = habit);
+        looks[RICE_IN_LEAF] = (shapes::rice(false), rice(&[RICE[1], RICE[2], RICE[2]]));
+        looks[RICE_IN_EAR] = (shapes::rice(true), rice(&[RICE[3], RICE[4], RICE[4]]));
+    }
     let young = painter.offspring;
     let kind = |(channel, (habit, (shape, colors))): (u32, (Habit, _))| {
         let Habit { name, per_m2, mut scale, reach_m, sway } = habit;
@@ -314,7 +334,7 @@ fn kinds(params: &GroundParams, painter: &Painter) -> Vec<PlantKind> {
         }
         PlantKind { name: name.into(), channel, per_m2, scale, reach_m, sway, colors, shape }
     };
-    (0..).zip(HABITS.into_iter().zip(looks)).map(kind).collect()
+    (0..).zip(habits.into_iter().zip(looks)).map(kind).collect()
 }
 
 /// Bark of young and of fallen trees, wood that the sun has faded, and wood inside.
@@ -356,6 +376,11 @@ fn flowers(terrain_seed: u32, stalk: Rgb) -> Vec<[Rgb; 2]> {
 fn hay(palette: &Palette) -> Vec<[Rgb; 2]> {
     let growth = palette.growth;
     [RIPE, lerp(RIPE, growth[3], 0.5)].map(|head| [lerp(growth[2], growth[3], 0.5), head]).into()
+}
+
+/// Dark between the stalks.
+fn rice(leaves: &[Rgb]) -> Vec<[Rgb; 2]> {
+    leaves.iter().map(|leaf| [leaf.map(|c| 0.5 * c), leaf.map(|c| 1.1 * c)]).collect()
 }
 
 /// Rock, in rainy lands under moss.

@@ -282,6 +282,36 @@ pub(super) fn tussock() -> PlantShape {
     d.done()
 }
 
+/// A hill of rice: leaves that stand and bend over at their ends, and, if it is ripe, ears that hang between them.
+pub(super) fn rice(is_in_ear: bool) -> PlantShape {
+    let mut d = Drawing::new(75);
+    for k in 0..15 {
+        // Those that are drawn from afar, too, are spread over all.
+        let out = ((4 * k) % 15) as f32 / 15.0;
+        let (turn, long) = (2.4 * k as f32 + 0.8 * d.unit(), 0.8 + 0.4 * d.unit());
+        let width = if k < 4 { 0.026 } else { 0.014 };
+        let root = heading(turn) * (0.015 + 0.03 * out);
+        d.blade(root, turn, [(0.56 - 0.16 * out) * long, (0.04 + 0.24 * out) * long, width], [0.0, 0.8]);
+        if k == 3 {
+            d.coarse();
+        }
+    }
+    for k in 0..if is_in_ear { 7 } else { 0 } {
+        let turn = 2.4 * k as f32 + 0.6 * d.unit();
+        let (out, high) = (heading(turn), 0.50 + 0.10 * d.unit());
+        let from = out * 0.06 + Vec3::Y * high;
+        let tip = out * (0.20 + 0.06 * d.unit()) + Vec3::Y * (high - 0.09);
+        let middle = from.lerp(tip, 0.45) + 0.008 * Vec3::Y;
+        d.diamond(
+            [from, middle, tip],
+            Vec3::new(-out.z, 0.0, out.x) * 0.010,
+            Vec3::Y + 0.6 * out,
+            [0.7, 1.0, 1.0],
+        );
+    }
+    d.done()
+}
+
 /// Three spikes of flowers over a rosette, the lowest flowers open widest; tint 1 is the petals'.
 pub(super) fn spire() -> PlantShape {
     let mut d = Drawing::new(71);

@@ -325,7 +325,8 @@ fn rice_grows_in_fields_and_nothing_else_does() {
     let mut land = LAND.clone();
     land.paddies = Some(vec![1.0; land.flow.len()]);
     let made = maps(&PARAMS, &Woods::none(Season::default()), &land, 256);
-    assert!(made.plants.kinds.is_empty(), "weeds grow");
+    let names: Vec<&str> = made.plants.kinds.iter().map(|kind| kind.name.as_str()).collect();
+    assert!(!names.is_empty() && names.iter().all(|name| name.ends_with("rice")), "weeds grow: {names:?}");
     let corners = [(0, 0), (1, 0), (0, 1), (1, 1)];
     let is_level = |i: u32, j: u32| LAND.field.normal_at(i, j).y > 0.995;
     let level = |k: u32| corners.iter().all(|&(di, dj)| is_level(k % 256 + di, k / 256 + dj));
@@ -357,12 +358,18 @@ fn water_stands_in_fields_alone() {
     land.paddies = Some((0..land.flow.len()).map(farmed).collect());
     for seed in 0..12 {
         let params = GroundParams { terrain_seed: seed, ..PARAMS };
-        let color = maps(&params, &Woods::none(Season::default()), &land, 256).color;
+        let GroundMaps { color, plants, .. } = maps(&params, &Woods::none(Season::default()), &land, 256);
         let is_dry = |k: u32| color.pixel(k % 256, k / 256)[3] == 255;
         assert!(
             (0..256 * 256).filter(|k| k % 256 < 126).all(is_dry),
             "seed {seed}: water where nothing is farmed"
         );
+        for rice in ["rice", "ripe rice"] {
+            let stands = stands(&plants, rice);
+            let wild =
+                (0..128 * 128).filter(|k| k % 128 < 63 && stands.get(*k).is_some_and(|(part, _)| *part > 0));
+            assert_eq!(wild.count(), 0, "seed {seed}: {rice} where nothing is farmed");
+        }
     }
 }
 
