@@ -77,8 +77,8 @@ const RICE_IN_LEAF: usize = TUSSOCK;
 const RICE_IN_EAR: usize = HAY;
 
 const RICE_HABITS: [(usize, Habit); 2] = [
-    (RICE_IN_LEAF, Habit { name: "rice", per_m2: 7.0, scale: [0.65, 1.0], reach_m: 36.0, sway: 0.16 }),
-    (RICE_IN_EAR, Habit { name: "ripe rice", per_m2: 7.0, scale: [0.8, 1.1], reach_m: 36.0, sway: 0.12 }),
+    (RICE_IN_LEAF, Habit { name: "rice", per_m2: 6.0, scale: [0.65, 1.0], reach_m: 32.0, sway: 0.16 }),
+    (RICE_IN_EAR, Habit { name: "ripe rice", per_m2: 6.0, scale: [0.8, 1.1], reach_m: 32.0, sway: 0.12 }),
 ];
 
 /// Metres uphill of a place where a cliff may stand from which stones fell.

@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 use super::cover::KINDS;
 use super::grass::BLADE_WHITE;
 use super::patch::{Patch, SIDE_M, plan};
-use crate::math::lerp_array;
+use crate::math::{lerp, lerp_array};
 use crate::model::{
     DensityMap, GroundPlants, Image8, Material, Mesh, Part, PartKind, Plant, PlantKind, StartView, ground_m,
 };
@@ -19,6 +19,12 @@ const FREE_M: f32 = 0.8;
 const FINE: f32 = 0.35;
 /// Triangles of all of them, for the same reason.
 pub(super) const MAX_TRIANGLES: usize = 36_000;
+
+/// Leaves let light through, which glTF's core cannot say, and stand in each other's shade, so that green tufts would be nearly
+/// black: they are lighter by this factor, petals less.
+const THROUGH: f32 = 1.25;
+/// Albedo of what is as light as it is.
+const PALE: f32 = 0.5;
 
 /// A plant near the eye.
 struct Standing<'a> {
@@ -39,7 +45,7 @@ pub(super) fn stand(plants: &GroundPlants<Image8>, patch: &Patch<'_>, view: &Sta
     for standing in near {
         let Some(rest) = left.checked_sub(standing.triangles.len()) else { return };
         left = rest;
-        add(mesh, &standing, patch);
+        add(mesh, &standing, patch, view.position_m);
     }
 }
 
@@ -75,7 +81,13 @@ fn around<'a>(
     cells.filter_map(|cell| kind.in_cell(cell, density)).filter_map(standing).collect()
 }
 
-fn add(mesh: &mut Mesh, Standing { kind, plant, triangles }: &Standing<'_>, patch: &Patch<'_>) {
+/// Factor on the albedo of a leaf.
+fn through(albedo: [f32; 3]) -> f32 {
+    let palest = albedo.into_iter().fold(0.0, f32::max);
+    lerp(THROUGH, 1.0, (palest / PALE).min(1.0))
+}
+
+fn add(mesh: &mut Mesh, Standing { kind, plant, triangles }: &Standing<'_>, patch: &Patch<'_>, eye: Vec3) {
     let shape = &kind.shape;
     let (sin, cos) = libm::sincosf(plant.turn_rad);
     let turn = |v: [f32; 3]| Vec3::new(cos * v[0] - sin * v[2], v[1], sin * v[0] + cos * v[2]);
@@ -91,9 +103,31 @@ fn add(mesh: &mut Mesh, Standing { kind, plant, triangles }: &Standing<'_>, patc
         let height_m = ground_m(patch.height_m(place), middle_m, place.distance(middle));
         mesh.positions.push([place.x, height_m + offset.y, place.y]);
         mesh.normals.push(turn(normal).to_array());
-        let [r, g, b] =
-            lerp_array(root, tip, tint).map(|c| (c / BLADE_WHITE * 255.0 + 0.5).clamp(0.0, 255.0) as u8);
+        let albedo = lerp_array(root, tip, tint);
+        let light = if kind.sway > 0.0 { through(albedo) } else { 1.0 };
+        let [r, g, b] = albedo.map(|c| (light * c / BLADE_WHITE * 255.0 + 0.5).clamp(0.0, 255.0) as u8);
         mesh.colors.push([r, g, b, 255]);
     }
-    mesh.parts[1].triangles.extend(triangles.iter().map(|corners| corners.map(|v| v + base)));
+    for corners in *triangles {
+        let corners = corners.map(|v| v + base);
+        let seen = if kind.sway > 0.0 { turned_to(eye, corners, mesh) } else { corners };
+        mesh.parts[1].triangles.push(seen);
+    }
+}
+
+/// A leaf with its front towards the eye, and its normals on that side, too: renderers turn the normals of what is seen from
+/// behind, and a blade that is lit as if it faced upwards would then be lit from below. Leaves share no corners.
+fn turned_to(eye: Vec3, [a, b, c]: [u32; 3], mesh: &mut Mesh) -> [u32; 3] {
+    let [at_a, at_b, at_c] = [a, b, c].map(|v| Vec3::from_array(mesh.positions[v as usize]));
+    let across = (at_b - at_a).cross(at_c - at_a).normalize_or(Vec3::Y);
+    let is_seen = across.dot(eye - at_a) >= 0.0;
+    let front = if is_seen { across } else { -across };
+    for v in [a, b, c] {
+        let normal = &mut mesh.normals[v as usize];
+        let lit = Vec3::from_array(*normal);
+        if lit.dot(front) < 0.0 {
+            *normal = lit.reflect(front).to_array();
+        }
+    }
+    if is_seen { [a, b, c] } else { [a, c, b] }
 }

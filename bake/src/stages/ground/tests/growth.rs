@@ -107,11 +107,33 @@ fn the_foreground_has_no_more_plants_than_a_file_can_bear() {
 }
 
 #[test]
+fn leaves_of_the_foreground_are_lit_on_the_side_that_is_seen_first() {
+    let mut leafy = MAPS.plants.clone();
+    leafy.maps.iter_mut().for_each(|map| map.data.fill(255));
+    leafy.kinds.retain(|kind| kind.sway > 0.0);
+    let (east_m, south_m) = (10.0, -35.0);
+    let (_, made) = cut_with(&leafy, east_m, south_m);
+    let eye = glam::Vec3::new(east_m, LAND.field.height_m(east_m, south_m) + 1.6, south_m);
+    let leaves = &made.grass.parts[1].triangles;
+    assert!(leaves.len() > 1000, "{}", leaves.len());
+    for leaf in leaves {
+        let of = |values: &[[f32; 3]]| leaf.map(|v| glam::Vec3::from_array(values[v as usize]));
+        let ([a, b, c], normals) = (of(&made.grass.positions), of(&made.grass.normals));
+        let front = (b - a).cross(c - a).normalize_or_zero();
+        assert!(front.dot(eye - a) > -1e-3, "one sees the back of {a} {b} {c}");
+        assert!(normals.iter().all(|normal| normal.dot(front) > -0.05), "{a} {b} {c} is lit from behind");
+    }
+}
+
+#[test]
 fn few_enough_stand_within_reach_to_draw_them_each_frame() {
-    let kinds = plants::all_kinds(&PARAMS, &LAND);
-    let most = |kind: &PlantKind| kind.per_m2 * std::f32::consts::PI * kind.reach_m * kind.reach_m;
-    assert!(kinds.len() == 16 && kinds.iter().all(|kind| most(kind) < 20_000.0));
-    assert!(kinds.iter().all(|kind| kind.shape.triangles.len() <= 300 && kind.shape.coarse <= 100));
+    let mut farmed = LAND.clone();
+    farmed.paddies = Some(vec![1.0; LAND.flow.len()]);
+    for kinds in [&LAND, &farmed].map(|land| plants::all_kinds(&PARAMS, land)) {
+        let most = |kind: &PlantKind| kind.per_m2 * std::f32::consts::PI * kind.reach_m * kind.reach_m;
+        assert!(kinds.len() == 16 && kinds.iter().all(|kind| most(kind) < 20_000.0));
+        assert!(kinds.iter().all(|kind| kind.shape.triangles.len() <= 300 && kind.shape.coarse <= 100));
+    }
 }
 
 #[test]
