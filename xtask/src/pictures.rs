@@ -2,27 +2,30 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result};
 
 use crate::setup;
 use crate::tools::{files, fresh, program, python, release, root, run as run_program, script};
 
 const SIZE: &str = "640x400";
 
-/// Bakes in release, renders each scene, and puts the four together.
+/// Bakes in release, exports each for Blender, renders it as the export's script sets it up, and puts the four together.
 pub fn run(samples: u32) -> Result<()> {
     setup::blender()?;
     let folder = root().join("target/interop/pictures");
     let world = fresh(folder.join("world"))?;
     run_program(program(release("genescape-bake", "bake")?).arg("--world").arg(&world))?;
-    let scenes = files(&world.join("baked"), &["scene.gltf"])?;
-    ensure!(scenes.len() >= 4, "the bake made {} scenes instead of four", scenes.len());
     let mut pictures: Vec<PathBuf> = Vec::new();
-    for (i, scene) in scenes.iter().take(4).enumerate() {
-        let picture = folder.join(format!("{i}.png"));
+    for landscape in ["1", "2", "3", "4"] {
+        let (exported, picture) = (fresh(folder.join(landscape))?, folder.join(format!("{landscape}.png")));
+        let mut export = program(release("genescape-bake", "bake")?);
+        export.args(["export", landscape]).arg(&exported).args(["--for", "blender", "--world"]).arg(&world);
+        run_program(&mut export)?;
+        let scripts = files(&exported, &["py"])?;
+        let set_up = scripts.first().context("an export for Blender has a script")?;
         let samples = samples.to_string();
         let mut render = program(python());
-        render.arg(script("blender_render.py")).arg(scene).arg(&picture).args([SIZE, &samples]);
+        render.arg(script("blender_render.py")).arg(set_up).arg(&picture).args([SIZE, &samples]);
         run_program(&mut render)?;
         pictures.push(picture);
     }
