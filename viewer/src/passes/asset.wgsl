@@ -182,6 +182,9 @@ fn bumped(in: Out, normal: vec3f, uv: vec2f) -> vec3f {
     return normalize(aside + normal * bump.z);
 }
 
+// Part of the room's light that arrives at the back of a leaf among others.
+const THROUGH_OTHERS: f32 = 0.35;
+
 fn shade(in: Out, front: bool) -> vec4f {
     let to_eye = normalize(view.eye - in.world);
     let flat_normal = unit(cross(dpdx(in.world), dpdy(in.world)));
@@ -220,7 +223,10 @@ fn shade(in: Out, front: bool) -> vec4f {
     let mirrored = (point.mirror * mirror.x + point.grazing * mirror.y) * again;
     // Rough mirrors hardly see what is far from their normal: no lobe is wider than that of a wall.
     let seen = room(reflect(-to_eye, normal), 0.5 / (a * a) + 1.6);
-    let diffuse = point.albedo * room(normal, WALL) + point.through * room(-normal, WALL);
+    // What is cut out is one of many leaves, and light from behind has come through others: with all of it they would be lit alike from
+    // all sides, and a crown would be flat.
+    let behind = select(1.0, THROUGH_OTHERS, surface.alpha_cutoff > 0.0);
+    let diffuse = point.albedo * room(normal, WALL) + point.through * (behind * room(-normal, WALL));
     var radiance = (diffuse * (1.0 - mirrored) + mirrored * seen) * open * studio.room;
     radiance += sunlight(point, studio.lights[0]) + sunlight(point, studio.lights[1]);
     radiance += surface.emissive * select(glow, vec3f(0.0), tinted);
