@@ -14,11 +14,12 @@ pub fn run(samples: u32) -> Result<()> {
     setup::blender()?;
     let folder = root().join("target/interop/pictures");
     let world = fresh(folder.join("world"))?;
-    run_program(program(release("genescape-bake", "bake")?).arg("--world").arg(&world))?;
+    let bake = release("genescape-bake", "bake")?;
+    run_program(program(&bake).arg("--world").arg(&world))?;
     let mut pictures: Vec<PathBuf> = Vec::new();
     for landscape in ["1", "2", "3", "4"] {
         let (exported, picture) = (fresh(folder.join(landscape))?, folder.join(format!("{landscape}.png")));
-        let mut export = program(release("genescape-bake", "bake")?);
+        let mut export = program(&bake);
         export.args(["export", landscape]).arg(&exported).args(["--for", "blender", "--world"]).arg(&world);
         run_program(&mut export)?;
         let scripts = files(&exported, &["py"])?;

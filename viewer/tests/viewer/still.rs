@@ -80,6 +80,7 @@ fn a_still_picture_comes_nearer_to_one_of_many_more_pixels_with_each_that_is_add
     let camera = camera(scene.ground.field.height_m(0.0, 40.0));
     // Levels of detail and blades depend on pixels.
     let options = Options { grass: false, tree_error_px: 0.0, terrain_error_px: 0.0, ..Options::default() };
+    // The truth has finer mip levels, so that there always is some error.
     for (samples, left) in [(1, 0.5), (4, 0.85)] {
         let studio = Headless::open(&Shaders::builtin(), samples).expect("a Vulkan driver");
         let buffers = made_up::upload(&studio, &scene);

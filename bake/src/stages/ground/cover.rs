@@ -99,9 +99,9 @@ pub(super) const RICE: [Rgb; 5] = [
 ];
 /// How far rice has come when its field is drained, and the part of a flooded field where none stands.
 const FLOODED_TILL: f32 = 0.36;
-/// From when on it has ears.
-const IN_EAR: f32 = 0.7;
 const FLOODED_MUD: f32 = 0.5;
+/// From when on rice has ears.
+const IN_EAR: f32 = 0.7;
 /// Trodden earth along the fields' edges.
 const PATH: Rgb = [0.150, 0.125, 0.068];
 /// Part of the light from a meadow in full bloom that comes from petals, most of which stand beyond where they are drawn.
@@ -425,12 +425,16 @@ impl Painter {
         if rice <= 0.5 || self.ripe(t) > FLOODED_TILL { 0.0 } else { step(0.66, 0.86, rice) }
     }
 
-    /// How densely rice stands, and whether it bends under its ears: young rice stands apart.
+    /// How densely rice stands in leaf and in ear, of which a field has one: young rice stands apart.
     #[inline]
-    pub fn rice(&self, t: &Traits, n: &Noise) -> (f32, bool) {
-        let (part, ripe) = (rice(t), self.ripe(t));
-        let inside = if part > 0.5 { planted(part, n) } else { 0.0 };
-        (inside * step(0.0, FLOODED_TILL, ripe + 0.2), ripe > IN_EAR)
+    pub fn stands_of_rice(&self, t: &Traits, n: &Noise) -> [f32; 2] {
+        let part = rice(t);
+        if part <= 0.5 {
+            return [0.0; 2];
+        }
+        let ripe = self.ripe(t);
+        let density = planted(part, n) * step(0.0, FLOODED_TILL, ripe + 0.2);
+        if ripe > IN_EAR { [0.0, density] } else { [density, 0.0] }
     }
 
     /// The colour of a place so much of which is rice. Paths lead along fields.

@@ -259,9 +259,7 @@ impl Painter {
         let weeded = 1.0 - t.farmed;
         growth.iter_mut().for_each(|density| *density *= weeded);
         if self.is_farmed {
-            let (density, is_in_ear) = self.rice(t, n);
-            growth[RICE_IN_LEAF] = if is_in_ear { 0.0 } else { density };
-            growth[RICE_IN_EAR] = if is_in_ear { density } else { 0.0 };
+            [growth[RICE_IN_LEAF], growth[RICE_IN_EAR]] = self.stands_of_rice(t, n);
         }
         growth
     }
