@@ -19,6 +19,17 @@ def start(empty=True):
     return bpy, out
 
 
+def render(bpy, path, width, height, samples):
+    """Renders through the active camera with Cycles, on the processor."""
+    scene = bpy.context.scene
+    scene.render.engine, scene.cycles.device = "CYCLES", "CPU"
+    scene.cycles.samples, scene.cycles.use_denoising = samples, samples > 4
+    scene.render.resolution_x, scene.render.resolution_y = width, height
+    scene.render.resolution_percentage = 100
+    scene.render.image_settings.file_format, scene.render.filepath = "PNG", path
+    bpy.ops.render.render(write_still=True)
+
+
 def read_json(path):
     """The JSON of a .gltf or .glb."""
     data = open(path, "rb").read()

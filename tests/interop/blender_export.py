@@ -31,13 +31,7 @@ def check(holds, otherwise):
 
 def picture(path, size=(64, 40), samples=4):
     """Renders through the active camera with Cycles; mean luminance as shown, 0 to 1, and the part that is white."""
-    scene = bpy.context.scene
-    scene.render.engine, scene.cycles.device = "CYCLES", "CPU"
-    scene.cycles.samples, scene.cycles.use_denoising = samples, samples > 4
-    scene.render.resolution_x, scene.render.resolution_y = size
-    scene.render.resolution_percentage = 100
-    scene.render.image_settings.file_format, scene.render.filepath = "PNG", path
-    bpy.ops.render.render(write_still=True)
+    blender_common.render(bpy, path, *size, samples)
     image = bpy.data.images.load(path)
     pixels = np.empty(size[0] * size[1] * 4, np.float32)
     image.pixels.foreach_get(pixels)

@@ -14,14 +14,7 @@ width, height = map(int, (sys.argv[3] if len(sys.argv) > 3 else "640x400").split
 samples = int(sys.argv[4]) if len(sys.argv) > 4 else 16
 bpy, out = blender_common.start()
 runpy.run_path(script, run_name="__main__")
-
-scene = bpy.context.scene
-scene.render.engine, scene.cycles.device = "CYCLES", "CPU"
-scene.cycles.samples, scene.cycles.use_denoising = samples, True
-scene.render.resolution_x, scene.render.resolution_y = width, height
-scene.render.resolution_percentage = 100
-scene.render.image_settings.file_format, scene.render.filepath = "PNG", picture
-bpy.ops.render.render(write_still=True)
+blender_common.render(bpy, picture, width, height, samples)
 out.write(f"{picture}\n")
 out.flush()
 os._exit(0 if os.path.exists(picture) else 1)
