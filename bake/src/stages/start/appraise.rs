@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::panorama::{Kind, Seen};
+use super::panorama::{Kind, Seen, Surroundings};
 use super::picture::{HALF_HEIGHT, Picture};
 use crate::math::{lerp, ramp};
 
@@ -19,6 +19,8 @@ pub enum Want {
     Open,
     /// Far land, and several distances before it.
     Depth,
+    /// Of high land, its slopes at a distance: it is by them that a person tells lands from each other.
+    Relief,
     /// Trees between 10 m and 60 m; none in the face, and not nothing but trees.
     Trees,
     /// Water in sight where there is much of it, but not at the feet and not everywhere.
@@ -32,10 +34,11 @@ pub enum Want {
 }
 
 impl Want {
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Footing,
         Self::Open,
         Self::Depth,
+        Self::Relief,
         Self::Trees,
         Self::Water,
         Self::Light,
@@ -49,6 +52,7 @@ impl Want {
             Self::Footing => "nowhere dry and level to stand",
             Self::Open => "a wall before the eyes",
             Self::Depth => "no depth",
+            Self::Relief => "high land out of sight",
             Self::Trees => "no trees at a good distance",
             Self::Water => "water at the feet, nothing but water, or none of it in sight where there is much",
             Self::Light => "no light on the ground, or the sun in the eyes",
@@ -83,14 +87,20 @@ impl Appraisal {
     }
 }
 
-/// Appraises a picture; `footing`, `light` and how much of the land is under water are known from elsewhere.
-pub(super) fn appraise(picture: &Picture<'_>, footing: f32, light: f32, wet: f32) -> Appraisal {
+/// Appraises a picture; `footing` and `light` are known from elsewhere.
+pub(super) fn appraise(
+    picture: &Picture<'_>,
+    scene: &Surroundings<'_>,
+    footing: f32,
+    light: f32,
+) -> Appraisal {
     let terms = [
         footing,
         picture.open(),
         picture.depth(),
+        picture.relief(scene.relief),
         picture.trees(),
-        picture.water(wet),
+        picture.water(scene.wet),
         light,
         picture.horizon(),
         picture.green(),
@@ -115,6 +125,12 @@ impl Picture<'_> {
         0.2 + 0.4 * far + 0.4 * ramp(0.8, 3.0, bands)
     }
 
+    /// The more relief the land has, the more is missed where no far slopes are seen.
+    fn relief(&self, relief: f32) -> f32 {
+        let slopes = self.share_between(90.0..1e4, |kind| matches!(kind, Kind::Ground | Kind::Snow));
+        lerp(lerp(1.0, 0.3, relief), 1.0, ramp(0.0, 0.16, slopes))
+    }
+
     fn trees(&self) -> f32 {
         let between = |low_m: f32, high_m: f32| self.share_between(low_m..high_m, |kind| kind == Kind::Tree);
         let (near, good, far) = (between(0.0, 10.0), between(10.0, 60.0), between(60.0, 1e4));
@@ -134,7 +150,7 @@ impl Picture<'_> {
     fn water(&self, wet: f32) -> f32 {
         let share = self.share(|kind| kind == Kind::Water);
         let at_feet = self.share_between(0.0..6.0, |kind| kind == Kind::Water);
-        let none = lerp(0.85, 0.35, ramp(0.05, 0.4, wet));
+        let none = lerp(0.85, 0.25, ramp(0.05, 0.35, wet));
         let some = lerp(none, 1.0, ramp(0.0, 0.05, share));
         some * (0.4 + 0.6 * ramp(0.45, 0.3, share)) * (0.4 + 0.6 * ramp(0.1, 0.0, at_feet))
     }

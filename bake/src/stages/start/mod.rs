@@ -58,7 +58,7 @@ pub fn first_look(
     footprints: &[TreeFootprint],
     light: &SkyLight,
 ) -> FirstLook {
-    let (scene, sun) = (Surroundings::new(land, trees, footprints), Sun::of(light));
+    let (scene, sun) = (Surroundings::new(land, trees, footprints, light), Sun::of(light));
     let all: Vec<Lookout> = Lookout::all().collect();
     let at_place = |lookouts: &[Lookout]| at_place(&scene, &sun, lookouts, 0.0);
     let appraisals: Vec<Appraisal> = all.par_chunks(Lookout::HEADINGS).flat_map_iter(at_place).collect();
@@ -79,7 +79,7 @@ pub fn looks(
     one_in: usize,
     least: f32,
 ) -> Vec<Appraisal> {
-    let (scene, sun) = (Surroundings::new(land, trees, footprints), Sun::of(light));
+    let (scene, sun) = (Surroundings::new(land, trees, footprints, light), Sun::of(light));
     let all: Vec<Lookout> = Lookout::all().collect();
     let places = all.par_chunks(Lookout::HEADINGS).step_by(one_in.max(1));
     places.flat_map_iter(|lookouts| at_place(&scene, &sun, lookouts, least)).collect()
@@ -94,7 +94,7 @@ pub fn any_good_look(
     light: &SkyLight,
     enough: f32,
 ) -> Appraisal {
-    let (scene, sun) = (Surroundings::new(land, trees, footprints), Sun::of(light));
+    let (scene, sun) = (Surroundings::new(land, trees, footprints, light), Sun::of(light));
     let all: Vec<Lookout> = Lookout::all().collect();
     let places: Vec<&[Lookout]> = all.chunks(Lookout::HEADINGS).collect();
     let scattered: Vec<usize> = (0..places.len()).map(|k| k * SCATTER % places.len()).collect();
@@ -150,7 +150,7 @@ fn at_place(scene: &Surroundings<'_>, sun: &Sun, lookouts: &[Lookout], least: f3
     let trees = scene.trees_around(place, SHADES_M);
     let look = |&lookout: &Lookout| {
         let light = sun.suits(scene, &trees, place, lookout.ahead());
-        appraise(&Picture::new(&panorama, lookout), footing, light, scene.wet)
+        appraise(&Picture::new(&panorama, lookout), scene, footing, light)
     };
     lookouts.iter().map(look).collect()
 }

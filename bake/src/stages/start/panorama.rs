@@ -5,8 +5,9 @@ use core::f32::consts::TAU;
 
 use glam::{Vec2, Vec3};
 
+use crate::math::ramp;
 use crate::model::TreeFootprint;
-use crate::model::{Instance, Landform, StartView};
+use crate::model::{Instance, Landform, SkyLight, StartView};
 
 /// Columns around, the first towards north (−z), clockwise.
 pub(super) const COLUMNS: usize = 96;
@@ -23,6 +24,10 @@ const GROWTH: f32 = 1.09;
 const FAR_M: f32 = 3000.0;
 /// Metres along x and z from the middle to the farthest water that one would miss.
 const AROUND_M: f32 = 1024.0;
+/// Metres between the low and the high ground of which nobody misses the slopes, and of which everybody does.
+const HILLS_M: [f32; 2] = [15.0, 90.0];
+/// Metres to slopes that show their whole shape.
+const SLOPES_M: f32 = 250.0;
 /// Farthest tree that can be told from the ground.
 const FAR_TREE_M: f32 = 250.0;
 /// Farthest stem that is wide enough to count.
@@ -63,6 +68,8 @@ pub(super) struct Surroundings<'a> {
     trees: Vec<Tree>,
     /// Part of what lies within `AROUND_M` that is under water.
     pub wet: f32,
+    /// How much of a land is missed where none of its slopes are in sight, 0 … 1: nothing of level land, or in fog.
+    pub relief: f32,
 }
 
 /// A tree as an ellipsoid on a stem, which counts only where it is near.
@@ -100,9 +107,15 @@ impl Tree {
 }
 
 impl<'a> Surroundings<'a> {
-    pub fn new(land: &'a Landform, trees: &[Instance], footprints: &[TreeFootprint]) -> Self {
+    pub fn new(
+        land: &'a Landform,
+        trees: &[Instance],
+        footprints: &[TreeFootprint],
+        light: &SkyLight,
+    ) -> Self {
         let trees = trees.iter().filter_map(|tree| Tree::of(tree, footprints)).collect();
-        Self { land, trees, wet: wet(land) }
+        let around = Around::of(land);
+        Self { land, trees, wet: around.wet(), relief: around.relief() * clear(light) }
     }
 
     /// The trees whose feet are no farther from a place.
@@ -138,14 +151,42 @@ impl<'a> Surroundings<'a> {
     }
 }
 
-/// Part of the land around the middle that is under water.
-fn wet(land: &Landform) -> f32 {
-    let Some(water_m) = land.water_level_m else { return 0.0 };
-    let apron = &land.apron;
-    let near = |k: &u32| apron.place_m(*k).abs() <= AROUND_M;
-    let lines: Vec<u32> = (0..apron.side).filter(near).collect();
-    let wet = lines.iter().flat_map(|&j| lines.iter().filter(move |&&i| apron.at(i, j) < water_m)).count();
-    wet as f32 / (lines.len() * lines.len()).max(1) as f32
+/// The land within `AROUND_M`.
+struct Around {
+    /// Ascending.
+    heights_m: Vec<f32>,
+    water_m: f32,
+}
+
+impl Around {
+    fn of(land: &Landform) -> Self {
+        let apron = &land.apron;
+        let near = |k: &u32| apron.place_m(*k).abs() <= AROUND_M;
+        let lines: Vec<u32> = (0..apron.side).filter(near).collect();
+        let mut heights_m: Vec<f32> =
+            lines.iter().flat_map(|&j| lines.iter().map(move |&i| apron.at(i, j))).collect();
+        heights_m.sort_unstable_by(f32::total_cmp);
+        Self { heights_m, water_m: land.water_level_m.unwrap_or(f32::MIN) }
+    }
+
+    /// Part that is under water.
+    fn wet(&self) -> f32 {
+        let under = self.heights_m.partition_point(|&height_m| height_m < self.water_m);
+        under as f32 / self.heights_m.len().max(1) as f32
+    }
+
+    /// 0 of level land, 1 of mountains: by the metres from what a twentieth is lower than to what a twentieth is higher
+    /// than. Water is as low as land gets.
+    fn relief(&self) -> f32 {
+        let Some(last) = self.heights_m.len().checked_sub(1) else { return 0.0 };
+        let [low_m, high_m] = [last / 20, last - last / 20].map(|k| self.heights_m[k].max(self.water_m));
+        ramp(HILLS_M[0], HILLS_M[1], high_m - low_m)
+    }
+}
+
+/// Part of the light from slopes at a good distance that reaches the eye.
+fn clear(light: &SkyLight) -> f32 {
+    libm::expf(-light.haze_extinction_per_m * SLOPES_M)
 }
 
 /// What is seen around a place.

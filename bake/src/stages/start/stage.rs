@@ -30,7 +30,7 @@ pub struct StartFiles {
 
 impl Stage for StartStage {
     const NAME: &'static str = "start";
-    const VERSION: u32 = 13;
+    const VERSION: u32 = 14;
     type Output = StartFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<StartFiles, StageError> {
