@@ -140,13 +140,26 @@ fn picture_at(in: Out) -> vec4f {
     return vec4f(in.color, 1.0) * material.factor * textureSampleBias(color_map, clamped, in.uv, view.mip_bias);
 }
 
+// Metres from the eye within which no leaf is drawn, and beyond which all are: who walks under branches parts them.
+const PARTED_M = vec2f(0.5, 1.3);
+
+// Those samples of a leaf's pixel that are left of it.
+fn left_by_the_eye(in: Out) -> u32 {
+    let away_m = distance(in.world, view.eye);
+    if (away_m > PARTED_M.y) {
+        return 15u;
+    }
+    let noise = scattered_anew(floor(in.clip.xy) + 977.0 * in.chance);
+    return samples_of(smoothstep(PARTED_M.x, PARTED_M.y, away_m), noise);
+}
+
 fn is_drawn(in: Out, samples: u32) -> bool {
     return samples != 0u && is_on_picture(in.uv) && is_shown(in.clip.xy, in.shown) && !is_beyond(in.color);
 }
 
 fn card_at(in: Out) -> Card {
     let picture = picture_at(in);
-    let samples = cut_out(picture.a, material.alpha_cutoff);
+    let samples = cut_out(picture.a, material.alpha_cutoff) & left_by_the_eye(in);
     if (!is_drawn(in, samples)) {
         discard;
     }
@@ -164,7 +177,7 @@ fn leaf(in: Out) -> Pixel {
 fn twig(in: Out) -> Pixel {
     let picture = picture_at(in);
     // By another number for each card that may lie there.
-    let samples = samples_of(picture.a, scattered_anew(floor(in.clip.xy) + 977.0 * in.chance));
+    let samples = samples_of(picture.a, scattered_anew(floor(in.clip.xy) + 977.0 * in.chance)) & left_by_the_eye(in);
     if (!is_drawn(in, samples)) {
         discard;
     }

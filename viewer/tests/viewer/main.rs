@@ -16,6 +16,7 @@ mod lod_twin;
 mod made_up;
 mod manual;
 mod mistakes;
+mod parted;
 mod program;
 mod shade;
 mod shaders;

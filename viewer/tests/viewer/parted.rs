@@ -1,0 +1,58 @@
+//! Who walks under branches parts them: leaves before the very eye are not drawn.
+
+use genescape_viewer::camera::Camera;
+use genescape_viewer::options::{FrameInput, Options};
+use genescape_viewer::scene::{Range, Template, TreeVertex, Trees};
+use glam::Vec3;
+use image::RgbaImage;
+
+use crate::made_up;
+
+/// A tree of one upright leaf, wide and high enough to fill a picture taken from up to 3 m south of it.
+fn one_leaf(is_leaf: bool) -> Template {
+    let corner = |[x, y]: [f32; 2]| TreeVertex {
+        position_m: [x, y, 0.0],
+        color: [200, 60, 60, 255],
+        ..TreeVertex::default()
+    };
+    let mut tree = made_up::template(if is_leaf { "a leaf" } else { "a board" }, &[0.1]);
+    tree.vertices = [[-9.0, -9.0], [9.0, -9.0], [9.0, 9.0], [-9.0, 9.0]].map(corner).to_vec();
+    tree.indices = vec![0, 1, 2, 0, 2, 3];
+    tree.levels[0].ranges[0] = Range { first: 0, count: 6 };
+    tree.materials[0].alpha_cutoff = is_leaf.then_some(0.5);
+    tree
+}
+
+/// Part of a picture that such a tree changes, seen from so far.
+fn seen(is_leaf: bool, away_m: f32) -> f64 {
+    let studio = made_up::studio();
+    let draw = |trees: Trees| -> RgbaImage {
+        let scene = made_up::scene(made_up::field(65, 2.0, 0.0, 0.0), [128; 4], [0.5, 0.7, 1.0], trees);
+        let camera = Camera {
+            position_m: Vec3::new(0.0, 3.0, away_m),
+            yaw_rad: 0.0,
+            // At the sky, for its shadow is to be seen on the ground.
+            pitch_rad: 0.5,
+            fov_y_rad: 0.6,
+        };
+        let options = Options { grass: false, ..Options::default() };
+        let frame = FrameInput { options, ..FrameInput::default() };
+        let mut view = studio.view(made_up::upload(&studio, &scene), [96, 64]);
+        studio.shoot(&mut view, &frame, &camera, &camera).expect("a picture")
+    };
+    let instances = [made_up::instance(0, [0.0, 3.0, 0.0], 1.0, 0.0)].into();
+    let with = draw(Trees { templates: vec![one_leaf(is_leaf).into()], instances });
+    let without = draw(Trees { templates: Vec::new(), instances: [].into() });
+    let differing = with.pixels().zip(without.pixels()).filter(|(a, b)| a != b).count();
+    differing as f64 / f64::from(96 * 64)
+}
+
+#[test]
+#[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
+fn a_leaf_before_the_very_eye_is_not_drawn() {
+    assert_eq!(seen(true, 0.3), 0.0);
+    let (some, most) = (seen(true, 0.75), seen(true, 1.0));
+    assert!(0.05 < some && some < most, "{some} {most}");
+    assert!(seen(true, 1.5) > 0.99);
+    assert!(seen(false, 0.3) > 0.99, "wood is");
+}
