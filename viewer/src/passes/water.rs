@@ -31,7 +31,7 @@ impl DrawPass for Water {
         let Some(mirrored) = bound.mirror.as_ref().and_then(BoundMirror::group) else { return 0 };
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(1, mirrored, &[]);
-        pass.draw(0..6, 0..1);
+        pass.draw(0..9 * 6, 0..1);
         1
     }
 }

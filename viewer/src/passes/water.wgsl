@@ -11,19 +11,27 @@ struct Out {
 }
 
 // Pixels by which the land as it is drawn may differ from what it is: so much higher may it stand and not hide the lake, whose
-// edge is where the land itself goes under. On a flat shore a hand's breadth moves the edge by many metres.
+// edge is where the land itself goes under. On a flat shore a hand's breadth moves the edge by many metres. The ring around the
+// field is drawn as it is.
 const LAND_ERROR_PX: f32 = 2.0;
+const HALF_M: f32 = 4096.0;
+// Cells a side: the middle one is the field.
+const CELLS: u32 = 3u;
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> Out {
     // Counter-clockwise from above.
-    let corner = array<vec2f, 6>(
-        vec2f(-1.0, -1.0), vec2f(-1.0, 1.0), vec2f(1.0, 1.0), vec2f(-1.0, -1.0), vec2f(1.0, 1.0), vec2f(1.0, -1.0),
-    )[index];
-    let world = vec3f(corner.x * 4096.0, view.water_level, corner.y * 4096.0);
+    let corner = array<vec2u, 6>(
+        vec2u(0u, 0u), vec2u(0u, 1u), vec2u(1u, 1u), vec2u(0u, 0u), vec2u(1u, 1u), vec2u(1u, 0u),
+    )[index % 6u];
+    let cell = vec2u(index / 6u % CELLS, index / 6u / CELLS);
+    var lines = array<f32, CELLS + 1u>(-HALF_M, -view.field.z, view.field.z, HALF_M);
+    let world = vec3f(lines[cell.x + corner.x], view.water_level, lines[cell.y + corner.y]);
     var clip = view.clip_from_world * vec4f(world, 1.0);
-    // As deep as a surface which that many pixels are higher, in the same place of the picture.
-    clip.z *= 1.0 + clip.w * LAND_ERROR_PX / (view.focal_px * max(abs(view.eye.y - view.water_level), 0.5));
+    if (all(cell == vec2u(1u))) {
+        // As deep as a surface which that many pixels are higher, in the same place of the picture.
+        clip.z *= 1.0 + clip.w * LAND_ERROR_PX / (view.focal_px * max(abs(view.eye.y - view.water_level), 0.5));
+    }
     return Out(clip, world);
 }
 
@@ -55,8 +63,13 @@ fn slope(place: vec2f, pixel_m: f32) -> Slope {
     return sum;
 }
 
+// The mirror's texels whose middles are beyond the far shore show no land, though part of the lake is in them: so many lower is
+// what is mirrored at the very shore.
+const BESIDE_SHORE: f32 = 1.5;
+
 fn mirror_uv(clip: vec4f) -> vec2f {
-    return clip.xy / max(clip.w, 1e-3) * vec2f(0.5, -0.5) + 0.5;
+    let lower = vec2f(0.0, BESIDE_SHORE / f32(textureDimensions(mirror).y));
+    return clip.xy / max(clip.w, 1e-3) * vec2f(0.5, -0.5) + 0.5 + lower;
 }
 
 // Metres along the line of sight, as w counts them, to what is mirrored there; 0 for sky. `near`: what depth is times w.

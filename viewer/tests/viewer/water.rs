@@ -6,7 +6,7 @@ use std::sync::Arc;
 use genescape_viewer::camera::Camera;
 use genescape_viewer::headless::Headless;
 use genescape_viewer::options::{FrameInput, Options};
-use genescape_viewer::scene::{Scene, Trees};
+use genescape_viewer::scene::{Apron, Scene, Trees};
 use glam::Vec3;
 use image::RgbaImage;
 
@@ -80,6 +80,42 @@ fn a_lake_mirrors_land_in_its_colour() {
     let look = |color| mirrored(&shoot(&studio, &lakeside(false, true, color)));
     let (red, green) = (look([150, 40, 40, 255]), look(GREEN));
     assert!(red[0] > red[1] + 20.0 && green[1] > green[0] + 10.0, "{red:?}, {green:?}");
+}
+
+/// A lake that goes on in the ring around the field, where its far shore rises by 5 mm a metre.
+#[test]
+#[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
+fn a_far_flat_shore_is_where_the_ring_comes_out_of_the_lake() {
+    let no_trees = Trees { templates: Vec::new(), instances: [].into() };
+    let bed = made_up::land(129, 1.0, |_, _| -3.0);
+    let mut scene = made_up::scene(bed, GREEN, [0.5, 0.7, 1.0], no_trees);
+    scene.ground.water_level_m = Some(0.0);
+    let height_m = |z: f32| -0.5 - 0.005 * (z + 64.0);
+    let corner = |x: f32, z: f32| [x, height_m(z), z];
+    scene.ground.apron = Arc::new(Apron {
+        positions_m: [[-800.0, -64.0], [800.0, -64.0], [800.0, -900.0], [-800.0, -900.0]]
+            .map(|[x, z]| corner(x, z))
+            .to_vec(),
+        normals: vec![[0.0, 1.0, 0.0]; 4],
+        colors: vec![[200, 20, 20, 255]; 4],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+    });
+    let camera =
+        Camera { position_m: Vec3::new(0.0, 30.0, 40.0), yaw_rad: 0.0, pitch_rad: -0.1, fov_y_rad: 1.0 };
+    let studio = made_up::studio();
+    let frame =
+        FrameInput { options: Options { grass: false, ..Options::default() }, ..FrameInput::default() };
+    let mut view = studio.view(made_up::upload(&studio, &scene), SIZE_PX);
+    let picture = studio.shoot(&mut view, &frame, &camera, &camera).expect("a picture");
+    // Where the land is as high as the lake.
+    let [width, height] = SIZE_PX.map(|side| side as f32);
+    let clip = camera.clip_from_world(width / height) * Vec3::new(0.0, 0.0, -164.0).extend(1.0);
+    let shore = ((0.5 - 0.5 * clip.y / clip.w) * height) as u32;
+    for x in (20..SIZE_PX[0] - 20).step_by(10) {
+        let is_red = |y: u32| picture.get_pixel(x, y)[0] > picture.get_pixel(x, y)[2];
+        assert!((2..8).all(|above| is_red(shore - above)), "land at {x}, above row {shore}");
+        assert!((2..8).all(|below| !is_red(shore + below)), "the lake at {x}, below row {shore}");
+    }
 }
 
 #[test]
