@@ -5,6 +5,8 @@ use std::sync::{Arc, OnceLock};
 
 use genescape_schema::scene::Resource;
 use genescape_world::NamedFiles;
+use gltf::json::validation::Checked;
+use gltf::mesh::Semantic;
 use serde::de::DeserializeOwned;
 
 use super::{LoadError, Result, Store, accessor};
@@ -24,12 +26,15 @@ pub(super) struct Document<'a> {
 impl<'a> Document<'a> {
     /// Parses a file, whose bytes these are.
     pub fn of(path: &Path, bytes: &[u8], store: &'a Store) -> Result<Self> {
-        let parsed = gltf::Gltf::from_slice(bytes)
-            .map_err(|source| LoadError::NoGltf { path: path.to_owned(), source: Box::new(source) })?;
-        let buffers = parsed.document.buffers().map(|_| OnceLock::new()).collect();
+        let no_gltf = |source| LoadError::NoGltf { path: path.to_owned(), source: Box::new(source) };
+        let parsed = gltf::Gltf::from_slice_without_validation(bytes).map_err(no_gltf)?;
+        let json = parsed.document.into_json();
+        check_positions(&json).map_err(|what| LoadError::foreign(path, what))?;
+        let gltf = gltf::Document::from_json(json).map_err(no_gltf)?;
+        let buffers = gltf.buffers().map(|_| OnceLock::new()).collect();
         let embedded = parsed.blob.map(Arc::new);
         let (path, files) = (path.to_owned(), NamedFiles::of(path));
-        let document = Self { path, gltf: parsed.document, store, files, embedded, buffers };
+        let document = Self { path, gltf, store, files, embedded, buffers };
         document.check_images()?;
         Ok(document)
     }
@@ -190,6 +195,16 @@ impl<'a> Document<'a> {
     }
 }
 
+/// The gltf crate panics while it validates positions for which there is no accessor; what is wrong then.
+fn check_positions(root: &gltf::json::Root) -> Result<(), String> {
+    let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let positions = primitives.filter_map(|one| one.attributes.get(&Checked::Valid(Semantic::Positions)));
+    match positions.map(|index| index.value()).find(|&index| index >= root.accessors.len()) {
+        Some(index) => Err(format!("there is no accessor {index}, which a mesh names")),
+        None => Ok(()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::fs;
@@ -267,6 +282,14 @@ mod tests {
             images::png(&document, &Resource::file("huge.png", "image/png")).expect_err("26 GB").to_string()
         });
         assert!(told.contains("huge.png") && told.contains("imit"), "{told}");
+    }
+
+    #[test]
+    fn positions_without_an_accessor_are_refused() {
+        let text = r#"{"asset":{"version":"2.0"},"meshes":[{"primitives":[{"attributes":{"POSITION":7}}]}]}"#;
+        let told = Document::of(Path::new("scene.gltf"), text.as_bytes(), &Store::default()).err();
+        let told = told.map(|error| error.to_string()).unwrap_or_default();
+        assert!(told.contains("no accessor 7"), "{told}");
     }
 
     #[test]
