@@ -16,7 +16,7 @@ pub const TRAITS: [Trait; 9] = [
     Trait { name: "water", spread: 0.30 },
     Trait { name: "ground", spread: 0.50 },
     Trait { name: "ground colour", spread: 0.11 },
-    Trait { name: "ground contrast", spread: 0.039 },
+    Trait { name: "ground contrast", spread: 0.031 },
 ];
 
 /// Samples of the sketch between which heights are compared: 16 m, 64 m and 256 m.

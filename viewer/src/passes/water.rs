@@ -6,6 +6,9 @@ use crate::options::Options;
 
 pub const SHADER: Shader = Shader { name: "water", source: include_str!("water.wgsl"), constants: &[] };
 
+/// Squares that the surface is drawn as: over the field, and around it.
+const CELLS: u32 = 3 * 3;
+
 #[derive(Debug)]
 pub struct Water {
     pipeline: wgpu::RenderPipeline,
@@ -31,7 +34,7 @@ impl DrawPass for Water {
         let Some(mirrored) = bound.mirror.as_ref().and_then(BoundMirror::group) else { return 0 };
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(1, mirrored, &[]);
-        pass.draw(0..9 * 6, 0..1);
+        pass.draw(0..CELLS * 6, 0..1);
         1
     }
 }

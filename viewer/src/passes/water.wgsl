@@ -63,12 +63,12 @@ fn slope(place: vec2f, pixel_m: f32) -> Slope {
     return sum;
 }
 
-// The mirror's texels whose middles are beyond the far shore show no land, though part of the lake is in them: so many lower is
-// what is mirrored at the very shore.
-const BESIDE_SHORE: f32 = 1.5;
+// Texels by which the mirror is read lower: at the far shore a texel may have its middle beyond the lake, where the mirror is
+// empty.
+const LOWER_TEXELS: f32 = 1.5;
 
 fn mirror_uv(clip: vec4f) -> vec2f {
-    let lower = vec2f(0.0, BESIDE_SHORE / f32(textureDimensions(mirror).y));
+    let lower = vec2f(0.0, LOWER_TEXELS / f32(textureDimensions(mirror).y));
     return clip.xy / max(clip.w, 1e-3) * vec2f(0.5, -0.5) + 0.5 + lower;
 }
 
