@@ -140,6 +140,11 @@ fn picture_at(in: Out) -> vec4f {
     return vec4f(in.color, 1.0) * material.factor * textureSampleBias(color_map, clamped, in.uv, view.mip_bias);
 }
 
+// A number in [0, 1) by chance: another for each of the cards that may lie at a pixel.
+fn card_noise(in: Out) -> f32 {
+    return scattered_anew(floor(in.clip.xy) + 977.0 * in.chance);
+}
+
 // Metres from the eye within which no leaf is drawn, and beyond which all are: who walks under branches parts them.
 const PARTED_M = vec2f(0.5, 1.3);
 
@@ -149,8 +154,7 @@ fn left_by_the_eye(in: Out) -> u32 {
     if (away_m > PARTED_M.y) {
         return 15u;
     }
-    let noise = scattered_anew(floor(in.clip.xy) + 977.0 * in.chance);
-    return samples_of(smoothstep(PARTED_M.x, PARTED_M.y, away_m), noise);
+    return samples_of(smoothstep(PARTED_M.x, PARTED_M.y, away_m), card_noise(in));
 }
 
 fn is_drawn(in: Out, samples: u32) -> bool {
@@ -176,8 +180,7 @@ fn leaf(in: Out) -> Pixel {
 @fragment
 fn twig(in: Out) -> Pixel {
     let picture = picture_at(in);
-    // By another number for each card that may lie there.
-    let samples = samples_of(picture.a, scattered_anew(floor(in.clip.xy) + 977.0 * in.chance)) & left_by_the_eye(in);
+    let samples = samples_of(picture.a, card_noise(in)) & left_by_the_eye(in);
     if (!is_drawn(in, samples)) {
         discard;
     }

@@ -4,10 +4,11 @@ use super::shaders::ShaderError;
 use super::{BoundMirror, BoundScene, Compiler, DrawPass, PipelineDesc, Shader};
 use crate::options::Options;
 
-pub const SHADER: Shader = Shader { name: "water", source: include_str!("water.wgsl"), constants: &[] };
+pub const SHADER: Shader =
+    Shader { name: "water", source: include_str!("water.wgsl"), constants: &[("CELLS", CELLS as f64)] };
 
-/// Squares that the surface is drawn as: over the field, and around it.
-const CELLS: u32 = 3 * 3;
+/// The surface is drawn as so many cells a side.
+const CELLS: u32 = 3;
 
 #[derive(Debug)]
 pub struct Water {
@@ -34,7 +35,7 @@ impl DrawPass for Water {
         let Some(mirrored) = bound.mirror.as_ref().and_then(BoundMirror::group) else { return 0 };
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(1, mirrored, &[]);
-        pass.draw(0..CELLS * 6, 0..1);
+        pass.draw(0..CELLS * CELLS * 6, 0..1);
         1
     }
 }

@@ -15,8 +15,8 @@ struct Out {
 // field is drawn as it is.
 const LAND_ERROR_PX: f32 = 2.0;
 const HALF_M: f32 = 4096.0;
-// Cells a side: the middle one is the field.
-const CELLS: u32 = 3u;
+// Cells a side: the middle one is the field, and the others lie around it.
+override CELLS: u32;
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> Out {
@@ -25,7 +25,7 @@ fn vertex(@builtin(vertex_index) index: u32) -> Out {
         vec2u(0u, 0u), vec2u(0u, 1u), vec2u(1u, 1u), vec2u(0u, 0u), vec2u(1u, 1u), vec2u(1u, 0u),
     )[index % 6u];
     let cell = vec2u(index / 6u % CELLS, index / 6u / CELLS);
-    var lines = array<f32, CELLS + 1u>(-HALF_M, -view.field.z, view.field.z, HALF_M);
+    var lines = array<f32, 4>(-HALF_M, -view.field.z, view.field.z, HALF_M);
     let world = vec3f(lines[cell.x + corner.x], view.water_level, lines[cell.y + corner.y]);
     var clip = view.clip_from_world * vec4f(world, 1.0);
     if (all(cell == vec2u(1u))) {

@@ -12,6 +12,7 @@ use genescape_viewer::scene::{
 };
 use genescape_viewer::upload::{SceneBuffers, Uploader};
 use glam::Vec3;
+use image::RgbaImage;
 
 /// A device to draw with.
 pub fn studio() -> Headless {
@@ -64,6 +65,11 @@ pub fn faces(name: &str, color: impl Fn(usize) -> [f32; 3]) -> Vec<HdrImage> {
         HdrImage { name: format!("{name} {face}"), width_px: 1, height_px: 1, pixels }
     };
     (0..6).map(face).collect()
+}
+
+/// Pixels that two pictures do not share.
+pub fn differing(a: &RgbaImage, b: &RgbaImage) -> usize {
+    a.pixels().zip(b.pixels()).filter(|(a, b)| a != b).count()
 }
 
 /// A landscape: land in one colour, evenly lit, under an even sky.

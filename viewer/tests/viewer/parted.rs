@@ -1,12 +1,13 @@
 //! Who walks under branches parts them: leaves before the very eye are not drawn.
 
 use genescape_viewer::camera::Camera;
+use genescape_viewer::headless::Headless;
 use genescape_viewer::options::{FrameInput, Options};
 use genescape_viewer::scene::{Range, Template, TreeVertex, Trees};
 use glam::Vec3;
 use image::RgbaImage;
 
-use crate::made_up;
+use crate::made_up::{self, differing};
 
 /// A tree of one upright leaf, wide and high enough to fill a picture taken from up to 3 m south of it.
 fn one_leaf(is_leaf: bool) -> Template {
@@ -24,8 +25,7 @@ fn one_leaf(is_leaf: bool) -> Template {
 }
 
 /// Part of a picture that such a tree changes, seen from so far.
-fn seen(is_leaf: bool, away_m: f32) -> f64 {
-    let studio = made_up::studio();
+fn seen(studio: &Headless, is_leaf: bool, away_m: f32) -> f64 {
     let draw = |trees: Trees| -> RgbaImage {
         let scene = made_up::scene(made_up::field(65, 2.0, 0.0, 0.0), [128; 4], [0.5, 0.7, 1.0], trees);
         let camera = Camera {
@@ -37,19 +37,20 @@ fn seen(is_leaf: bool, away_m: f32) -> f64 {
         };
         let options = Options { grass: false, ..Options::default() };
         let frame = FrameInput { options, ..FrameInput::default() };
-        let mut view = studio.view(made_up::upload(&studio, &scene), [96, 64]);
+        let mut view = studio.view(made_up::upload(studio, &scene), [96, 64]);
         studio.shoot(&mut view, &frame, &camera, &camera).expect("a picture")
     };
     let instances = [made_up::instance(0, [0.0, 3.0, 0.0], 1.0, 0.0)].into();
     let with = draw(Trees { templates: vec![one_leaf(is_leaf).into()], instances });
     let without = draw(Trees { templates: Vec::new(), instances: [].into() });
-    let differing = with.pixels().zip(without.pixels()).filter(|(a, b)| a != b).count();
-    differing as f64 / f64::from(96 * 64)
+    differing(&with, &without) as f64 / f64::from(96 * 64)
 }
 
 #[test]
 #[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
 fn a_leaf_before_the_very_eye_is_not_drawn() {
+    let studio = made_up::studio();
+    let seen = |is_leaf, away_m| seen(&studio, is_leaf, away_m);
     assert_eq!(seen(true, 0.3), 0.0);
     let (some, most) = (seen(true, 0.75), seen(true, 1.0));
     assert!(0.05 < some && some < most, "{some} {most}");

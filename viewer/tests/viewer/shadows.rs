@@ -13,7 +13,7 @@ use glam::{Vec2, Vec3};
 use image::RgbaImage;
 
 use crate::golden::landscape;
-use crate::made_up;
+use crate::made_up::{self, differing};
 
 /// From above, with these shadows.
 fn picture(studio: &Headless, scene: &Scene, draw: impl Fn(&ShadowBake<'_>)) -> RgbaImage {
@@ -23,11 +23,6 @@ fn picture(studio: &Headless, scene: &Scene, draw: impl Fn(&ShadowBake<'_>)) -> 
         Camera { position_m: Vec3::new(0.0, 90.0, 60.0), yaw_rad: 0.0, pitch_rad: -1.0, fov_y_rad: 1.0 };
     let mut view = studio.view(Arc::new(buffers), [320, 200]);
     studio.shoot(&mut view, &FrameInput::default(), &camera, &camera).expect("a picture")
-}
-
-/// Pixels that two pictures do not share.
-fn differing(a: &RgbaImage, b: &RgbaImage) -> usize {
-    a.pixels().zip(b.pixels()).filter(|(a, b)| a != b).count()
 }
 
 fn finish(bake: &ShadowBake<'_>) {

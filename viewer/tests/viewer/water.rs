@@ -44,18 +44,27 @@ fn camera() -> Camera {
 }
 
 fn shoot(studio: &Headless, scene: &Scene) -> RgbaImage {
+    shoot_from(studio, scene, &camera())
+}
+
+fn shoot_from(studio: &Headless, scene: &Scene, camera: &Camera) -> RgbaImage {
     let options = Options { grass: false, ..Options::default() };
     let frame = FrameInput { options, ..FrameInput::default() };
     let mut view = studio.view(made_up::upload(studio, scene), SIZE_PX);
-    studio.shoot(&mut view, &frame, &camera(), &camera()).expect("a picture")
+    studio.shoot(&mut view, &frame, camera, camera).expect("a picture")
+}
+
+/// Where a picture shows a place.
+fn pixel_of(camera: &Camera, place_m: Vec3) -> [u32; 2] {
+    let [width, height] = SIZE_PX.map(|side| side as f32);
+    let clip = camera.clip_from_world(width / height) * place_m.extend(1.0);
+    let [x, y] = [0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w];
+    [(x * width) as u32, (y * height) as u32]
 }
 
 /// Mean colour where an even lake shows the middle of the tree.
 fn mirrored(picture: &RgbaImage) -> [f32; 3] {
-    let [width, height] = SIZE_PX.map(|side| side as f32);
-    let clip = camera().clip_from_world(width / height) * Vec3::new(0.0, -MIDDLE_M, TREE_M[2]).extend(1.0);
-    let [x, y] = [0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w];
-    let (x, y) = ((x * width) as u32, (y * height) as u32);
+    let [x, y] = pixel_of(&camera(), Vec3::new(0.0, -MIDDLE_M, TREE_M[2]));
     let pixels = (x - 2..=x + 2).flat_map(|x| (y - 1..=y + 1).map(move |y| picture.get_pixel(x, y)));
     let sum = pixels.fold([0.0; 3], |sum, pixel| [0, 1, 2].map(|n| sum[n] + f32::from(pixel[n])));
     sum.map(|channel| channel / 15.0)
@@ -102,15 +111,9 @@ fn a_far_flat_shore_is_where_the_ring_comes_out_of_the_lake() {
     });
     let camera =
         Camera { position_m: Vec3::new(0.0, 30.0, 40.0), yaw_rad: 0.0, pitch_rad: -0.1, fov_y_rad: 1.0 };
-    let studio = made_up::studio();
-    let frame =
-        FrameInput { options: Options { grass: false, ..Options::default() }, ..FrameInput::default() };
-    let mut view = studio.view(made_up::upload(&studio, &scene), SIZE_PX);
-    let picture = studio.shoot(&mut view, &frame, &camera, &camera).expect("a picture");
+    let picture = shoot_from(&made_up::studio(), &scene, &camera);
     // Where the land is as high as the lake.
-    let [width, height] = SIZE_PX.map(|side| side as f32);
-    let clip = camera.clip_from_world(width / height) * Vec3::new(0.0, 0.0, -164.0).extend(1.0);
-    let shore = ((0.5 - 0.5 * clip.y / clip.w) * height) as u32;
+    let [_, shore] = pixel_of(&camera, Vec3::new(0.0, 0.0, -164.0));
     for x in (20..SIZE_PX[0] - 20).step_by(10) {
         let is_red = |y: u32| picture.get_pixel(x, y)[0] > picture.get_pixel(x, y)[2];
         assert!((2..8).all(|above| is_red(shore - above)), "land at {x}, above row {shore}");
