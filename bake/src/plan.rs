@@ -5,6 +5,7 @@
 //!                             │                        ground textures (shared by scenes)
 //!  tree genes ─┬─► tree textures ─► tree 0…4 (template, levels, progressive mesh, file)
 //!              └──────────────┬─► placement ◄── landform, trees
+//!  placement, landform, terrain, trees ─► far trees
 //!  landform, placement, trees ─► ground maps (with what grows and lies on the ground)
 //!  landform, trees, placement, sky light ─► start ─► foreground ◄── terrain, ground maps
 //!  sky genes ─► sky light ─┬─► sky pictures
@@ -27,7 +28,7 @@ use crate::stages::ground::{
 };
 use crate::stages::land::LandStage;
 use crate::stages::light::LightMapStage;
-use crate::stages::placement::{PlacementFiles, PlacementStage};
+use crate::stages::placement::{FarTreesStage, PlacementFiles, PlacementStage};
 use crate::stages::scene::SceneStage;
 use crate::stages::sky::{SkyImagesStage, SkyLightStage, SkyParams};
 use crate::stages::start::{StartFiles, StartStage};
@@ -154,6 +155,14 @@ fn add_scene(
         graph.add(scene, StartStage { landform, footprints: footprints.clone(), trees: standing, light });
     let view = graph.part(start, |start: &StartFiles| start.view);
     let near = graph.part(terrain, |terrain: &TerrainFiles| terrain.near.clone());
+    let far_trees = FarTreesStage {
+        params: genome.read(space)?,
+        landform,
+        ring: graph.part(terrain, |terrain: &TerrainFiles| terrain.ring.clone()),
+        footprints: footprints.clone(),
+        per_m2: graph.part(placed, |placed: &PlacementFiles| placed.placement.per_m2),
+    };
+    let far_trees = graph.add(scene, far_trees);
 
     let woods = WoodsInput { params: shed, trees: standing, footprints };
     let painted = GroundMapsStage { params: ground.clone(), side_px: map_px, landform, woods: woods.clone() };
@@ -183,6 +192,7 @@ fn add_scene(
         trees,
         tree_textures,
         placed,
+        far_trees,
         light,
         sky,
     };

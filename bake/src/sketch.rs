@@ -28,7 +28,7 @@ impl Sketch {
         let footprint = footprint(&genome.read(space)?);
         let placement: PlacementParams = genome.read(space)?;
         let snow = snow_map(placement.terrain_seed, &land);
-        let mut trees = place(&placement, &land, snow.as_ref(), &[footprint]);
+        let mut trees = place(&placement, &land, snow.as_ref(), &[footprint]).instances;
         clear_around(&land, &mut trees);
         Ok(Self { land, footprint, trees, light })
     }
@@ -95,7 +95,7 @@ mod tests {
             let land = land::landform(&genome.read(space).expect("valid"), 513);
             let placement: PlacementParams = genome.read(space).expect("valid");
             let snow = snow_map(placement.terrain_seed, &land);
-            let mut trees = place(&placement, &land, snow.as_ref(), &footprints);
+            let mut trees = place(&placement, &land, snow.as_ref(), &footprints).instances;
             clear_around(&land, &mut trees);
             let itself = looks(&land, &trees, &footprints, &light, 4, 0.0);
             for (brush, least) in [(Brush::Broad, 0.6), (Brush::Fine, 0.9)] {

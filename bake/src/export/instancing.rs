@@ -10,7 +10,7 @@ use genescape_schema::scene::{Instance, svd};
 use glam::{DMat3, DQuat, DVec3};
 use serde_json::{Value, json};
 
-use super::source::{list, number, text, trees_node};
+use super::source::{self, far_trees_node, list, number, text, trees_node};
 
 const EXTENSION: &str = "EXT_mesh_gpu_instancing";
 /// The URI by which the scene names [`Instanced::bytes`].
@@ -28,40 +28,83 @@ pub struct Instanced {
     pub lost_m: f64,
 }
 
-/// Replaces the nodes of all trees. `sizes_m` says for each template how far it reaches along each axis.
+/// Replaces the nodes of all trees, and gives those beyond the field nodes. `sizes_m` says for each template how far it reaches
+/// along each axis.
 ///
 /// # Errors
 /// A scene whose nodes are not its instances, in their order.
-pub fn instance(root: &mut Value, instances: &[Instance], sizes_m: &[[f64; 3]]) -> Result<Instanced> {
-    let trees = trees_node(root)?;
-    let mut lost_m = 0.0f64;
-    let mut groups = BTreeMap::<usize, Vec<[f32; FLOATS]>>::new();
-    for (instance, pair) in instances.iter().zip(list(&root["nodes"][trees], "children")) {
+pub fn instance(
+    root: &mut Value,
+    [trees, far_trees]: [&[Instance]; 2],
+    sizes_m: &[[f64; 3]],
+) -> Result<Instanced> {
+    let mut groups = Groups {
+        sizes_m,
+        buffer: push(root, "buffers", json!({ "uri": BUFFER })),
+        made: Instanced::default(),
+    };
+    let node = trees_node(root)?;
+    let pairs = list(&root["nodes"][node], "children").iter().map(|pair| {
         let pair = &root["nodes"][pair.as_u64().unwrap_or(0) as usize];
-        let mesh = number(&root["nodes"][first(pair)], "mesh");
-        let size_m = sizes_m.get(instance.template as usize).context("an instance of an unknown tree")?;
-        let (placed, off_m) = fit(instance, DVec3::from_array(*size_m)).context("a tree is flattened")?;
-        lost_m = lost_m.max(off_m);
-        groups.entry(mesh).or_default().push(placed);
+        number(&root["nodes"][first(pair)], "mesh")
+    });
+    let meshes: Vec<usize> = pairs.collect();
+    groups.add(root, node, trees.iter().zip(meshes))?;
+    if let Some(node) = far_trees_node(root).filter(|_| !far_trees.is_empty()) {
+        // Nobody comes near them.
+        let templates = source::instances(root)?.templates;
+        let coarsest = templates.iter().map(|template| {
+            Ok(source::levels(root, template.mesh)?.levels.last().map_or(template.mesh, |level| level.mesh))
+        });
+        let coarsest = coarsest.collect::<Result<Vec<usize>>>()?;
+        let mesh = |tree: &Instance| coarsest.get(tree.template as usize).copied().unwrap_or_default();
+        groups.add(root, node, far_trees.iter().map(|tree| (tree, mesh(tree))))?;
     }
-    let mut bytes = Vec::new();
-    let buffer = push(root, "buffers", json!({ "uri": BUFFER }));
-    let mut children = Vec::new();
-    for (mesh, group) in &groups {
-        let still = without_morphs(&root["meshes"][*mesh]);
-        let name = text(&still, "name").to_owned();
-        let mesh = push(root, "meshes", still);
-        let attributes = add_attributes(root, buffer, group, &mut bytes);
-        let node = json!({ "name": format!("{name} ×{}", group.len()), "mesh": mesh,
-            "extensions": { EXTENSION: { "attributes": attributes } } });
-        children.push(push(root, "nodes", node));
-    }
-    root["buffers"][buffer]["byteLength"] = bytes.len().into();
-    root["nodes"][trees]["children"] = json!(children);
+    let Groups { buffer, made, .. } = groups;
+    root["buffers"][buffer]["byteLength"] = made.bytes.len().into();
     if let Some(used) = root["extensionsUsed"].as_array_mut() {
         used.insert(0, EXTENSION.into());
     }
-    Ok(Instanced { bytes, lost_m })
+    Ok(made)
+}
+
+/// Nodes of instances, while they are made.
+struct Groups<'a> {
+    sizes_m: &'a [[f64; 3]],
+    /// The buffer that the bytes are to be.
+    buffer: usize,
+    made: Instanced,
+}
+
+impl Groups<'_> {
+    /// Puts one node for each mesh below a node, in the place of its children.
+    fn add<'t>(
+        &mut self,
+        root: &mut Value,
+        parent: usize,
+        trees: impl Iterator<Item = (&'t Instance, usize)>,
+    ) -> Result<()> {
+        let mut groups = BTreeMap::<usize, Vec<[f32; FLOATS]>>::new();
+        for (instance, mesh) in trees {
+            let size_m =
+                self.sizes_m.get(instance.template as usize).context("an instance of an unknown tree")?;
+            let (placed, off_m) = fit(instance, DVec3::from_array(*size_m)).context("a tree is flattened")?;
+            self.made.lost_m = self.made.lost_m.max(off_m);
+            groups.entry(mesh).or_default().push(placed);
+        }
+        let mut children = Vec::new();
+        for (mesh, group) in &groups {
+            let still = without_morphs(&root["meshes"][*mesh]);
+            let name = text(&still, "name").to_owned();
+            let mesh = push(root, "meshes", still);
+            let attributes = add_attributes(root, self.buffer, group, &mut self.made.bytes);
+            let node = json!({ "name": format!("{name} ×{}", group.len()), "mesh": mesh,
+                "extensions": { EXTENSION: { "attributes": attributes } } });
+            children.push(push(root, "nodes", node));
+        }
+        root["nodes"][parent]["children"] = json!(children);
+        Ok(())
+    }
 }
 
 /// A node's only child.

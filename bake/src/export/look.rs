@@ -3,7 +3,7 @@
 use std::f32::consts::PI;
 
 use anyhow::Result;
-use genescape_schema::scene::{GSC_HEIGHTFIELD, SkyLight};
+use genescape_schema::scene::{FAR_TREES_NODE, GSC_HEIGHTFIELD, SkyLight};
 use serde_json::{Value, json};
 
 use super::source::{self, list, number, text};
@@ -16,11 +16,11 @@ const GLOW_OF_LEAVES: f32 = 0.5;
 /// Lumens in a watt, by which Blender's importer divides.
 const LUMENS_PER_WATT: f64 = 683.0;
 
-/// Takes the land beyond the field away, and the water over it.
+/// Takes the land beyond the field away, and the water over it and its trees.
 pub fn remove_apron(root: &mut Value) {
     let nodes = list(root, "nodes");
     let named = |name: &str| nodes.iter().position(|node| node["name"] == name);
-    let (apron, water) = (named("apron"), named("water"));
+    let (apron, water, trees) = (named("apron"), named("water"), named(FAR_TREES_NODE));
     let field = nodes.iter().map(|node| &node["extensions"][GSC_HEIGHTFIELD]).find(|field| field.is_object());
     let extent_m = field.map_or(0.0, |field| {
         number(field, "side").saturating_sub(1) as f64 * field["spacingM"].as_f64().unwrap_or(0.0)
@@ -34,7 +34,8 @@ pub fn remove_apron(root: &mut Value) {
         root["nodes"][water]["scale"] = json!([scale, 1, scale]);
     }
     if let Some(roots) = root["scenes"][0]["nodes"].as_array_mut() {
-        roots.retain(|node| apron.is_none_or(|apron| *node != json!(apron)));
+        let beyond = [apron, trees].map(|node| node.map(|node| json!(node)));
+        roots.retain(|node| !beyond.contains(&Some(node.clone())));
     }
 }
 

@@ -195,7 +195,8 @@ fn single_file(scene: &SceneFile, names: &Names, options: Options) -> Result<(Ve
     }
     let mut instances = instancing::Instanced::default();
     if options.instancing {
-        instances = instancing::instance(&mut root, &scene.instances()?, &scene.tree_sizes_m()?)?;
+        let far = if options.apron { scene.far_instances()? } else { Vec::new() };
+        instances = instancing::instance(&mut root, [&scene.instances()?, &far], &scene.tree_sizes_m()?)?;
     }
     let resolve = |uri: &str| match uri {
         instancing::BUFFER => Ok(instances.bytes.clone()),

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 use genescape_cache::Digest;
 use genescape_schema::scene::{
-    GSC_INSTANCES, GSC_PROGRESSIVE_MESH, GSC_SKY, Instance, InstancesExtension, ProgressiveMeshExtension,
-    Resource, SkyExtension, read_instances,
+    FAR_TREES_NODE, GSC_INSTANCES, GSC_PROGRESSIVE_MESH, GSC_SKY, Instance, InstancesExtension,
+    ProgressiveMeshExtension, Resource, SkyExtension, read_instances,
 };
 use genescape_world::{MAX_MODEL_BYTES, regular_file};
 use serde::de::DeserializeOwned;
@@ -82,7 +82,17 @@ impl SceneFile {
 
     /// The trees' exact transforms.
     pub fn instances(&self) -> Result<Vec<Instance>> {
-        let extension = instances(&self.json)?;
+        self.records(&instances(&self.json)?)
+    }
+
+    /// Those of the trees beyond the field.
+    pub fn far_instances(&self) -> Result<Vec<Instance>> {
+        let node = far_trees_node(&self.json);
+        let extension = node.map(|node| extension(&self.json["nodes"][node], GSC_INSTANCES));
+        extension.map_or(Ok(Vec::new()), |extension| self.records(&extension?))
+    }
+
+    fn records(&self, extension: &InstancesExtension) -> Result<Vec<Instance>> {
         let view = &self.json["bufferViews"][extension.buffer_view];
         Ok(read_instances(&self.read(text(&self.json["buffers"][number(view, "buffer")], "uri"))?)?)
     }
@@ -116,8 +126,15 @@ pub fn instances(scene: &Value) -> Result<InstancesExtension> {
 
 /// The node with all trees below it.
 pub fn trees_node(scene: &Value) -> Result<usize> {
-    let found = list(scene, "nodes").iter().position(|node| node["extensions"].get(GSC_INSTANCES).is_some());
+    let has =
+        |node: &Value| node["extensions"].get(GSC_INSTANCES).is_some() && node["name"] != FAR_TREES_NODE;
+    let found = list(scene, "nodes").iter().position(has);
     found.with_context(|| format!("no node has {GSC_INSTANCES}; is this a scene.gltf of bake?"))
+}
+
+/// The node of those beyond the field.
+pub fn far_trees_node(scene: &Value) -> Option<usize> {
+    list(scene, "nodes").iter().position(|node| node["name"] == FAR_TREES_NODE)
 }
 
 /// A template's levels of detail.

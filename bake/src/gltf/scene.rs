@@ -26,7 +26,7 @@ pub fn scene_gltf(parts: &SceneParts<'_>) -> Result<Vec<u8>, ExportError> {
     let mut document = Document::default();
     let mut roots = vec![add_camera(&mut document, parts), add_sun(&mut document, parts.light)];
     roots.extend(add_terrain(&mut document, parts)?);
-    roots.push(add_trees(&mut document, parts, &view)?);
+    roots.extend(add_trees(&mut document, parts, &view)?);
     document.extensions_used.insert(GSC_SKY.into());
     document.scenes.push(json!({
         "name": parts.name, "nodes": roots,

@@ -56,6 +56,8 @@ pub struct SceneParts<'a> {
     pub trees: &'a [Instance],
     /// The same as the binary data of `GSC_instances`.
     pub instances: Blob,
+    /// Those on the land beyond the field, in the same form.
+    pub far_trees: Blob,
     /// Sun, sky and haze.
     pub light: &'a SkyLight,
     pub sky: SkyImages<Resource>,

@@ -1,8 +1,8 @@
 //! Where trees stand → nodes that share meshes: two nodes an instance, since one may not shear.
 
 use genescape_schema::scene::{
-    GSC_INSTANCES, GSC_PROGRESSIVE_MESH, Instance, InstancesExtension, InstancesTemplate, ProgressiveLevel,
-    ProgressiveMeshExtension, StartView, svd,
+    FAR_TREES_NODE, GSC_INSTANCES, GSC_PROGRESSIVE_MESH, Instance, InstancesExtension, InstancesTemplate,
+    ProgressiveLevel, ProgressiveMeshExtension, StartView, instance_count, svd,
 };
 use glam::Vec3;
 use serde::Deserialize;
@@ -13,7 +13,7 @@ use super::document::{Document, Node, push};
 use super::impostor::{self, IMPOSTOR};
 use super::materials::Picture;
 use super::scene_import::{FileMaterial, GlbImport};
-use super::scene_parts::SceneParts;
+use super::scene_parts::{Blob, SceneParts};
 use super::tree::{CLUSTER_NORMALS, CLUSTERS, add_clusters, tree_materials};
 use crate::model::Material;
 
@@ -30,12 +30,13 @@ struct Level {
     triangles: usize,
 }
 
-/// Adds the templates' meshes and a `trees` node with all instances below it; gives that node.
+/// Adds the templates' meshes, a `trees` node with all instances of the field below it, and one for those beyond, which are too
+/// many for nodes of their own; gives both.
 pub fn add_trees(
     document: &mut Document,
     parts: &SceneParts<'_>,
     view: &StartView,
-) -> Result<usize, ExportError> {
+) -> Result<[usize; 2], ExportError> {
     let mut files = Vec::new();
     for template in &parts.templates {
         files.push(GlbImport::open(document, template)?);
@@ -80,22 +81,31 @@ pub fn add_trees(
     for (i, (instance, level)) in instances.iter().zip(chosen).enumerate() {
         children.push(add_instance(document, format!("tree.{i:04}"), instance, level)?);
     }
-    let buffer = push(
-        &mut document.buffers,
-        json!({ "uri": parts.instances.uri, "byteLength": parts.instances.byte_length }),
-    );
-    let buffer_view = push(
-        &mut document.buffer_views,
-        json!({ "buffer": buffer, "byteOffset": 0, "byteLength": parts.instances.byte_length }),
-    );
     document.extensions_used.insert(GSC_INSTANCES.into());
-    let extension = InstancesExtension { buffer_view, count: instances.len(), templates };
-    Ok(document.node(Node {
-        name: "trees".into(),
-        children,
-        extensions: Some(json!({ GSC_INSTANCES: extension })),
-        ..Node::default()
-    }))
+    let mut add_node = |name: &str, records: &Blob, children: Vec<usize>| {
+        let extension = InstancesExtension {
+            buffer_view: add_buffer(document, records),
+            count: instance_count(records.byte_length),
+            templates: templates.clone(),
+        };
+        document.node(Node {
+            name: name.into(),
+            children,
+            extensions: Some(json!({ GSC_INSTANCES: extension })),
+            ..Node::default()
+        })
+    };
+    Ok([
+        add_node("trees", &parts.instances, children),
+        add_node(FAR_TREES_NODE, &parts.far_trees, Vec::new()),
+    ])
+}
+
+/// A view of a whole file as a buffer.
+fn add_buffer(document: &mut Document, blob: &Blob) -> usize {
+    let Blob { uri, byte_length } = blob;
+    let buffer = push(&mut document.buffers, json!({ "uri": uri, "byteLength": byte_length }));
+    push(&mut document.buffer_views, json!({ "buffer": buffer, "byteOffset": 0, "byteLength": byte_length }))
 }
 
 /// The levels of an imported mesh; a mesh without our extension is its own only level.

@@ -233,7 +233,7 @@ pub fn placement(land: &Landform, count: u32) -> Placement {
             trunk_cylinder_m: [x, z, 0.3],
         });
     }
-    Placement { instances }
+    Placement { instances, per_m2: 0.01 }
 }
 
 fn exr(width: usize, height: usize, sun: Vec3) -> Vec<u8> {
@@ -337,6 +337,7 @@ pub fn synthetic(count: u32) -> Synthetic {
         ("leaf.png", leaf.clone()),
         ("leaf-1.png", leaf.clone()),
         ("instances.bin", write_instances(&placement.instances)),
+        ("far-trees.bin", write_instances(&placement.instances[..1])),
         ("lod.bin", vec![7; 100]),
         ("lookouts.bin", vec![7; 100]),
         ("sky.exr", exr(128, 64, sun)),
@@ -413,6 +414,7 @@ impl Synthetic {
             },
             trees: &self.placement.instances,
             instances: self.blob("instances.bin"),
+            far_trees: self.blob("far-trees.bin"),
             light: &self.light,
             sky: SkyImages {
                 equirect: exr("sky.exr"),

@@ -158,6 +158,8 @@ pub struct LevelledMesh {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Placement {
     pub instances: Vec<Instance>,
+    /// How many of them stand on a square metre where they grow best.
+    pub per_m2: f32,
 }
 
 /// Whether trees of these genes are dead: they have lost their twigs with their leaves.

@@ -83,7 +83,7 @@ fn standing(placement: &PlacementParams, measures: &TreeMeasures) -> Vec<Instanc
         root_depth_m: 0.02 * measures.height_m,
         clear_trunk: measures.crown_base,
     };
-    place(&params, &meadow, None, &[footprint])
+    place(&params, &meadow, None, &[footprint]).instances
 }
 
 /// How far the nearest neighbour is on average, as a part of what it would be by chance (Clark and Evans, "Distance to

@@ -33,13 +33,14 @@ pub struct SceneStage {
     pub trees: Vec<Input<File>>,
     pub tree_textures: Input<TreeTextures<File>>,
     pub placed: Input<PlacementFiles>,
+    pub far_trees: Input<File>,
     pub light: Input<SkyLight>,
     pub sky: Input<SkyImages<File>>,
 }
 
 impl Stage for SceneStage {
     const NAME: &'static str = "scene";
-    const VERSION: u32 = 8;
+    const VERSION: u32 = 9;
     type Output = File;
 
     fn run(&self, context: &Context<'_>) -> Result<File, StageError> {
@@ -77,10 +78,8 @@ impl Stage for SceneStage {
                 .get(&self.tree_textures)?
                 .map(|file| Picture::File { uri: uri(file), mipmaps: Vec::new() }),
             trees: &placed.placement.instances,
-            instances: Blob {
-                uri: uri(&placed.instances),
-                byte_length: placed.instances.blob().len as usize,
-            },
+            instances: blob(&placed.instances),
+            far_trees: blob(&*context.get(&self.far_trees)?),
             light: &SkyLight { exposure: light.exposure * start.exposure, ..(*light).clone() },
             sky: context.get(&self.sky)?.try_map(resource, resource, resource)?,
         };
@@ -93,6 +92,10 @@ const FOLDERS_TO_BAKED: usize = 2;
 
 fn uri(file: &File) -> String {
     file.blob().uri(FOLDERS_TO_BAKED)
+}
+
+fn blob(file: &File) -> Blob {
+    Blob { uri: uri(file), byte_length: file.blob().len as usize }
 }
 
 fn resource(file: &File) -> Result<Resource, StageError> {

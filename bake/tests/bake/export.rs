@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use genescape_schema::scene::GSC_INSTANCES;
+use genescape_schema::scene::{FAR_TREES_NODE, GSC_INSTANCES};
 use serde_json::Value;
 
 use crate::world::{World, damage};
@@ -134,6 +134,9 @@ fn viewers_get_the_field_alone_unless_they_ask_for_more() {
     assert_eq!(half_width_m(&narrow.0), 512.0);
     assert!(half_width_m(&wide.0) > 4000.0);
     assert!(narrow.2.len() < wide.2.len(), "bytes that nothing uses are left out");
+    let has_far_trees =
+        |document: &gltf::Document| document.nodes().any(|node| node.name() == Some(FAR_TREES_NODE));
+    assert!(!has_far_trees(&narrow.0) && has_far_trees(&wide.0), "trees beyond the field need land");
     assert!(
         narrow.0.materials().all(|material| material.emissive_factor() != [0.0; 3]),
         "the sky's light is in it"
@@ -210,6 +213,22 @@ fn instancing_keeps_every_tree() {
     assert_eq!(exact.len(), count);
     assert!(feet == exact, "trees stand elsewhere");
     assert!(json["nodes"].as_array().expect("nodes").len() < 100);
+}
+
+#[test]
+fn instances_stand_beyond_the_field_too() {
+    let world = World::starters();
+    let (_, json, _) = exported(&world, &["--instancing", "--apron"]);
+    let nodes = json["nodes"].as_array().expect("nodes");
+    let node = nodes.iter().find(|node| node["name"] == FAR_TREES_NODE).expect("far trees");
+    let child = |child: &Value| &nodes[child.as_u64().expect("a number") as usize];
+    let groups = node["children"].as_array().expect("children").iter().map(child);
+    let count = |group: &Value| {
+        let places = &group["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"];
+        json["accessors"][places.as_u64().expect("an accessor") as usize]["count"].as_u64().expect("a count")
+    };
+    assert_eq!(groups.clone().count(), 5, "one for each kind of tree");
+    assert_eq!(groups.map(count).sum::<u64>(), node["extensions"][GSC_INSTANCES]["count"], "all of them");
 }
 
 #[test]

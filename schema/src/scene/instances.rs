@@ -9,6 +9,8 @@ use super::svd;
 
 /// The extension's name.
 pub const GSC_INSTANCES: &str = "GSC_instances";
+/// The node of the trees beyond the field.
+pub const FAR_TREES_NODE: &str = "far trees";
 /// Bytes before the first record.
 const INSTANCES_HEADER_BYTES: usize = 16;
 /// Bytes of a record.
@@ -97,6 +99,11 @@ pub fn write_instances(records: &[Instance]) -> Vec<u8> {
     out
 }
 
+/// How many records a file of that many bytes holds.
+pub fn instance_count(bytes: usize) -> usize {
+    bytes.saturating_sub(INSTANCES_HEADER_BYTES) / INSTANCE_BYTES
+}
+
 /// The inverse of [`write_instances`].
 pub fn read_instances(bytes: &[u8]) -> Result<Vec<Instance>, InstancesError> {
     let header = || InstancesError::Header(bytes.iter().copied().take(8).collect());
@@ -131,6 +138,7 @@ mod tests {
     fn records_survive_a_round_trip() {
         assert_eq!(read_instances(&write_instances(&records())).unwrap(), records());
         assert_eq!(read_instances(&write_instances(&[])).unwrap(), []);
+        assert_eq!(instance_count(write_instances(&records()).len()), records().len());
     }
 
     #[test]

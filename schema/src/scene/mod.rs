@@ -31,8 +31,8 @@ pub use heightfield::{GSC_HEIGHTFIELD, Heightfield, HeightfieldExtension, Terrai
 pub use heightfield_bytes::HeightfieldError;
 pub use impostor::{GSC_IMPOSTOR, IMPOSTOR_PICTURES, ImpostorExtension};
 pub use instances::{
-    GSC_INSTANCES, Instance, InstancesError, InstancesExtension, InstancesTemplate, read_instances,
-    write_instances,
+    FAR_TREES_NODE, GSC_INSTANCES, Instance, InstancesError, InstancesExtension, InstancesTemplate,
+    instance_count, read_instances, write_instances,
 };
 pub use lookouts::{GSC_LOOKOUTS, Lookout, Lookouts, LookoutsError, LookoutsExtension, Prospect, SharedView};
 pub use plants::{DensityMap, GroundPlants, Plant, PlantKind, PlantShape, ground_m};

@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use genescape_schema::scene::{
-    GSC_IMPOSTOR, IMPOSTOR_PICTURES, ImpostorExtension, InstancesExtension, ProgressiveMeshExtension,
-    Resource, error_weight, read_instances,
+    FAR_TREES_NODE, GSC_IMPOSTOR, GSC_INSTANCES, IMPOSTOR_PICTURES, ImpostorExtension, Instance,
+    InstancesExtension, ProgressiveMeshExtension, Resource, error_weight, read_instances,
 };
 use glam::Vec3;
 use gltf::Semantic;
 use rayon::prelude::*;
+use serde_json::Value;
 
 use super::bounds::{is_placed, is_tree_sized};
 use super::document::Document;
@@ -20,24 +21,33 @@ use crate::scene::{
 
 /// The trees; none if the scene has none.
 pub(super) fn read(document: &Document) -> Result<Trees> {
-    let has = |node: &gltf::Node<'_>| node.extension_value("GSC_instances").is_some();
-    let Some(node) = document.gltf.nodes().find(has) else { return Ok(Trees::default()) };
-    let extension: InstancesExtension =
-        document.extension(node.extension_value("GSC_instances"), "GSC_instances")?;
-    let instances = read_instances(&document.view(extension.buffer_view)?)
-        .map_err(|error| document.wrong(format!("its GSC_instances is wrong: {error}")))?;
+    let is_far = |node: &gltf::Node<'_>| node.name() == Some(FAR_TREES_NODE);
+    let extensions = |far: bool| {
+        let mut nodes = document.gltf.nodes().filter(move |node| is_far(node) == far);
+        nodes.find_map(|node| Some(node.extension_value(GSC_INSTANCES)?.clone()))
+    };
+    let records = |value: &Value| -> Result<(InstancesExtension, Vec<Instance>)> {
+        let extension: InstancesExtension = document.extension(Some(value), GSC_INSTANCES)?;
+        let instances = read_instances(&document.view(extension.buffer_view)?)
+            .map_err(|error| document.wrong(format!("its {GSC_INSTANCES} is wrong: {error}")))?;
+        Ok((extension, instances))
+    };
+    let Some(value) = extensions(false) else { return Ok(Trees::default()) };
+    let (extension, instances) = records(&value)?;
+    let far = extensions(true).map_or(Ok(Vec::new()), |value| Ok(records(&value)?.1))?;
     let templates = extension
         .templates
         .par_iter()
         .map(|entry| template(document, &entry.name, entry.mesh))
         .collect::<Result<Vec<_>>>()?;
-    if let Some(tree) = instances.iter().find(|tree| tree.template as usize >= templates.len()) {
+    let trees = Trees { templates, instances: instances.into(), far: far.into() };
+    if let Some(tree) = trees.all().find(|tree| tree.template as usize >= trees.templates.len()) {
         return Err(document.wrong(format!("a tree is of unknown template {}", tree.template)));
     }
-    if !instances.iter().all(is_placed) {
+    if !trees.all().all(is_placed) {
         return Err(document.wrong("a tree stands or reaches beyond all bounds"));
     }
-    Ok(Trees { templates, instances: instances.into() })
+    Ok(trees)
 }
 
 fn template(document: &Document, name: &str, finest: usize) -> Result<Arc<Template>> {

@@ -48,7 +48,7 @@ pub struct BoundTrees {
     pub(super) material_groups: Vec<wgpu::BindGroup>,
     /// Of the pictures, if there are any.
     pub(super) impostors_group: Option<wgpu::BindGroup>,
-    /// Trees for each level and template: u32 at level · templates + template. Pictures are one more level.
+    /// Trees for each level and template: u32 at level · templates + template; then pictures.
     pub counts: wgpu::Buffer,
     /// Number of each visible tree, its λ, and the share of its pixels that are drawn.
     pub visible: wgpu::Buffer,
@@ -56,7 +56,6 @@ pub struct BoundTrees {
     pub commands: wgpu::Buffer,
     /// Levels × templates.
     pub buckets: u32,
-    pub(super) templates: u32,
     pub(super) instances: u32,
     pub(super) command_count: u32,
 }
@@ -146,7 +145,7 @@ impl BoundTrees {
         let buckets = set.template_count * set.level_count;
         let uniform = gpu.buffer("culling", &[CullUniform::default()], Usage::STORAGE | Usage::COPY_DST);
         let written = Usage::STORAGE | Usage::COPY_SRC;
-        let counts = gpu.empty_buffer("counts", 4 * u64::from(buckets + set.template_count), written);
+        let counts = gpu.empty_buffer("counts", 4 * u64::from(buckets + 1), written);
         let room = 12 * u64::from(set.list_capacity);
         let visible = gpu.empty_buffer("visible trees", room, written | Usage::VERTEX);
         let commands = gpu.buffer("commands", &set.commands, written | Usage::INDIRECT);
@@ -160,14 +159,11 @@ impl BoundTrees {
         Self {
             cull_group: bind(gpu, "culling", &layouts.cull, culled),
             impostors_group: set.impostors.as_ref().map(|pictures| {
-                let textures = [&pictures.colors, &pictures.reliefs].map(|layers| Binding::layers(layers));
-                let buffers = [&set.trees, &pictures.frames].map(Binding::Buffer);
-                bind(
-                    gpu,
-                    "pictures of trees",
-                    &layouts.impostors,
-                    (0..).zip(buffers.into_iter().chain(textures)),
-                )
+                let [colors, reliefs] =
+                    [&pictures.colors, &pictures.reliefs].map(|layers| Binding::layers(layers));
+                let [trees, frames, visible] = [&set.trees, &pictures.frames, &visible].map(Binding::Buffer);
+                let bound = [trees, frames, colors, reliefs, visible];
+                bind(gpu, "pictures of trees", &layouts.impostors, (0..).zip(bound))
             }),
             trees_group: bind(gpu, "trees", &layouts.trees, [(0, Binding::Buffer(&set.trees))]),
             material_groups: set.materials.iter().map(material).collect(),
@@ -176,7 +172,6 @@ impl BoundTrees {
             visible,
             commands,
             buckets,
-            templates: set.template_count,
             instances: set.count,
             command_count: set.commands.len() as u32,
         }

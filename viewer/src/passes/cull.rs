@@ -11,7 +11,7 @@ use crate::camera::Frustum;
 use crate::lod::tree::{MIN_DISTANCE_M, STEEP};
 use crate::lod_mode::TreeLodMode;
 use crate::options::Options;
-use crate::upload::TreeSet;
+use crate::upload::{PICTURE_INDICES, TreeSet};
 
 /// Threads of a workgroup.
 const GROUP: u32 = 64;
@@ -33,6 +33,7 @@ pub const SHADER: Shader = Shader {
         ("DISCRETE", TreeLodMode::Discrete as u32 as f64),
         ("OFF", TreeLodMode::Off as u32 as f64),
         ("PICTURES", PICTURES as f64),
+        ("PICTURE_INDICES", PICTURE_INDICES.len() as f64),
     ],
 };
 
@@ -126,7 +127,7 @@ impl Cull {
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, trees: &BoundTrees) {
         pass.set_bind_group(1, &trees.cull_group, &[]);
         pass.set_pipeline(&self.clear);
-        pass.dispatch_workgroups((trees.buckets + trees.templates).div_ceil(GROUP), 1, 1);
+        pass.dispatch_workgroups((trees.buckets + 1).div_ceil(GROUP), 1, 1);
         pass.set_pipeline(&self.choose);
         let groups = trees.instances.div_ceil(GROUP);
         pass.dispatch_workgroups(groups.min(MAX_GROUPS), groups.div_ceil(MAX_GROUPS), 1);

@@ -12,6 +12,8 @@ override DISCRETE: u32;
 override OFF: u32;
 // No mode: all trees are pictures.
 override PICTURES: u32;
+// Indices of a picture.
+override PICTURE_INDICES: u32;
 // Sines of the angles from which on pictures are too steep to be of use, and are not used.
 override STEEP: f32;
 override TOO_STEEP: f32;
@@ -146,10 +148,14 @@ fn bucket(template_index: u32, level: u32) -> u32 {
     return level * cull.templates + template_index;
 }
 
+// Pictures of all templates are one list, the first: one draw shows them.
+fn pictures_bucket() -> u32 {
+    return cull.templates * cull.levels;
+}
+
 @compute @workgroup_size(GROUP)
 fn clear(@builtin(global_invocation_id) id: vec3u) {
-    // With those of the pictures.
-    if (id.x < cull.templates * (cull.levels + 1u)) {
+    if (id.x <= pictures_bucket()) {
         atomicStore(&counts[id.x], 0u);
     }
 }
@@ -190,9 +196,8 @@ fn choose(@builtin(global_invocation_id) id: vec3u) {
         }
     }
     if (share > 0.0) {
-        let slot = atomicAdd(&counts[bucket(template_index, cull.levels)], 1u);
-        let shown = pack(vec3f(0.0, share, share));
-        visible[list(template_index, templates[template_index].levels) + slot] = Visible(index, lambda, shown);
+        let slot = atomicAdd(&counts[pictures_bucket()], 1u);
+        visible[slot] = Visible(index, lambda, pack(vec3f(0.0, share, share)));
     }
 }
 
@@ -201,7 +206,8 @@ fn write_commands(@builtin(global_invocation_id) id: vec3u) {
     let buckets = cull.templates * cull.levels;
     if (id.x < buckets * cull.mesh_draws) {
         commands[id.x].instances = atomicLoad(&counts[id.x % buckets]);
-    } else if (id.x < buckets * cull.mesh_draws + cull.templates) {
-        commands[id.x].instances = atomicLoad(&counts[buckets + id.x - buckets * cull.mesh_draws]);
+    } else if (id.x == buckets * cull.mesh_draws) {
+        // Corners of one instance: devices begin each with new groups of threads, or with new preparations.
+        commands[id.x].indices = PICTURE_INDICES * atomicLoad(&counts[pictures_bucket()]);
     }
 }

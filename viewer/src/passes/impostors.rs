@@ -1,8 +1,8 @@
-//! Draws the pictures of trees that are far away: one draw for all of them.
+//! Draws the pictures of trees that are far away: one draw for all of them, and one instance, for four vertices would be little for
+//! each of thousands of instances.
 
 use super::shaders::ShaderError;
-use super::trees::VISIBLE;
-use super::{BoundScene, BoundTrees, Compiler, DrawPass, FilledOrWire, PipelineDesc, Shader, buffer_layout};
+use super::{BoundScene, BoundTrees, Compiler, DrawPass, FilledOrWire, PipelineDesc, Shader};
 use crate::options::Options;
 use crate::scene::{IMPOSTOR_ROWS, LEAVES};
 use crate::upload::{DrawCommand, MAX_LEVELS, TreeSet};
@@ -26,10 +26,8 @@ impl Impostors {
     pub(super) fn new(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
         let (shader, layouts) = (compiler.module(&SHADER)?, compiler.layouts);
         let groups = [&layouts.view, &layouts.impostors];
-        let buffers = [buffer_layout::<[u32; 3]>(wgpu::VertexStepMode::Instance, &VISIBLE)];
         let pipelines = |wireframe: bool| {
-            let usual = PipelineDesc::new(&shader, &groups);
-            compiler.pipeline(&PipelineDesc { buffers: &buffers, wireframe, ..usual })
+            compiler.pipeline(&PipelineDesc { wireframe, ..PipelineDesc::new(&shader, &groups) })
         };
         Ok(Self { pipelines: FilledOrWire::new(compiler.gpu, pipelines) })
     }
@@ -50,10 +48,8 @@ impl DrawPass for Impostors {
 pub(super) fn draw(pass: &mut wgpu::RenderPass<'_>, set: &TreeSet, trees: &BoundTrees) -> u32 {
     let (Some(pictures), Some(group)) = (&set.impostors, &trees.impostors_group) else { return 0 };
     pass.set_bind_group(1, group, &[]);
-    pass.set_vertex_buffer(0, trees.visible.slice(..));
-    pass.set_index_buffer(pictures.indices.slice(..), wgpu::IndexFormat::Uint16);
+    pass.set_index_buffer(pictures.indices.slice(..), wgpu::IndexFormat::Uint32);
     let meshes = u64::from(set.mesh_draws) * u64::from(trees.buckets);
-    let first = meshes * size_of::<DrawCommand>() as u64;
-    pass.multi_draw_indexed_indirect(&trees.commands, first, set.template_count);
+    pass.draw_indexed_indirect(&trees.commands, meshes * size_of::<DrawCommand>() as u64);
     1
 }

@@ -12,6 +12,14 @@ override PICTURES_LEVEL: f32;
 @group(1) @binding(1) var<storage, read> frames: array<Frame>;
 @group(1) @binding(2) var colors: texture_2d_array<f32>;
 @group(1) @binding(3) var reliefs: texture_2d_array<f32>;
+@group(1) @binding(4) var<storage, read> visible: array<Visible>;
+
+// As in `cull.wgsl`.
+struct Visible {
+    tree: u32,
+    lambda: f32,
+    shown: u32,
+}
 
 // The pictures of a template, as `ImpostorData` in Rust.
 struct Frame {
@@ -86,8 +94,12 @@ fn way_to_template(rows: array<vec4f, 3>, way: vec3f) -> vec3f {
     return rows[0].xyz * way.x + rows[1].xyz * way.y + rows[2].xyz * way.z;
 }
 
+// Four vertices for each of the trees that are visible.
 @vertex
-fn vertex(@location(8) tree: u32, @location(10) shown: vec4f, @builtin(vertex_index) index: u32) -> Out {
+fn vertex(@builtin(vertex_index) vertex: u32) -> Out {
+    let tree = visible[vertex >> 2u].tree;
+    let shown = visible[vertex >> 2u].shown;
+    let index = vertex & 3u;
     let rows = trees[tree].rows;
     let template_index = trees[tree].template_index;
     let axis = frames[template_index].axis;
@@ -109,7 +121,7 @@ fn vertex(@location(8) tree: u32, @location(10) shown: vec4f, @builtin(vertex_in
     out.toward = way_from_template(rows, vec3f(ahead.x, 0.0, ahead.y));
     out.turn = fract(atan2(ahead.x, ahead.y) / (2.0 * PI) + 1.0) * 8.0;
     out.template_index = template_index;
-    out.shown = shown.xy;
+    out.shown = vec2f(vec2u(shown, shown >> 10u) & vec2u(1023u)) / 1023.0;
     out.air = air_before(out.world);
     out.to_eye = normalize(back);
     out.to_sun = normalize(way_to_template(rows, view.sun_direction));

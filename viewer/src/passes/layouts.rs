@@ -101,7 +101,7 @@ impl Layouts {
             surface: all("surface", fragment, &[&[UNIFORM][..], &[IMAGE; 5], &[FILTERING; 5]].concat()),
             ground: all("ground", both, &[IMAGE, IMAGE, LAYERS, IMAGE]),
             trees: all("trees", ShaderStages::VERTEX, &[READ]),
-            impostors: all("pictures of trees", both, &[READ, READ, LAYERS, LAYERS]),
+            impostors: all("pictures of trees", both, &[READ, READ, LAYERS, LAYERS, READ]),
             material: all("material", fragment, &[UNIFORM, IMAGE, IMAGE]),
             cull: all("culling", ShaderStages::COMPUTE, &[READ, READ, READ, WRITE, WRITE, WRITE]),
             mirror: all("mirror", fragment, &[IMAGE, DEPTH_MAP]),

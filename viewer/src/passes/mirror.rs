@@ -4,7 +4,6 @@
 use super::bound_mirror::{BoundMirror, Reflection};
 use super::shaders::ShaderError;
 use super::terrain::{self, RING};
-use super::trees::VISIBLE;
 use super::{BoundScene, Compiler, PipelineDesc, Target, buffer_layout, impostors};
 use crate::options::Options;
 use crate::upload::RingVertex;
@@ -20,7 +19,6 @@ impl Mirror {
     pub const NAME: &str = "mirror";
 
     pub(super) fn new(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
-        use wgpu::VertexStepMode::{Instance, Vertex};
         let (ground, trees) = (compiler.module(&terrain::SHADER)?, compiler.module(&impostors::SHADER)?);
         let layouts = compiler.layouts;
         let on_land = [&layouts.view, &layouts.ground];
@@ -32,13 +30,12 @@ impl Mirror {
         };
         // A mirror turns triangles round.
         let outside = Some(wgpu::Face::Front);
-        let ring = [buffer_layout::<RingVertex>(Vertex, &RING)];
+        let ring = [buffer_layout::<RingVertex>(wgpu::VertexStepMode::Vertex, &RING)];
         Ok(Self {
             land: pipeline("risen_vertex", "mirrored_ground", outside, &[]),
             ring: pipeline("ring_vertex", "mirrored_ring", outside, &ring),
             trees: compiler.pipeline(&PipelineDesc {
                 fragment: Some("mirrored"),
-                buffers: &[buffer_layout::<[u32; 3]>(Instance, &VISIBLE)],
                 target: Target::Mirror,
                 ..PipelineDesc::new(&trees, &pictures)
             }),

@@ -95,15 +95,17 @@ impl ShadowBake<'_> {
     /// The trees within `reach_m` east, west, north and south of a place.
     pub fn trees_around(&self, place_m: Vec2, reach_m: f32) {
         let Some((set, _)) = &self.trees else { return };
-        self.draw(&CullUniform::for_shadow(set, self.half_texel_m, 0..set.count).around(place_m, reach_m));
+        self.draw(
+            &CullUniform::for_shadow(set, self.half_texel_m, 0..set.field_count).around(place_m, reach_m),
+        );
     }
 
     /// Some trees from this number on; where to go on, if there are more.
     pub fn trees_from(&self, first: u32) -> Option<u32> {
         let (set, _) = self.trees.as_ref()?;
         let next = first.saturating_add(TREES_A_PIECE);
-        self.draw(&CullUniform::for_shadow(set, self.half_texel_m, first..next));
-        Some(next).filter(|next| *next < set.count)
+        self.draw(&CullUniform::for_shadow(set, self.half_texel_m, first..next.min(set.field_count)));
+        Some(next).filter(|next| *next < set.field_count)
     }
 
     /// All of it.

@@ -380,11 +380,20 @@ fn ring_vertex(in: RingVertex) -> RingOut {
 const CRAGS_M: f32 = 230.0;
 const CRAGS_LEAN: f32 = 0.8;
 
+// How much more patches differ than crags.
+const PATCHES: f32 = 4.0;
+
 // Crags at two scales: their bumps and a factor on the colour.
 fn crags(place: vec2f) -> Tiles {
     let wide = tiles_of(textureSampleBias(details, repeating, place / CRAGS_M, 1, view.mip_bias));
     let fine = tiles_of(textureSampleBias(details, repeating, TURN * place / (0.23 * CRAGS_M), 1, view.mip_bias));
     return Tiles(0.5 * (wide.factor + fine.factor), vec3f(wide.bump.xy + TURN * fine.bump.xy, 1.0));
+}
+
+// What grows on gentle land is dry here and lush there, as crags are light and dark, where it is not snow: a factor on its colour.
+fn patches(color: vec3f, crag: vec3f) -> vec3f {
+    let dry = clamp(PATCHES * (dot(crag, vec3f(1.0 / 3.0)) - 1.0), -1.0, 1.0);
+    return 1.0 + dry * vec3f(0.2, 0.1, -0.05) * (1.0 - smoothstep(0.35, 0.6, color.b));
 }
 
 fn ring_radiance(in: RingOut) -> vec3f {
@@ -394,7 +403,7 @@ fn ring_radiance(in: RingOut) -> vec3f {
     let rough = mix(0.12, 1.0, smoothstep(0.97, 0.78, smooth_normal.y));
     let lean = tiles.bump.xy * (CRAGS_LEAN * rough);
     let normal = normalize(vec3f(smooth_normal.x + lean.x, smooth_normal.y, smooth_normal.z - lean.y));
-    let albedo = in.color * mix(vec3f(1.0), tiles.factor, rough);
+    let albedo = in.color * mix(patches(in.color, tiles.factor), tiles.factor, rough);
     let sun = view.sun_irradiance * max(dot(normal, view.sun_direction), 0.0);
     let sky = view.sky_irradiance * (0.5 + 0.5 * normal.y);
     return hazed(air_before(in.world), albedo / PI * (sun + sky));

@@ -13,6 +13,15 @@ pub struct Trees {
     pub templates: Vec<Arc<Template>>,
     /// Where they stand.
     pub instances: Arc<[Instance]>,
+    /// The same beyond the field.
+    pub far: Arc<[Instance]>,
+}
+
+impl Trees {
+    /// Wherever they stand.
+    pub fn all(&self) -> impl Iterator<Item = &Instance> {
+        self.instances.iter().chain(self.far.iter())
+    }
 }
 
 /// A tree that stands in many places, with all its levels of detail.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{DrawCommand, ImageUse, Uploader};
+use super::{ImageUse, Uploader};
 use crate::scene::{IMPOSTOR_ROWS, Impostor, LEAVES, Template};
 
 /// Mip levels end where a picture of a strip has so many pixels a side.
@@ -41,7 +41,7 @@ pub struct ImpostorSet {
     pub colors: Arc<wgpu::Texture>,
     /// Relief, likewise.
     pub reliefs: Arc<wgpu::Texture>,
-    /// Two triangles.
+    /// Two triangles for each tree, of four vertices.
     pub indices: wgpu::Buffer,
 }
 
@@ -54,17 +54,14 @@ impl ImpostorSet {
         let first = templates.first().and_then(size);
         first.is_some() && templates.iter().all(|template| size(template) == first)
     }
-
-    /// Draws the list that starts there, with no trees yet.
-    pub(super) fn command(first: u32) -> DrawCommand {
-        DrawCommand { indices: INDICES.len() as u32, first_instance: first, ..DrawCommand::default() }
-    }
 }
 
-const INDICES: [u16; 6] = [0, 1, 2, 2, 1, 3];
+/// The two triangles of a picture.
+pub const PICTURE_INDICES: [u32; 6] = [0, 1, 2, 2, 1, 3];
 
 impl Uploader {
-    pub(super) fn impostors(&self, templates: &[Arc<Template>]) -> Option<ImpostorSet> {
+    /// For so many trees of these templates.
+    pub(super) fn impostors(&self, templates: &[Arc<Template>], trees: usize) -> Option<ImpostorSet> {
         use wgpu::BufferUsages as Usage;
         if !ImpostorSet::suits(templates) {
             return None;
@@ -74,11 +71,13 @@ impl Uploader {
         let frames: Vec<ImpostorData> = all.iter().map(|one| frame(one)).collect();
         let [colors, reliefs]: [Vec<_>; 2] =
             [all.iter().map(|one| &one.color).collect(), all.iter().map(|one| &one.relief).collect()];
+        let indices: Vec<u32> =
+            (0..trees as u32).flat_map(|tree| PICTURE_INDICES.map(|corner| 4 * tree + corner)).collect();
         Some(ImpostorSet {
             frames: self.gpu.buffer("frames of pictures", &frames, Usage::STORAGE),
             colors: self.strips(&colors, ImageUse::Cutout, MIN_PX),
             reliefs: self.strips(&reliefs, ImageUse::Data, MIN_PX),
-            indices: self.gpu.buffer("triangles of a picture", &INDICES, Usage::INDEX),
+            indices: self.gpu.buffer("triangles of pictures", &indices, Usage::INDEX),
         })
     }
 }

@@ -23,7 +23,7 @@ pub use asset::{
 };
 pub use exhibit::{Exhibit, WeakExhibit};
 pub use ground::GroundBuffers;
-pub use impostors::{ImpostorData, ImpostorSet};
+pub use impostors::{ImpostorData, ImpostorSet, PICTURE_INDICES};
 pub use lake::{Lake, Window};
 pub use plants::{PLANT_BLOCK_M, PlantBuffers, PlantBuffersOfKind, PlantVertex};
 pub use ring::{Ring, RingVertex};

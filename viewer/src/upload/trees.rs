@@ -93,6 +93,8 @@ pub struct TreeSet {
     pub trees: wgpu::Buffer,
     /// Number of trees.
     pub count: u32,
+    /// How many of them stand on the field, whose shadows are drawn: the first ones.
+    pub field_count: u32,
     /// [`TemplateData`] of each template.
     pub templates: wgpu::Buffer,
     /// Number of templates.
@@ -100,19 +102,19 @@ pub struct TreeSet {
     /// Levels of the template that has most.
     pub level_count: u32,
     /// One for each of [`Self::mesh_draws`], level and template, in this order of significance, nearest levels first, with no
-    /// trees yet; then one for the pictures of each template.
+    /// trees yet; then one for all pictures.
     pub commands: Vec<DrawCommand>,
     /// Draws of meshes that there are commands for: lists of each material; then, if all trees have some, strips of each closed
     /// material, in the same order.
     pub mesh_draws: u32,
     /// Triangles of one tree for each level and template, all materials together: index level · templates + template.
-    /// Pictures count as one more level.
+    /// Then those of a picture.
     pub triangles: Vec<u32>,
     /// What the trees are made of.
     pub materials: Vec<TreeMaterial>,
     /// Pictures of the templates, if all have some.
     pub impostors: Option<ImpostorSet>,
-    /// Entries of all lists of visible trees together.
+    /// Entries of all lists of visible trees together. The first list is that of pictures, as long as there are trees.
     pub list_capacity: u32,
 }
 
@@ -138,7 +140,7 @@ pub struct TreeMaterial {
 impl Uploader {
     /// `None` if there are no trees to draw.
     pub(super) fn trees(&self, trees: &Trees) -> Option<TreeSet> {
-        if trees.instances.is_empty() || trees.templates.is_empty() {
+        if trees.all().next().is_none() || trees.templates.is_empty() {
             return None;
         }
         use wgpu::BufferUsages as Usage;
@@ -151,7 +153,7 @@ impl Uploader {
         let trees = plain.as_ref().unwrap_or(trees);
         let (gpu, materials) = (&self.gpu, common_materials(trees, sheet.as_ref()));
         let lists = arrange(trees, &materials);
-        let all_trees: Vec<TreeData> = trees.instances.iter().map(tree_data).collect();
+        let all_trees: Vec<TreeData> = trees.all().map(tree_data).collect();
         let vertices = trees.templates.iter().enumerate().map(|(number, template)| match &sheet {
             Some(sheet) => Cow::Owned(sheet.moved(number, template)),
             None => Cow::Borrowed(&template.vertices),
@@ -164,6 +166,7 @@ impl Uploader {
             indices: gpu.buffer("tree indices", &indices.concat(), Usage::INDEX),
             trees: gpu.buffer("trees", &all_trees, Usage::STORAGE),
             count: all_trees.len() as u32,
+            field_count: trees.instances.len() as u32,
             templates: gpu.buffer("templates of trees", &lists.templates, Usage::STORAGE),
             template_count: lists.templates.len() as u32,
             level_count: level_count(trees) as u32,
@@ -171,7 +174,7 @@ impl Uploader {
             mesh_draws: lists.mesh_draws as u32,
             triangles: lists.triangles,
             materials: materials.iter().map(|material| self.material(material)).collect(),
-            impostors: self.impostors(&trees.templates),
+            impostors: self.impostors(&trees.templates, all_trees.len()),
             list_capacity: lists.capacity,
         })
     }
@@ -220,12 +223,13 @@ fn arrange(trees: &Trees, materials: &[Material]) -> Lists {
         commands: vec![DrawCommand::default(); buckets * mesh_draws],
         mesh_draws,
         triangles: vec![0; buckets],
-        capacity: 0,
+        capacity: trees.all().count() as u32,
     };
-    lists.triangles.resize(buckets + templates, 2);
+    lists.commands.push(DrawCommand { instances: 1, ..DrawCommand::default() });
+    lists.triangles.push(2);
     let (mut base_vertex, mut base_index) = (0, 0);
     for (index, template) in trees.templates.iter().enumerate() {
-        let capacity = trees.instances.iter().filter(|tree| tree.template as usize == index).count() as u32;
+        let capacity = trees.all().filter(|tree| tree.template as usize == index).count() as u32;
         for (number, level) in template.levels.iter().take(MAX_LEVELS).enumerate() {
             let bucket = number * templates + index;
             let command = |range: &Range| DrawCommand {
@@ -245,15 +249,13 @@ fn arrange(trees: &Trees, materials: &[Material]) -> Lists {
                 lists.triangles[bucket] += range.count / 3;
             }
         }
-        let pictures = lists.capacity + depth(template) as u32 * capacity;
-        lists.commands.push(ImpostorSet::command(pictures));
         let picture_error =
             template.impostor.as_ref().filter(|_| has_pictures).map(|pictures| pictures.error_m);
         lists.templates.push(TemplateData {
             picture_error: picture_error.unwrap_or(f32::MAX),
             ..template_data(template, lists.capacity, capacity)
         });
-        lists.capacity = pictures + capacity;
+        lists.capacity += depth(template) as u32 * capacity;
         base_vertex += template.vertices.len() as u32;
         base_index += template.indices.len() as u32;
     }

@@ -37,7 +37,7 @@ pub fn landscape() -> Scene {
         (y > -1.0).then(|| made_up::instance(n % 2, [x, y, z], 0.7 + 0.6 * made_up::hash(n, 1, 2), n as f32))
     };
     let instances = (0..140).filter_map(tree).collect();
-    let trees = Trees { templates: templates.collect(), instances };
+    let trees = Trees { templates: templates.collect(), instances, ..Trees::default() };
     let mut scene = made_up::scene(field, [0; 4], [0.5, 0.7, 1.0], trees);
     let ground = &mut scene.ground;
     ground.water_level_m = Some(-3.0);

@@ -85,7 +85,12 @@ fn forest(rng: &mut Pcg32) -> Forest {
         instances.push(made_up::instance(kind, at, scale, rng.random_range(0.0..6.0f32)));
         scales.push(scale);
     }
-    Forest { trees: Trees { templates, instances: instances.into() }, errors_m, scales, picture_error_m }
+    Forest {
+        trees: Trees { templates, instances: instances.into(), ..Trees::default() },
+        errors_m,
+        scales,
+        picture_error_m,
+    }
 }
 
 /// Anywhere, or inside a crown.
@@ -128,17 +133,22 @@ fn chosen(
     let meshes = buckets * set.mesh_draws as usize;
     let mut shown: Vec<Option<Shown>> = vec![None; forest.scales.len()];
     for (index, (command, before)) in commands.iter().zip(&set.commands).enumerate() {
-        let count = counts[if index < meshes { index % buckets } else { buckets + index - meshes }];
-        assert_eq!(*command, DrawCommand { instances: count, ..*before });
+        if index < meshes {
+            assert_eq!(*command, DrawCommand { instances: counts[index % buckets], ..*before });
+        } else {
+            assert_eq!(*command, DrawCommand { indices: 6 * counts[buckets], ..*before });
+        }
     }
-    for list in 0..buckets + kinds {
-        let (level, kind, is_picture) = (list / kinds, list % kinds, list >= buckets);
-        let first = commands[if is_picture { meshes + kind } else { list }].first_instance as usize;
+    for list in 0..=buckets {
+        let is_picture = list == buckets;
+        let (level, kind) = (list / kinds, list % kinds);
+        let first = if is_picture { 0 } else { commands[list].first_instance as usize };
         for &[tree, lambda, part] in &visible[first..first + counts[list] as usize] {
             let lambda = f32::from_bits(lambda);
             let [from, to, picture] = [0, 10, 20].map(|bit| (part >> bit & 1023) as f32 / 1023.0);
             assert!(is_picture || lambda as usize == level, "a tree is listed at its level");
-            assert_eq!(forest.trees.instances[tree as usize].template as usize, kind, "and under its kind");
+            let is_kind = forest.trees.instances[tree as usize].template as usize == kind;
+            assert!(is_picture || is_kind, "and under its kind");
             let one = shown[tree as usize].get_or_insert(Shown {
                 lambda,
                 mesh: 0.0,

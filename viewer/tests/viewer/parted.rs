@@ -41,8 +41,8 @@ fn seen(studio: &Headless, is_leaf: bool, away_m: f32) -> f64 {
         studio.shoot(&mut view, &frame, &camera, &camera).expect("a picture")
     };
     let instances = [made_up::instance(0, [0.0, 3.0, 0.0], 1.0, 0.0)].into();
-    let with = draw(Trees { templates: vec![one_leaf(is_leaf).into()], instances });
-    let without = draw(Trees { templates: Vec::new(), instances: [].into() });
+    let with = draw(Trees { templates: vec![one_leaf(is_leaf).into()], instances, ..Trees::default() });
+    let without = draw(Trees { templates: Vec::new(), instances: [].into(), ..Trees::default() });
     differing(&with, &without) as f64 / f64::from(96 * 64)
 }
 

@@ -38,7 +38,7 @@ fn pole() -> Template {
 /// Such poles on grey land, under a sun in the east that stands as high as 8 to 6.
 fn scene(places: &[[f32; 2]], let_through: u8) -> Scene {
     let instances = places.iter().map(|&[x, z]| made_up::instance(0, [x, 0.0, z], 1.0, 0.0)).collect();
-    let trees = Trees { templates: vec![Arc::new(pole())], instances };
+    let trees = Trees { templates: vec![Arc::new(pole())], instances, ..Trees::default() };
     let mut scene = made_up::scene(made_up::land(257, 1.0, |_, _| 0.0), [90, 90, 90, 255], [0.2; 3], trees);
     let light = [255, (0.8 * 255.0) as u8, 255, let_through];
     scene.ground.surface.light = made_up::picture(&format!("light {let_through}"), 1, |_, _| light);

@@ -82,7 +82,7 @@ fn two_leaves() -> Template {
 fn shade_sets_in_without_an_edge_across_a_leaf() {
     let studio = made_up::studio();
     let instances = Arc::new([made_up::instance(0, [0.0; 3], 1.0, 0.0)]);
-    let trees = Trees { templates: vec![Arc::new(two_leaves())], instances };
+    let trees = Trees { templates: vec![Arc::new(two_leaves())], instances, ..Trees::default() };
     let mut scene = made_up::scene(made_up::land(257, 0.5, |_, _| 0.0), [90, 90, 90, 255], [0.2; 3], trees);
     scene.sky.light.sun_direction = Vec3::Y;
     scene.sky.light.sky_irradiance_linear = [0.1; 3];

@@ -43,7 +43,7 @@ fn error(picture: &RgbaImage, truth: &[[f32; 3]]) -> f64 {
 
 /// A plain whose ground varies from texel to texel.
 fn grained() -> Scene {
-    let no_trees = Trees { templates: Vec::new(), instances: [].into() };
+    let no_trees = Trees { templates: Vec::new(), instances: [].into(), ..Trees::default() };
     let mut scene = made_up::scene(made_up::field(65, 2.0, 0.0, 0.0), [128; 4], [0.5, 0.7, 1.0], no_trees);
     for detail in &mut scene.ground.surface.details {
         let grain = |i: u32, j: u32| [(40.0 + 170.0 * made_up::hash(i, j, 5)) as u8; 4];

@@ -33,7 +33,8 @@ fn lakeside(has_tree: bool, has_hill: bool, color: [u8; 4]) -> Scene {
         ..made_up::template("cones", &[0.02, 0.07])
     };
     let instances = if has_tree { vec![made_up::instance(0, TREE_M, 1.5, 0.0)] } else { Vec::new() };
-    let trees = Trees { templates: vec![Arc::new(template)], instances: instances.into() };
+    let trees =
+        Trees { templates: vec![Arc::new(template)], instances: instances.into(), ..Trees::default() };
     let mut scene = made_up::scene(made_up::land(side, spacing_m, height_m), color, [0.5, 0.7, 1.0], trees);
     scene.ground.water_level_m = Some(0.0);
     scene
@@ -95,7 +96,7 @@ fn a_lake_mirrors_land_in_its_colour() {
 #[test]
 #[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
 fn a_far_flat_shore_is_where_the_ring_comes_out_of_the_lake() {
-    let no_trees = Trees { templates: Vec::new(), instances: [].into() };
+    let no_trees = Trees { templates: Vec::new(), instances: [].into(), ..Trees::default() };
     let bed = made_up::land(129, 1.0, |_, _| -3.0);
     let mut scene = made_up::scene(bed, GREEN, [0.5, 0.7, 1.0], no_trees);
     scene.ground.water_level_m = Some(0.0);

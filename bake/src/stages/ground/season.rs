@@ -29,7 +29,7 @@ const TURNING_DEG: [f32; 2] = [75.0, 55.0];
 const FULL_BLOSSOM: f32 = 0.25;
 
 /// Grass that sleeps, from where it is moist to where it is dry.
-const DORMANT: [Rgb; 2] = [[0.090, 0.098, 0.034], [0.265, 0.220, 0.104]];
+const DORMANT: [Rgb; 2] = [[0.112, 0.098, 0.043], [0.268, 0.214, 0.114]];
 /// Young grass.
 const FRESH: [Rgb; 2] = [[0.040, 0.092, 0.016], [0.090, 0.140, 0.032]];
 /// Bare twigs, and bracken that has turned.
@@ -61,7 +61,7 @@ impl Season {
         let last = ramp.len() - 1;
         for (k, color) in ramp[..last].iter_mut().enumerate() {
             let dry = k as f32 / last as f32;
-            let sleeps = 0.62 * self.winter + 0.34 * self.autumn;
+            let sleeps = 0.8 * self.winter + 0.34 * self.autumn;
             *color = lerp_array(*color, lerp_array(DORMANT[0], DORMANT[1], dry), sleeps);
             *color =
                 lerp_array(*color, lerp_array(FRESH[0], FRESH[1], dry), 0.45 * self.spring * (1.0 - dry));

@@ -7,11 +7,13 @@
 //! 3. `stand` gives each its transform: size, stretch, turn, lean, and a foot that is in the ground all around.
 //!
 //! 4. `clearing` takes those away that stand where a person may first stand.
+//! 5. `far` lets the forest go on beyond the field.
 //!
 //! A scene holds at most [`MAX_TREES`]. Where n trees would grow by density and area, n·M/(n+M) are planted: nearly
 //! all of a few, half of 4000, never more than M, and more of them for a higher density.
 
 mod clearing;
+mod far;
 mod scatter;
 mod site;
 mod stage;
@@ -21,10 +23,11 @@ mod tests;
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::{Instance, Landform, SnowMap, TreeFootprint};
+use crate::model::{Landform, Placement, SnowMap, TreeFootprint};
 
 pub use clearing::clear_around;
-pub use stage::{PlacementFiles, PlacementStage};
+pub use far::{MAX_FAR_TREES, place_far};
+pub use stage::{FarTreesStage, PlacementFiles, PlacementStage};
 
 /// The number of trees that a scene approaches but never exceeds.
 pub const MAX_TREES: u32 = 4000;
@@ -64,9 +67,9 @@ pub fn place(
     land: &Landform,
     snow: Option<&SnowMap>,
     trees: &[TreeFootprint],
-) -> Vec<Instance> {
+) -> Placement {
     if trees.is_empty() {
-        return Vec::new();
+        return Placement::default();
     }
     scatter::scatter(params, &site::Site::new(params, land, snow), trees)
 }

@@ -9,13 +9,13 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use crate::model::Instance;
+use crate::model::Placement;
 use crate::noise::hash01;
 use crate::raster::square;
 use crate::seed::{Dice, noise_seed};
 
 use super::site::Site;
-use super::stand::{self, TRUNK_RESERVE_M};
+use super::stand::{self, Foot, TRUNK_RESERVE_M};
 use super::{MAX_TREES, PlacementParams, TreeFootprint};
 
 /// Cells a side of the map of weights.
@@ -33,12 +33,12 @@ const CROWN_CLAIM: f32 = 0.75;
 const PATIENCE: u32 = 500;
 
 /// Plants `trees` at the asked density as far as there is room, in a fixed order.
-pub(super) fn scatter(params: &PlacementParams, site: &Site, trees: &[TreeFootprint]) -> Vec<Instance> {
+pub(super) fn scatter(params: &PlacementParams, site: &Site, trees: &[TreeFootprint]) -> Placement {
     let map = WeightMap::new(site);
     let hectares = map.area_m2 / 10_000.0;
     let wanted = wanted(params.density_per_ha, hectares);
     if wanted == 0 {
-        return Vec::new();
+        return Placement::default();
     }
     let even_m = 0.5 * EVENNESS * SATURATED * (map.area_m2 / wanted as f32).sqrt();
     let largest = trees.iter().map(|tree| claim_m(tree, stand::MAX_SCALE)).fold(even_m, f32::max);
@@ -58,14 +58,16 @@ pub(super) fn scatter(params: &PlacementParams, site: &Site, trees: &[TreeFootpr
         if !taken.is_free(x, z, claim) {
             continue;
         }
-        let Some(instance) = stand::stand(site.land, tree, template as u32, [x, z], scale, &mut dice) else {
+        let foot = |radius_m: f32| Foot::on(site, [x, z], radius_m);
+        let Some(instance) = stand::stand(tree, template as u32, [x, z], scale, &mut dice, foot) else {
             continue;
         };
         taken.take(x, z, claim);
         instances.push(instance);
         misses = 0;
     }
-    instances
+    let per_m2 = instances.len() as f32 / map.area_m2;
+    Placement { instances, per_m2 }
 }
 
 /// How many trees to plant on land that counts as `hectares`.

@@ -34,6 +34,8 @@ const SNOWY: f32 = 0.3;
 const PARCHED: f32 = 0.05;
 /// Density on farmed land, as a part of that beside it.
 const FARMED: f32 = 0.03;
+/// Drained area beyond the field, where it is not known.
+const FLOW_BEYOND: f32 = 0.3;
 /// Density of single trees in a clearing, as a part of that in a grove.
 const SOLITARY: f32 = 0.012;
 
@@ -46,6 +48,17 @@ pub(super) struct Spot {
     pub vigour: f32,
 }
 
+/// What trees find at a point.
+struct Soil {
+    /// Tangent.
+    slope: f32,
+    /// As in [`Landform::flow`].
+    flow: f32,
+    /// As in [`Landform::paddies`].
+    farmed: f32,
+    is_snowy: bool,
+}
+
 /// The land as trees see it.
 pub(super) struct Site<'a> {
     pub land: &'a Landform,
@@ -55,7 +68,8 @@ pub(super) struct Site<'a> {
     slopes: [f32; 2],
     /// Altitudes where trees begin to get fewer and where they end, in metres.
     tree_line_m: [f32; 2],
-    shore_m: f32,
+    /// Altitude where trees begin by the water.
+    pub shore_m: f32,
     climate: Climate,
     hardiness_c: f32,
     snow: Option<&'a SnowMap>,
@@ -97,20 +111,34 @@ impl<'a> Site<'a> {
         if x_m.abs().max(z_m.abs()) > self.half_m {
             return None;
         }
-        let y = self.land.field.height_m(x_m, z_m);
+        let y_m = self.land.field.height_m(x_m, z_m);
+        self.grows([x_m, y_m, z_m], || Soil {
+            slope: self.slope(x_m, z_m),
+            flow: self.flow(x_m, z_m),
+            farmed: self.land.farmed(self.sample(x_m, z_m)),
+            is_snowy: self.snow.is_some_and(|snow| snow.at(x_m, z_m) > SNOWY),
+        })
+    }
+
+    /// The same on the land beyond the field, where it is so high and so steep (as a tangent).
+    pub fn beyond(&self, place_m: [f32; 3], slope: f32) -> Option<Spot> {
+        let is_snowy = place_m[1] > self.land.snow_line_m;
+        self.grows(place_m, || Soil { slope, flow: FLOW_BEYOND, farmed: 0.0, is_snowy })
+    }
+
+    fn grows(&self, [x_m, y, z_m]: [f32; 3], soil: impl Fn() -> Soil) -> Option<Spot> {
         if y < self.shore_m || y >= self.tree_line_m[1] {
             return None;
         }
-        let gentle = 1.0 - smoothstep(self.slopes[0], self.slopes[1], self.slope(x_m, z_m));
-        let flow = self.flow(x_m, z_m);
+        let Soil { slope, flow, farmed, is_snowy } = soil();
+        let gentle = 1.0 - smoothstep(self.slopes[0], self.slopes[1], slope);
         let dry = 1.0 - smoothstep(EDGE_FLOW, MAX_FLOW, flow);
         let mild = 1.0 - smoothstep(self.tree_line_m[0], self.tree_line_m[1], y);
         let limits = gentle * dry * mild;
         if limits <= 0.0 {
             return None;
         }
-        let cold = self.cold([x_m, y, z_m])?;
-        let farmed = self.land.farmed(self.sample(x_m, z_m));
+        let cold = self.cold(y, is_snowy)?;
         let limits = limits * lerp(1.0, CHILLED, cold) * self.watered(y, flow) * lerp(1.0, FARMED, farmed);
         let grove = self.grove(x_m, z_m);
         let weight = limits * (1.0 - self.clustering * (1.0 - SOLITARY) * (1.0 - grove));
@@ -119,9 +147,9 @@ impl<'a> Site<'a> {
     }
 
     /// 0 where it is as warm as these trees need, 1 where it is far too cold; `None` on snow that they do not bear.
-    fn cold(&self, [x_m, y_m, z_m]: [f32; 3]) -> Option<f32> {
+    fn cold(&self, y_m: f32, is_snowy: bool) -> Option<f32> {
         let air_c = self.climate.at_c(y_m);
-        if self.hardiness_c > air_c.min(SNOW_C) && self.snow.is_some_and(|snow| snow.at(x_m, z_m) > SNOWY) {
+        if is_snowy && self.hardiness_c > air_c.min(SNOW_C) {
             return None;
         }
         Some(smoothstep(self.hardiness_c, self.hardiness_c - CHILL_C, air_c))

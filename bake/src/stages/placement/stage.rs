@@ -3,9 +3,9 @@
 use genescape_schema::scene::write_instances;
 use serde::{Deserialize, Serialize};
 
-use super::{PlacementParams, TreeFootprint, clear_around, place};
-use crate::graph::{Context, File, Input, Stage, StageError};
-use crate::model::{Landform, Placement};
+use super::{PlacementParams, TreeFootprint, clear_around, place, place_far};
+use crate::graph::{Context, File, Input, Stage, StageError, Stored};
+use crate::model::{Landform, Mesh, Placement};
 use crate::stages::ground::snow_map;
 
 /// Placement genes, landform, trees → where trees stand: none where a person may first stand.
@@ -25,7 +25,7 @@ pub struct PlacementFiles {
 
 impl Stage for PlacementStage {
     const NAME: &'static str = "placement";
-    const VERSION: u32 = 8;
+    const VERSION: u32 = 9;
     type Output = PlacementFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<PlacementFiles, StageError> {
@@ -33,9 +33,35 @@ impl Stage for PlacementStage {
         let footprints = footprints.collect::<Result<Vec<_>, StageError>>()?;
         let landform = context.get(&self.landform)?;
         let snow = snow_map(self.params.terrain_seed, &landform);
-        let mut instances = place(&self.params, &landform, snow.as_ref(), &footprints);
-        clear_around(&landform, &mut instances);
-        let file = context.file("bin", write_instances(&instances));
-        Ok(PlacementFiles { placement: Placement { instances }, instances: file })
+        let mut placement = place(&self.params, &landform, snow.as_ref(), &footprints);
+        clear_around(&landform, &mut placement.instances);
+        let file = context.file("bin", write_instances(&placement.instances));
+        Ok(PlacementFiles { placement, instances: file })
+    }
+}
+
+/// Placement genes, landform, its ring, trees → the binary data of `GSC_instances` of those beyond the field.
+#[derive(Serialize)]
+pub struct FarTreesStage {
+    pub params: PlacementParams,
+    pub landform: Input<Landform>,
+    pub ring: Input<Stored<Mesh>>,
+    pub footprints: Vec<Input<TreeFootprint>>,
+    /// How many stand on a square metre of the field where they grow best.
+    pub per_m2: Input<f32>,
+}
+
+impl Stage for FarTreesStage {
+    const NAME: &'static str = "far trees";
+    const VERSION: u32 = 1;
+    type Output = File;
+
+    fn run(&self, context: &Context<'_>) -> Result<File, StageError> {
+        let footprints = self.footprints.iter().map(|footprint| Ok(*context.get(footprint)?));
+        let footprints = footprints.collect::<Result<Vec<_>, StageError>>()?;
+        let (landform, ring) = (context.get(&self.landform)?, context.load(&*context.get(&self.ring)?)?);
+        let per_m2 = *context.get(&self.per_m2)?;
+        let trees = place_far(&self.params, &landform, &ring, &footprints, per_m2);
+        Ok(context.file("bin", write_instances(&trees)))
     }
 }

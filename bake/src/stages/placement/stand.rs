@@ -11,7 +11,7 @@ use crate::model::{Instance, Landform};
 use crate::seed::Dice;
 
 use super::TreeFootprint;
-use super::site::WATER_MARGIN_M;
+use super::site::Site;
 
 /// The largest size that `scale` gives.
 pub(super) const MAX_SCALE: f32 = 1.5;
@@ -49,14 +49,15 @@ pub(super) fn trunk_reach_m(tree: &TreeFootprint, scale: f32) -> f32 {
     TAPER * tree.trunk_radius_m * scale * (1.0 + STRETCH) + 2.0 * TRUNK_RESERVE_M
 }
 
-/// Stands a tree at (x, z); `None` where it would be buried on one side or wet on the other.
+/// Stands a tree at (x, z), where `foot` tells the ground within so many metres; `None` where it would be buried on one side
+/// or wet on the other.
 pub(super) fn stand(
-    land: &Landform,
     tree: &TreeFootprint,
     template: u32,
     [x, z]: [f32; 2],
     scale: f32,
     dice: &mut Dice,
+    foot: impl Fn(f32) -> Foot,
 ) -> Option<Instance> {
     let (up, across, along) =
         (1.0 + STRETCH_UP * dice.around_zero(), 1.0, 1.0 + STRETCH * dice.around_zero());
@@ -69,16 +70,16 @@ pub(super) fn stand(
     let linear = shear * turn(phi) * stretch * turn(theta);
 
     let wide = scale * across.max(along);
-    let foot = foot(land, [x, z], FOOT * tree.trunk_radius_m * wide);
-    let sunk = foot.centre_m - foot.y_m;
-    let shore_m = land.water_level_m.map_or(f32::NEG_INFINITY, |level| level + WATER_MARGIN_M);
+    let foot = foot(FOOT * tree.trunk_radius_m * wide);
+    let foot_m = foot.lowest_m - SUNK_M;
+    let sunk = foot.centre_m - foot_m;
     let buried = sunk > scale * up * (BURIED * tree.height_m + tree.root_depth_m) + SUNK_M;
-    if buried || foot.lowest_m < shore_m {
+    if buried || foot.lowest_m < foot.shore_m {
         return None;
     }
     Some(Instance {
         template,
-        world_from_tree: rows(linear, Vec3::new(x, foot.y_m, z)),
+        world_from_tree: rows(linear, Vec3::new(x, foot_m, z)),
         trunk_cylinder_m: cylinder([x, z], TAPER * tree.trunk_radius_m * wide, lean, sunk),
     })
 }
@@ -90,21 +91,26 @@ fn cylinder([x, z]: [f32; 2], radius_m: f32, lean: Vec2, sunk_m: f32) -> [f32; 3
 }
 
 /// The ground around a trunk.
-struct Foot {
-    centre_m: f32,
-    lowest_m: f32,
-    /// Where the foot goes.
-    y_m: f32,
+pub(super) struct Foot {
+    pub centre_m: f32,
+    pub lowest_m: f32,
+    /// How low trees stand by the water.
+    pub shore_m: f32,
 }
 
-fn foot(land: &Landform, [x, z]: [f32; 2], radius_m: f32) -> Foot {
-    let centre_m = land.field.height_m(x, z);
-    let around = RING.map(|[dx, dz]| land.field.height_m(x + dx * radius_m, z + dz * radius_m));
-    let low = around.iter().fold(centre_m, |low, &y| low.min(y)).min(lowest_sample(land, [x, z], radius_m));
-    let step = (0..around.len()).map(|k| (around[k] - around[(k + 1) % around.len()]).abs());
-    // A gully between two points, with sides as steep as any beside it, is half a step deep.
-    let lowest_m = low - 0.5 * step.fold(0.0, f32::max);
-    Foot { centre_m, lowest_m, y_m: lowest_m - SUNK_M }
+impl Foot {
+    /// On the field.
+    pub fn on(site: &Site, [x, z]: [f32; 2], radius_m: f32) -> Self {
+        let land = site.land;
+        let centre_m = land.field.height_m(x, z);
+        let around = RING.map(|[dx, dz]| land.field.height_m(x + dx * radius_m, z + dz * radius_m));
+        let low =
+            around.iter().fold(centre_m, |low, &y| low.min(y)).min(lowest_sample(land, [x, z], radius_m));
+        let step = (0..around.len()).map(|k| (around[k] - around[(k + 1) % around.len()]).abs());
+        // A gully between two points, with sides as steep as any beside it, is half a step deep.
+        let lowest_m = low - 0.5 * step.fold(0.0, f32::max);
+        Self { centre_m, lowest_m, shore_m: site.shore_m }
+    }
 }
 
 /// The lowest sample within the radius, along x and z. A bilinear height has its least value over a disc either at

@@ -11,6 +11,15 @@ use crate::stages::ground::{self, GroundParams};
 use super::site::{MAX_FLOW, Site, WATER_MARGIN_M};
 use super::{EDGE_MARGIN_M, MAX_TREES, PlacementParams, TreeFootprint, clear_around, place};
 
+fn planted(
+    params: &PlacementParams,
+    land: &Landform,
+    snow: Option<&SnowMap>,
+    trees: &[TreeFootprint],
+) -> Vec<Instance> {
+    place(params, land, snow, trees).instances
+}
+
 /// Rolling land 1024 m wide with one river from north to south, and a lake if `water` is above 0.
 fn land(seed: u32, relief_m: f32, water: f32, side: u32) -> Landform {
     let spacing_m = 1024.0 / (side - 1) as f32;
@@ -96,7 +105,7 @@ proptest! {
 
     #[test]
     fn nobody_floats_drowns_or_is_buried(params in params(), land in lands(), trees in trees()) {
-        for instance in place(&params, &land, None, &trees) {
+        for instance in planted(&params, &land, None, &trees) {
             let tree = trees[instance.template as usize];
             let (foot, size) = (origin(&instance), linear(&instance).y_axis.y);
             for p in ring(&instance, tree.trunk_radius_m, 0.0) {
@@ -115,7 +124,7 @@ proptest! {
         let [low, high] = land.field.range_m();
         let base = land.water_level_m.map_or(low, |level| level + WATER_MARGIN_M).min(high);
         let half = 0.5 * land.field.extent_m() - EDGE_MARGIN_M;
-        let mut instances = place(&params, &land, None, &trees);
+        let mut instances = planted(&params, &land, None, &trees);
         prop_assert!(instances.len() < MAX_TREES as usize);
         for instance in &instances {
             let p = origin(instance);
@@ -137,7 +146,7 @@ proptest! {
 
     #[test]
     fn trunks_never_meet_and_cylinders_hold_them(params in params(), land in lands(), trees in trees()) {
-        let mut instances = place(&params, &land, None, &trees);
+        let mut instances = planted(&params, &land, None, &trees);
         for instance in &instances {
             let [x, z, radius] = instance.trunk_cylinder_m;
             let foot = origin(instance);
@@ -164,7 +173,7 @@ proptest! {
     fn transforms_are_affine_in_earnest_and_well_conditioned(params in params(), trees in trees()) {
         let land = land(3, 60.0, 0.0, 129);
         let mut skewed = 0;
-        let instances = place(&params, &land, None, &trees);
+        let instances = planted(&params, &land, None, &trees);
         for instance in &instances {
             let m = linear(instance);
             prop_assert!(m.is_finite() && m.determinant() > 0.0);
@@ -180,17 +189,17 @@ proptest! {
 
     #[test]
     fn same_genes_same_forest_another_seed_another(params in params(), land in lands(), trees in trees()) {
-        let first = place(&params, &land, None, &trees);
-        prop_assert_eq!(&first, &place(&params, &land, None, &trees));
+        let first = planted(&params, &land, None, &trees);
+        prop_assert_eq!(&first, &planted(&params, &land, None, &trees));
         let other = PlacementParams { tree_seed: params.tree_seed ^ 1, ..params };
-        prop_assert!(first.is_empty() || first != place(&other, &land, None, &trees));
+        prop_assert!(first.is_empty() || first != planted(&other, &land, None, &trees));
     }
 }
 
 #[test]
 fn land_that_is_a_little_different_has_nearly_the_same_trees() {
     let feet = |land: &Landform| {
-        let made = place(&PlacementParams { clustering: 0.3, ..usual() }, land, None, &[OAK]);
+        let made = planted(&PlacementParams { clustering: 0.3, ..usual() }, land, None, &[OAK]);
         made.iter().map(|tree| origin(tree).with_y(0.0)).collect::<Vec<Vec3>>()
     };
     let (coarse, fine) = (feet(&land(3, 60.0, 0.1, 129)), feet(&land(3, 60.0, 0.1, 513)));
@@ -199,7 +208,7 @@ fn land_that_is_a_little_different_has_nearly_the_same_trees() {
     assert!(shared * 10 > coarse.len() * 7, "{shared} of {} and {}", coarse.len(), fine.len());
 }
 
-const OAK: TreeFootprint = TreeFootprint {
+pub(super) const OAK: TreeFootprint = TreeFootprint {
     height_m: 12.0,
     trunk_radius_m: 0.3,
     crown_radius_m: 4.0,
@@ -207,7 +216,7 @@ const OAK: TreeFootprint = TreeFootprint {
     clear_trunk: 0.2,
 };
 
-fn usual() -> PlacementParams {
+pub(super) fn usual() -> PlacementParams {
     PlacementParams {
         tree_seed: 7,
         height_variation: 0.2,
@@ -226,7 +235,7 @@ fn usual() -> PlacementParams {
 fn hundreds_to_thousands_and_more_where_more_are_asked_for() {
     let land = land(3, 60.0, 0.1, 257);
     let count =
-        |density_per_ha| place(&PlacementParams { density_per_ha, ..usual() }, &land, None, &[OAK]).len();
+        |density_per_ha| planted(&PlacementParams { density_per_ha, ..usual() }, &land, None, &[OAK]).len();
     // However few are asked for, some are in sight from anywhere.
     let mut before = count(5.0);
     assert!((500..700).contains(&before), "{before}");
@@ -255,7 +264,7 @@ fn clustering_goes_from_even_to_groves() {
     land.flow.fill(0.0);
     let index = |clustering| {
         let params = PlacementParams { clustering, density_per_ha: 8.0, altitude_limit: 1.0, ..usual() };
-        clark_evans(&place(&params, &land, None, &[OAK]))
+        clark_evans(&planted(&params, &land, None, &[OAK]))
     };
     let (even, half, groves) = (index(0.0), index(0.5), index(1.0));
     // Even groves stay above 1 themselves: the index is of both. What counts is how far it falls.
@@ -268,7 +277,7 @@ fn trees_are_smaller_at_the_tree_line() {
     let params = PlacementParams { clustering: 0.0, altitude_limit: 0.6, ..usual() };
     let [low, high] = land.field.range_m();
     let (mut near, mut below) = (Vec::new(), Vec::new());
-    for instance in place(&params, &land, None, &[OAK]) {
+    for instance in planted(&params, &land, None, &[OAK]) {
         let altitude = (origin(&instance).y - low) / (high - low);
         let size = libm::cbrtf(linear(&instance).determinant());
         if altitude > 0.56 {
@@ -284,9 +293,9 @@ fn trees_are_smaller_at_the_tree_line() {
 #[test]
 fn hopeless_land_and_no_templates_give_no_trees() {
     let mut drowned = land(1, 50.0, 0.0, 129);
-    assert!(place(&usual(), &drowned, None, &[]).is_empty());
+    assert!(planted(&usual(), &drowned, None, &[]).is_empty());
     drowned.water_level_m = Some(1000.0);
-    assert!(place(&usual(), &drowned, None, &[OAK]).is_empty());
+    assert!(planted(&usual(), &drowned, None, &[OAK]).is_empty());
 }
 
 #[test]
@@ -297,7 +306,7 @@ fn only_hardy_trees_stand_on_snow() {
     let snow = SnowMap { side: 129, extent_m: 1024.0, parts };
     let on_snow = |hardiness_c: f32, temperature_c: f32| {
         let params = PlacementParams { hardiness_c, temperature_c, ..usual() };
-        let instances = place(&params, &land, Some(&snow), &[OAK]);
+        let instances = planted(&params, &land, Some(&snow), &[OAK]);
         let on_snow = instances.iter().filter(|tree| snow.at(origin(tree).x, origin(tree).z) > 0.3).count();
         (on_snow, instances.len())
     };
@@ -316,7 +325,7 @@ fn trees_in_the_cold_are_few_and_small() {
     let land = land(3, 60.0, 0.0, 257);
     let forest = |temperature_c: f32| {
         let params = PlacementParams { hardiness_c: 10.0, temperature_c, density_per_ha: 150.0, ..usual() };
-        let made = place(&params, &land, None, &[OAK]);
+        let made = planted(&params, &land, None, &[OAK]);
         let size = made.iter().map(|tree| libm::cbrtf(linear(tree).determinant())).sum::<f32>();
         (made.len() as f32, size / made.len() as f32)
     };
@@ -331,7 +340,7 @@ fn trees_of_a_desert_stand_by_water() {
     let land = land(4, 60.0, 0.2, 257);
     let mean_flow = |rain_mm: f32| {
         let params = PlacementParams { rain_mm, temperature_c: 25.0, clustering: 0.0, ..usual() };
-        let made = place(&params, &land, None, &[OAK]);
+        let made = planted(&params, &land, None, &[OAK]);
         let shore = land.water_level_m.expect("a lake") + 6.0;
         let site = Site::new(&params, &land, None);
         let near =
@@ -355,14 +364,14 @@ fn no_tree_that_needs_warmth_stands_where_the_ground_is_white() {
     let white = ground::maps(&genes, &ground::Woods::none(ground::Season::default()), &land, 1024).weights;
     let snow = ground::snow_map(genes.terrain_seed, &land);
     let params = PlacementParams { terrain_seed: 5, hardiness_c: 2.0, altitude_limit: 1.0, ..usual() };
-    let made = place(&params, &land, snow.as_ref(), &[OAK]);
+    let made = planted(&params, &land, snow.as_ref(), &[OAK]);
     assert!(made.len() > 100, "{}", made.len());
     for tree in &made {
         let [x, z] = [origin(tree).x, origin(tree).z].map(|m| (m + 512.0) as u32);
         let part = white.pixel(x, z)[2];
         assert!(part < 150, "{part}/255 of snow at {x}, {z}");
     }
-    let hardy = place(&PlacementParams { hardiness_c: -10.0, ..params }, &land, snow.as_ref(), &[OAK]);
+    let hardy = planted(&PlacementParams { hardiness_c: -10.0, ..params }, &land, snow.as_ref(), &[OAK]);
     let in_white = hardy.iter().filter(|tree| origin(tree).y > 110.0).count();
     assert!(in_white > 20, "{in_white}");
 }
@@ -373,7 +382,7 @@ fn hardly_a_tree_stands_on_farmed_land() {
     let farmed = |k: usize| if k % 257 < 128 { 1.0 } else { 0.0 };
     let half = Landform { paddies: Some((0..257 * 257).map(farmed).collect()), ..wild.clone() };
     let west = |land: &Landform| {
-        let trees = place(&PlacementParams { density_per_ha: 60.0, ..usual() }, land, None, &[OAK]);
+        let trees = planted(&PlacementParams { density_per_ha: 60.0, ..usual() }, land, None, &[OAK]);
         let [west, east] = [true, false]
             .map(|is_west| trees.iter().filter(|tree| (tree.world_from_tree[0][3] < 0.0) == is_west).count());
         west as f32 / east as f32

@@ -282,7 +282,7 @@ impl Drawn {
         let land = landform(&genome.read(space).expect("genes"), 129);
         let placement: PlacementParams = genome.read(space).expect("genes");
         let snow = snow_map(placement.terrain_seed, &land);
-        let mut trees = place(&placement, &land, snow.as_ref(), &[TREE]);
+        let mut trees = place(&placement, &land, snow.as_ref(), &[TREE]).instances;
         clear_around(&land, &mut trees);
         let look = look(&land, &trees, &sky::light(&genome.read(space).expect("genes")));
         Self { land, trees, look }

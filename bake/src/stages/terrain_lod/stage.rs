@@ -22,6 +22,8 @@ pub struct TerrainStage {
 pub struct TerrainFiles {
     /// The adaptive mesh of the field, for [`ground::ForegroundStage`].
     pub near: Stored<Mesh>,
+    /// The ring of land around it, places and triangles alone, for [`super::super::placement::FarTreesStage`].
+    pub ring: Stored<Mesh>,
     /// The land as triangles, glTF.
     pub mesh: File,
     /// `TerrainLod` as bytes.
@@ -32,7 +34,7 @@ pub struct TerrainFiles {
 
 impl Stage for TerrainStage {
     const NAME: &'static str = "terrain";
-    const VERSION: u32 = 14;
+    const VERSION: u32 = 15;
     type Output = TerrainFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<TerrainFiles, StageError> {
@@ -42,14 +44,16 @@ impl Stage for TerrainStage {
         let triangles = || -> Result<_, StageError> {
             let mesh = mesh(&landform, default_error_m(field), ground::BLOCK_M, &colors);
             let glb = terrain_glb(&mesh)?;
-            Ok((context.store(mesh.near), context.file("glb", glb)))
+            let Mesh { positions, parts, .. } = mesh.apron;
+            let ring = Mesh { positions, parts, ..Mesh::default() };
+            Ok((context.store(mesh.near), context.store(ring), context.file("glb", glb)))
         };
         let ((triangles, lod), heights) = join(
             || join(triangles, || context.file("bin", lod(field).to_bytes())),
             || context.file("png", heights_png(field)),
         );
-        let (near, mesh) = triangles?;
-        Ok(TerrainFiles { near, mesh, lod, heights })
+        let (near, ring, mesh) = triangles?;
+        Ok(TerrainFiles { near, ring, mesh, lod, heights })
     }
 }
 
