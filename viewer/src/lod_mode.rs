@@ -32,7 +32,7 @@ pub enum TreeLodMode {
     Simple,
     /// By error, without morphing between levels
     Discrete,
-    /// Always the finest mesh
+    /// Always the finest mesh, on the field
     Off,
 }
 

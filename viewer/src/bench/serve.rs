@@ -23,7 +23,7 @@ use crate::say;
 use crate::view::View;
 
 pub(super) fn run(headless: &Headless, path: &Path, args: &BenchArgs) -> Result<()> {
-    let scene = headless.read(path)?;
+    let scene = headless.read(path)?.without_far_trees();
     let cameras = camera_path(&scene, args.steps);
     let uploaded = headless.upload(&scene)?;
     let sky = &scene.sky.light;

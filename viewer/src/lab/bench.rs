@@ -57,7 +57,7 @@ impl Bench {
     }
 
     pub fn read(&self, scene: TestScene) -> Result<Scene> {
-        self.headless.read(self.scenes.path(scene))
+        Ok(self.headless.read(self.scenes.path(scene))?.without_far_trees())
     }
 
     /// A run for each scheme of an experiment, all of one scene on the device.

@@ -42,14 +42,13 @@ pub struct Shown {
 
 /// All levels of a template, drawn.
 pub fn chain(headless: &Headless, scene: &Scene, tree: Instance, template: &Template) -> Result<Vec<Shown>> {
-    let mut alone = scene.clone();
+    let mut alone = scene.clone().without_far_trees();
     // Pictures would take over from coarse levels, and coarse levels cast shadows on the others.
     let blob = format!("{} of meshes alone", template.blob);
     let mut meshes = Template { impostor: None, blob, ..template.clone() };
     meshes.levels.iter_mut().for_each(|level| level.error_m *= EXAGGERATED);
     alone.trees.templates = vec![Arc::new(meshes)];
     alone.trees.instances = Arc::new([Instance { template: 0, ..tree }]);
-    alone.trees.far = Arc::default();
     let mut view = headless.view(headless.upload(&alone)?, [SIDE_PX, SIDE_PX]);
     let (camera, away_m) = before(scene, &tree, template);
     let error_px_per_m = EXAGGERATED * camera.focal_px(SIDE_PX as f32) * tree.max_scale() / away_m;

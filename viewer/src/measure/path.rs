@@ -47,8 +47,7 @@ pub fn fly_out_path(scene: &Scene, steps: u32) -> Vec<Camera> {
 /// spread evenly over the dry land (the additive recurrence of Roberts 2018).
 pub fn forest(scene: &Scene, count: usize) -> Scene {
     let known = &scene.trees.instances;
-    let mut scene_with = scene.clone();
-    scene_with.trees.far = Default::default();
+    let mut scene_with = scene.clone().without_far_trees();
     if known.is_empty() || count <= known.len() {
         let stride = |i: usize| known[i * known.len() / count];
         scene_with.trees.instances = (0..count.min(known.len())).map(stride).collect();

@@ -29,6 +29,7 @@ pub const SHADER: Shader = Shader {
         ("MIN_DISTANCE_M", MIN_DISTANCE_M as f64),
         ("STEEP", STEEP[0] as f64),
         ("TOO_STEEP", STEEP[1] as f64),
+        ("QUALITY", TreeLodMode::Quality as u32 as f64),
         ("SIMPLE", TreeLodMode::Simple as u32 as f64),
         ("DISCRETE", TreeLodMode::Discrete as u32 as f64),
         ("OFF", TreeLodMode::Off as u32 as f64),
@@ -59,6 +60,8 @@ pub struct CullUniform {
     pub fixed_error_m: f32,
     pub planes_used: u32,
     pub first: u32,
+    pub field: u32,
+    pub unused: [u32; 3],
 }
 
 impl CullUniform {
@@ -108,6 +111,7 @@ impl CullUniform {
             templates: set.template_count,
             levels: set.level_count,
             mesh_draws: set.mesh_draws,
+            field: set.field_count,
             ..Default::default()
         }
     }

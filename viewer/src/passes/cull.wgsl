@@ -6,7 +6,8 @@ override GROUP: u32;
 override MAX_GROUPS: u32;
 // What is nearer is drawn as from this far.
 override MIN_DISTANCE_M: f32;
-// LOD modes that differ from control by quality.
+// LOD modes.
+override QUALITY: u32;
 override SIMPLE: u32;
 override DISCRETE: u32;
 override OFF: u32;
@@ -36,6 +37,9 @@ struct Cull {
     // 0 draws all of them, wherever they stand.
     planes_used: u32,
     first: u32,
+    // Where the trees of the field end; those beyond follow.
+    field: u32,
+    unused: array<u32, 3>,
 }
 
 struct Template {
@@ -95,13 +99,13 @@ struct Command {
 @group(1) @binding(5) var<storage, read_write> commands: array<Command>;
 
 // λ of a tree whose nearest part is `distance` away. The Rust twin is `lod::tree::lod_number`, and a test compares them.
-fn lod_number(template_index: u32, scale: f32, distance: f32) -> f32 {
+fn lod_number(mode: u32, template_index: u32, scale: f32, distance: f32) -> f32 {
     let last = f32(templates[template_index].levels - 1u);
-    if (cull.lod_mode == OFF) {
+    if (mode == OFF) {
         return 0.0;
     }
     let allowed = (cull.error_per_m * distance + cull.fixed_error_m) / scale;
-    if (cull.lod_mode == SIMPLE) {
+    if (mode == SIMPLE) {
         let simple = templates[template_index].simple_error;
         if (!(allowed > simple)) {
             return 0.0;
@@ -120,7 +124,7 @@ fn lod_number(template_index: u32, scale: f32, distance: f32) -> f32 {
             break;
         }
     }
-    if (cull.lod_mode == DISCRETE) {
+    if (mode == DISCRETE) {
         return floor(lambda);
     }
     return lambda;
@@ -128,16 +132,16 @@ fn lod_number(template_index: u32, scale: f32, distance: f32) -> f32 {
 
 // The share of a tree that its picture shows, the rest being its mesh: none up to the error of the picture, all from twice
 // that on, and none from steeply above or below. Its twin is `lod::tree::pictured`.
-fn pictured(template_index: u32, scale: f32, distance: f32, steepness: f32) -> f32 {
+fn pictured(mode: u32, template_index: u32, scale: f32, distance: f32, steepness: f32) -> f32 {
     let times = cull.error_per_m * distance / (scale * templates[template_index].picture_error);
     let share = clamp(log2(max(times, 1.0)), 0.0, 1.0) * (1.0 - smoothstep(STEEP, TOO_STEEP, steepness));
-    if (cull.lod_mode == OFF) {
+    if (mode == OFF) {
         return 0.0;
     }
-    if (cull.lod_mode == PICTURES) {
+    if (mode == PICTURES) {
         return 1.0;
     }
-    return select(share, step(0.5, share), cull.lod_mode == DISCRETE);
+    return select(share, step(0.5, share), mode == DISCRETE);
 }
 
 fn list(template_index: u32, level: u32) -> u32 {
@@ -178,10 +182,12 @@ fn choose(@builtin(global_invocation_id) id: vec3u) {
         }
     }
     let distance = max(length(center - cull.eye) - radius, MIN_DISTANCE_M);
-    let lambda = lod_number(template_index, scale, distance);
+    // Beyond the field nobody looks at a tree so closely that its finest mesh would be worth what thousands of them cost.
+    let mode = select(cull.lod_mode, QUALITY, cull.lod_mode == OFF && index >= cull.field);
+    let lambda = lod_number(mode, template_index, scale, distance);
     let to_eye = cull.eye - center;
     let steepness = abs(to_eye.y) / max(length(to_eye), 1e-6);
-    let share = in_steps(pictured(template_index, scale, distance, steepness));
+    let share = in_steps(pictured(mode, template_index, scale, distance, steepness));
     if (share < 1.0) {
         let level = u32(lambda);
         let next = level + 1u;

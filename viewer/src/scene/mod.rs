@@ -39,3 +39,11 @@ pub struct Scene {
     /// How good it looks from elsewhere, if the file says so.
     pub lookouts: Option<Arc<Lookouts>>,
 }
+
+impl Scene {
+    /// Without trees beyond the field: as other programs show it, and as the thesis's experiments have it.
+    pub fn without_far_trees(mut self) -> Self {
+        self.trees.far = Arc::default();
+        self
+    }
+}

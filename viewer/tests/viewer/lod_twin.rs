@@ -85,8 +85,9 @@ fn forest(rng: &mut Pcg32) -> Forest {
         instances.push(made_up::instance(kind, at, scale, rng.random_range(0.0..6.0f32)));
         scales.push(scale);
     }
+    let far = instances.split_off(rng.random_range(0..=instances.len()));
     Forest {
-        trees: Trees { templates, instances: instances.into(), ..Trees::default() },
+        trees: Trees { templates, instances: instances.into(), far: far.into() },
         errors_m,
         scales,
         picture_error_m,
@@ -95,7 +96,8 @@ fn forest(rng: &mut Pcg32) -> Forest {
 
 /// Anywhere, or inside a crown.
 fn eye(rng: &mut Pcg32, trees: &Trees) -> Camera {
-    let crown = trees.instances[rng.random_range(0..trees.instances.len())].world_from_tree;
+    let all: Vec<_> = trees.all().collect();
+    let crown = all[rng.random_range(0..all.len())].world_from_tree;
     let inside = rng.random_range(0..4) == 0;
     let mut place = |m: f32| rng.random_range(-m..m);
     let near = Vec3::new(place(0.5), place(0.5) + 3.0, place(0.5)) + Vec3::from(crown.map(|row| row[3]));
@@ -131,6 +133,7 @@ fn chosen(
     let commands: Vec<DrawCommand> = bytemuck::pod_collect_to_vec(&fetch(gpu, &lists.commands));
     let (buckets, kinds) = (lists.buckets as usize, set.template_count as usize);
     let meshes = buckets * set.mesh_draws as usize;
+    let all: Vec<_> = forest.trees.all().collect();
     let mut shown: Vec<Option<Shown>> = vec![None; forest.scales.len()];
     for (index, (command, before)) in commands.iter().zip(&set.commands).enumerate() {
         if index < meshes {
@@ -147,7 +150,7 @@ fn chosen(
             let lambda = f32::from_bits(lambda);
             let [from, to, picture] = [0, 10, 20].map(|bit| (part >> bit & 1023) as f32 / 1023.0);
             assert!(is_picture || lambda as usize == level, "a tree is listed at its level");
-            let is_kind = forest.trees.instances[tree as usize].template as usize == kind;
+            let is_kind = all[tree as usize].template as usize == kind;
             assert!(is_picture || is_kind, "and under its kind");
             let one = shown[tree as usize].get_or_insert(Shown {
                 lambda,
@@ -205,8 +208,9 @@ fn compare(studio: &Headless, seed: u64) -> [usize; 4] {
         let options = Options { tree_lod: mode, tree_error_px: control.error_px, ..Options::default() };
         let uniform = CullUniform::for_view(set, &frustum, camera.position_m, control.focal_px, &options);
         let device = chosen(studio, &buffers, &uniform, &forest);
+        let all: Vec<_> = forest.trees.all().collect();
         for (tree, shown) in device.into_iter().enumerate() {
-            let (instance, scale) = (&forest.trees.instances[tree], forest.scales[tree]);
+            let (instance, scale) = (all[tree], forest.scales[tree]);
             let template = &forest.trees.templates[instance.template as usize];
             let middle = Vec3::from(template.center_m).extend(1.0);
             let center = Vec3::from(instance.world_from_tree.map(|row| glam::Vec4::from(row).dot(middle)));
@@ -229,6 +233,10 @@ fn compare(studio: &Headless, seed: u64) -> [usize; 4] {
                 mesh == 0.0 || (bark + picture - 1.0).abs() < 2e-3,
                 "tree {tree}: bark {bark}, {picture}"
             );
+            // Beyond the field, trees have levels in any mode.
+            let is_far = tree >= forest.trees.instances.len();
+            let mode = if is_far && mode == TreeLodMode::Off { TreeLodMode::Quality } else { mode };
+            let control = Control { mode, ..control };
             let errors_m = &forest.errors_m[instance.template as usize];
             let away_m = distance_m(center.distance(camera.position_m), radius_m);
             let number = |control: &Control, away_m: f32| {

@@ -122,6 +122,8 @@ fn uniforms_are_laid_out_alike() {
             fixed_error_m,
             planes_used,
             first,
+            field,
+            unused,
         }
     );
     same!(["trees", "shadow"], "Material", MaterialUniform { factor, alpha_cutoff, has_normal, unused });

@@ -102,15 +102,13 @@ impl Drainage {
                 self.rank[k as usize] = self.order.len() as u32;
                 self.order.push(k);
                 let level = self.filled[k as usize];
-                for (_, m) in neighbours(n, k as usize) {
-                    if seen[m] {
-                        continue;
+                for_neighbours(n, k as usize, |_, m| {
+                    if !std::mem::replace(&mut seen[m], true) {
+                        self.receiver[m] = k;
+                        self.filled[m] = self.filled[m].max(level);
+                        queue[bucket(self.filled[m]).max(at)].push(m as u32);
                     }
-                    seen[m] = true;
-                    self.receiver[m] = k;
-                    self.filled[m] = self.filled[m].max(level);
-                    queue[bucket(self.filled[m]).max(at)].push(m as u32);
-                }
+                });
             }
         }
     }
@@ -122,10 +120,10 @@ impl Drainage {
                 continue;
             }
             let mut steepest = 0.0;
-            for (way, m) in neighbours(self.side, k) {
+            for_neighbours(self.side, k, |way, m| {
                 let drop = self.filled[k] - self.filled[m];
                 if drop <= 0.0 || self.rank[m] >= self.rank[k] {
-                    continue;
+                    return;
                 }
                 let chance = 0.7 + 0.6 * hash01(seed, k as i32, way as i32, 7);
                 let slope = drop * chance * if way % 2 == 1 { std::f32::consts::FRAC_1_SQRT_2 } else { 1.0 };
@@ -133,7 +131,7 @@ impl Drainage {
                     steepest = slope;
                     self.receiver[k] = m as u32;
                 }
-            }
+            });
         }
     }
 
@@ -156,18 +154,18 @@ impl Drainage {
             let k = k as usize;
             let mut parts = [0.0; 8];
             let mut total = 0.0;
-            for (way, m) in neighbours(self.side, k) {
+            for_neighbours(self.side, k, |way, m| {
                 if self.rank[m] < self.rank[k] {
                     let drop = (land.values[k] - land.values[m]).max(0.0);
                     let slope = drop * if way % 2 == 1 { std::f32::consts::FRAC_1_SQRT_2 } else { 1.0 };
                     parts[way] = slope * slope;
                     total += parts[way];
                 }
-            }
+            });
             let to = self.receiver[k] as usize;
             if total >= 1e-9 {
                 let share = areas[k] / total;
-                neighbours(self.side, k).for_each(|(way, m)| areas[m] += parts[way] * share);
+                for_neighbours(self.side, k, |way, m| areas[m] += parts[way] * share);
             } else if to != k {
                 areas[to] += areas[k];
             }
@@ -225,13 +223,22 @@ fn creep(land: &mut Grid, steepest_deg: f32) {
     }
 }
 
-/// The neighbours of sample `k` inside an n×n grid, with their index in `NEIGHBOURS`.
+/// Calls `f` with the neighbours of sample `k` inside an n×n grid, and their index in `NEIGHBOURS`.
 #[inline]
-fn neighbours(n: usize, k: usize) -> impl Iterator<Item = (usize, usize)> {
-    let (x, y) = ((k % n) as i32, (k / n) as i32);
-    NEIGHBOURS.iter().enumerate().filter_map(move |(way, (dx, dy))| {
+fn for_neighbours(n: usize, k: usize, mut f: impl FnMut(usize, usize)) {
+    let (x, y) = ((k as u32 % n as u32) as i32, (k as u32 / n as u32) as i32);
+    let inner = 1..n as i32 - 1;
+    if inner.contains(&x) && inner.contains(&y) {
+        // Nearly all: without a question for each neighbour.
+        for (way, (dx, dy)) in NEIGHBOURS.into_iter().enumerate() {
+            f(way, (k as i32 + dy * n as i32 + dx) as usize);
+        }
+        return;
+    }
+    for (way, (dx, dy)) in NEIGHBOURS.into_iter().enumerate() {
         let (x, y) = (x + dx, y + dy);
-        let inside = x >= 0 && y >= 0 && x < n as i32 && y < n as i32;
-        inside.then(|| (way, y as usize * n + x as usize))
-    })
+        if (0..n as i32).contains(&x) && (0..n as i32).contains(&y) {
+            f(way, y as usize * n + x as usize);
+        }
+    }
 }

@@ -68,6 +68,8 @@ pub(super) struct Surroundings<'a> {
     trees: Vec<Tree>,
     /// Part of what lies within `AROUND_M` that is under water.
     pub wet: f32,
+    /// Nothing but trees is higher.
+    highest_m: f32,
     /// How much of a land is missed where none of its slopes are in sight, 0 … 1: nothing of level land, or in fog.
     pub relief: f32,
 }
@@ -115,7 +117,9 @@ impl<'a> Surroundings<'a> {
     ) -> Self {
         let trees = trees.iter().filter_map(|tree| Tree::of(tree, footprints)).collect();
         let around = Around::of(land);
-        Self { land, trees, wet: around.wet(), relief: around.relief() * clear(light) }
+        let heights_m = [&land.field, &land.apron].map(|heights| heights.range_m()[1]);
+        let highest_m = heights_m.into_iter().chain(land.water_level_m).fold(f32::MIN, f32::max);
+        Self { land, trees, highest_m, wet: around.wet(), relief: around.relief() * clear(light) }
     }
 
     /// The trees whose feet are no farther from a place.
@@ -250,6 +254,11 @@ impl Panorama {
             }
             skyline = slope.max(skyline);
             depth_m *= GROWTH;
+            // Whatever comes is hidden.
+            let rise_m = scene.highest_m - self.eye_m;
+            if (rise_m / depth_m).max(rise_m / FAR_M) < skyline {
+                break;
+            }
         }
         self.seen.push(seen);
         self.skyline.push(skyline);
