@@ -22,6 +22,7 @@ script, plain = map(os.path.abspath, sys.argv[1:3])
 faults = []
 result = {"script": script, "faults": faults}
 bpy, out = blender_common.start(empty=False)
+from mathutils import Vector  # Blender's, which is there only now
 
 
 def check(holds, otherwise):
@@ -68,6 +69,19 @@ result["collections"] = sorted(c.name for c in top.children) if top else []
 for name in ("Land", "Grass", "Trees", "Kinds of trees", "Camera and light"):
     check(name in result["collections"], f"there is no collection {name}")
 
+far = next((node["extensions"]["GSC_instances"]["count"] for node in nodes if node["name"] == "far trees"), 0)
+planted = [o for o in bpy.data.objects if o.instance_type == "FACES"]
+result["far trees"] = sum(len(o.data.polygons) for o in planted)
+check(result["far trees"] == far > 0, f"{result['far trees']} of {far} trees beyond the field are planted")
+land = [o for o in bpy.data.objects if o.name.split(".")[0] == "apron"]
+for o in planted:
+    check(len(o.children) == 1 and o.children[0].data.polygons, f"{o.name} shows no tree")
+    for face in list(o.data.polygons)[::50]:
+        place = o.matrix_world @ face.center
+        down = land[0].matrix_world.inverted()
+        hit, ground, _, _ = land[0].ray_cast(down @ (place + Vector((0, 0, 50))), down.to_3x3() @ Vector((0, 0, -1)))
+        above_m = place.z - (land[0].matrix_world @ ground).z
+        check(hit and -1.5 < above_m < 0.1, f"a tree of {o.name} stands {above_m:.2f} m above the ground")
 instances = [o for o in bpy.data.objects if o.instance_type == "COLLECTION"]
 result["instances"] = len(instances)
 check(len(instances) == len(shown), f"{len(instances)} instances of {len(shown)} trees")

@@ -5,8 +5,10 @@
 #
 # Imports the .glb beside it unless that was imported already, then sorts it into collections, makes trees instances of
 # one collection for each kind, and sets camera, sun, sky, haze and view transform. Run again, it changes nothing twice.
+import json
 import math
 import os
+import struct
 
 import bpy
 
@@ -28,6 +30,7 @@ def main():
         raise RuntimeError(f"{SETTINGS['scene_file']} holds no landscape {SETTINGS['landscape']}")
     objects = {o for root in roots() for o in (root, *root.children_recursive)}
     count = sort_into_collections(objects)
+    far_count = plant_far_trees()
     set_camera(objects)
     set_sun(objects)
     set_sky()
@@ -35,7 +38,7 @@ def main():
         let_light_through(material)
         add_haze(material)
     set_view()
-    print(f"{TITLE}: {count} trees of {len(SETTINGS['kinds'])} kinds; camera, sun and sky are set")
+    print(f"{TITLE}: {count} trees and {far_count} far ones of {len(SETTINGS['kinds'])} kinds; camera, sun and sky are set")
 
 
 def roots():
@@ -142,6 +145,54 @@ def add_instance(mesh, kind, trees):
     instance.parent, instance.matrix_local = mesh.parent, mesh.matrix_local.copy()
     instance.empty_display_size = mesh.parent.empty_display_size = 0.01
     trees.objects.link(instance)
+
+
+# ---- trees beyond the field ----
+
+def plant_far_trees():
+    """For each kind one object of squares, one a tree, on each of which Blender shows the kind's proxy; how many trees there are.
+
+    They stand hundreds of metres away: an object for each would take longer to import than all the rest."""
+    records = far_trees()
+    place = collection("Far trees", top_collection()) if records else None
+    for proxy in [o for o in kinds_of_trees() if o["role"] == "proxy"]:
+        squares = [square(record) for record in records if record[12] == proxy["template"]]
+        name = f"far {proxy.name}"
+        if not squares or name in bpy.data.objects:
+            continue
+        mesh = bpy.data.meshes.new(name)
+        mesh.from_pydata(sum(squares, []), [], [range(4 * i, 4 * i + 4) for i in range(len(squares))])
+        trees = bpy.data.objects.new(name, mesh)
+        trees.instance_type, trees.use_instance_faces_scale = "FACES", True
+        trees.show_instancer_for_render = trees.show_instancer_for_viewport = False
+        tree = bpy.data.objects.new(f"{name} tree", proxy.data)
+        tree.parent = trees
+        place.objects.link(trees)
+        place.objects.link(tree)
+    return len(records)
+
+
+def far_trees():
+    """The records of GSC_instances at the node "far trees": twelve numbers of a transform by rows, the kind, and three of a trunk."""
+    with open(beside(SETTINGS["scene_file"]), "rb") as file:
+        data = file.read()
+    length, = struct.unpack_from("<I", data, 12)
+    gltf = json.loads(data[20:20 + length])
+    extensions = (node.get("extensions", {}) for node in gltf["nodes"] if node.get("name") == "far trees")
+    told = next((every["GSC_instances"] for every in extensions if "GSC_instances" in every), None)
+    if not told:
+        return []
+    view = gltf["bufferViews"][told["bufferView"]]
+    start = 20 + length + 8 + view.get("byteOffset", 0)
+    return list(struct.iter_unpack("<12fI3f", data[start + 16:start + view["byteLength"]]))
+
+
+def square(record):
+    """A square at a tree's foot, as wide as the tree is scaled, turned as it is; y is up in the file, z in Blender."""
+    x, y, z, scale = record[3], -record[11], record[7], abs(record[5])
+    turn = math.atan2(-record[8], record[0])
+    corners = (turn + math.pi * (0.25 + 0.5 * k) for k in range(4))
+    return [(x + scale * math.sqrt(0.5) * math.cos(a), y + scale * math.sqrt(0.5) * math.sin(a), z) for a in corners]
 
 
 # ---- camera and light ----
