@@ -70,7 +70,9 @@ struct Tree {
     template_index: u32,
     // Greatest singular value of its linear part.
     scale: f32,
-    pad: vec2f,
+    // Of the ellipsoid around its leaves, in the template's space, as halves: height of its middle, semi-axes; 0 if there
+    // is none.
+    crown: vec2u,
 }
 
 // What a part of a tree is made of, as `MaterialUniform` in Rust.
@@ -141,6 +143,27 @@ fn air_before(world: vec3f) -> vec4f {
 // glow around a low sun, or be slivers beyond whose edge, where a pixel's middle may lie, what is interpolated is any number.
 fn hazed(air: vec4f, radiance: vec3f) -> vec3f {
     return radiance * air.a + air.rgb;
+}
+
+// How much light is lost on the way through half of a crown.
+const CROWN_DENSITY: f32 = 1.2;
+
+// Whether a tree stands beyond the field, of which the shadow map doesn't tell.
+fn is_beyond_field(rows: array<vec4f, 3>) -> bool {
+    return max(abs(rows[0].w), abs(rows[2].w)) > view.field.z;
+}
+
+// Sunlight that is left on its way through a crown to a place in it, both as in the space where the crown is a sphere of radius 1
+// around the origin (Beer and Lambert).
+fn sun_through_crown(place: vec3f, to_sun: vec3f) -> f32 {
+    let along = dot(place, normalize(to_sun));
+    let way = sqrt(along * along + max(1.0 - dot(place, place), 0.0)) - along;
+    return exp(-CROWN_DENSITY * way);
+}
+
+// The rows of the linear part, weighted, are its transpose: for what is turned and scaled alike, the way back.
+fn way_to_template(rows: array<vec4f, 3>, way: vec3f) -> vec3f {
+    return rows[0].xyz * way.x + rows[1].xyz * way.y + rows[2].xyz * way.z;
 }
 
 // Irradiance from the sky above and the ground below on what faces upwards by that share of the way from straight down to

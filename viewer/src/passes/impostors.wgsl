@@ -61,6 +61,8 @@ struct Out {
     @location(11) @interpolate(flat) to_sun: vec3f,
     // By chance, [0, 1): another for each tree.
     @location(12) @interpolate(flat) chance: f32,
+    // 1 beyond the field.
+    @location(13) @interpolate(flat) is_beyond_field: f32,
 }
 
 // What `leaf` of `trees.wgsl` makes of the sun and of a leaf's normal. Directions are in the template's space.
@@ -87,11 +89,6 @@ fn leaf_light(template_index: u32, to_eye: vec3f, to_sun: vec3f) -> vec3f {
         seen += share;
     }
     return sum / seen;
-}
-
-// The rows of the linear part, weighted, are its transpose: for what is turned and scaled alike, the way back.
-fn way_to_template(rows: array<vec4f, 3>, way: vec3f) -> vec3f {
-    return rows[0].xyz * way.x + rows[1].xyz * way.y + rows[2].xyz * way.z;
 }
 
 // Four vertices for each of the trees that are visible.
@@ -127,6 +124,7 @@ fn vertex(@builtin(vertex_index) vertex: u32) -> Out {
     out.to_sun = normalize(way_to_template(rows, view.sun_direction));
     out.leaf_light = leaf_light(template_index, out.to_eye, out.to_sun);
     out.chance = scattered(vec2f(f32(tree), 5.3));
+    out.is_beyond_field = select(0.0, 1.0, is_beyond_field(rows));
     return out;
 }
 
@@ -199,7 +197,10 @@ fn pixel(in: Out, is_kept: bool) -> Pixel {
     let sharp = saturate(leaf_m * view.focal_px / distance(view.eye, in.world));
     let leaf = one_leaf(in, at_leaf, sharp);
     let leaf_sun = (albedo * 0.8 * leaf.x + through * (0.6 * leaf.y + glow)) * smoothstep(0.0, 0.7, open);
-    let sun = mix(albedo * phase(cosine), leaf_sun, relief.g) * sun_visibility(world, SHADOW_BIAS_M);
+    // Where no shadow map tells, by what is between the place and the sun if it is leaves.
+    let left = sun_through_crown(in_crown, in.to_sun / frames[in.template_index].crown_half);
+    let shade = sun_visibility(world, SHADOW_BIAS_M) * mix(1.0, left, in.is_beyond_field * relief.g);
+    let sun = mix(albedo * phase(cosine), leaf_sun, relief.g) * shade;
     let up = mix(0.5, leaf.z, relief.g);
     let ambient = ambient_light(up) * mix(0.8, 0.15 + 0.75 * open * open, relief.g);
     let radiance = (albedo * ambient + view.sun_irradiance * sun) / PI;

@@ -38,6 +38,8 @@ struct Out {
     @location(7) @interpolate(flat) air: vec4f,
     // By chance, [0, 1): another for each triangle.
     @location(8) @interpolate(flat) chance: f32,
+    // Beyond the field, what is left of the sun behind the crown; else 1.
+    @location(9) sun: f32,
 }
 
 fn placed(in: In) -> Out {
@@ -57,7 +59,18 @@ fn placed(in: In) -> Out {
     out.shown = in.shown.xy;
     out.air = air_before(world);
     out.chance = scattered(vec2f(f32(in.vertex), f32(in.tree)));
+    out.sun = 1.0;
+    if (is_beyond_field(rows) && trees[in.tree].crown.x != 0u) {
+        out.sun = sun_behind_crown(in.tree, in.position + alpha * in.delta);
+    }
     return out;
+}
+
+fn sun_behind_crown(tree: u32, place: vec3f) -> f32 {
+    let height_and_x = unpack2x16float(trees[tree].crown.x);
+    let half = vec3f(height_and_x.y, unpack2x16float(trees[tree].crown.y));
+    let to_sun = way_to_template(trees[tree].rows, view.sun_direction);
+    return sun_through_crown((place - vec3f(0.0, height_and_x.x, 0.0)) / half, to_sun / half);
 }
 
 @vertex
@@ -104,7 +117,7 @@ fn bark(in: Out) -> @location(0) vec4f {
     let facing = max(dot(normal, view.sun_direction), 0.0);
     var radiance = ambient(normal, albedo) * 0.8;
     if (facing > 0.0) {
-        radiance += albedo / PI * view.sun_irradiance * facing * sun_visibility(in.world, 0.25);
+        radiance += albedo / PI * view.sun_irradiance * facing * in.sun * sun_visibility(in.world, 0.25);
     }
     return vec4f(hazed(in.air, radiance), 1.0);
 }
@@ -122,7 +135,7 @@ fn leaf_light(in: Out, card: Card, normal: vec3f, bias_m: f32) -> Pixel {
     let reflected = select(through * 0.6, albedo * 0.8, same_side) * lit;
     let facing = max(dot(-to_eye, view.sun_direction), 0.0);
     let glow = 0.6 * facing * facing * facing * facing * facing * facing;
-    let sun = sun_visibility(in.world, bias_m) * smoothstep(0.0, 0.7, in.open);
+    let sun = in.sun * sun_visibility(in.world, bias_m) * smoothstep(0.0, 0.7, in.open);
     let outward = select(-normal, normal, normal.y > 0.0);
     var radiance = ambient(outward, albedo) * (0.15 + 0.75 * in.open * in.open);
     radiance += (reflected + through * glow) / PI * view.sun_irradiance * sun;
@@ -185,7 +198,7 @@ fn twig(in: Out) -> Pixel {
         discard;
     }
     let cosine = dot(normalize(view.eye - in.world), view.sun_direction);
-    let sun = view.sun_irradiance * phase(cosine) * sun_visibility(in.world, 0.4);
+    let sun = view.sun_irradiance * phase(cosine) * in.sun * sun_visibility(in.world, 0.4);
     let radiance = picture.rgb / PI * (0.8 * ambient_light(0.5) + sun);
     return Pixel(vec4f(hazed(in.air, radiance), 1.0), samples);
 }

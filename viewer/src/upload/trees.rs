@@ -4,9 +4,11 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use half::f16;
+
 use super::clusters::{self, ClusterSheet};
 use super::{ImageUse, ImpostorSet, Uploader};
-use crate::scene::{Image, Instance, Material, Range, Template, TreeVertex, Trees};
+use crate::scene::{Crown, Image, Instance, Material, Range, Template, TreeVertex, Trees};
 
 pub use crate::lod::tree::MAX_LEVELS;
 /// The most materials that all trees of a landscape may have: each is one draw.
@@ -22,8 +24,8 @@ pub struct TreeData {
     pub template_index: u32,
     /// Greatest singular value of the linear part.
     pub scale: f32,
-    /// Unused.
-    pub pad: [f32; 2],
+    /// Of the ellipsoid around its template's leaves: height of its middle, semi-axes along x, y and z; 0 if nothing is known.
+    pub crown: [f16; 4],
 }
 
 /// A template, as the shaders read it.
@@ -153,7 +155,7 @@ impl Uploader {
         let trees = plain.as_ref().unwrap_or(trees);
         let (gpu, materials) = (&self.gpu, common_materials(trees, sheet.as_ref()));
         let lists = arrange(trees, &materials);
-        let all_trees: Vec<TreeData> = trees.all().map(tree_data).collect();
+        let all_trees: Vec<TreeData> = trees.all().map(|tree| tree_data(trees, tree)).collect();
         let vertices = trees.templates.iter().enumerate().map(|(number, template)| match &sheet {
             Some(sheet) => Cow::Owned(sheet.moved(number, template)),
             None => Cow::Borrowed(&template.vertices),
@@ -306,12 +308,18 @@ fn template_data(template: &Template, first: u32, capacity: u32) -> TemplateData
     }
 }
 
-fn tree_data(instance: &Instance) -> TreeData {
+fn tree_data(trees: &Trees, instance: &Instance) -> TreeData {
+    let template = trees.templates.get(instance.template as usize);
+    // Bare twigs hardly shade each other.
+    let leafy = template.filter(|template| template.materials.iter().all(|material| !material.thin));
+    let crown = leafy.and_then(|template| template.impostor.as_ref()).map(|pictures| pictures.crown);
+    let crown =
+        crown.map_or([0.0; 4], |Crown { middle_m: [_, middle, _], half_m: [x, y, z] }| [middle, x, y, z]);
     TreeData {
         rows: instance.world_from_tree,
         template_index: instance.template,
         scale: instance.max_scale(),
-        pad: [0.0; 2],
+        crown: crown.map(f16::from_f32),
     }
 }
 

@@ -131,7 +131,7 @@ fn uniforms_are_laid_out_alike() {
 
 #[test]
 fn elements_of_buffers_are_laid_out_alike() {
-    same!(["cull", "trees", "impostors", "shadow"], "Tree", TreeData { rows, template_index, scale, pad });
+    same!(["cull", "trees", "impostors", "shadow"], "Tree", TreeData { rows, template_index, scale, crown });
     same!(
         ["cull"],
         "Template",
