@@ -23,21 +23,37 @@ const FINER: u32 = 8;
 /// Directions from which a tree is looked at.
 const DIRECTIONS: u32 = 12;
 
-/// A landscape with a single tree at its middle, in clear air.
-fn alone(scene: &Scene, template: u32) -> Scene {
-    let at = scene.ground.field.height_m(0.0, 0.0);
-    let world_from_tree = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, at], [0.0, 0.0, 1.0, 0.0]];
-    let tree = Instance { world_from_tree, template, trunk_cylinder_m: [0.0, 0.0, 0.1] };
-    let mut scene = scene.clone();
+/// A landscape with a single tree in clear air.
+fn alone(scene: &Scene, template: u32, [x, y, z]: [f32; 3]) -> Scene {
+    let world_from_tree = [[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z]];
+    let tree = Arc::new([Instance { world_from_tree, template, trunk_cylinder_m: [x, z, 0.1] }]);
+    let mut scene = scene.clone().without_far_trees();
     scene.sky.light.haze_extinction_per_m = 0.0;
-    scene.trees.instances = Arc::new([tree]);
+    if x.abs().max(z.abs()) > 0.5 * scene.ground.field.extent_m() {
+        (scene.trees.instances, scene.trees.far) = (Arc::default(), tree);
+    } else {
+        scene.trees.instances = tree;
+    }
     scene
 }
 
+/// At the landscape's middle.
 fn look(backdrops: &Backdrops, scene: &Scene, template: u32, mode: TreeLodMode, finer: u32) -> Matte {
-    let alone = alone(scene, template);
+    let foot_m = [0.0, scene.ground.field.height_m(0.0, 0.0), 0.0];
+    look_at(backdrops, scene, template, foot_m, mode, finer)
+}
+
+fn look_at(
+    backdrops: &Backdrops,
+    scene: &Scene,
+    template: u32,
+    foot_m: [f32; 3],
+    mode: TreeLodMode,
+    finer: u32,
+) -> Matte {
+    let alone = alone(scene, template, foot_m);
     let tree = &scene.trees.templates[template as usize];
-    let middle_m = Vec3::from(tree.center_m) + Vec3::Y * scene.ground.field.height_m(0.0, 0.0);
+    let middle_m = Vec3::from(tree.center_m) + Vec3::from(foot_m);
     let mut stage = backdrops.stage(&alone, [SIDE_PX * finer; 2]);
     let fov_y_rad = 0.2f32;
     let away_m = 2.0 * tree.radius_m * SIDE_PX as f32 / TREE_PX / fov_y_rad;
@@ -87,6 +103,37 @@ fn far_trees_cover_as_much_and_are_as_bright_as_near_ones() {
                 genescape_bake::say!("{told}");
                 all.push((varies > 0.65, told));
             }
+        }
+    }
+    assert!(all.iter().all(|(is_like, _)| *is_like), "{all:#?}");
+}
+
+#[test]
+#[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
+fn trees_beyond_the_field_are_there_and_as_bright_as_on_it() {
+    let round = Round::new();
+    round.until(|event| matches!(event, Event::Done { .. }));
+    let backdrops = Backdrops::open();
+    let mut all = Vec::new();
+    for path in scene_files(&Source::World(round.files.root().to_owned())).expect("scenes") {
+        let scene = backdrops.studio().read(&path).expect("readable");
+        let half_m = 0.5 * scene.ground.field.extent_m();
+        let away_m = |tree: &Instance| tree.world_from_tree[0][3].abs().max(tree.world_from_tree[2][3].abs());
+        assert!(scene.trees.instances.iter().all(|tree| away_m(tree) < half_m), "{}", scene.name);
+        assert!(scene.trees.far.len() > 1000, "{}: {} far trees", scene.name, scene.trees.far.len());
+        assert!(scene.trees.far.iter().all(|tree| away_m(tree) > half_m), "{}", scene.name);
+        // So high that no hill is before the sun.
+        let y = scene.ground.field.range_m()[1] + 300.0;
+        for mode in [TreeLodMode::Quality, TreeLodMode::Simple] {
+            let of = |x: f32| look_at(&backdrops, &scene, 0, [x, y, 0.0], mode, 1);
+            let [on_field, beyond] = [of(0.0), of(half_m + 3000.0)];
+            let brightness = |seen: &Matte| seen.radiance().iter().sum::<f64>().sqrt();
+            let bright = brightness(&beyond) / brightness(&on_field);
+            let covers = beyond.pixels / on_field.pixels;
+            let told =
+                format!("{} beyond the field, {mode:?}: covers {covers:.3}, bright {bright:.3}", scene.name);
+            genescape_bake::say!("{told}");
+            all.push(((covers - 1.0).abs() < 0.06 && (bright - 1.0).abs() < 0.15, told));
         }
     }
     assert!(all.iter().all(|(is_like, _)| *is_like), "{all:#?}");

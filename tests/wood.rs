@@ -58,7 +58,7 @@ fn wood(scene: &Scene) -> (Scene, f32) {
             trunk_cylinder_m: [place_m.x, place_m.y, 0.2],
         }
     };
-    let mut wood = scene.clone();
+    let mut wood = scene.clone().without_far_trees();
     wood.trees.instances = (0..TREES).map(tree).collect();
     wood.sky.light.haze_extinction_per_m = 0.0;
     (wood, spread_m * (TREES as f32).sqrt() + wide_m)

@@ -152,16 +152,16 @@ def add_instance(mesh, kind, trees):
 def plant_far_trees():
     """For each kind one object of squares, one a tree, on each of which Blender shows the kind's proxy; how many trees there are.
 
-    They stand hundreds of metres away: an object for each would take longer to import than all the rest."""
+    Thousands of them stand hundreds of metres away, where nobody wants to take hold of one."""
     records = far_trees()
     place = collection("Far trees", top_collection()) if records else None
     for proxy in [o for o in kinds_of_trees() if o["role"] == "proxy"]:
-        squares = [square(record) for record in records if record[12] == proxy["template"]]
+        corners = [corner for record in records if record[12] == proxy["template"] for corner in square(record)]
         name = f"far {proxy.name}"
-        if not squares or name in bpy.data.objects:
+        if not corners or name in bpy.data.objects:
             continue
         mesh = bpy.data.meshes.new(name)
-        mesh.from_pydata(sum(squares, []), [], [range(4 * i, 4 * i + 4) for i in range(len(squares))])
+        mesh.from_pydata(corners, [], [range(i, i + 4) for i in range(0, len(corners), 4)])
         trees = bpy.data.objects.new(name, mesh)
         trees.instance_type, trees.use_instance_faces_scale = "FACES", True
         trees.show_instancer_for_render = trees.show_instancer_for_viewport = False

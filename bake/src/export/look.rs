@@ -34,8 +34,8 @@ pub fn remove_apron(root: &mut Value) {
         root["nodes"][water]["scale"] = json!([scale, 1, scale]);
     }
     if let Some(roots) = root["scenes"][0]["nodes"].as_array_mut() {
-        let beyond = [apron, trees].map(|node| node.map(|node| json!(node)));
-        roots.retain(|node| !beyond.contains(&Some(node.clone())));
+        let beyond: Vec<Value> = [apron, trees].into_iter().flatten().map(Value::from).collect();
+        roots.retain(|node| !beyond.contains(node));
     }
 }
 

@@ -123,6 +123,17 @@ impl<'a> Context<'a> {
         Ok(value.downcast().expect("an input has the type of its node's output"))
     }
 
+    /// The values of several inputs, in their order.
+    ///
+    /// # Errors
+    /// [`StageError::InputLost`] if one is damaged.
+    pub fn get_all<T: Clone + Send + Sync + 'static>(
+        &self,
+        inputs: &[Input<T>],
+    ) -> Result<Vec<T>, StageError> {
+        inputs.iter().map(|input| Ok((*self.get(input)?).clone())).collect()
+    }
+
     /// The bytes of a file that an input names.
     ///
     /// # Errors

@@ -55,7 +55,7 @@ impl Stage for SceneStage {
             details: textures.iter().map(|files| files.detail.clone()).collect(),
             plants: maps.plants.clone(),
         };
-        let trees = self.trees.iter().map(|tree| context.get(tree)).collect::<Result<Vec<_>, _>>()?;
+        let trees = context.get_all(&self.trees)?;
         let tree_bytes = trees.iter().map(|tree| context.bytes(tree)).collect::<Result<Vec<_>, _>>()?;
         let templates = trees.iter().zip(&tree_bytes);
         let placed = context.get(&self.placed)?;

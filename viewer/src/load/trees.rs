@@ -22,7 +22,7 @@ use crate::scene::{
 /// The trees; none if the scene has none.
 pub(super) fn read(document: &Document) -> Result<Trees> {
     let is_far = |node: &gltf::Node<'_>| node.name() == Some(FAR_TREES_NODE);
-    let extensions = |far: bool| {
+    let of_node = |far: bool| {
         let mut nodes = document.gltf.nodes().filter(move |node| is_far(node) == far);
         nodes.find_map(|node| Some(node.extension_value(GSC_INSTANCES)?.clone()))
     };
@@ -32,9 +32,9 @@ pub(super) fn read(document: &Document) -> Result<Trees> {
             .map_err(|error| document.wrong(format!("its {GSC_INSTANCES} is wrong: {error}")))?;
         Ok((extension, instances))
     };
-    let Some(value) = extensions(false) else { return Ok(Trees::default()) };
+    let Some(value) = of_node(false) else { return Ok(Trees::default()) };
     let (extension, instances) = records(&value)?;
-    let far = extensions(true).map_or(Ok(Vec::new()), |value| Ok(records(&value)?.1))?;
+    let far = of_node(true).map_or(Ok(Vec::new()), |value| Ok(records(&value)?.1))?;
     let templates = extension
         .templates
         .par_iter()

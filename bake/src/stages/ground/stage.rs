@@ -21,8 +21,8 @@ pub struct WoodsInput {
 
 impl WoodsInput {
     fn get(&self, context: &Context<'_>, land: &Landform) -> Result<Woods, StageError> {
-        let crown_m = |footprint: &Input<TreeFootprint>| Ok(context.get(footprint)?.crown_radius_m);
-        let crowns_m = self.footprints.iter().map(crown_m).collect::<Result<Vec<_>, StageError>>()?;
+        let footprints = context.get_all(&self.footprints)?;
+        let crowns_m: Vec<f32> = footprints.iter().map(|footprint| footprint.crown_radius_m).collect();
         Ok(Woods::new(&self.params, land, &context.get(&self.trees)?, &crowns_m))
     }
 }

@@ -29,8 +29,7 @@ impl Stage for PlacementStage {
     type Output = PlacementFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<PlacementFiles, StageError> {
-        let footprints = self.footprints.iter().map(|footprint| Ok(*context.get(footprint)?));
-        let footprints = footprints.collect::<Result<Vec<_>, StageError>>()?;
+        let footprints = context.get_all(&self.footprints)?;
         let landform = context.get(&self.landform)?;
         let snow = snow_map(self.params.terrain_seed, &landform);
         let mut placement = place(&self.params, &landform, snow.as_ref(), &footprints);
@@ -57,8 +56,7 @@ impl Stage for FarTreesStage {
     type Output = File;
 
     fn run(&self, context: &Context<'_>) -> Result<File, StageError> {
-        let footprints = self.footprints.iter().map(|footprint| Ok(*context.get(footprint)?));
-        let footprints = footprints.collect::<Result<Vec<_>, StageError>>()?;
+        let footprints = context.get_all(&self.footprints)?;
         let (landform, ring) = (context.get(&self.landform)?, context.load(&*context.get(&self.ring)?)?);
         let per_m2 = *context.get(&self.per_m2)?;
         let trees = place_far(&self.params, &landform, &ring, &footprints, per_m2);

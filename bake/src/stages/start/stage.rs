@@ -34,8 +34,7 @@ impl Stage for StartStage {
     type Output = StartFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<StartFiles, StageError> {
-        let footprints = self.footprints.iter().map(|footprint| Ok(*context.get(footprint)?));
-        let footprints = footprints.collect::<Result<Vec<_>, StageError>>()?;
+        let footprints = context.get_all(&self.footprints)?;
         let (landform, trees) = (context.get(&self.landform)?, context.get(&self.trees)?);
         let look = first_look(&landform, &trees, &footprints, &*context.get(&self.light)?);
         let lookouts = context.file("bin", look.lookouts.to_bytes());
