@@ -146,7 +146,7 @@ fn hazed(air: vec4f, radiance: vec3f) -> vec3f {
 }
 
 // How much light is lost on the way through half of a crown.
-const CROWN_DENSITY: f32 = 1.2;
+const CROWN_DENSITY: f32 = 0.8;
 
 // Whether a tree stands beyond the field, of which the shadow map doesn't tell.
 fn is_beyond_field(rows: array<vec4f, 3>) -> bool {
