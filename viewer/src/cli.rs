@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 
@@ -33,7 +34,7 @@ pub struct Cli {
     pub settings: Option<PathBuf>,
 
     /// Read shaders from this folder, and again whenever one is saved; what is missing there is built in
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = folder())]
     pub shaders: Option<PathBuf>,
 
     /// Folder for screenshots
@@ -141,6 +142,12 @@ fn place(text: &str) -> Result<Place, String> {
         }
         _ => Err("five numbers are needed: X,Z,HEIGHT,YAW,PITCH, as in 0,20,1.6,45,-5".to_owned()),
     }
+}
+
+/// A folder that must be there.
+pub(crate) fn folder() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new()
+        .try_map(|path| if path.is_dir() { Ok(path) } else { Err("there is no such folder") })
 }
 
 #[cfg(test)]

@@ -27,17 +27,17 @@ pub struct Gpu {
 const ADVICE: &str = "Genescape draws with Vulkan, Metal or Direct3D 12. On Linux install your card's Vulkan driver, or, \
     to draw without a card, the package mesa-vulkan-drivers (Debian, Ubuntu, Fedora) or vulkan-swrast (Arch).";
 
-/// Why nothing can be drawn.
+/// Why nothing can be drawn. Reasons are in the text, and so no sources, as in [`LoadError`](crate::load::LoadError).
 #[derive(Debug, Error)]
 pub enum GpuError {
     #[error("no graphics device was found: {0}\n{ADVICE}")]
-    NoAdapter(#[from] wgpu::RequestAdapterError),
+    NoAdapter(wgpu::RequestAdapterError),
     #[error("no graphics device can draw to the window.\n{ADVICE}")]
-    NoSurface(#[from] wgpu::CreateSurfaceError),
+    NoSurface(wgpu::CreateSurfaceError),
     #[error("{name} lacks {missing}, which is needed to draw; try a newer driver")]
     Lacking { name: String, missing: String },
-    #[error("{name} could not be opened: {source}")]
-    NoDevice { name: String, source: wgpu::RequestDeviceError },
+    #[error("{name} could not be opened: {reason}")]
+    NoDevice { name: String, reason: wgpu::RequestDeviceError },
 }
 
 /// What drawing cannot do without: trees are drawn by commands that a compute pass writes, each starting at an
@@ -59,7 +59,7 @@ impl Gpu {
             compatible_surface: surface,
             ..Default::default()
         };
-        let adapter = pollster::block_on(instance.request_adapter(&options))?;
+        let adapter = pollster::block_on(instance.request_adapter(&options)).map_err(GpuError::NoAdapter)?;
         let (info, limits) = (adapter.get_info(), adapter.limits());
         let missing = REQUIRED - adapter.features();
         if !missing.is_empty() {
@@ -80,7 +80,7 @@ impl Gpu {
         };
         let opened = pollster::block_on(adapter.request_device(&descriptor));
         let (device, queue) =
-            opened.map_err(|source| GpuError::NoDevice { name: info.name.clone(), source })?;
+            opened.map_err(|reason| GpuError::NoDevice { name: info.name.clone(), reason })?;
         let software = info.device_type == wgpu::DeviceType::Cpu;
         let driver = format!("{} {}", info.driver, info.driver_info).trim().to_owned();
         let busy = Arc::default();

@@ -31,7 +31,7 @@ impl Screen {
     /// Opens a device that can draw to `window`.
     pub fn open(window: Arc<Window>) -> Result<(Self, Gpu)> {
         let instance = crate::gpu::instance();
-        let surface = instance.create_surface(window.clone()).map_err(GpuError::from)?;
+        let surface = instance.create_surface(window.clone()).map_err(GpuError::NoSurface)?;
         let (gpu, adapter) = Gpu::open(&instance, Some(&surface))?;
         let size = window.inner_size();
         let mut config = surface

@@ -28,6 +28,7 @@ use clap::{Args, ValueEnum};
 use genescape_world::Source;
 
 use crate::camera::Camera;
+use crate::cli::folder;
 use crate::headless::{Headless, scene_files};
 use crate::image_file::parse_size;
 use crate::lod_mode::{TerrainLodMode, TreeLodMode};
@@ -67,7 +68,7 @@ pub struct BenchArgs {
     pub json: bool,
 
     /// Read shaders from this folder; what is missing there is built in
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = folder())]
     pub shaders: Option<PathBuf>,
 
     /// Draw the first scene's pictures as asked for on standard input, one line each, and answer in JSON what they

@@ -26,7 +26,7 @@ pub(super) struct Document<'a> {
 impl<'a> Document<'a> {
     /// Parses a file, whose bytes these are.
     pub fn of(path: &Path, bytes: &[u8], store: &'a Store) -> Result<Self> {
-        let no_gltf = |source| LoadError::NoGltf { path: path.to_owned(), source: Box::new(source) };
+        let no_gltf = |reason| LoadError::NoGltf { path: path.to_owned(), reason: Box::new(reason) };
         let parsed = gltf::Gltf::from_slice_without_validation(bytes).map_err(no_gltf)?;
         let json = parsed.document.into_json();
         check_positions(&json).map_err(|what| LoadError::foreign(path, what))?;

@@ -27,26 +27,26 @@ pub use store::Store;
 use crate::scene::{Asset, Ground, HdrImage, Scene, Sky};
 use document::Document;
 
-/// Why a landscape cannot be shown.
+/// Why a landscape cannot be shown. Reasons are in the text, and so no sources: whoever prints the chain would tell them twice.
 #[derive(Debug, Error)]
 pub enum LoadError {
-    #[error("cannot read {path}: {source}; `bake` makes it again")]
-    Unreadable { path: PathBuf, source: std::io::Error },
+    #[error("cannot read {path}: {reason}; `bake` makes it again")]
+    Unreadable { path: PathBuf, reason: std::io::Error },
     #[error(
         "{path} is damaged: its bytes are not those that its name promises; \
          `bake cache verify`, then `bake` make it again"
     )]
     Damaged { path: PathBuf },
-    #[error("{path} is no glTF file: {source}")]
-    NoGltf { path: PathBuf, source: Box<gltf::Error> },
+    #[error("{path} is no glTF file: {reason}")]
+    NoGltf { path: PathBuf, reason: Box<gltf::Error> },
     /// The scene is glTF, but none of ours.
     #[error("{path} is no landscape of Genescape: {what}")]
     Foreign { path: PathBuf, what: String },
     /// A file of anyone's.
     #[error("{path} cannot be shown: {what}")]
     Asset { path: PathBuf, what: String },
-    #[error("cannot read {path}: {source}")]
-    FileUnreadable { path: PathBuf, source: std::io::Error },
+    #[error("cannot read {path}: {reason}")]
+    FileUnreadable { path: PathBuf, reason: std::io::Error },
 }
 
 type Result<T, E = LoadError> = std::result::Result<T, E>;
@@ -73,7 +73,7 @@ pub enum Content {
 /// Reads a glTF file: a landscape if it says that it is one.
 pub fn load(path: &Path, store: &Store) -> Result<Content> {
     let bytes = regular_file::read(path, MAX_MODEL_BYTES)
-        .map_err(|source| LoadError::FileUnreadable { path: path.to_owned(), source })?;
+        .map_err(|reason| LoadError::FileUnreadable { path: path.to_owned(), reason })?;
     let bytes = verified(path, bytes).map_err(|_| LoadError::Damaged { path: path.to_owned() })?;
     if asset::is_landscape(&bytes) {
         return landscape(path, &bytes, store).map(|scene| Content::Landscape(Box::new(scene)));
@@ -141,4 +141,19 @@ fn sky(document: &Document) -> Result<Sky> {
         return Err(document.wrong("GSC_sky does not have six square faces of one size"));
     }
     Ok(Sky { images, light })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reason_is_told_once() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let error = load(folder.path(), &Store::default()).expect_err("a folder");
+        let LoadError::FileUnreadable { reason, .. } = &error else { panic!("{error}") };
+        let reason = reason.to_string();
+        let told = format!("{:#}", anyhow::Error::from(error));
+        assert_eq!(told.matches(&reason).count(), 1, "{told}");
+    }
 }

@@ -42,9 +42,9 @@ impl Store {
     pub(super) fn bytes(&self, files: &NamedFiles, uri: &str, path: &Path) -> Result<Arc<Vec<u8>>> {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         self.get(&format!("bytes of {name}"), || {
-            files.read_uri(uri).map_err(|source| match source.kind() {
+            files.read_uri(uri).map_err(|reason| match reason.kind() {
                 ErrorKind::InvalidData => LoadError::Damaged { path: path.to_owned() },
-                _ => LoadError::Unreadable { path: path.to_owned(), source },
+                _ => LoadError::Unreadable { path: path.to_owned(), reason },
             })
         })
     }

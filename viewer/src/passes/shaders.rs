@@ -26,8 +26,8 @@ pub enum ShaderError {
     /// A pipeline cannot be made from it.
     #[error("a shader does not fit its pipeline: {text}")]
     Refused { text: String },
-    #[error("cannot read {path}: {source}")]
-    Unreadable { path: PathBuf, source: std::io::Error },
+    #[error("cannot read {path}: {reason}")]
+    Unreadable { path: PathBuf, reason: std::io::Error },
 }
 
 /// From a folder, if there is one; any shader that is not in it is taken from the built-in ones.
@@ -53,7 +53,7 @@ impl Shaders {
         let path = folder.join(name).with_extension("wgsl");
         match std::fs::read_to_string(&path) {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(builtin.to_owned()),
-            read => read.map_err(|source| ShaderError::Unreadable { path, source }),
+            read => read.map_err(|reason| ShaderError::Unreadable { path, reason }),
         }
     }
 

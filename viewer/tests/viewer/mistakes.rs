@@ -19,6 +19,8 @@ fn mistakes_are_told_and_leave_nothing() {
         (&["alps", "--screenshot", "alps/population/a.png"], "write elsewhere"),
         (&["alps", "--fov", "nan"], "a number from 1 to 170 degrees"),
         (&["alps", "--threads", "1000000"], "1 to 1024"),
+        (&["alps", "--shaders", "shadres"], "there is no such folder"),
+        (&["bench", "--shaders", "shadres"], "there is no such folder"),
         (&["nowhere.gltf"], "there is no file nowhere.gltf"),
     ] {
         let mut command = Command::new(env!("CARGO_BIN_EXE_viewer"));
