@@ -32,7 +32,7 @@ const ADVICE: &str = "Genescape draws with Vulkan, Metal or Direct3D 12. On Linu
 pub enum GpuError {
     #[error("no graphics device was found: {0}\n{ADVICE}")]
     NoAdapter(wgpu::RequestAdapterError),
-    #[error("no graphics device can draw to the window.\n{ADVICE}")]
+    #[error("no graphics device can draw to the window: {0}\n{ADVICE}")]
     NoSurface(wgpu::CreateSurfaceError),
     #[error("{name} lacks {missing}, which is needed to draw; try a newer driver")]
     Lacking { name: String, missing: String },

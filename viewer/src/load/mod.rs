@@ -27,7 +27,8 @@ pub use store::Store;
 use crate::scene::{Asset, Ground, HdrImage, Scene, Sky};
 use document::Document;
 
-/// Why a landscape cannot be shown. Reasons are in the text, and so no sources: whoever prints the chain would tell them twice.
+/// Why a landscape cannot be shown. Reasons are in the text, and so no sources: whoever prints the chain would tell
+/// them twice.
 #[derive(Debug, Error)]
 pub enum LoadError {
     #[error("cannot read {path}: {reason}; `bake` makes it again")]
