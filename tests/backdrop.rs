@@ -54,6 +54,11 @@ impl Matte {
     pub fn radiance(&self) -> [f64; 3] {
         self.light.map(|sum| sum / self.pixels)
     }
+
+    /// The root of radiance, in which the eye sees evenly.
+    pub fn brightness(&self) -> f64 {
+        self.radiance().iter().sum::<f64>().sqrt()
+    }
 }
 
 impl std::ops::AddAssign for Matte {

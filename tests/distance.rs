@@ -3,17 +3,14 @@
 
 use std::sync::Arc;
 
-use genescape_viewer::baker::Event;
 use genescape_viewer::camera::Camera;
-use genescape_viewer::headless::scene_files;
 use genescape_viewer::lod_mode::TreeLodMode;
 use genescape_viewer::options::{FrameInput, Options};
 use genescape_viewer::scene::{Instance, Scene};
-use genescape_world::Source;
 use glam::Vec3;
 
 use crate::backdrop::{Backdrops, Matte};
-use crate::round::Round;
+use crate::round::starters;
 
 /// Pixels a side of the pictures in which trees are looked at, and those that a tree's height takes of them.
 const SIDE_PX: u32 = 96;
@@ -73,24 +70,19 @@ fn look_at(
 #[test]
 #[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
 fn far_trees_cover_as_much_and_are_as_bright_as_near_ones() {
-    let round = Round::new();
-    round.until(|event| matches!(event, Event::Done { .. }));
     let backdrops = Backdrops::open();
     let mut all = Vec::new();
-    for path in scene_files(&Source::World(round.files.root().to_owned())).expect("scenes") {
-        let scene = backdrops.studio().read(&path).expect("readable");
+    for scene in starters(backdrops.studio()) {
         for template in 0..2 {
             assert!(scene.trees.templates[template].impostor.is_some(), "{}", scene.name);
             let of = |mode, finer| look(&backdrops, &scene, template as u32, mode, finer);
             let truth = of(TreeLodMode::Off, FINER);
-            // Roots of radiance, in which the eye sees evenly.
-            let brightness = |seen: &Matte| seen.radiance().iter().sum::<f64>().sqrt();
             let [leaves, picture] = [of(TreeLodMode::Off, 1), of(TreeLodMode::Simple, 1)];
             // How much of a palm's leaves single samples find is the driver's matter.
             let most = if backdrops.studio().gpu.software { 0.09 } else { 0.12 };
             for (what, seen, most) in [("leaves", &leaves, most), ("picture", &picture, 0.06)] {
                 let covers = seen.pixels / truth.pixels * f64::from(FINER * FINER);
-                let bright = brightness(seen) / brightness(&truth);
+                let bright = seen.brightness() / truth.brightness();
                 let told =
                     format!("{} {template}, {what}: covers {covers:.3}, bright {bright:.3}", scene.name);
                 genescape_bake::say!("{told}");
@@ -111,12 +103,9 @@ fn far_trees_cover_as_much_and_are_as_bright_as_near_ones() {
 #[test]
 #[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
 fn trees_beyond_the_field_are_there_and_as_bright_as_on_it() {
-    let round = Round::new();
-    round.until(|event| matches!(event, Event::Done { .. }));
     let backdrops = Backdrops::open();
     let mut all = Vec::new();
-    for path in scene_files(&Source::World(round.files.root().to_owned())).expect("scenes") {
-        let scene = backdrops.studio().read(&path).expect("readable");
+    for scene in starters(backdrops.studio()) {
         let half_m = 0.5 * scene.ground.field.extent_m();
         let away_m = |tree: &Instance| tree.world_from_tree[0][3].abs().max(tree.world_from_tree[2][3].abs());
         assert!(scene.trees.instances.iter().all(|tree| away_m(tree) < half_m), "{}", scene.name);
@@ -127,8 +116,7 @@ fn trees_beyond_the_field_are_there_and_as_bright_as_on_it() {
         for mode in [TreeLodMode::Quality, TreeLodMode::Simple] {
             let of = |x: f32| look_at(&backdrops, &scene, 0, [x, y, 0.0], mode, 1);
             let [on_field, beyond] = [of(0.0), of(half_m + 3000.0)];
-            let brightness = |seen: &Matte| seen.radiance().iter().sum::<f64>().sqrt();
-            let bright = brightness(&beyond) / brightness(&on_field);
+            let bright = beyond.brightness() / on_field.brightness();
             let covers = beyond.pixels / on_field.pixels;
             let told =
                 format!("{} beyond the field, {mode:?}: covers {covers:.3}, bright {bright:.3}", scene.name);

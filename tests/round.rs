@@ -8,15 +8,25 @@ use genescape_bake::plan::Resolution;
 use genescape_schema::{Category, Parent, Space, Votes};
 use genescape_viewer::baker::{Baker, BakerOptions, Event};
 use genescape_viewer::edit_history::{Change as Edited, Edit};
-use genescape_world::{Change, Scope, Watch, World};
+use genescape_viewer::headless::{Headless, scene_files};
+use genescape_viewer::scene::Scene;
+use genescape_world::{Change, Scope, Source, Watch, World};
 
-pub struct Round {
+struct Round {
     _folder: tempfile::TempDir,
-    pub files: World,
+    files: World,
     baker: Baker,
     watch: Watch,
     edited: Vec<Edited>,
     changes: BTreeSet<Change>,
+}
+
+/// The starters, baked small.
+pub fn starters(studio: &Headless) -> Vec<Scene> {
+    let round = Round::new();
+    round.until(|event| matches!(event, Event::Done { .. }));
+    let paths = scene_files(&Source::World(round.files.root().to_owned())).expect("scenes");
+    paths.iter().map(|path| studio.read(path).expect("readable")).collect()
 }
 
 /// Bakes small landscapes, and ahead at most so many bytes.
@@ -28,7 +38,7 @@ fn start_baker(files: &World, ahead: u64) -> Baker {
 
 impl Round {
     /// A world whose baker has begun.
-    pub fn new() -> Self {
+    fn new() -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let files = World::new(folder.path());
         let watch =
@@ -38,7 +48,7 @@ impl Round {
     }
 
     /// What the baker tells until it tells `what`; that comes last.
-    pub fn until(&self, what: impl Fn(&Event) -> bool) -> Vec<Event> {
+    fn until(&self, what: impl Fn(&Event) -> bool) -> Vec<Event> {
         let (mut told, start) = (Vec::new(), Instant::now());
         loop {
             for event in self.baker.events() {

@@ -2,17 +2,15 @@
 
 use std::sync::Arc;
 
-use genescape_viewer::baker::Event;
 use genescape_viewer::camera::Camera;
-use genescape_viewer::headless::{Headless, scene_files};
+use genescape_viewer::headless::Headless;
 use genescape_viewer::lod_mode::TreeLodMode;
 use genescape_viewer::options::{FrameInput, Options};
 use genescape_viewer::passes::Shaders;
 use genescape_viewer::scene::Instance;
-use genescape_world::Source;
 use glam::Vec3;
 
-use crate::round::Round;
+use crate::round::starters;
 
 /// Trees of each landscape, in a row.
 const TREES: u32 = 4;
@@ -22,11 +20,9 @@ const TOLERANCE: u8 = 2;
 #[test]
 #[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
 fn bark_in_strips_is_bark_in_lists() {
-    let round = Round::new();
-    round.until(|event| matches!(event, Event::Done { .. }));
     let studio = Headless::open(&Shaders::builtin(), 1).expect("a device");
-    for path in scene_files(&Source::World(round.files.root().to_owned())).expect("scenes") {
-        let mut scene = studio.read(&path).expect("readable").without_far_trees();
+    for scene in starters(&studio) {
+        let mut scene = scene.without_far_trees();
         let ground_m = scene.ground.field.height_m(0.0, 0.0);
         let kinds = scene.trees.templates.len() as u32;
         let height_m = 2.0 * scene.trees.templates.iter().map(|tree| tree.radius_m).fold(0.0, f32::max);

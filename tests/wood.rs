@@ -2,17 +2,14 @@
 
 use std::sync::Arc;
 
-use genescape_viewer::baker::Event;
 use genescape_viewer::camera::Camera;
-use genescape_viewer::headless::scene_files;
 use genescape_viewer::lod_mode::TreeLodMode;
 use genescape_viewer::options::{FrameInput, Options};
 use genescape_viewer::scene::{Instance, Scene, Template};
-use genescape_world::Source;
 use glam::{Vec2, Vec3};
 
 use crate::backdrop::{Backdrops, Matte, Stage};
-use crate::round::Round;
+use crate::round::starters;
 
 /// Pixels a radian: those of a window 720 pixels high.
 const FOCAL_PX: f32 = 623.0;
@@ -111,12 +108,9 @@ fn distances_m(templates: &[Arc<Template>]) -> Vec<(String, f32)> {
 #[test]
 #[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
 fn a_wood_is_the_same_at_every_distance() {
-    let round = Round::new();
-    round.until(|event| matches!(event, Event::Done { .. }));
     let backdrops = Backdrops::open();
     let mut all = Vec::new();
-    for path in scene_files(&Source::World(round.files.root().to_owned())).expect("scenes") {
-        let scene = backdrops.studio().read(&path).expect("readable");
+    for scene in starters(backdrops.studio()) {
         let templates = &scene.trees.templates;
         let (wood, reach_m) = wood(&scene);
         let mut look = Look {
