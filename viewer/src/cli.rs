@@ -2,13 +2,12 @@
 
 use std::path::PathBuf;
 
-use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 
 use crate::baker::BakerOptions;
 use crate::image_file::parse_size;
-use crate::options::{Options, number};
+use crate::options::{Options, folder, number};
 
 /// Shows four landscapes at once: walk through all of them, say which has the best trees, terrain and sky, and breed
 /// four new ones. Shows any glTF file, too, alone
@@ -142,12 +141,6 @@ fn place(text: &str) -> Result<Place, String> {
         }
         _ => Err("five numbers are needed: X,Z,HEIGHT,YAW,PITCH, as in 0,20,1.6,45,-5".to_owned()),
     }
-}
-
-/// A folder that must be there.
-pub(crate) fn folder() -> impl TypedValueParser<Value = PathBuf> {
-    PathBufValueParser::new()
-        .try_map(|path| if path.is_dir() { Ok(path) } else { Err("there is no such folder") })
 }
 
 #[cfg(test)]

@@ -1,8 +1,10 @@
 //! What one frame is drawn from, for all views alike: time, choices of the person.
 
 use std::ops::RangeInclusive;
+use std::path::PathBuf;
 
 use clap::ArgAction;
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use serde::{Deserialize, Serialize};
 
 use crate::lod_mode::{TerrainLodMode, TreeLodMode};
@@ -131,6 +133,12 @@ fn degrees(text: &str) -> Result<f32, String> {
 pub(crate) fn number(text: &str, range: RangeInclusive<f32>, unit: &str) -> Result<f32, String> {
     let number = text.parse().ok().filter(|number| range.contains(number));
     number.ok_or_else(|| format!("a number from {} to {} {unit}", range.start(), range.end()))
+}
+
+/// A folder that must be there.
+pub(crate) fn folder() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new()
+        .try_map(|path| if path.is_dir() { Ok(path) } else { Err("there is no such folder") })
 }
 
 fn parse_samples(text: &str) -> Result<u32, String> {

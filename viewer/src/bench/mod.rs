@@ -28,12 +28,11 @@ use clap::{Args, ValueEnum};
 use genescape_world::Source;
 
 use crate::camera::Camera;
-use crate::cli::folder;
 use crate::headless::{Headless, scene_files};
 use crate::image_file::parse_size;
 use crate::lod_mode::{TerrainLodMode, TreeLodMode};
 use crate::measure::Cost;
-use crate::options::{FrameInput, Options};
+use crate::options::{FrameInput, Options, folder};
 use crate::passes::Shaders;
 use crate::scene::Scene;
 use crate::view::View;
