@@ -6,22 +6,20 @@
 
 use std::fmt;
 
-use genescape_schema::{Category, Genome, GenomeError, Kind, Kinds, Population, Space};
+use genescape_schema::{Genome, GenomeError, Kind, Kinds, Population, Space};
 use rayon::prelude::*;
 
 use crate::breed::Breeder;
 use crate::events::{Event, Listener};
-use crate::one_view;
 use crate::random::{self, Drawn};
 use crate::sketch::Sketch;
-use crate::stages::land::Brush;
 use crate::stages::sky;
 use crate::stages::start::{Appraisal, Want};
 
 /// How often a landscape is drawn again at most; then the best of those drawn is taken.
 const REDRAWS: u32 = 4;
 /// The lowest score that is worth a look.
-const BOUND: f32 = 0.55;
+const BOUND: f32 = 0.65;
 
 /// That a landscape was drawn again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,13 +50,13 @@ pub fn is_worth_a_look(appraisal: &Appraisal) -> Result<f32, Want> {
     if score >= BOUND { Ok(score) } else { Err(appraisal.weakest()) }
 }
 
-/// What a genome's best view is worth.
+/// What a genome's best view is worth; where one is worth `enough`, it may be that one.
 ///
 /// # Errors
 /// A gene that `space` does not declare.
-pub fn appraise(space: &Space, genome: &Genome) -> Result<Appraisal, GenomeError> {
+pub fn appraise(space: &Space, genome: &Genome, enough: f32) -> Result<Appraisal, GenomeError> {
     let light = sky::light(&genome.read(space)?);
-    Ok(Sketch::under(light, space, genome, Brush::Broad)?.any_good_look(BOUND))
+    Ok(Sketch::under(light, space, genome)?.any_good_look(enough))
 }
 
 /// A population of landscapes that somebody would look at, and which of them had to be drawn again for it.
@@ -80,7 +78,7 @@ pub fn audition(space: &Space, draw: impl Fn(u32) -> Population) -> Auditioned {
         let others = draw(attempt);
         for (landscape, one) in appraisals.iter_mut().enumerate() {
             let Some(lacked) = lacking(one) else { continue };
-            let other = appraise(space, &others.individuals[landscape].genome).ok();
+            let other = appraise(space, &others.individuals[landscape].genome, BOUND).ok();
             if score(&other) > score(one) {
                 population.individuals[landscape] = others.individuals[landscape].clone();
                 *one = other;
@@ -93,14 +91,9 @@ pub fn audition(space: &Space, draw: impl Fn(u32) -> Population) -> Auditioned {
     Auditioned { population, redrawn }
 }
 
-/// Generation `next`, bred again where nobody would look at a child; of lands that nobody has seen yet, those are taken that are
-/// well seen from where the others are.
+/// Generation `next`, bred again where nobody would look at a child.
 pub fn next_generation(breeder: &Breeder<'_>, next: u32) -> Auditioned {
-    let Auditioned { population, redrawn } =
-        audition(breeder.space(), |attempt| bred(breeder, next, attempt));
-    let new = breeder.new_lands(&population);
-    let population = one_view::suited_children(breeder.space(), population, new);
-    Auditioned { population, redrawn }
+    audition(breeder.space(), |attempt| bred(breeder, next, attempt))
 }
 
 /// Which landscapes of a population that [`audition`] took from `draw` were drawn again, and why. Drawing is
@@ -109,31 +102,15 @@ pub fn redrawn(space: &Space, draw: impl Fn(u32) -> Population, population: &Pop
     let draws: Vec<Population> = (0..=REDRAWS).map(draw).collect();
     let later = |&k: &usize| {
         let genome = &population.individuals[k].genome;
-        let drawn = draws.iter().map(|draw| &draw.individuals[k].genome);
-        // Its land may be another for the sake of the view.
-        let mut first = drawn.clone().position(|one| one == genome);
-        first = first.or_else(|| drawn.clone().position(|one| is_same_kind_of_land(space, one, genome)));
+        let first = draws.iter().position(|draw| draw.individuals[k].genome == *genome);
         first.is_some_and(|attempt| attempt > 0)
     };
     let again = (0..population.individuals.len()).filter(later);
     let why = |landscape: usize| {
-        let appraisal = appraise(space, &draws[0].individuals[landscape].genome).ok();
+        let appraisal = appraise(space, &draws[0].individuals[landscape].genome, BOUND).ok();
         Some(Redrawn { landscape, lacked: lacking(&appraisal)? })
     };
     again.filter_map(why).collect()
-}
-
-/// Whether a genome is another but for its land's seed.
-pub fn is_same_kind_of_land(space: &Space, genome: &Genome, other: &Genome) -> bool {
-    let seedless = |genome: &Genome| {
-        let mut genome = genome.clone();
-        space
-            .category(Category::Terrain)
-            .filter(|gene| gene.is_seed())
-            .for_each(|gene| genome.set_code(gene, 0));
-        genome
-    };
-    seedless(genome) == seedless(other)
 }
 
 fn lacking(appraisal: &Option<Appraisal>) -> Option<Want> {
@@ -177,7 +154,7 @@ fn seed_of(seed: u64, attempt: u32) -> u64 {
 
 /// `None` of a genome that cannot be baked at all, which others have to tell.
 fn appraise_all(space: &Space, population: &Population) -> Vec<Option<Appraisal>> {
-    population.individuals.par_iter().map(|one| appraise(space, &one.genome).ok()).collect()
+    population.individuals.par_iter().map(|one| appraise(space, &one.genome, BOUND).ok()).collect()
 }
 
 #[cfg(test)]

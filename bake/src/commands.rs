@@ -28,7 +28,7 @@ use crate::session::{self, Baked, Publish, Session};
 use crate::watch_loop::{self, Host};
 use crate::{
     bench, cache_commands, distance_command, explain_command, export_command, kinds_command, lineage_command,
-    lod_command, manual, one_view,
+    lod_command, manual,
 };
 
 /// Set by Ctrl-C.
@@ -245,7 +245,7 @@ fn random(seed: Option<u64>, wanted: &[String], uniform: bool, args: &RunArgs) -
         let Auditioned { population, redrawn } =
             audition::audition(space, |attempt| draw(attempt).population);
         audition::tell(&*listener, &redrawn);
-        Ok::<_, WorldError>(one_view::suited(space, population))
+        Ok::<_, WorldError>(population)
     };
     let path = session.world().create_next_population(space, make)?;
     listener.end();

@@ -115,7 +115,7 @@ impl Explained {
 }
 
 fn first_look(space: &Space, genome: &Genome) -> Option<(f32, &'static str)> {
-    let first_look = audition::appraise(space, genome).ok()?;
+    let first_look = audition::appraise(space, genome, 1.0).ok()?;
     Some((100.0 * first_look.score(), first_look.weakest().lack()))
 }
 

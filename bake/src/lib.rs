@@ -29,7 +29,6 @@ mod manual;
 mod math;
 pub mod model;
 pub mod noise;
-pub mod one_view;
 pub mod origin;
 pub mod pedigree;
 pub mod phenotype;

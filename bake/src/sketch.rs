@@ -5,9 +5,9 @@ use genescape_schema::{Genome, GenomeError, Space};
 
 use crate::model::{Instance, Landform, SkyLight, TreeFootprint};
 use crate::stages::ground::snow_map;
-use crate::stages::land::{self, Brush};
+use crate::stages::land;
 use crate::stages::placement::{PlacementParams, clear_around, place};
-use crate::stages::start::{Appraisal, any_good_look, looks};
+use crate::stages::start::{Appraisal, any_good_look};
 use crate::stages::tree::{TreeMeasures, TreeParams, measure};
 
 /// Such a landscape.
@@ -23,8 +23,8 @@ impl Sketch {
     ///
     /// # Errors
     /// A gene that `space` does not declare.
-    pub fn under(light: SkyLight, space: &Space, genome: &Genome, brush: Brush) -> Result<Self, GenomeError> {
-        let land = land::sketch(&genome.read(space)?, brush);
+    pub fn under(light: SkyLight, space: &Space, genome: &Genome) -> Result<Self, GenomeError> {
+        let land = land::sketch(&genome.read(space)?);
         let footprint = footprint(&genome.read(space)?);
         let placement: PlacementParams = genome.read(space)?;
         let snow = snow_map(placement.terrain_seed, &land);
@@ -36,12 +36,6 @@ impl Sketch {
     /// See [`any_good_look`].
     pub fn any_good_look(&self, enough: f32) -> Appraisal {
         any_good_look(&self.land, &self.trees, &[self.footprint], &self.light, enough)
-    }
-
-    /// How good the looks are from one in so many of the places that there are, but for those where one stands so badly that
-    /// none can score `least`.
-    pub fn looks(&self, one_in: usize, least: f32) -> Vec<Appraisal> {
-        looks(&self.land, &self.trees, &[self.footprint], &self.light, one_in, least)
     }
 }
 
@@ -62,6 +56,7 @@ mod tests {
     use super::*;
     use crate::kinds::testing::{drawn, kinds};
     use crate::stages::sky;
+    use crate::stages::start::looks;
     use crate::stages::tree::template;
 
     /// Correlation (Pearson) of the scores of the same looks.
@@ -97,14 +92,13 @@ mod tests {
             let snow = snow_map(placement.terrain_seed, &land);
             let mut trees = place(&placement, &land, snow.as_ref(), &footprints).instances;
             clear_around(&land, &mut trees);
-            let itself = looks(&land, &trees, &footprints, &light, 4, 0.0);
-            for (brush, least) in [(Brush::Broad, 0.6), (Brush::Fine, 0.9)] {
-                let sketch = Sketch::under(light.clone(), space, genome, brush).expect("valid");
-                let scores = sketch.looks(4, 0.0).into_iter().zip(&itself);
-                let scores: Vec<_> = scores.map(|(one, other)| (one.score(), other.score())).collect();
-                let agreement = agreement(&scores);
-                assert!(agreement > least, "{} with a {brush:?} brush: {agreement}", one.name);
-            }
+            let itself = looks(&land, &trees, &footprints, &light, 4);
+            let sketch = Sketch::under(light.clone(), space, genome).expect("valid");
+            let sketched = looks(&sketch.land, &sketch.trees, &[sketch.footprint], &light, 4);
+            let scores: Vec<_> =
+                sketched.iter().zip(&itself).map(|(one, other)| (one.score(), other.score())).collect();
+            let agreement = agreement(&scores);
+            assert!(agreement > 0.6, "{}: {agreement}", one.name);
         }
     }
 }

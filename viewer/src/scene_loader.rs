@@ -56,11 +56,13 @@ impl SceneLoader {
     pub fn load(&self, path: &Path, passes: &Passes) -> Result<Loaded> {
         self.load_by(path, |scene| {
             let exhibit = self.upload(scene, passes)?.into();
-            Ok(Loaded { exhibit, land: Arc::new(Land::of(scene)), lacks_shadows: false, files: Vec::new() })
+            let land = Arc::new(Land::of(scene).from_its_start());
+            Ok(Loaded { exhibit, land, lacks_shadows: false, files: Vec::new() })
         })
     }
 
-    /// The same, of a landscape with those shadows only that are seen from `eye_m` (x and z), or from where walks start.
+    /// The same, of a landscape with those shadows only that are seen from `eye_m` (x and z in it), or from where it is first
+    /// seen.
     pub fn load_with_near_shadows(
         &self,
         path: &Path,
@@ -73,7 +75,7 @@ impl SceneLoader {
             bake.land();
             bake.trees_around(eye_m.unwrap_or(scene.start.position_m.xz()), NEAR_M);
             drop(bake);
-            let (exhibit, land) = (Arc::new(buffers).into(), Arc::new(Land::of(scene)));
+            let (exhibit, land) = (Arc::new(buffers).into(), Arc::new(Land::of(scene).from_its_start()));
             Ok(Loaded { exhibit, land, lacks_shadows: true, files: Vec::new() })
         })
     }

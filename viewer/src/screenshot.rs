@@ -13,7 +13,7 @@ use crate::image_file;
 use crate::options::FrameInput;
 use crate::passes::Shaders;
 use crate::say;
-use crate::walk::{Land, Rig, start_pose};
+use crate::walk::{Anchor, Land, Rig, start_pose};
 
 const DEFAULT_SIZE_PX: [u32; 2] = [1280, 800];
 
@@ -70,6 +70,7 @@ fn chosen(cli: &Cli, mut paths: Vec<PathBuf>) -> Result<Vec<PathBuf>> {
 
 fn camera(cli: &Cli, rig: &Rig, land: &Land, fov_y_rad: f32) -> Camera {
     let Some(place) = cli.camera else { return rig.camera(land, fov_y_rad) };
+    let land = Land { anchor: Anchor::default(), ..land.clone() };
     // Of anyone's file, in the file's metres.
     let scale = land.subject.map_or(1.0, |subject| subject.scale);
     let place_m = Vec2::new(place.x_m, place.z_m) * scale;

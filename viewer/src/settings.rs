@@ -133,8 +133,6 @@ impl Default for Window {
 pub struct WorldSettings {
     /// Where the person was last.
     pub place: Option<Bookmark>,
-    /// That is where landscapes begin: nobody has walked from there.
-    pub at_start: bool,
     /// The generation that was shown last.
     pub generation: Option<u32>,
     /// Places to go back to, by the number of their key.
@@ -146,7 +144,7 @@ pub struct WorldSettings {
 /// A place and a view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bookmark {
-    /// The eye in metres.
+    /// The eye in metres, from where each landscape is first seen.
     pub position_m: [f32; 3],
     /// As in [`crate::camera::Camera`].
     pub yaw_rad: f32,

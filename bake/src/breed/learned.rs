@@ -134,11 +134,6 @@ impl<'a> Learned<'a> {
         &self.tastes[category as usize]
     }
 
-    /// What was chosen of a category, the latest last.
-    pub fn chosen(&self, category: Category) -> &[Chromosome] {
-        &self.tastes[category as usize].chosen
-    }
-
     /// What a sample wants, as a chromosome of its kind; its seed is 0.
     pub fn member(&self, category: Category, ideal: &Ideal) -> Chromosome {
         let mut at = ideal.at.clone();

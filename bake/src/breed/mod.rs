@@ -20,9 +20,7 @@ mod tests;
 mod variety;
 mod weights;
 
-use genescape_schema::{
-    Category, Chromosome, INDIVIDUALS, Kinds, Parent, Population, Space, Strategy, Votes,
-};
+use genescape_schema::{Category, Kinds, Parent, Population, Space, Strategy, Votes};
 
 pub use account::{Account, Settled};
 pub use chances::likely_votes;
@@ -109,25 +107,6 @@ impl<'a> Breeder<'a> {
     /// What chance depends on: the parents' seed.
     pub fn seed(&self) -> u64 {
         self.parents.seed
-    }
-
-    /// Which children have a land that nobody has seen, so that it may as well be another of its kind: not one of the parents'
-    /// or one that was chosen before, not one that two of them share, and none whose seed is locked.
-    pub fn new_lands(&self, children: &Population) -> [bool; INDIVIDUALS] {
-        let seeds = || self.space.category(Category::Terrain).filter(|gene| gene.is_seed());
-        if seeds().any(|gene| self.parents.is_locked(gene)) {
-            return [false; INDIVIDUALS];
-        }
-        let is_of = |a: &Chromosome, b: &Chromosome| seeds().all(|gene| a.code(gene) == b.code(gene));
-        let lands = |of: &Population| {
-            of.individuals.each_ref().map(|one| one.genome.chromosome(Category::Terrain).clone())
-        };
-        let (known, children) = (lands(self.parents), lands(children));
-        let chosen = self.learned.as_ref().map_or(&[][..], |learned| learned.chosen(Category::Terrain));
-        children.each_ref().map(|land| {
-            let is_seen = known.iter().chain(chosen).any(|one| is_of(one, land));
-            !is_seen && children.iter().filter(|one| is_of(one, land)).count() == 1
-        })
     }
 
     /// Generation `next`: the same genes for the same seed, generation, genes, votes and kinds. Its own seed is the

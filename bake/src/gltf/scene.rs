@@ -2,8 +2,8 @@
 //! which shows the scene in any viewer, without any extension but KHR_lights_punctual and KHR_texture_transform.
 
 use genescape_schema::scene::{
-    GSC_HEIGHTFIELD, GSC_LOOKOUTS, GSC_SKY, HeightfieldExtension, LookoutsExtension, Resource, START_NODE,
-    SkyExtension, SkyLight, rotation_from_z,
+    GSC_HEIGHTFIELD, GSC_SKY, HeightfieldExtension, Resource, START_NODE, SkyExtension, SkyLight,
+    rotation_from_z,
 };
 use glam::Vec3;
 use serde_json::{Value, json};
@@ -39,8 +39,6 @@ pub fn scene_gltf(parts: &SceneParts<'_>) -> Result<Vec<u8>, ExportError> {
 /// The first look, with what is known of others.
 fn add_camera(document: &mut Document, parts: &SceneParts<'_>) -> usize {
     let view = parts.view;
-    document.extensions_used.insert(GSC_LOOKOUTS.into());
-    let lookouts = LookoutsExtension { prospects: parts.lookouts.clone() };
     let camera = push(
         &mut document.cameras,
         json!({ "name": START_NODE, "type": "perspective",
@@ -51,7 +49,6 @@ fn add_camera(document: &mut Document, parts: &SceneParts<'_>) -> usize {
         camera: Some(camera),
         translation: Some(view.position_m.to_array()),
         rotation: Some(view.rotation().to_array()),
-        extensions: Some(json!({ GSC_LOOKOUTS: lookouts })),
         ..Node::default()
     })
 }

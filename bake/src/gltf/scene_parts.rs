@@ -39,8 +39,6 @@ pub struct SceneParts<'a> {
     pub foreground: Option<GlbBlob<'a>>,
     /// Where a person first stands.
     pub view: StartView,
-    /// `Lookouts` as bytes.
-    pub lookouts: Resource,
     /// 16-bit grey PNG: 0 is the lowest sample, 65535 the highest.
     pub heights: Resource,
     /// `TerrainLod` as bytes.

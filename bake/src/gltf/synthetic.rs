@@ -339,7 +339,6 @@ pub fn synthetic(count: u32) -> Synthetic {
         ("instances.bin", write_instances(&placement.instances)),
         ("far-trees.bin", write_instances(&placement.instances[..1])),
         ("lod.bin", vec![7; 100]),
-        ("lookouts.bin", vec![7; 100]),
         ("sky.exr", exr(128, 64, sun)),
         ("face.exr", exr(8, 8, sun)),
         ("cloud.png", png(16, 4, false, |_, _, _| 0.8)),
@@ -384,7 +383,6 @@ impl Synthetic {
             terrain: GlbBlob { uri: "blobs/terrain.glb".into(), bytes: &self.terrain },
             foreground: None,
             view: first_look(&self.land, &self.placement.instances, &FOOTPRINTS, &self.light).view,
-            lookouts: Resource::file(uri("lookouts.bin"), "application/octet-stream"),
             heights: png("heights.png"),
             lod: Resource::file(uri("lod.bin"), "application/octet-stream"),
             surface: GroundSurface {

@@ -7,6 +7,7 @@ mod ground;
 mod image;
 mod leaf_color;
 mod light;
+mod lookout;
 mod mesh;
 mod terrain;
 mod tree;
@@ -21,6 +22,7 @@ pub use ground::{Foreground, GroundMaps};
 pub use image::{AlphaMask, Image8, ImageF16};
 pub use leaf_color::leaf_color;
 pub use light::LightMap;
+pub use lookout::Lookout;
 pub use mesh::{Bounds, Material, Mesh, Part, PartKind};
 pub use terrain::{Landform, TerrainMesh};
 pub use tree::{

@@ -4,7 +4,7 @@ use super::Trait;
 use super::color::{mean_and_contrast, oklab};
 use crate::model::{Heightfield, Landform};
 use crate::stages::ground::{Glimpse, GroundParams, glimpse};
-use crate::stages::land::{Brush, LandParams, sketch};
+use crate::stages::land::{LandParams, sketch};
 
 /// What [`traits`] gives, in this order.
 pub const TRAITS: [Trait; 9] = [
@@ -25,7 +25,7 @@ const SCALES: [u32; 3] = [2, 8, 32];
 const DECILES: [f32; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 
 pub fn traits(land: &LandParams, ground: &GroundParams) -> Vec<Vec<f32>> {
-    let land = sketch(land, Brush::Broad);
+    let land = sketch(land);
     let field = &land.field;
     let [low, high] = field.range_m();
     let relief_m = (high - low).max(1.0);

@@ -40,7 +40,7 @@ pub struct SceneStage {
 
 impl Stage for SceneStage {
     const NAME: &'static str = "scene";
-    const VERSION: u32 = 9;
+    const VERSION: u32 = 10;
     type Output = File;
 
     fn run(&self, context: &Context<'_>) -> Result<File, StageError> {
@@ -68,7 +68,6 @@ impl Stage for SceneStage {
             terrain: GlbBlob { uri: uri(near), bytes: &context.bytes(near)? },
             foreground: Some(GlbBlob { uri: uri(&foreground), bytes: &context.bytes(&foreground)? }),
             view: start.view,
-            lookouts: resource(&start.lookouts)?,
             heights: resource(&terrain.heights)?,
             lod: resource(&terrain.lod)?,
             surface: surface.try_map(resource)?,

@@ -18,7 +18,6 @@ mod heightfield;
 mod heightfield_bytes;
 mod impostor;
 mod instances;
-mod lookouts;
 mod plants;
 mod progressive_mesh;
 mod resource;
@@ -34,7 +33,6 @@ pub use instances::{
     FAR_TREES_NODE, GSC_INSTANCES, Instance, InstancesError, InstancesExtension, InstancesTemplate,
     instance_count, read_instances, write_instances,
 };
-pub use lookouts::{GSC_LOOKOUTS, Lookout, Lookouts, LookoutsError, LookoutsExtension, Prospect, SharedView};
 pub use plants::{DensityMap, GroundPlants, Plant, PlantKind, PlantShape, ground_m};
 pub use progressive_mesh::{GSC_PROGRESSIVE_MESH, ProgressiveLevel, ProgressiveMeshExtension, error_weight};
 pub use resource::Resource;
@@ -42,5 +40,5 @@ pub use sky::{CloudLayer, GSC_SKY, SkyExtension, SkyImages, SkyLight};
 pub use view::{START_NODE, StartView, rotation_from_z};
 
 /// Names of all our extensions, in the order in which files list them.
-pub const EXTENSIONS: [&str; 6] =
-    [GSC_HEIGHTFIELD, GSC_IMPOSTOR, GSC_INSTANCES, GSC_LOOKOUTS, GSC_PROGRESSIVE_MESH, GSC_SKY];
+pub const EXTENSIONS: [&str; 5] =
+    [GSC_HEIGHTFIELD, GSC_IMPOSTOR, GSC_INSTANCES, GSC_PROGRESSIVE_MESH, GSC_SKY];

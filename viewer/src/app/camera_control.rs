@@ -1,22 +1,10 @@
 //! Keys, mouse and gamepad → where the one camera of all views is.
 
-use glam::Vec2;
 use winit::window::{CursorGrabMode, Window};
 
 use crate::input::{Command, Held};
-use crate::settings::{Bookmark, Comfort, WorldSettings};
-use crate::walk::{Feel, Land, Mode, Pose, Rig, start_pose, suits_all};
-
-/// How the camera came to be where it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Place {
-    /// It doesn't matter: the first landscape of a generation that is to come says where the walk begins.
-    Awaited,
-    /// At the start of the first landscapes that were there.
-    Start,
-    /// Where the person has gone.
-    Chosen,
-}
+use crate::settings::{Bookmark, Comfort};
+use crate::walk::{Feel, Land, Mode, Pose, Rig, start_pose};
 
 /// What moves the camera.
 pub struct CameraControl {
@@ -25,9 +13,8 @@ pub struct CameraControl {
     pub held: Held,
     /// The pointer steers the view.
     captured: bool,
-    place: Place,
-    /// The generation whose landscapes were all asked about the start.
-    asked: Option<u32>,
+    /// It doesn't matter where it is: the first landscape of a generation that is to come begins the walk.
+    awaits: bool,
     /// What is shown is anyone's file, which stands alone.
     around_subject: bool,
     /// Nothing was held at the last step.
@@ -55,8 +42,7 @@ impl CameraControl {
             rig: Rig::new(Pose::default(), &[]),
             held: Held::default(),
             captured: false,
-            place: Place::Awaited,
-            asked: None,
+            awaits: true,
             around_subject: false,
             resting: true,
             #[cfg(feature = "gamepad")]
@@ -72,47 +58,24 @@ impl CameraControl {
 
     /// A generation is born: the walk begins anew with its first landscape.
     pub fn await_landscapes(&mut self) {
-        (self.place, self.asked) = (Place::Awaited, None);
+        self.awaits = true;
     }
 
-    /// Landscapes have changed. `own`: those of the generation on show, of `all` that are walked in; `complete`: no more
-    /// are to come.
-    ///
-    /// A new walk begins with the first landscape, whose start is known then, and not with the last: that may be half a
-    /// minute later, spent in a lake. Each of the others might know a better start, but a person who looks around must
-    /// not be moved again and again. So that is asked once, when all are known, of someone who has not moved, and only
-    /// if the place is bad for one of them.
-    pub fn lands_changed(&mut self, all: &[&Land], own: &[&Land], generation: u32, complete: bool) {
+    /// Landscapes have changed. `own`: those of the generation on show, of `all` that are walked in. A new walk begins with
+    /// the first of them; each of the others is laid under it when it comes.
+    pub fn lands_changed(&mut self, all: &[&Land], own: &[&Land]) {
         self.around_subject = all.iter().any(|land| land.subject.is_some());
-        let begins = self.place == Place::Awaited && !own.is_empty();
-        let asks = complete && self.place == Place::Start && self.asked != Some(generation);
-        if begins || asks && !suits_all(own, &self.rig.pose()) {
+        if self.awaits && !own.is_empty() {
             self.rig.go(start_pose(own), own);
-            self.place = Place::Start;
+            self.awaits = false;
         } else {
             self.rig.settle(all);
         }
-        if complete {
-            self.asked = Some(generation);
-        }
-    }
-
-    /// From where landscapes that are to come will be seen, x and z in metres, unless they decide that themselves.
-    pub fn eye_m(&self) -> Option<Vec2> {
-        (self.place != Place::Awaited).then(|| self.rig.pose().place_m())
     }
 
     /// Goes to where every walk starts.
     pub fn go_to_start(&mut self, lands: &[&Land]) {
         self.rig.go(start_pose(lands), lands);
-        self.leave(Place::Start);
-    }
-
-    /// While landscapes are awaited, a walk in the old ones changes nothing.
-    fn leave(&mut self, place: Place) {
-        if self.place != Place::Awaited {
-            self.place = place;
-        }
     }
 
     /// Moves for a frame of `dt_s` seconds.
@@ -126,9 +89,6 @@ impl CameraControl {
         #[cfg(not(feature = "gamepad"))]
         let commands = Vec::new();
         self.resting = controls == Default::default();
-        if !self.resting {
-            self.leave(Place::Chosen);
-        }
         let usual = Feel::default();
         let feel = Feel {
             mouse_rad: usual.mouse_rad * comfort.mouse_sensitivity,
@@ -156,7 +116,6 @@ impl CameraControl {
 
     /// Goes on to the next of walk, fly and orbit, and returns it.
     pub fn next_mode(&mut self, lands: &[&Land]) -> Mode {
-        self.leave(Place::Chosen);
         self.rig.cycle_mode(lands);
         self.rig.mode()
     }
@@ -172,16 +131,14 @@ impl CameraControl {
         }
     }
 
-    /// The place to come back to at the next start, if there is one and the camera has come to rest; and whether it is
-    /// where landscapes begin.
-    pub fn rested_at(&self) -> Option<(Bookmark, bool)> {
-        let rests = self.place != Place::Awaited && self.resting;
-        rests.then(|| (self.bookmark(), self.place == Place::Start))
+    /// The place to come back to at the next start, if there is one and the camera has come to rest.
+    pub fn rested_at(&self) -> Option<Bookmark> {
+        (!self.awaits && self.resting).then(|| self.bookmark())
     }
 
     /// Goes to a remembered place.
     pub fn go_to(&mut self, mark: &Bookmark, lands: &[&Land]) {
-        self.place = Place::Chosen;
+        self.awaits = false;
         let [x_m, altitude_m, z_m] = mark.position_m;
         let pose = Pose {
             x_m,
@@ -195,15 +152,11 @@ impl CameraControl {
         self.rig.go(pose, lands);
     }
 
-    /// Before landscapes are loaded: goes to where the last session ended. Without such a place the landscapes decide.
-    /// At a start, those of another generation than the last may say that there is a better one.
-    pub fn return_to(&mut self, place: Option<&Bookmark>, last: &WorldSettings) {
-        self.place = Place::Awaited;
+    /// Before landscapes are loaded: goes to where the last session ended. Without such a place the walk begins with them.
+    pub fn return_to(&mut self, place: Option<&Bookmark>) {
+        self.awaits = true;
         if let Some(mark) = place {
             self.go_to(mark, &[]);
-            if last.at_start {
-                (self.place, self.asked) = (Place::Start, last.generation);
-            }
         }
     }
 
@@ -227,25 +180,13 @@ impl CameraControl {
 mod tests {
     use super::*;
     use crate::walk::testing::land_with;
-    use genescape_schema::scene::{Lookout, Lookouts, Prospect};
-
-    /// Level land, as good as each number says from the lookout of that number.
-    fn land(scores: &[(usize, u8)]) -> Land {
-        let mut prospects = vec![Prospect::default(); Lookout::COUNT];
-        scores.iter().for_each(|&(lookout, score)| prospects[lookout].score = score);
-        Land { lookouts: Lookouts::new(prospects).map(std::sync::Arc::new), ..land_with([]) }
-    }
-
-    fn x_of(lookout: usize) -> f32 {
-        Lookout::all().nth(lookout).expect("one of the list").place_m(128.0).x
-    }
 
     fn control() -> CameraControl {
         CameraControl::new().0
     }
 
-    fn x_m(control: &CameraControl) -> f32 {
-        control.rig.pose().x_m
+    fn gone_m(control: &CameraControl) -> f32 {
+        control.rig.pose().place_m().length()
     }
 
     /// A second of walking forward.
@@ -257,73 +198,39 @@ mod tests {
     }
 
     #[test]
-    fn a_new_generation_is_entered_once_and_corrected_only_where_it_must() {
-        let (old, first) = (land(&[(24, 200)]), land(&[(48, 200), (72, 90)]));
-        for (score, expected) in [(150, 48), (20, 72)] {
-            let second = land(&[(48, score), (72, 90)]);
-            let mut control = control();
-            control.lands_changed(&[&old], &[&old], 1, true);
-            walk(&mut control, &[&old]);
-            control.await_landscapes();
-            walk(&mut control, &[&old]);
-            control.lands_changed(&[&first, &old], &[&first], 1, false);
-            assert_eq!(x_m(&control), x_of(48), "whoever walked while it grew is taken along");
-            control.lands_changed(&[&first, &second], &[&first, &second], 1, false);
-            assert_eq!(x_m(&control), x_of(48), "not before the last is there");
-            control.lands_changed(&[&first, &second], &[&first, &second], 1, true);
-            assert_eq!(
-                x_m(&control),
-                x_of(expected),
-                "which the second scores {score} from the first's place"
-            );
-        }
-    }
-
-    #[test]
-    fn an_edit_moves_nobody() {
-        let (good, bad) = (land(&[(48, 200), (72, 90)]), land(&[(48, 20), (72, 90)]));
+    fn a_new_generation_is_entered_once_with_its_first_landscape() {
+        let [old, first, second] = [(); 3].map(|()| land_with([]));
         let mut control = control();
-        control.lands_changed(&[&good], &[&good], 1, true);
-        control.lands_changed(&[&bad], &[&bad], 1, true);
-        assert_eq!(x_m(&control), x_of(48), "the walk has begun");
-        control.go_to_start(&[&bad]);
-        assert_eq!(x_m(&control), x_of(72), "as the person wanted");
-        control.lands_changed(&[&good], &[&good], 1, true);
-        assert_eq!(x_m(&control), x_of(72));
-    }
-
-    #[test]
-    fn a_place_that_is_a_start_gives_way_to_a_better_one_after_a_restart_and_in_another_generation() {
-        let (good, bad) = (land(&[(48, 200), (72, 90)]), land(&[(48, 20), (72, 90)]));
-        let mut control = control();
-        control.lands_changed(&[&good], &[&good], 1, true);
-        control.step(0.25, &Comfort::default(), &[&good]);
-        let (mark, is_start) = control.rested_at().expect("it rests");
-        for (at_start, generation, expected) in [(is_start, 0, 72), (is_start, 1, 48), (false, 0, 48)] {
-            let mut again = self::control();
-            let last = WorldSettings { at_start, generation: Some(1), ..WorldSettings::default() };
-            again.return_to(Some(&mark), &last);
-            again.lands_changed(&[&bad], &[&bad], generation, true);
-            assert_eq!(x_m(&again), x_of(expected), "generation {generation}, at a start: {at_start}");
-        }
-        control.lands_changed(&[&bad], &[&bad], 0, true);
-        assert_eq!(x_m(&control), x_of(72), "another generation");
-    }
-
-    #[test]
-    fn whoever_walks_on_in_the_new_generation_is_left_alone_and_so_is_whoever_stays() {
-        let (old, first, wall) = (land(&[(24, 200)]), land(&[(48, 200)]), land(&[(72, 200)]));
-        let mut control = control();
-        control.lands_changed(&[&old], &[&old], 1, true);
+        control.lands_changed(&[&old], &[&old]);
         walk(&mut control, &[&old]);
-        let before = control.rig.pose();
-        control.lands_changed(&[&first, &old], &[&first], 1, false);
-        assert_eq!(control.rig.pose(), before, "nothing was awaited");
+        assert!(gone_m(&control) > 1.0);
         control.await_landscapes();
-        control.lands_changed(&[&first], &[&first], 1, false);
-        walk(&mut control, &[&first]);
+        walk(&mut control, &[&old]);
+        control.lands_changed(&[&first, &old], &[&first]);
+        assert_eq!(gone_m(&control), 0.0, "whoever walked while it grew is taken along");
+        walk(&mut control, &[&first, &old]);
         let before = control.rig.pose();
-        control.lands_changed(&[&first, &wall], &[&first, &wall], 1, true);
-        assert_eq!(control.rig.pose(), before);
+        control.lands_changed(&[&first, &second], &[&first, &second]);
+        assert_eq!(control.rig.pose(), before, "whoever walks on in it is left alone");
+    }
+
+    #[test]
+    fn an_edit_moves_nobody_and_a_place_is_returned_to() {
+        let [before, after] = [(); 2].map(|()| land_with([]));
+        let mut control = control();
+        assert_eq!(control.rested_at(), None, "nothing was there yet");
+        control.lands_changed(&[&before], &[&before]);
+        walk(&mut control, &[&before]);
+        let pose = control.rig.pose();
+        control.lands_changed(&[&after], &[&after]);
+        assert_eq!(control.rig.pose(), pose);
+        control.step(0.25, &Comfort::default(), &[&after]);
+        let mark = control.rested_at().expect("it rests");
+        let mut again = self::control();
+        again.return_to(Some(&mark));
+        again.lands_changed(&[&after], &[&after]);
+        assert_eq!(again.rig.pose().place_m(), control.rig.pose().place_m());
+        again.go_to_start(&[&after]);
+        assert_eq!(gone_m(&again), 0.0);
     }
 }

@@ -115,7 +115,10 @@ impl App {
                 self.tell(Tone::Info, format!("{mode:?}"));
             }
             Command::ReleaseMouse => self.capture(false),
-            Command::GoToStart => self.camera.go_to_start(&lands(&self.live)),
+            Command::GoToStart => {
+                self.live.iter_mut().for_each(|live| live.viewports.anchor_at_starts());
+                self.camera.go_to_start(&lands(&self.live));
+            }
             Command::Maximise(landscape) => self.layout.maximise(usize::from(landscape) - 1),
             Command::ShowAll => self.layout.arrange(Arrangement::Grid),
             Command::Compare => self.layout.compare(),

@@ -160,7 +160,7 @@ impl App {
         let (mut camera, problem) = CameraControl::new();
         let kept = file.settings.world(&source);
         let editor = Editor::open(source.clone(), &kept);
-        camera.return_to(place_to_return_to(&editor, &kept, &file.settings.comfort.value), &kept);
+        camera.return_to(place_to_return_to(&editor, &kept, &file.settings.comfort.value));
         let now = Instant::now();
         let mut app = Self {
             layout: Layout::of(editor.count(), Default::default()),
@@ -228,7 +228,7 @@ impl App {
         (self.thumbnails, self.taught) = Default::default();
         self.source = source;
         let comfort = &self.file.settings.comfort.value;
-        self.camera.return_to(place_to_return_to(&self.editor, &kept, comfort), &kept);
+        self.camera.return_to(place_to_return_to(&self.editor, &kept, comfort));
         if let Some(live) = &mut self.live {
             live.viewports.clear();
             live.screen.window.set_title(&title(&self.source));
@@ -327,16 +327,14 @@ impl App {
                     notes_of(&loaded.exhibit).into_iter().flatten().filter(|note| !known.contains(note)),
                 );
                 files = (!loaded.files.is_empty()).then(|| loaded.files.clone());
-                live.viewports.show(reply.view, loaded);
+                live.viewports.show(reply.view, loaded, reply.generation);
                 changed = true;
             }
         }
         if changed {
             let of_generation = |view: &usize| self.editor.state(*view) == ViewState::Ready;
             let own = (0..INDIVIDUALS).filter(of_generation).filter_map(|view| live.viewports.land(view));
-            let complete = !self.editor.awaits_scenes();
-            let (lands, generation) = (live.viewports.lands(), self.editor.generations().0);
-            self.camera.lands_changed(&lands, &own.collect::<Vec<_>>(), generation, complete);
+            self.camera.lands_changed(&live.viewports.lands(), &own.collect::<Vec<_>>());
         }
         if let Some(first) = notes.first() {
             let more = if notes.len() > 1 { "; more in “About this file”" } else { "" };
@@ -355,7 +353,9 @@ impl App {
             Task::BeginWalk => self.camera.await_landscapes(),
             Task::Load { view, generation, path } => {
                 if let Some(live) = &self.live {
-                    let (eye_m, passes) = (self.camera.eye_m(), live.viewports.passes());
+                    let anchor = live.viewports.anchor(view, generation);
+                    let eye_m = anchor.map(|anchor| anchor.in_land(self.camera.rig.pose().place_m()));
+                    let passes = live.viewports.passes();
                     live.loader.ask(Request { view, generation, path, eye_m, passes });
                 }
             }
@@ -481,9 +481,7 @@ impl App {
         self.editor.keep(&mut kept);
         // Not at every step of a walk, or the file would be written for as long as it goes.
         if self.editor.world().is_some() {
-            if let Some((place, at_start)) = self.camera.rested_at() {
-                (kept.place, kept.at_start) = (Some(place), at_start);
-            }
+            kept.place = self.camera.rested_at().or(kept.place);
             kept.generation = Some(self.editor.generations().0);
         }
         if kept != settings.world(source) {

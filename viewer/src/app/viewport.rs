@@ -13,7 +13,7 @@ use crate::passes::Passes;
 use crate::scene_loader::Loaded;
 use crate::upload::{Exhibit, SceneBuffers};
 use crate::view::{Drawn, View};
-use crate::walk::Land;
+use crate::walk::{Anchor, Land};
 
 /// Before the window has given a view its size.
 const FIRST_SIZE_PX: [u32; 2] = [16, 16];
@@ -23,6 +23,8 @@ pub struct Viewport {
     number: u64,
     pub view: View,
     pub land: Option<Arc<Land>>,
+    /// The generation in which the land got its anchor.
+    begun: Option<u32>,
     picture: Option<TextureId>,
     /// Of full resolution, sideways and upwards.
     pub part: f32,
@@ -61,6 +63,7 @@ impl Viewport {
             number: number as u64,
             view: View::new(gpu, passes, label, number, FIRST_SIZE_PX),
             land: None,
+            begun: None,
             picture: None,
             part: 1.0,
             shadows: Shadows::All,
@@ -76,16 +79,31 @@ impl Viewport {
         self.picture.filter(|_| self.view.exhibit().is_some())
     }
 
-    pub fn show(&mut self, passes: &Passes, loaded: Loaded) {
+    /// Shows a landscape of a generation, with the walk where `anchor` says.
+    pub fn show(&mut self, passes: &Passes, loaded: Loaded, generation: u32, anchor: Anchor) {
         self.view.show(passes, loaded.exhibit);
         self.shadows = if loaded.lacks_shadows { Shadows::Near } else { Shadows::All };
-        (self.land, self.seen) = (Some(loaded.land), None);
+        (self.land, self.seen, self.begun) = (Some(loaded.land), None, Some(generation));
+        self.anchor_at(anchor);
+    }
+
+    /// The landscape's anchor, if it got it in that generation.
+    pub fn anchor(&self, generation: u32) -> Option<Anchor> {
+        let land = self.land.as_ref().filter(|_| self.begun == Some(generation));
+        land.map(|land| land.anchor)
+    }
+
+    /// Lays the walk there.
+    pub fn anchor_at(&mut self, anchor: Anchor) {
+        if let Some(land) = &mut self.land {
+            Arc::make_mut(land).anchor = anchor;
+        }
     }
 
     pub fn clear(&mut self) {
         self.view.clear();
         self.shadows = Shadows::All;
-        (self.land, self.seen, self.drawn) = (None, None, Drawn::default());
+        (self.land, self.begun, self.seen, self.drawn) = (None, None, None, Drawn::default());
     }
 
     /// The landscape, if its shadows are to be asked for, which they are then.

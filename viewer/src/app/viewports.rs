@@ -24,7 +24,7 @@ use crate::scene_loader::Loaded;
 use crate::ui::arrange::Slot;
 use crate::ui::model::{PassTime, Stats};
 use crate::upload::{Exhibit, SceneBuffers};
-use crate::walk::Land;
+use crate::walk::{Anchor, Land};
 
 /// Frames that statistics look back on.
 const FRAMES: usize = 240;
@@ -101,9 +101,36 @@ impl Viewports {
         self.each[view].land.as_deref()
     }
 
-    /// Shows a landscape from the next frame on.
-    pub fn show(&mut self, view: usize, loaded: Loaded) {
-        self.each[view].show(&self.passes, loaded);
+    /// Shows a landscape from the next frame on. One that was baked anew is seen from where it was before, so that one sees
+    /// what an edit did; one that stands on the same ground as another of its generation, from where that is seen.
+    pub fn show(&mut self, view: usize, loaded: Loaded, generation: u32) {
+        let of_same_ground = || {
+            let others = self
+                .each
+                .iter()
+                .filter(|one| one.land.as_ref().is_some_and(|land| land.is_same_ground(&loaded.land)));
+            others.into_iter().find_map(|one| one.anchor(generation))
+        };
+        let anchor = self.anchor(view, generation).or_else(of_same_ground);
+        let anchor = anchor.unwrap_or(loaded.land.anchor);
+        self.each[view].show(&self.passes, loaded, generation, anchor);
+    }
+
+    /// Where the walk lies in a landscape of that generation, if that is known.
+    pub fn anchor(&self, view: usize, generation: u32) -> Option<Anchor> {
+        self.each[view].anchor(generation)
+    }
+
+    /// Lays the walk where each landscape looks best, and those on the same ground as another where that does.
+    pub fn anchor_at_starts(&mut self) {
+        let anchors: Vec<Option<Anchor>> = {
+            let lands = || self.each.iter().filter_map(|one| one.land.as_deref());
+            let first = |land: &Land| lands().find(|one| one.is_same_ground(land)).map(Land::start_anchor);
+            self.each.iter().map(|one| first(one.land.as_deref()?)).collect()
+        };
+        for (one, anchor) in self.each.iter_mut().zip(anchors) {
+            anchor.into_iter().for_each(|anchor| one.anchor_at(anchor));
+        }
     }
 
     /// Landscapes whose shadows are to be asked for, each once.

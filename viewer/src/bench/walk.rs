@@ -1,5 +1,5 @@
 //! What the frame of a walk takes where the processor draws: four views at the resolution that pictures have while the
-//! camera moves, whole and without one thing after the other. All walk from where the window's walks start.
+//! camera moves, whole and without one thing after the other. All walk from where the window shows them first.
 
 use anyhow::Result;
 
@@ -10,7 +10,7 @@ use crate::measure::{Cost, median, tree_triangles};
 use crate::options::{FrameInput, Options};
 use crate::scene::Scene;
 use crate::view::View;
-use crate::walk::{EYE_HEIGHT_M, Land, start_pose};
+use crate::walk::{Land, Pose, Rig, start_pose};
 
 /// Each picture is drawn so often; the cheapest counts.
 const ROUNDS: usize = 3;
@@ -58,20 +58,14 @@ pub(super) fn measure(bench: &mut Bench) -> Result<()> {
     Ok(())
 }
 
-/// Straight ahead from where a walk through all of them starts: cameras of all, place by place.
+/// Straight ahead from where each of them is first seen: cameras of all, place by place.
 fn first_steps(scenes: &[Scene], steps: u32) -> Vec<Vec<Camera>> {
-    let lands: Vec<Land> = scenes.iter().map(Land::of).collect();
-    let start = start_pose(&lands.iter().collect::<Vec<_>>());
-    let fov_y_rad = Options::default().fov_y_deg.to_radians();
+    let lands: Vec<Land> = scenes.iter().map(|scene| Land::of(scene).from_its_start()).collect();
+    let lands: Vec<&Land> = lands.iter().collect();
+    let (start, fov_y_rad) = (start_pose(&lands), Options::default().fov_y_deg.to_radians());
     let at = |step: u32| {
-        let place_m = start.place_m() + start.ahead() * (step as f32 * STEP_M);
-        let camera = |land: &Land| Camera {
-            position_m: glam::Vec3::new(place_m.x, land.footing_m(place_m) + EYE_HEIGHT_M, place_m.y),
-            yaw_rad: start.yaw_rad,
-            pitch_rad: start.pitch_rad,
-            fov_y_rad,
-        };
-        lands.iter().map(camera).collect()
+        let rig = Rig::new(Pose { z_m: start.z_m - step as f32 * STEP_M, ..start }, &lands);
+        lands.iter().map(|land| rig.camera(land, fov_y_rad)).collect()
     };
     (0..steps).map(at).collect()
 }

@@ -12,12 +12,9 @@ mod store;
 mod trees;
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use genescape_cache::verified;
-use genescape_schema::scene::{
-    GSC_LOOKOUTS, GSC_SKY, Lookouts, LookoutsExtension, Resource, START_NODE, SkyExtension, StartView,
-};
+use genescape_schema::scene::{GSC_SKY, Resource, START_NODE, SkyExtension, StartView};
 use genescape_world::{MAX_MODEL_BYTES, regular_file};
 use glam::Vec3;
 use thiserror::Error;
@@ -100,8 +97,8 @@ fn landscape(path: &Path, bytes: &[u8], store: &Store) -> Result<Scene> {
         rayon::join(|| ground::read(&document), || rayon::join(|| trees::read(&document), || sky(&document)));
     let (ground, trees, sky) = (ground?, trees?, sky?);
     let name = scene.name().unwrap_or("a landscape").to_owned();
-    let (start, lookouts) = (start(&document, &ground), lookouts(&document)?);
-    Ok(Scene { name, start, lookouts, ground, trees, sky })
+    let start = start(&document, &ground);
+    Ok(Scene { name, start, ground, trees, sky })
 }
 
 /// The camera of the bake; without one, the middle of the land, looking north.
@@ -112,18 +109,6 @@ fn start(document: &Document, ground: &Ground) -> StartView {
     }
     let position_m = Vec3::Y * (ground.field.height_m(0.0, 0.0) + StartView::EYE_HEIGHT_M);
     StartView { position_m, direction: Vec3::NEG_Z }
-}
-
-/// What the camera of the bake says of other views; a file of an older bake says nothing.
-fn lookouts(document: &Document) -> Result<Option<Arc<Lookouts>>> {
-    let node = document.node(START_NODE);
-    let Some(object) = node.as_ref().and_then(|node| node.extension_value(GSC_LOOKOUTS)) else {
-        return Ok(None);
-    };
-    let extension: LookoutsExtension = document.extension(Some(object), GSC_LOOKOUTS)?;
-    let bytes = document.bytes(&extension.prospects)?;
-    let lookouts = Lookouts::from_bytes(&bytes).map_err(|what| document.wrong(what.to_string()))?;
-    Ok(Some(Arc::new(lookouts)))
 }
 
 fn sky(document: &Document) -> Result<Sky> {

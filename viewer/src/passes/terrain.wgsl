@@ -227,7 +227,9 @@ fn looks(at: Surface, parts: array<f32, 5>, far: f32) -> Tiles {
             break;
         }
     }
-    return sum;
+    // The mean of two scales varies less than either; this is as if it did not (Heitz & Neyret 2018, equation 2).
+    let vivid = inverseSqrt(far * far + (1.0 - far) * (1.0 - far));
+    return Tiles(1.0 + vivid * (sum.factor - 1.0), vec3f(vivid * sum.bump.xy, sum.bump.z));
 }
 
 // Where the eye is so near that a texel of the usual scale covers several pixels: the strongest texture once more, five

@@ -15,7 +15,7 @@ pub use asset::{
     Surface, Texture, Transmission, Wrap,
 };
 pub use genescape_schema::scene::{
-    GroundDetail, GroundSurface, Heightfield, Instance, Lookout, Lookouts, StartView, TerrainLod,
+    GroundDetail, GroundSurface, Heightfield, Instance, StartView, TerrainLod,
 };
 pub use ground::{Apron, Ground};
 pub use image::{HdrImage, Image};
@@ -36,8 +36,6 @@ pub struct Scene {
     pub sky: Sky,
     /// Where a walk starts.
     pub start: StartView,
-    /// How good it looks from elsewhere, if the file says so.
-    pub lookouts: Option<Arc<Lookouts>>,
 }
 
 impl Scene {

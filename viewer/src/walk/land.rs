@@ -1,12 +1,13 @@
-//! Four landscapes → what a walker needs of them: heights, lakes, trunks, and the area that all of them have.
+//! Four landscapes → what a walker needs of them: heights, lakes, trunks, and where they end. Places and heights are the
+//! walk's ([`Anchor`]) unless something else is said.
 
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
-use super::Trunks;
+use super::{Anchor, Trunk, Trunks};
 use crate::camera::Camera;
-use crate::scene::{Asset, Heightfield, Lookouts, Scene, StartView};
+use crate::scene::{Asset, Heightfield, Scene, StartView};
 
 /// Height of a walker's eyes above what it stands on.
 pub const EYE_HEIGHT_M: f32 = StartView::EYE_HEIGHT_M;
@@ -30,10 +31,10 @@ pub struct Land {
     pub water_level_m: Option<f32>,
     /// Its trees' trunks.
     pub trunks: Trunks,
-    /// Where a walk starts, if it is the only landscape.
+    /// From where it looks best.
     pub start: StartView,
-    /// How good it looks from elsewhere, if its file says so.
-    pub lookouts: Option<Arc<Lookouts>>,
+    /// Where the walk lies in it.
+    pub anchor: Anchor,
     /// What stands there, if it is anyone's file.
     pub subject: Option<Subject>,
 }
@@ -60,7 +61,7 @@ impl Land {
             water_level_m: scene.ground.water_level_m,
             trunks: Trunks::of(&scene.trees.instances),
             start: scene.start,
-            lookouts: scene.lookouts.clone(),
+            anchor: Anchor::default(),
             subject: None,
         }
     }
@@ -82,9 +83,25 @@ impl Land {
             water_level_m: None,
             trunks: Trunks::default(),
             start: seen.unwrap_or_else(|| subject.view()),
-            lookouts: None,
+            anchor: Anchor::default(),
             subject: Some(subject),
         }
+    }
+
+    /// The same, with the walk's middle where it looks best.
+    pub fn from_its_start(self) -> Self {
+        let anchor = self.start_anchor();
+        Self { anchor, ..self }
+    }
+
+    /// Where a walk that begins here lies. Anyone's file stays where it is.
+    pub fn start_anchor(&self) -> Anchor {
+        if self.subject.is_some() { Anchor::default() } else { Anchor::at(&self.start) }
+    }
+
+    /// Whether the ground is the same, whatever stands on it.
+    pub fn is_same_ground(&self, other: &Self) -> bool {
+        self.subject == other.subject && self.field == other.field
     }
 
     /// The camera that looks on from above, as in the thesis's figures 12 and 13: over the middle, all of the land in
@@ -100,18 +117,25 @@ impl Land {
         }
     }
 
+    /// Where in the landscape, in its own metres, somebody is who walked there: at its edge if it ends before.
+    pub fn standing_m(&self, place_m: Vec2) -> Vec2 {
+        let reach = Vec2::splat(self.reach_m());
+        self.anchor.in_land(place_m).clamp(-reach, reach)
+    }
+
     /// Bilinear height of the ground in metres.
     pub fn ground_m(&self, place_m: Vec2) -> f32 {
         if self.field.side < 2 {
             return 0.0;
         }
-        self.field.height_m(place_m.x, place_m.y)
+        let Vec2 { x, y: z } = self.standing_m(place_m);
+        self.field.height_m(x, z) - self.anchor.level_m()
     }
 
     /// Height of what a walker's feet stand on in metres: the ground, or nothing where the lake is too deep.
     pub fn footing_m(&self, place_m: Vec2) -> f32 {
         let ground_m = self.ground_m(place_m);
-        self.water_level_m.map_or(ground_m, |water_m| ground_m.max(water_m - WADING_DEPTH_M))
+        self.water_m().map_or(ground_m, |water_m| ground_m.max(water_m - WADING_DEPTH_M))
     }
 
     /// No eye may be lower, in metres: above the ground, and above the lake (from below, a lake is only a lid).
@@ -120,7 +144,39 @@ impl Land {
             return f32::NEG_INFINITY;
         }
         let ground_m = self.ground_m(place_m);
-        self.water_level_m.map_or(ground_m, |water_m| ground_m.max(water_m)) + MIN_HEIGHT_M
+        self.water_m().map_or(ground_m, |water_m| ground_m.max(water_m)) + MIN_HEIGHT_M
+    }
+
+    /// Whether a walker's body has room there.
+    pub fn is_clear(&self, place_m: Vec2) -> bool {
+        self.trunks.clear(self.anchor.in_land(place_m), BODY_RADIUS_M)
+    }
+
+    /// The trunks that a walker's body would touch there.
+    pub fn touched(&self, place_m: Vec2) -> impl Iterator<Item = Trunk> {
+        let here_m = self.anchor.in_land(place_m);
+        let touched = self.trunks.near(here_m, BODY_RADIUS_M);
+        let touched = touched.filter(move |trunk| !trunk.clears(here_m, BODY_RADIUS_M));
+        touched.map(|trunk| Trunk { center_m: self.anchor.in_walk(trunk.center_m), ..*trunk })
+    }
+
+    fn water_m(&self) -> Option<f32> {
+        Some(self.water_level_m? - self.anchor.level_m())
+    }
+
+    /// Half the side in metres of the square around the landscape's middle on which one can walk.
+    fn reach_m(&self) -> f32 {
+        if self.field.side < 2 { 0.0 } else { (0.5 * self.field.extent_m() - EDGE_M).max(0.0) }
+    }
+
+    fn has(&self, place_m: Vec2) -> bool {
+        self.anchor.in_land(place_m).abs().max_element() <= self.reach_m()
+    }
+
+    /// The nearest place that it has, by so little inside that it has what rounding makes of it.
+    fn nearest(&self, place_m: Vec2) -> Vec2 {
+        let reach = Vec2::splat((self.reach_m() - 1e-3).max(0.0));
+        self.anchor.in_walk(self.anchor.in_land(place_m).clamp(-reach, reach))
     }
 }
 
@@ -138,18 +194,18 @@ impl Subject {
 /// Radii from its middle from which a subject fills a picture with the usual field of view.
 const FRAMED: f32 = 2.0;
 
-/// Half the side in metres of the square around the origin on which all landscapes have land, less [`EDGE_M`].
-/// Without a landscape there is no edge.
-pub fn reach_m(lands: &[&Land]) -> f32 {
-    let half_m = |land: &&Land| match land.field.side {
-        0 | 1 => 0.0,
-        _ => 0.5 * land.field.extent_m() - EDGE_M,
-    };
-    lands.iter().map(half_m).fold(1e6, f32::min).max(0.0)
+/// The nearest place to walk to that any of these landscapes has: the others' walkers wait at their edges. Without a
+/// landscape there is no edge.
+pub fn within(lands: &[&Land], place_m: Vec2) -> Vec2 {
+    if lands.iter().any(|land| land.has(place_m)) {
+        return place_m;
+    }
+    let nearest = lands.iter().map(|land| land.nearest(place_m));
+    let nearest = nearest.min_by(|a, b| a.distance(place_m).total_cmp(&b.distance(place_m)));
+    nearest.unwrap_or_else(|| place_m.clamp(Vec2::splat(-1e6), Vec2::splat(1e6)))
 }
 
-/// The nearest place within that square.
-pub fn within(lands: &[&Land], place_m: Vec2) -> Vec2 {
-    let reach = reach_m(lands);
-    place_m.clamp(Vec2::splat(-reach), Vec2::splat(reach))
+/// The longest way across one of them, in metres.
+pub fn across_m(lands: &[&Land]) -> f32 {
+    lands.iter().map(|land| 2.0 * 1.5 * land.reach_m()).fold(0.0, f32::max).min(1e4)
 }

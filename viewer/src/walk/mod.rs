@@ -1,11 +1,12 @@
 //! The camera that walks through four landscapes at once (thesis section 6): a person's wishes and the time that has
-//! passed → one place and one direction for all views. Metres, radians, seconds; knows no window, device or disk.
+//! passed → one way for all views. Metres, radians, seconds; knows no window, device or disk.
 //!
-//! What all views share, bit by bit: x, z, yaw and pitch. What each view has of its own: y, which follows its own
-//! ground. Walking keeps eyes 1.6 m above the bilinear ground and goes around trunks ([`steps`] says why around those of
+//! What all views share: where they have gone from where each began, and how they have turned ([`Anchor`] says where that is).
+//! What each view has of its own: y, which follows its own ground. Walking keeps eyes 1.6 m above the bilinear ground and goes around trunks ([`steps`] says why around those of
 //! all four landscapes); flying keeps one altitude in all views ([`fly`]); orbiting circles a point on the ground
 //! ([`orbit`]). Around anyone's file, which stands alone, an orbit circles its middle.
 
+mod anchor;
 mod fly;
 mod land;
 mod orbit;
@@ -22,10 +23,9 @@ use std::f32::consts::{PI, TAU};
 use glam::{Vec2, Vec3, Vec3Swizzles};
 use serde::Serialize;
 
-pub use land::{
-    BODY_RADIUS_M, EDGE_M, EYE_HEIGHT_M, Land, MIN_HEIGHT_M, Subject, WADING_DEPTH_M, reach_m, within,
-};
-pub use start::{start_pose, suits_all};
+pub use anchor::Anchor;
+pub use land::{BODY_RADIUS_M, EDGE_M, EYE_HEIGHT_M, Land, MIN_HEIGHT_M, Subject, WADING_DEPTH_M, within};
+pub use start::start_pose;
 pub use steps::{advance, free, nearest_free};
 pub use trunks::{Trunk, Trunks};
 
@@ -74,9 +74,9 @@ impl Mode {
 /// A place and direction that can be kept: a bookmark, a command line's camera. Nothing in it depends on a landscape.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Pose {
-    /// The eye, east of the middle of the land.
+    /// The eye, east of the walk's middle.
     pub x_m: f32,
-    /// The eye, south of the middle of the land.
+    /// The eye, south of the walk's middle.
     pub z_m: f32,
     /// As in [`Camera::yaw_rad`].
     pub yaw_rad: f32,
@@ -84,7 +84,7 @@ pub struct Pose {
     pub pitch_rad: f32,
     /// How it moves.
     pub mode: Mode,
-    /// Height of the eye above zero when flying.
+    /// Height of the eye above the walk's level when flying.
     pub altitude_m: f32,
     /// From the eye to the point that it circles when orbiting.
     pub distance_m: f32,
@@ -256,15 +256,23 @@ impl Rig {
 
     /// The camera of the view of one landscape.
     pub fn camera(&self, land: &Land, fov_y_rad: f32) -> Camera {
+        let (anchor, mode) = (&land.anchor, self.pose.mode);
+        let place_m = match mode {
+            // From beyond its edge, too, a landscape is looked at.
+            Mode::Orbit => anchor.in_land(self.pose.place_m()),
+            Mode::Walk | Mode::Fly => land.standing_m(self.pose.place_m()),
+        };
+        // Whoever circles a point looks at it.
+        let tilt_rad = anchor.pitch_rad * (1.0 - self.parts[Mode::Orbit as usize]);
         Camera {
-            position_m: Vec3::new(self.pose.x_m, self.height_m(land), self.pose.z_m),
-            yaw_rad: self.pose.yaw_rad,
-            pitch_rad: self.pose.pitch_rad,
+            position_m: Vec3::new(place_m.x, self.height_m(land) + anchor.level_m(), place_m.y),
+            yaw_rad: wrapped(self.pose.yaw_rad + anchor.yaw_rad),
+            pitch_rad: (self.pose.pitch_rad + tilt_rad).clamp(-MAX_PITCH_RAD, MAX_PITCH_RAD),
             fov_y_rad,
         }
     }
 
-    /// Height of the eye in one landscape, in metres.
+    /// Height of the eye in one landscape above the walk's level, in metres.
     fn height_m(&self, land: &Land) -> f32 {
         if self.parts == self.pose.mode.alone() {
             return self.height_in(self.pose.mode, land);

@@ -1,6 +1,6 @@
 //! A wish to move → where a walker's feet can go among the trunks of all landscapes (thesis 6.2), on the (x, z) plane.
 //!
-//! The four views share one horizontal position. A trunk of one landscape therefore stops the walker in all of them:
+//! The four views share one way from where each begins. A trunk of one landscape therefore stops the walker in all of them:
 //! were each view to collide with its own trees only, the four walkers would drift apart at the first tree. So a step
 //! collides with the *union* of the trunks.
 //!
@@ -13,7 +13,7 @@
 
 use glam::Vec2;
 
-use super::land::{BODY_RADIUS_M, Land, within};
+use super::land::{BODY_RADIUS_M, Land, across_m, within};
 use super::trunks::Trunk;
 
 /// The longest piece of a step.
@@ -30,7 +30,7 @@ const MAX_PIECES: u32 = 4000;
 
 /// True if a walker can stand here: clear of all trunks of all landscapes.
 pub fn free(lands: &[&Land], place_m: Vec2) -> bool {
-    lands.iter().all(|land| land.trunks.clear(place_m, BODY_RADIUS_M))
+    lands.iter().all(|land| land.is_clear(place_m))
 }
 
 /// Where a walker at `from_m` ends up who wants to move by `by_m`. `from_m` must be free; the result is, too.
@@ -51,8 +51,7 @@ pub fn nearest_free(lands: &[&Land], place_m: Vec2) -> Option<Vec2> {
     if free(lands, start_m) {
         return Some(start_m);
     }
-    // Across the whole square, from corner to corner.
-    let farthest_m = (2.0 * 1.5 * super::land::reach_m(lands)).min(1e4);
+    let farthest_m = across_m(lands);
     std::iter::successors(Some(0.05f32), |ring_m| Some(ring_m + (0.1 * ring_m).max(0.05)))
         .take_while(|ring_m| *ring_m <= farthest_m)
         .find_map(|ring_m| on_ring(lands, start_m, ring_m))
@@ -82,12 +81,8 @@ fn piece(lands: &[&Land], from_m: Vec2, by_m: Vec2) -> Vec2 {
 /// Of the trunks that a body at `place_m` would touch the one that it is deepest in.
 fn deepest(lands: &[&Land], place_m: Vec2) -> Option<Trunk> {
     let depth_m = |trunk: &Trunk| trunk.radius_m - trunk.center_m.distance(place_m);
-    lands
-        .iter()
-        .flat_map(|land| land.trunks.near(place_m, BODY_RADIUS_M))
-        .filter(|trunk| !trunk.clears(place_m, BODY_RADIUS_M))
-        .copied()
-        .max_by(|a, b| depth_m(a).total_cmp(&depth_m(b)))
+    let touched = lands.iter().flat_map(|land| land.touched(place_m));
+    touched.max_by(|a, b| depth_m(a).total_cmp(&depth_m(b)))
 }
 
 /// The place nearest to `place_m` at which a body just does not touch a trunk, a little farther along it if the wish

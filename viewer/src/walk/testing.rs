@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg32;
 
-use super::{Land, Trunk, Trunks};
+use super::{Anchor, Land, Trunk, Trunks};
 use crate::scene::{Heightfield, StartView};
 
 /// A trunk.
@@ -50,5 +50,6 @@ fn land(height_m: impl Fn(f32, f32) -> f32, trunks: impl IntoIterator<Item = Tru
     let [_, top_m] = field.range_m();
     let start = StartView { position_m: Vec3::ZERO, direction: Vec3::NEG_Z };
     let (field, trunks) = (Arc::new(field), Trunks::new(trunks));
-    Land { field, top_m, water_level_m: None, trunks, start, lookouts: None, subject: None }
+    let anchor = Anchor::default();
+    Land { field, top_m, water_level_m: None, trunks, start, anchor, subject: None }
 }

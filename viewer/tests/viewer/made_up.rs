@@ -117,7 +117,6 @@ pub fn scene(lod: TerrainLod, color: [u8; 4], sky: [f32; 3], trees: Trees) -> Sc
             },
         },
         start: StartView { position_m: Vec3::ZERO, direction: Vec3::NEG_Z },
-        lookouts: None,
     }
 }
 

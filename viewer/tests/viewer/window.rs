@@ -48,18 +48,22 @@ impl Stage {
         self.folder.path().join(name)
     }
 
-    /// What is on the screen, kept for people; each of the four pictures must be one of something.
+    /// What is on the screen, kept for people; each of the four pictures must be one of something, as soon as a busy machine
+    /// has drawn it.
     fn look(&self, name: &str) -> Picture {
-        let picture = self.display.picture();
-        picture.save(name);
-        for (view, place) in PICTURES.into_iter().enumerate() {
-            let (mean, deviation) = picture.brightness(place);
-            assert!(
-                (8.0..245.0).contains(&mean) && deviation > 2.0,
-                "{name}: view {view} is black, white or flat: brightness {mean:.1} ± {deviation:.1}"
-            );
+        let start = Instant::now();
+        loop {
+            let picture = self.display.picture();
+            let brightness = PICTURES.map(|place| picture.brightness(place));
+            let is_flat = |(mean, deviation): (f64, f64)| !(8.0..245.0).contains(&mean) || deviation <= 2.0;
+            let flat = brightness.into_iter().position(is_flat);
+            if flat.is_none() || start.elapsed() > Duration::from_secs(20) {
+                picture.save(name);
+                assert_eq!(flat, None, "{name}: a view is black, white or flat: {brightness:?}");
+                return picture;
+            }
+            std::thread::sleep(Duration::from_millis(100));
         }
-        picture
     }
 
     fn population(&self, generation: u32) -> genescape_schema::Population {

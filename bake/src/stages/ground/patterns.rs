@@ -1,11 +1,13 @@
 //! Nothing → the tiling patterns of ground: a height of about 0 to 1 and a tone for each texel.
 //!
-//! Grass, scree and earth are laid blade by blade and stone by stone, the higher over the lower; rock is cracked along the
-//! creases of noise; snow is drifts and grain, sand is ripples.
+//! Grass, scree and earth are laid blade by blade and stone by stone, the higher over the lower; rock is broken
+//! into blocks; snow is drifts and grain, sand is ripples.
+
+use std::ops::Range;
 
 use bytemuck::Zeroable;
 
-use crate::math::hermite;
+use crate::math::{hermite, split};
 use crate::noise::{fbm2_row, gradient2, hash01};
 use crate::raster::raster;
 
@@ -96,28 +98,132 @@ impl Blade {
     }
 }
 
-/// Fractured rock: folds of sharp creases within folds, ledges, and a few open cracks.
+/// Rock that is broken into blocks, each into smaller ones, with joints that have opened between some, and lichen.
 pub(super) fn rock() -> Pattern {
-    paint([Waves(21, 5, 2, 0.5), Waves(27, 90, 2, 0.7)], |u, v, [a, rough]| {
-        let (wu, wv) = (u + 0.05 * a, v - 0.04 * a);
-        // Each octave shifts the next, so that creases break off where they meet.
-        let (mut relief, mut shift, mut amplitude) = (0.0, 0.0, 0.5);
-        for (k, cells) in [6, 13, 29, 61].into_iter().enumerate() {
-            let scale = cells as f32;
-            let n = gradient2(22 + k as u32, wu * scale + shift, wv * scale - 0.6 * shift, cells).abs() * 1.5;
-            relief += amplitude * n;
-            shift = 0.5 * n;
-            amplitude *= 0.6;
-        }
-        let open = gradient2(28, wu * 4.0 + 0.5 * relief, wv * 4.0, 4).abs();
-        let crack = (open * 16.0 + 0.45 + 1.2 * a).clamp(0.0, 1.0);
-        let ledge = relief * 5.0 + 1.5 * a;
-        let ledge = (ledge - ledge.floor()).min(0.5);
-        let height = (0.1 + relief + 0.12 * ledge + 0.07 * rough) * (0.6 + 0.4 * crack);
-        let tone = (52.0 + 130.0 * relief + 26.0 * ledge + 40.0 * rough) * (0.5 + 0.5 * crack);
-        let rust = 0.06 * a;
+    let broken =
+        [Blocks::new(21, [5, 6], 0.08), Blocks::new(22, [11, 17], 0.10), Blocks::new(23, [29, 43], 0.20)];
+    let noise = [
+        Waves(24, 5, 3, 0.5),
+        Waves(25, 6, 3, 0.5),
+        Waves(26, 40, 2, 0.6),
+        Waves(27, 90, 2, 0.7),
+        Waves(28, 7, 4, 0.6),
+    ];
+    paint(noise, |u, v, [bend, sag, ragged, rough, lichen]| {
+        let mut at = [u + 0.035 * bend + 0.004 * ragged, v + 0.03 * sag - 0.003 * ragged];
+        let spots = broken.each_ref().map(|blocks| {
+            let spot = blocks.at(at);
+            // Smaller blocks end at larger ones.
+            at = [at[0] + 0.37 * spot.dice[0], at[1] + 0.61 * spot.dice[1]];
+            spot
+        });
+        let [large, middle, small] = &spots;
+        // How deep the joints are: most are closed.
+        let wide = 0.7 * large.joint(0.45, 0.03..0.12);
+        let narrow = 0.8 * middle.joint(0.6, 0.06..0.14);
+        let fine = 1.0 - hermite((small.edge / 0.22).min(1.0));
+        let planes = 0.34 * large.height + 0.20 * middle.height + 0.055 * small.height;
+        let height = 0.5 + planes + 0.03 * bend + 0.02 * rough - 0.10 * wide - 0.07 * narrow - 0.006 * fine;
+        let own = 0.30 * large.dice[0] + 0.34 * middle.dice[0] + 0.30 * small.dice[0] - 0.47;
+        let shade = (1.0 - 0.75 * wide) * (1.0 - 0.75 * narrow) * (1.0 - 0.22 * fine);
+        let open = large.open_sky(0.35, 0.9) + middle.open_sky(0.25, 0.7) + small.open_sky(0.0, 0.35);
+        let tone = 100.0 * (1.0 + own + 0.5 * rough + 0.55 * lichen).max(0.1) * shade * (1.0 + open).max(0.2);
+        let rust = 0.08 * (bend + large.dice[1] - 0.5);
         Texel { height, tone: [tone * (1.0 + rust), tone, tone * (1.0 - rust)] }
     })
+}
+
+/// A surface broken into blocks along the borders of a jittered grid's Voronoi cells, each of which is raised and tilted
+/// by chance. It tiles.
+struct Blocks {
+    cells: [i32; 2],
+    /// Width of a block's slanted border, in cells.
+    bevel: f32,
+    blocks: Vec<Block>,
+}
+
+#[derive(Clone, Copy)]
+struct Block {
+    /// In its cell, 0 to 1.
+    middle: [f32; 2],
+    level: f32,
+    tilt: [f32; 2],
+    dice: [f32; 2],
+}
+
+/// A place on broken rock.
+struct Spot {
+    height: f32,
+    /// Distance to the border, in cells.
+    edge: f32,
+    /// How much higher the block beyond the border stands: 0 away from it.
+    under: f32,
+    /// 0 to 1, the same on both sides of a border.
+    opened: f32,
+    /// Those of the block, 0 to 1.
+    dice: [f32; 2],
+}
+
+impl Blocks {
+    fn new(seed: u32, cells: [i32; 2], bevel: f32) -> Self {
+        let block = |place: i32| {
+            let dice = |salt: i32| hash01(seed, place % cells[0], place / cells[0], salt);
+            // Never so near to a cell's side that the two nearest blocks are not among the nine around.
+            let middle = [0, 1].map(|axis| 0.5 + 0.75 * (dice(axis) - 0.5));
+            let tilt = [2, 3].map(|axis| 2.0 * (dice(axis) - 0.5));
+            Block { middle, level: dice(4) - 0.5, tilt, dice: [dice(5), dice(6)] }
+        };
+        Self { cells, bevel, blocks: (0..cells[0] * cells[1]).map(block).collect() }
+    }
+
+    /// At (u, v) of the tile.
+    fn at(&self, place: [f32; 2]) -> Spot {
+        let [x, y] = [0, 1].map(|axis| place[axis] * self.cells[axis] as f32);
+        let ((column, x), (row, y)) = (split(x), split(y));
+        // Squared distance, place from the middle, and index: of the nearest and of the second.
+        let mut nearest = [(f32::MAX, [0.0; 2], 0); 2];
+        for near in 0..9 {
+            let (i, j) = (near % 3 - 1, near / 3 - 1);
+            let [i_of, j_of] =
+                [(column + i, 0), (row + j, 1)].map(|(n, axis)| n.rem_euclid(self.cells[axis]));
+            let index = j_of * self.cells[0] + i_of;
+            let middle = self.blocks[index as usize].middle;
+            let from = [x - i as f32 - middle[0], y - j as f32 - middle[1]];
+            let one = (from[0] * from[0] + from[1] * from[1], from, index);
+            if one.0 < nearest[0].0 {
+                nearest = [one, nearest[0]];
+            } else if one.0 < nearest[1].0 {
+                nearest[1] = one;
+            }
+        }
+        let [(first, from, own), (second, beside, other)] = nearest;
+        let across = [from[0] - beside[0], from[1] - beside[1]];
+        let gap = (across[0] * across[0] + across[1] * across[1]).sqrt();
+        let edge = (second - first) / (2.0 * gap).max(1e-6);
+        let block = self.blocks[own as usize];
+        let plane =
+            |block: Block, from: [f32; 2]| block.level + block.tilt[0] * from[0] + block.tilt[1] * from[1];
+        let (here, there) = (plane(block, from), plane(self.blocks[other as usize], beside));
+        let inner = 0.5 + 0.5 * hermite((edge / self.bevel).min(1.0));
+        let beside = (1.0 - edge / 0.35).max(0.0);
+        let under = (there - here).clamp(-1.0, 1.0) * beside * beside;
+        let opened = hash01(29, own.min(other), own.max(other), self.cells[0]);
+        Spot { height: there + (here - there) * inner, edge, under, opened, dice: block.dice }
+    }
+}
+
+impl Spot {
+    /// What more (`crest`, on an edge that stands out) or less (`foot`, below a higher block) of the sky shines there.
+    fn open_sky(&self, crest: f32, foot: f32) -> f32 {
+        if self.under < 0.0 { -crest * self.under } else { -foot * self.under }
+    }
+
+    /// 1 in the middle of an open joint, 0 beside it. Joints from `closed` up open, and the more the wider.
+    fn joint(&self, closed: f32, widths: Range<f32>) -> f32 {
+        let open = hermite(((self.opened - closed) / 0.35).clamp(0.0, 1.0));
+        let width = widths.start + (widths.end - widths.start) * self.dice[0];
+        open * (1.0 - hermite((self.edge / width).min(1.0)))
+    }
 }
 
 /// Stones of all sizes, the larger on top.

@@ -1,6 +1,6 @@
 //! Traits of places and what covers them → how densely small plants and stones stand, and the kinds that grow in a land.
 
-use genescape_schema::scene::Lookout;
+use crate::model::Lookout;
 use glam::Vec2;
 
 use super::GroundParams;

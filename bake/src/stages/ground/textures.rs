@@ -52,7 +52,7 @@ pub fn texture(k: usize, loose: Loose) -> GroundDetail<Image8> {
     type Make = fn() -> Pattern;
     let (name, depth_px, make): (_, f32, Make) = match (k, loose) {
         (0, _) => (TEXTURES[0], 2.2, patterns::grass),
-        (1, _) => (TEXTURES[1], 4.5, patterns::rock),
+        (1, _) => (TEXTURES[1], 20.0, patterns::rock),
         (2, _) => (TEXTURES[2], 3.0, patterns::scree),
         (3, _) => (TEXTURES[3], 4.2, patterns::snow),
         (_, Loose::Earth) => (TEXTURES[4], 2.6, patterns::earth),

@@ -43,24 +43,9 @@ struct Grids {
 /// 8 m and 4 m, then 2 m from sample to sample.
 const FULL: Grids = Grids { rivers: [129, 257], slopes: 513 };
 
-/// How finely a land is sketched. Main valleys are cut on the grid on which those of the land itself are: on a coarser one
-/// rivers take other ways.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Brush {
-    /// A tenth of the work.
-    Broad,
-    /// A third of the work; hardly to be told from the land itself by what stands where, and what is seen from where.
-    Fine,
-}
-
-impl Brush {
-    const fn grids(self) -> Grids {
-        match self {
-            Self::Broad => Grids { rivers: [129, 129], slopes: 129 },
-            Self::Fine => Grids { rivers: [129, 257], slopes: 257 },
-        }
-    }
-}
+/// Those of a sketch: a tenth of the work. Main valleys are cut on the grid on which those of the land itself are: on a coarser
+/// one rivers take other ways.
+const SKETCHED: Grids = Grids { rivers: [129, 129], slopes: 129 };
 
 /// The genes that shape the land; names, units, ranges and meanings as in `configs/space.ron`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -89,10 +74,9 @@ pub fn landform(params: &LandParams, size: u32) -> Landform {
     shaped(params, size.max(3), &FULL)
 }
 
-/// The same land without gullies, with samples 8 m or 4 m apart: to judge it before it is made.
-pub fn sketch(params: &LandParams, brush: Brush) -> Landform {
-    let grids = brush.grids();
-    shaped(&LandParams { droplets: 0.0, ..params.clone() }, grids.slopes, &grids)
+/// The same land without gullies, with samples 8 m apart: to judge it before it is made.
+pub fn sketch(params: &LandParams) -> Landform {
+    shaped(&LandParams { droplets: 0.0, ..params.clone() }, SKETCHED.slopes, &SKETCHED)
 }
 
 fn shaped(params: &LandParams, size: u32, grids: &Grids) -> Landform {

@@ -1,6 +1,6 @@
 //! Room around the lookouts that a landscape may first be seen from.
 
-use genescape_schema::scene::Lookout;
+use crate::model::Lookout;
 use glam::Vec2;
 
 use crate::model::{Instance, Landform};

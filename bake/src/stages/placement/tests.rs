@@ -1,6 +1,6 @@
 //! No tree floats, drowns, clings to a cliff or stands in another; and the same genes give the same forest.
 
-use genescape_schema::scene::Lookout;
+use crate::model::Lookout;
 use glam::{Mat3, Vec2, Vec3};
 use proptest::prelude::*;
 

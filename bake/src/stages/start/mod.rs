@@ -6,8 +6,7 @@
 //! 3. `appraise` turns the `picture` that a look shows, and its light, into terms from 0 to 1; their product is the score.
 //! 4. `meter` says how the best ones are to be exposed.
 //!
-//! All landscapes are asked about the same lookouts ([`Lookout`]), so that one for several can be chosen from their
-//! scores alone; placement keeps trunks away from all of them.
+//! Placement keeps trunks away from all of them ([`Lookout`]), before it is known which it will be.
 
 mod appraise;
 mod light;
@@ -18,14 +17,13 @@ mod stage;
 #[cfg(test)]
 mod tests;
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 use crate::math::ramp;
-use crate::model::{Instance, Landform, SkyLight, StartView, TreeFootprint};
+use crate::model::{Instance, Landform, Lookout, SkyLight, StartView, TreeFootprint};
 use appraise::appraise;
 pub use appraise::{Appraisal, Want};
-use genescape_schema::scene::{Lookout, Lookouts, Prospect};
 use light::{SHADES_M, Sun};
 use panorama::{Panorama, Surroundings};
 use picture::Picture;
@@ -47,8 +45,6 @@ pub struct FirstLook {
     pub appraisal: Appraisal,
     /// Factor by which its picture is to be made brighter.
     pub exposure: f32,
-    /// How good all others are.
-    pub lookouts: Lookouts,
 }
 
 /// Looks at a landscape from all lookouts; `footprints` are those of the trees' templates.
@@ -60,29 +56,42 @@ pub fn first_look(
 ) -> FirstLook {
     let (scene, sun) = (Surroundings::new(land, trees, footprints, light), Sun::of(light));
     let all: Vec<Lookout> = Lookout::all().collect();
-    let at_place = |lookouts: &[Lookout]| at_place(&scene, &sun, lookouts, 0.0);
+    let at_place = |lookouts: &[Lookout]| at_place(&scene, &sun, lookouts);
     let appraisals: Vec<Appraisal> = all.par_chunks(Lookout::HEADINGS).flat_map_iter(at_place).collect();
-    let lookouts = Lookouts::new(appraisals.iter().map(prospect).collect()).expect("one for each");
-    let best = Lookouts::shared(&[&lookouts]).expect("one landscape");
-    let appraisal = appraisals[all.partition_point(|lookout| *lookout < best.lookout)];
-    let exposure = metered(&scene, &sun, light, &good_looks(&all, &appraisals));
-    FirstLook { view: best.on(&land.field, land.water_level_m), appraisal, exposure, lookouts }
+    let better =
+        |best: usize, k: usize| if appraisals[k].score() > appraisals[best].score() { k } else { best };
+    let best = (0..all.len()).fold(0, better);
+    let (view, exposure) = (
+        view(land, all[best], &appraisals[best]),
+        metered(&scene, &sun, light, &good_looks(&all, &appraisals)),
+    );
+    FirstLook { view, appraisal: appraisals[best], exposure }
 }
 
-/// How good the looks are from all lookouts, in their order, at one in so many of the places; those that cannot score `least`
-/// because one stands badly there may count as nothing.
+/// The eye stands on the ground there, or on the water.
+fn view(land: &Landform, lookout: Lookout, appraisal: &Appraisal) -> StartView {
+    let place = lookout.place_m(land.field.extent_m());
+    let surface_m = land.field.height_m(place.x, place.y).max(land.water_level_m.unwrap_or(f32::MIN));
+    let ahead = lookout.ahead();
+    StartView {
+        position_m: Vec3::new(place.x, surface_m + StartView::EYE_HEIGHT_M, place.y),
+        direction: Vec3::new(ahead.x, appraisal.pitch, ahead.y).normalize(),
+    }
+}
+
+/// How good the looks are from all lookouts, in their order, at one in so many of the places.
+#[cfg(test)]
 pub fn looks(
     land: &Landform,
     trees: &[Instance],
     footprints: &[TreeFootprint],
     light: &SkyLight,
     one_in: usize,
-    least: f32,
 ) -> Vec<Appraisal> {
     let (scene, sun) = (Surroundings::new(land, trees, footprints, light), Sun::of(light));
     let all: Vec<Lookout> = Lookout::all().collect();
     let places = all.par_chunks(Lookout::HEADINGS).step_by(one_in.max(1));
-    places.flat_map_iter(|lookouts| at_place(&scene, &sun, lookouts, least)).collect()
+    places.flat_map_iter(|lookouts| at_place(&scene, &sun, lookouts)).collect()
 }
 
 /// A look that scores at least `enough`, of the first few places all over the land that have one; if none has, the best of
@@ -101,7 +110,7 @@ pub fn any_good_look(
     let mut best = Appraisal::default();
     for few in scattered.chunks(FEW) {
         let looks: Vec<Appraisal> =
-            few.par_iter().flat_map_iter(|&k| at_place(&scene, &sun, places[k], 0.0)).collect();
+            few.par_iter().flat_map_iter(|&k| at_place(&scene, &sun, places[k])).collect();
         best = looks.into_iter().fold(best, |a, b| if b.score() > a.score() { b } else { a });
         if best.score() >= enough {
             break;
@@ -110,8 +119,7 @@ pub fn any_good_look(
     best
 }
 
-/// The best look from each of the best places, the best first: those that one may well begin with, when a view is shared with
-/// other landscapes.
+/// The best look from each of the best places, the best first.
 fn good_looks(all: &[Lookout], appraisals: &[Appraisal]) -> Vec<Lookout> {
     let places = all.chunks(Lookout::HEADINGS).zip(appraisals.chunks(Lookout::HEADINGS));
     let mut looks: Vec<(f32, Lookout)> = places
@@ -138,12 +146,12 @@ fn metered(scene: &Surroundings<'_>, sun: &Sun, light: &SkyLight, lookouts: &[Lo
     libm::exp2f(stops.iter().sum::<f32>() / stops.len().max(1) as f32)
 }
 
-/// All headings at one place, unless its footing alone keeps them below `least`.
-fn at_place(scene: &Surroundings<'_>, sun: &Sun, lookouts: &[Lookout], least: f32) -> Vec<Appraisal> {
+/// All headings at one place.
+fn at_place(scene: &Surroundings<'_>, sun: &Sun, lookouts: &[Lookout]) -> Vec<Appraisal> {
     let place = lookouts[0].place_m(scene.land.field.extent_m());
     let footing = footing(scene, place);
-    if footing <= 0.0 || footing < least * least {
-        // Nobody can stand there, or would: what might be seen is not worth the time.
+    if footing <= 0.0 {
+        // Nobody can stand there: what might be seen is not worth the time.
         return vec![Appraisal::default(); lookouts.len()];
     }
     let panorama = Panorama::new(scene, place);
@@ -153,11 +161,6 @@ fn at_place(scene: &Surroundings<'_>, sun: &Sun, lookouts: &[Lookout], least: f3
         appraise(&Picture::new(&panorama, lookout), scene, footing, light)
     };
     lookouts.iter().map(look).collect()
-}
-
-fn prospect(appraisal: &Appraisal) -> Prospect {
-    let pitch_deg = libm::roundf(libm::atanf(appraisal.pitch).to_degrees()) as i8;
-    Prospect { score: crate::math::unit_to_byte(appraisal.score()), pitch_deg }
 }
 
 /// How well one stands there, 0 … 1: dry, level, with room for a few steps.

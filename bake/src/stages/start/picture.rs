@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use genescape_schema::scene::Lookout;
+use crate::model::Lookout;
 
 use super::panorama::{COLUMNS, Column, Kind, Panorama, ROWS, Seen, slope_of};
 use crate::math::ramp;

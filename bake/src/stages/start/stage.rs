@@ -1,13 +1,13 @@
-//! The first look as a stage: results of earlier stages → a view, and a file of all prospects.
+//! The first look as a stage: results of earlier stages → a view.
 
 use serde::{Deserialize, Serialize};
 
 use super::{Appraisal, first_look};
-use crate::graph::{Context, File, Input, Stage, StageError};
+use crate::graph::{Context, Input, Stage, StageError};
 use crate::model::TreeFootprint;
 use crate::model::{Instance, Landform, SkyLight, StartView};
 
-/// Landform, trees, light → where the walk starts, and how good all lookouts are.
+/// Landform, trees, light → where the walk starts.
 #[derive(Serialize)]
 pub struct StartStage {
     pub landform: Input<Landform>,
@@ -24,20 +24,17 @@ pub struct StartFiles {
     pub appraisal: Appraisal,
     /// Factor by which its picture is to be made brighter: `SkyLight::exposure` without the gene's offset.
     pub exposure: f32,
-    /// The binary data of `GSC_lookouts`.
-    pub lookouts: File,
 }
 
 impl Stage for StartStage {
     const NAME: &'static str = "start";
-    const VERSION: u32 = 14;
+    const VERSION: u32 = 15;
     type Output = StartFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<StartFiles, StageError> {
         let footprints = context.get_all(&self.footprints)?;
         let (landform, trees) = (context.get(&self.landform)?, context.get(&self.trees)?);
         let look = first_look(&landform, &trees, &footprints, &*context.get(&self.light)?);
-        let lookouts = context.file("bin", look.lookouts.to_bytes());
-        Ok(StartFiles { view: look.view, appraisal: look.appraisal, exposure: look.exposure, lookouts })
+        Ok(StartFiles { view: look.view, appraisal: look.appraisal, exposure: look.exposure })
     }
 }

@@ -236,7 +236,7 @@ fn nothing_high_stands_before_a_lookout() {
         let map = DensityMap { width_px: map.width, height_px: map.height, rgba: &map.data };
         let around =
             |place: glam::Vec2| (0..8).map(move |k| place + 5.0 * glam::Vec2::from_angle(k as f32 * 0.785));
-        for at in genescape_schema::scene::Lookout::places_m(2.0 * half_m).flat_map(around) {
+        for at in crate::model::Lookout::places_m(2.0 * half_m).flat_map(around) {
             let [u, v] = [at.x, at.y].map(|m| 0.5 + 0.5 * m / half_m);
             assert_eq!(map.at(kind.channel, u, v), 0.0, "a {} at {at}", kind.name);
         }
