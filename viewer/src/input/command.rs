@@ -55,7 +55,7 @@ pub enum Command {
     /// let the mouse go
     #[strum(props(keys = "Escape"))]
     ReleaseMouse,
-    /// to the start view, where each new generation begins
+    /// to the first view of each landscape
     #[strum(to_string = "start", props(keys = "Home"))]
     GoToStart,
     /// one landscape alone

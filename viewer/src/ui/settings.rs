@@ -108,7 +108,7 @@ fn comfort(ui: &mut Ui, current: &Comfort) {
     section(ui, "HANDLING");
     number(ui, &mut comfort.mouse_sensitivity, 0.1..=5.0, "Mouse sensitivity", " ×");
     switch(ui, &mut comfort.invert_y, "Invert up and down", "Mouse up looks down");
-    let help = "Otherwise each new generation is entered at its start view, as by Home";
+    let help = "Otherwise each new generation is entered at its first view, as by Home";
     switch(ui, &mut comfort.stay, "Stay where you are in a new generation", help);
     if comfort != *current {
         ask(ui, Event::Comfort(comfort));
