@@ -124,7 +124,7 @@ pub(super) fn rock() -> Pattern {
         let fine = 1.0 - hermite((small.edge / 0.22).min(1.0));
         let planes = 0.34 * large.height + 0.20 * middle.height + 0.055 * small.height;
         let height = 0.5 + planes + 0.03 * bend + 0.02 * rough - 0.10 * wide - 0.07 * narrow - 0.006 * fine;
-        let own = 0.30 * large.dice[0] + 0.34 * middle.dice[0] + 0.30 * small.dice[0] - 0.47;
+        let own = 0.30 * large.shade + 0.34 * middle.shade + 0.30 * small.shade - 0.47;
         let shade = (1.0 - 0.75 * wide) * (1.0 - 0.75 * narrow) * (1.0 - 0.22 * fine);
         let open = large.open_sky(0.35, 0.9) + middle.open_sky(0.25, 0.7) + small.open_sky(0.0, 0.35);
         let tone = 100.0 * (1.0 + own + 0.5 * rough + 0.55 * lichen).max(0.1) * shade * (1.0 + open).max(0.2);
@@ -158,6 +158,8 @@ struct Spot {
     edge: f32,
     /// How much higher the block beyond the border stands: 0 away from it.
     under: f32,
+    /// How light the block is, 0 to 1, but for what its border has of the other's.
+    shade: f32,
     /// 0 to 1, the same on both sides of a border.
     opened: f32,
     /// Those of the block, 0 to 1.
@@ -203,12 +205,17 @@ impl Blocks {
         let block = self.blocks[own as usize];
         let plane =
             |block: Block, from: [f32; 2]| block.level + block.tilt[0] * from[0] + block.tilt[1] * from[1];
-        let (here, there) = (plane(block, from), plane(self.blocks[other as usize], beside));
+        let next = self.blocks[other as usize];
+        let (here, there) = (plane(block, from), plane(next, beside));
         let inner = 0.5 + 0.5 * hermite((edge / self.bevel).min(1.0));
-        let beside = (1.0 - edge / 0.35).max(0.0);
-        let under = (there - here).clamp(-1.0, 1.0) * beside * beside;
+        let near = (1.0 - edge / 0.35).max(0.0);
+        // Not a step from texel to texel, at which one would see them.
+        let off = hermite((edge / (0.3 * self.bevel)).min(1.0));
+        let under = (there - here).clamp(-1.0, 1.0) * near * near * off;
         let opened = hash01(29, own.min(other), own.max(other), self.cells[0]);
-        Spot { height: there + (here - there) * inner, edge, under, opened, dice: block.dice }
+        let height = there + (here - there) * inner;
+        let shade = next.dice[0] + (block.dice[0] - next.dice[0]) * (0.5 + 0.5 * off);
+        Spot { height, edge, under, shade, opened, dice: block.dice }
     }
 }
 

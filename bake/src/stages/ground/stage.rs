@@ -89,7 +89,7 @@ pub struct GroundTextureFiles {
 
 impl Stage for GroundTextureStage {
     const NAME: &'static str = "ground texture";
-    const VERSION: u32 = 3;
+    const VERSION: u32 = 4;
     type Output = GroundTextureFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<GroundTextureFiles, StageError> {
