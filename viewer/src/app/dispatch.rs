@@ -116,7 +116,7 @@ impl App {
             }
             Command::ReleaseMouse => self.capture(false),
             Command::GoToStart => {
-                self.live.iter_mut().for_each(|live| live.viewports.anchor_at_starts());
+                self.live.iter_mut().for_each(|live| live.viewports.anchor_anew());
                 self.camera.go_to_start(&lands(&self.live));
             }
             Command::Maximise(landscape) => self.layout.maximise(usize::from(landscape) - 1),

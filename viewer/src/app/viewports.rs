@@ -24,7 +24,7 @@ use crate::scene_loader::Loaded;
 use crate::ui::arrange::Slot;
 use crate::ui::model::{PassTime, Stats};
 use crate::upload::{Exhibit, SceneBuffers};
-use crate::walk::{Anchor, Land};
+use crate::walk::{Anchor, Land, anchor_for};
 
 /// Frames that statistics look back on.
 const FRAMES: usize = 240;
@@ -101,18 +101,11 @@ impl Viewports {
         self.each[view].land.as_deref()
     }
 
-    /// Shows a landscape from the next frame on. One that was baked anew is seen from where it was before, so that one sees
-    /// what an edit did; one that stands on the same ground as another of its generation, from where that is seen.
+    /// Shows a landscape from the next frame on.
     pub fn show(&mut self, view: usize, loaded: Loaded, generation: u32) {
-        let of_same_ground = || {
-            let others = self
-                .each
-                .iter()
-                .filter(|one| one.land.as_ref().is_some_and(|land| land.is_same_ground(&loaded.land)));
-            others.into_iter().find_map(|one| one.anchor(generation))
-        };
-        let anchor = self.anchor(view, generation).or_else(of_same_ground);
-        let anchor = anchor.unwrap_or(loaded.land.anchor);
+        let of_generation = self.each.iter().filter(|one| one.anchor(generation).is_some());
+        let others: Vec<&Land> = of_generation.filter_map(|one| one.land.as_deref()).collect();
+        let anchor = anchor_for(&loaded.land, self.anchor(view, generation), &others);
         self.each[view].show(&self.passes, loaded, generation, anchor);
     }
 
@@ -121,14 +114,12 @@ impl Viewports {
         self.each[view].anchor(generation)
     }
 
-    /// Lays the walk where each landscape looks best, and those on the same ground as another where that does.
-    pub fn anchor_at_starts(&mut self) {
-        let anchors: Vec<Option<Anchor>> = {
-            let lands = || self.each.iter().filter_map(|one| one.land.as_deref());
-            let first = |land: &Land| lands().find(|one| one.is_same_ground(land)).map(Land::start_anchor);
-            self.each.iter().map(|one| first(one.land.as_deref()?)).collect()
-        };
-        for (one, anchor) in self.each.iter_mut().zip(anchors) {
+    /// Lays the walk where each landscape looks best now.
+    pub fn anchor_anew(&mut self) {
+        for view in 0..self.each.len() {
+            let (before, [one, ..]) = self.each.split_at_mut(view) else { return };
+            let others: Vec<&Land> = before.iter().filter_map(|one| one.land.as_deref()).collect();
+            let anchor = one.land.as_ref().map(|land| anchor_for(land, None, &others));
             anchor.into_iter().for_each(|anchor| one.anchor_at(anchor));
         }
     }

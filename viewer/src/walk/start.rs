@@ -4,7 +4,7 @@
 use genescape_schema::scene::StartView;
 use glam::{Vec2, Vec3};
 
-use super::{EYE_HEIGHT_M, Land, Mode, Pose, Subject, nearest_free};
+use super::{Anchor, EYE_HEIGHT_M, Land, Mode, Pose, Subject, nearest_free};
 
 /// Where to begin: in the walk's middle, moved no farther than trunks make necessary.
 pub fn start_pose(lands: &[&Land]) -> Pose {
@@ -15,6 +15,13 @@ pub fn start_pose(lands: &[&Land]) -> Pose {
     let place_m = nearest_free(lands, Vec2::ZERO).unwrap_or_default();
     let top_m = lands.iter().map(|land| land.footing_m(place_m)).reduce(f32::max).unwrap_or_default();
     Pose { x_m: place_m.x, z_m: place_m.y, altitude_m: top_m + EYE_HEIGHT_M, ..Pose::default() }
+}
+
+/// Where the walk lies in a landscape that has come. One that was baked anew is seen from where it was `before`, so that one
+/// sees what an edit did; one on the same ground as one of the `others`, from where that is seen.
+pub fn anchor_for(land: &Land, before: Option<Anchor>, others: &[&Land]) -> Anchor {
+    let beside = || others.iter().find(|other| other.is_same_ground(land)).map(|other| other.anchor);
+    before.or_else(beside).unwrap_or_else(|| land.start_anchor())
 }
 
 /// Before anyone's file: it turns if it is what the start looks at from outside, and is flown through if not.
@@ -67,6 +74,17 @@ mod tests {
                 prop_assert!(camera.forward().distance(land.start.direction) < 1e-4, "{camera:?}");
             }
         }
+    }
+
+    #[test]
+    fn an_edit_and_the_same_ground_are_seen_from_the_same_place_and_other_ground_is_not() {
+        let [one, same, other] = [(3, 5.0), (3, 20.0), (4, 20.0)]
+            .map(|(seed, x)| with_start(hilly(seed, []), Vec2::new(x, 0.0), Vec3::X));
+        assert_eq!(anchor_for(&one, None, &[&other]), one.start_anchor());
+        assert_eq!(anchor_for(&same, None, &[&other, &one]), one.anchor);
+        assert_eq!(anchor_for(&other, None, &[&one, &same]), other.start_anchor());
+        assert_eq!(anchor_for(&other, Some(one.anchor), &[&same]), one.anchor, "after an edit");
+        assert_ne!(one.anchor, same.anchor);
     }
 
     #[test]
