@@ -13,7 +13,6 @@ use crate::breed::Breeder;
 use crate::events::{Event, Listener};
 use crate::random::{self, Drawn};
 use crate::sketch::Sketch;
-use crate::stages::sky;
 use crate::stages::start::{Appraisal, Want};
 
 /// How often a landscape is drawn again at most; then the best of those drawn is taken.
@@ -55,8 +54,7 @@ pub fn is_worth_a_look(appraisal: &Appraisal) -> Result<f32, Want> {
 /// # Errors
 /// A gene that `space` does not declare.
 pub fn appraise(space: &Space, genome: &Genome, enough: f32) -> Result<Appraisal, GenomeError> {
-    let light = sky::light(&genome.read(space)?);
-    Ok(Sketch::under(light, space, genome)?.any_good_look(enough))
+    Ok(Sketch::of(space, genome)?.any_good_look(enough))
 }
 
 /// A population of landscapes that somebody would look at, and which of them had to be drawn again for it.

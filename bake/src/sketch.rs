@@ -7,6 +7,7 @@ use crate::model::{Instance, Landform, SkyLight, TreeFootprint};
 use crate::stages::ground::snow_map;
 use crate::stages::land;
 use crate::stages::placement::{PlacementParams, clear_around, place};
+use crate::stages::sky;
 use crate::stages::start::{Appraisal, any_good_look};
 use crate::stages::tree::{TreeMeasures, TreeParams, measure};
 
@@ -19,11 +20,12 @@ pub struct Sketch {
 }
 
 impl Sketch {
-    /// One in that light, which is to be the genome's.
+    /// That of a genome.
     ///
     /// # Errors
     /// A gene that `space` does not declare.
-    pub fn under(light: SkyLight, space: &Space, genome: &Genome) -> Result<Self, GenomeError> {
+    pub fn of(space: &Space, genome: &Genome) -> Result<Self, GenomeError> {
+        let light = sky::light(&genome.read(space)?);
         let land = land::sketch(&genome.read(space)?);
         let footprint = footprint(&genome.read(space)?);
         let placement: PlacementParams = genome.read(space)?;
@@ -55,7 +57,6 @@ fn footprint(params: &TreeParams) -> TreeFootprint {
 mod tests {
     use super::*;
     use crate::kinds::testing::{drawn, kinds};
-    use crate::stages::sky;
     use crate::stages::start::looks;
     use crate::stages::tree::template;
 
@@ -74,7 +75,6 @@ mod tests {
         let space = Space::builtin();
         for one in drawn(&space, &kinds(&space), 4, 0).individuals {
             let (space, genome) = (&space, &one.genome);
-            let light = sky::light(&genome.read(space).expect("valid"));
             let params: TreeParams = genome.read(space).expect("valid");
             let clear_trunk = TreeFootprint::clear_trunk(params.levels, params.clear_trunk);
             let footprints = [0, 1, 2, 3, 4].map(|index| {
@@ -92,9 +92,9 @@ mod tests {
             let snow = snow_map(placement.terrain_seed, &land);
             let mut trees = place(&placement, &land, snow.as_ref(), &footprints).instances;
             clear_around(&land, &mut trees);
-            let itself = looks(&land, &trees, &footprints, &light, 4);
-            let sketch = Sketch::under(light.clone(), space, genome).expect("valid");
-            let sketched = looks(&sketch.land, &sketch.trees, &[sketch.footprint], &light, 4);
+            let sketch = Sketch::of(space, genome).expect("valid");
+            let itself = looks(&land, &trees, &footprints, &sketch.light, 4);
+            let sketched = looks(&sketch.land, &sketch.trees, &[sketch.footprint], &sketch.light, 4);
             let scores: Vec<_> =
                 sketched.iter().zip(&itself).map(|(one, other)| (one.score(), other.score())).collect();
             let agreement = agreement(&scores);

@@ -36,7 +36,7 @@ pub fn scene_gltf(parts: &SceneParts<'_>) -> Result<Vec<u8>, ExportError> {
     Ok(document.json())
 }
 
-/// The first look, with what is known of others.
+/// The first look.
 fn add_camera(document: &mut Document, parts: &SceneParts<'_>) -> usize {
     let view = parts.view;
     let camera = push(

@@ -8,8 +8,6 @@ const CELLS: usize = 16;
 const INNER: f32 = 0.8;
 /// Part of a cell's side within which its place lies, around the cell's middle.
 const SCATTER: f32 = 0.7;
-/// Headings at each place, evenly spaced.
-const HEADINGS: usize = 24;
 const PLACES: usize = CELLS * CELLS;
 
 /// A place and a heading from which a landscape may first be seen: one of a fixed list.
@@ -17,14 +15,14 @@ const PLACES: usize = CELLS * CELLS;
 pub struct Lookout(usize);
 
 impl Lookout {
-    /// How many share a place: they follow one another in the list.
-    pub const HEADINGS: usize = HEADINGS;
+    /// How many share a place, evenly spaced: they follow one another in the list.
+    pub const HEADINGS: usize = 24;
     /// Metres around each in which nothing stands that would hide the landscape.
     pub const CLEARING_M: f32 = 6.0;
 
     /// All of them, in order.
     pub fn all() -> impl Iterator<Item = Self> {
-        (0..PLACES * HEADINGS).map(Self)
+        (0..PLACES * Self::HEADINGS).map(Self)
     }
 
     /// The places of all, as x and z in metres on land of that extent: one in each cell of a square grid, moved off its
@@ -35,17 +33,17 @@ impl Lookout {
 
     /// Where to stand, as x and z in metres on land of that extent.
     pub fn place_m(self, extent_m: f32) -> Vec2 {
-        place_m(self.0 / HEADINGS, extent_m)
+        place_m(self.0 / Self::HEADINGS, extent_m)
     }
 
     /// Number of the heading, clockwise from north (−z).
     pub fn heading(self) -> usize {
-        self.0 % HEADINGS
+        self.0 % Self::HEADINGS
     }
 
     /// Unit vector of the heading in the (x, z) plane.
     pub fn ahead(self) -> Vec2 {
-        let (sin, cos) = libm::sincosf(self.heading() as f32 * (TAU / HEADINGS as f32));
+        let (sin, cos) = libm::sincosf(self.heading() as f32 * (TAU / Self::HEADINGS as f32));
         Vec2::new(sin, -cos)
     }
 }

@@ -1,6 +1,5 @@
 //! Traits of places and what covers them → how densely small plants and stones stand, and the kinds that grow in a land.
 
-use crate::model::Lookout;
 use glam::Vec2;
 
 use super::GroundParams;
@@ -13,7 +12,7 @@ use super::stones;
 use super::traits::{Traits, TraitsMap};
 use super::woody::{self, Foliage};
 use crate::math::lerp_array as lerp;
-use crate::model::{GroundPlants, Image8, Landform, PlantKind, PlantShape};
+use crate::model::{GroundPlants, Image8, Landform, Lookout, PlantKind, PlantShape};
 use crate::raster::square_image;
 
 /// Channels of the maps, four in each.

@@ -1,9 +1,8 @@
 //! Room around the lookouts that a landscape may first be seen from.
 
-use crate::model::Lookout;
 use glam::Vec2;
 
-use crate::model::{Instance, Landform};
+use crate::model::{Instance, Landform, Lookout};
 
 /// Removes the trees whose trunks reach into the clearing around a lookout.
 pub fn clear_around(land: &Landform, trees: &mut Vec<Instance>) {

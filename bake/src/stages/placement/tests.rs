@@ -1,10 +1,9 @@
 //! No tree floats, drowns, clings to a cliff or stands in another; and the same genes give the same forest.
 
-use crate::model::Lookout;
 use glam::{Mat3, Vec2, Vec3};
 use proptest::prelude::*;
 
-use crate::model::{Heightfield, Instance, Landform, SnowMap};
+use crate::model::{Heightfield, Instance, Landform, Lookout, SnowMap};
 use crate::noise::fbm2;
 use crate::stages::ground::{self, GroundParams};
 

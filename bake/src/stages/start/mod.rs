@@ -61,10 +61,8 @@ pub fn first_look(
     let better =
         |best: usize, k: usize| if appraisals[k].score() > appraisals[best].score() { k } else { best };
     let best = (0..all.len()).fold(0, better);
-    let (view, exposure) = (
-        view(land, all[best], &appraisals[best]),
-        metered(&scene, &sun, light, &good_looks(&all, &appraisals)),
-    );
+    let view = view(land, all[best], &appraisals[best]);
+    let exposure = metered(&scene, &sun, light, &good_looks(&all, &appraisals));
     FirstLook { view, appraisal: appraisals[best], exposure }
 }
 

@@ -3,10 +3,9 @@
 
 use std::ops::Range;
 
-use crate::model::Lookout;
-
 use super::panorama::{COLUMNS, Column, Kind, Panorama, ROWS, Seen, slope_of};
 use crate::math::ramp;
+use crate::model::Lookout;
 
 /// Columns of the panorama in half a picture: ±41°, the viewer's 60° upright at 16:10.
 pub(super) const HALF_COLUMNS: usize = 11;

@@ -288,10 +288,6 @@ impl Drawn {
         let look = look(&land, &trees, &sky::light(&genome.read(space).expect("genes")));
         Self { land, trees, look }
     }
-
-    fn faces_a_wall(&self, view: &StartView) -> bool {
-        faces_a_wall(&self.land, view)
-    }
 }
 
 #[test]
@@ -304,8 +300,9 @@ fn of_forty_random_landscapes_hardly_one_is_first_seen_before_a_wall_and_most_ha
         for (k, one) in population.individuals.iter().enumerate() {
             let one = Drawn::new(&space, &one.genome);
             let view = &one.look.view;
-            walls.extend(one.faces_a_wall(view).then_some((seed, k)));
-            elsewhere += u32::from(one.faces_a_wall(&StartView { direction: -view.direction, ..*view }));
+            walls.extend(faces_a_wall(&one.land, view).then_some((seed, k)));
+            elsewhere +=
+                u32::from(faces_a_wall(&one.land, &StartView { direction: -view.direction, ..*view }));
             bare.extend((trees_ahead(view, &one.trees, [8.0, 80.0]) == 0).then_some((seed, k)));
         }
     }
