@@ -15,6 +15,7 @@ use crate::gpu::Gpu;
 use crate::passes::Passes;
 use crate::scene_loader::{Loaded, SceneLoader};
 use crate::upload::SceneBuffers;
+use crate::walk::Anchor;
 
 /// A landscape to read.
 pub struct Request {
@@ -23,8 +24,10 @@ pub struct Request {
     pub generation: u32,
     /// Its `scene.gltf`.
     pub path: PathBuf,
-    /// From where it will be seen, x and z in metres; `None` from where its own walks start.
-    pub eye_m: Option<Vec2>,
+    /// From where it will be seen: x and z of the walk in metres.
+    pub eye_m: Vec2,
+    /// Where the walk lies in it; `None` where it does from its start.
+    pub anchor: Option<Anchor>,
     /// What draws its shadows.
     pub passes: Arc<Passes>,
 }
@@ -133,9 +136,9 @@ impl Worker {
         }
     }
 
-    fn load(&self, Request { view, generation, path, eye_m, passes }: Request) {
+    fn load(&self, Request { view, generation, path, eye_m, anchor, passes }: Request) {
         let result = match self.gpu.software {
-            true => self.loader.load_with_near_shadows(&path, &passes, eye_m),
+            true => self.loader.load_with_near_shadows(&path, &passes, eye_m, anchor),
             false => self.loader.load(&path, &passes),
         };
         let result = result.map_err(|error| error.to_string());

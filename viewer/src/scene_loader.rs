@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::{Error, Result};
-use glam::{Vec2, Vec3Swizzles};
+use glam::Vec2;
 
 use crate::gpu::Gpu;
 use crate::load::{self, Content, Store};
 use crate::passes::Passes;
 use crate::scene::Scene;
 use crate::upload::{Exhibit, SceneBuffers, Uploader};
-use crate::walk::Land;
+use crate::walk::{Anchor, Land};
 
 /// A landscape, or anyone's file, that can be drawn and walked in.
 #[derive(Clone, Debug)]
@@ -61,21 +61,23 @@ impl SceneLoader {
         })
     }
 
-    /// The same, of a landscape with those shadows only that are seen from `eye_m` (x and z in it), or from where it is first
-    /// seen.
+    /// The same, of a landscape with those shadows only that are seen from `eye_m` (x and z of the walk), which lies in it
+    /// where `anchor` says, or from its start.
     pub fn load_with_near_shadows(
         &self,
         path: &Path,
         passes: &Passes,
-        eye_m: Option<Vec2>,
+        eye_m: Vec2,
+        anchor: Option<Anchor>,
     ) -> Result<Loaded> {
         self.load_by(path, |scene| {
             let buffers = self.uploader.upload(scene).map_err(Error::msg)?;
             let bake = passes.shadow.begin(&self.gpu, passes, &buffers);
             bake.land();
-            bake.trees_around(eye_m.unwrap_or(scene.start.position_m.xz()), NEAR_M);
+            let land = Arc::new(Land::of(scene).from_its_start());
+            bake.trees_around(anchor.unwrap_or(land.anchor).in_land(eye_m), NEAR_M);
             drop(bake);
-            let (exhibit, land) = (Arc::new(buffers).into(), Arc::new(Land::of(scene).from_its_start()));
+            let exhibit = Arc::new(buffers).into();
             Ok(Loaded { exhibit, land, lacks_shadows: true, files: Vec::new() })
         })
     }

@@ -1,5 +1,6 @@
 //! Keys, mouse and gamepad → where the one camera of all views is.
 
+use glam::Vec2;
 use winit::window::{CursorGrabMode, Window};
 
 use crate::input::{Command, Held};
@@ -71,6 +72,11 @@ impl CameraControl {
         } else {
             self.rig.settle(all);
         }
+    }
+
+    /// From where landscapes that are to come will be seen, x and z of the walk in metres.
+    pub fn eye_m(&self) -> Vec2 {
+        if self.awaits { Vec2::ZERO } else { self.rig.pose().place_m() }
     }
 
     /// Goes to where every walk starts.

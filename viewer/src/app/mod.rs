@@ -353,10 +353,9 @@ impl App {
             Task::BeginWalk => self.camera.await_landscapes(),
             Task::Load { view, generation, path } => {
                 if let Some(live) = &self.live {
-                    let anchor = live.viewports.anchor(view, generation);
-                    let eye_m = anchor.map(|anchor| anchor.in_land(self.camera.rig.pose().place_m()));
+                    let (eye_m, anchor) = (self.camera.eye_m(), live.viewports.anchor(view, generation));
                     let passes = live.viewports.passes();
-                    live.loader.ask(Request { view, generation, path, eye_m, passes });
+                    live.loader.ask(Request { view, generation, path, eye_m, anchor, passes });
                 }
             }
         }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use anyhow::{Result, anyhow};
+use glam::Vec2;
 
 use super::Bench;
 use super::report::Aim;
@@ -62,7 +63,8 @@ fn swaps(bench: &Bench) -> Result<Vec<(Beside, f64)>> {
         }
         // Each view gets the landscape of the next, by a loader that knows nothing of it yet.
         let path = bench.paths[(swap + 1) % bench.paths.len()].clone();
-        loader.ask(Request { view: swap, generation: 0, path, eye_m: None, passes: Arc::clone(passes) });
+        let (eye_m, anchor) = (Vec2::ZERO, None);
+        loader.ask(Request { view: swap, generation: 0, path, eye_m, anchor, passes: Arc::clone(passes) });
         let mut beside = Beside::Loading;
         while beside == Beside::Loading {
             let reply = loader.replies().next();
