@@ -18,7 +18,7 @@ use crate::stages::start::{Appraisal, Want};
 /// How often a landscape is drawn again at most; then the best of those drawn is taken.
 const REDRAWS: u32 = 4;
 /// The lowest score that is worth a look.
-const BOUND: f32 = 0.65;
+const BOUND: f32 = 0.6;
 
 /// That a landscape was drawn again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

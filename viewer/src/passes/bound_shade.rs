@@ -13,8 +13,10 @@ use crate::upload::SceneBuffers;
 /// where a device is slow; a twentieth shows twigs.
 const SIDE: [u32; 2] = [768, 2048];
 const LEVELS: u32 = 8;
-/// Of a tree the level is drawn whose error is that many texels: the sun's disc blurs what is finer.
-const ERROR_TEXELS: f32 = 1.5;
+/// Of a tree the level is drawn whose error is that large, and larger with its distance: the sun's disc blurs what is finer, by a
+/// hundredth of the way from a leaf to its shadow. Near trees in full took a graphics card longer than all else of a picture.
+const ERROR_M: f32 = 0.16;
+const ERROR_PER_M: f32 = 0.005;
 /// How wide the square is. Shaders look up less of it (`near_shade_at` of `common.wgsl`): by as much as the eye may be beside its
 /// middle.
 const EXTENT_M: f32 = 104.0;
@@ -110,11 +112,12 @@ impl BoundShade {
         };
         let middle_m = nearest_m(eye_m, self.turn, self.texture.width());
         self.middle_m = Some(middle_m);
+        let ground_m = Vec3::new(middle_m.x, scene.ground.field.height_m(middle_m.x, middle_m.y), middle_m.y);
         let sun_view = SunView::of_ground(scene, middle_m, 0.5 * EXTENT_M);
         let numbers = ViewUniform { shade: self.place(), ..ViewUniform::for_sun(scene, &sun_view) };
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&numbers));
-        let error_m = ERROR_TEXELS * sun_view.texel_m(self.texture.width());
-        trees.set(&gpu.queue, &CullUniform::for_shadow(set, error_m, 0..set.count).between(sun_view.sides()));
+        let chosen = CullUniform::for_shadow(set, ERROR_M, 0..set.count).between(sun_view.sides());
+        trees.set(&gpu.queue, &chosen.coarser_from(ground_m, ERROR_PER_M));
         true
     }
 

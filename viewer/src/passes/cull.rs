@@ -17,8 +17,9 @@ use crate::upload::{PICTURE_INDICES, TreeSet};
 const GROUP: u32 = 64;
 /// The most workgroups along one axis.
 const MAX_GROUPS: u32 = 65535;
-/// What stands in the place of a mode where all trees are to be drawn as their pictures.
+/// What stands in the place of a mode where all trees are to be drawn as their pictures, and where none is.
 const PICTURES: u32 = TreeLodMode::VARIANTS.len() as u32;
+const MESHES: u32 = PICTURES + 1;
 
 pub const SHADER: Shader = Shader {
     name: "cull",
@@ -34,6 +35,7 @@ pub const SHADER: Shader = Shader {
         ("DISCRETE", TreeLodMode::Discrete as u32 as f64),
         ("OFF", TreeLodMode::Off as u32 as f64),
         ("PICTURES", PICTURES as f64),
+        ("MESHES", MESHES as f64),
         ("PICTURE_INDICES", PICTURE_INDICES.len() as f64),
     ],
 };
@@ -83,11 +85,15 @@ impl CullUniform {
         Self { planes, lod_mode: PICTURES, planes_used: 1, ..Self::sizes(set) }
     }
 
-    /// For a shadow map with texels of that size: of `trees` all, each at the coarsest level whose error is no larger.
-    pub fn for_shadow(set: &TreeSet, texel_m: f32, trees: Range<u32>) -> Self {
+    /// For a shadow map: of `trees` all, each at the coarsest level whose error is no larger than that.
+    pub fn for_shadow(set: &TreeSet, error_m: f32, trees: Range<u32>) -> Self {
         let (first, instances) = (trees.start, trees.end.min(set.count));
-        let lod_mode = TreeLodMode::Discrete as u32;
-        Self { lod_mode, fixed_error_m: texel_m, first, instances, ..Self::sizes(set) }
+        Self { lod_mode: MESHES, fixed_error_m: error_m, first, instances, ..Self::sizes(set) }
+    }
+
+    /// The same with so much more error for each metre from a place, whose surroundings are shaded.
+    pub fn coarser_from(self, place_m: Vec3, error_per_m: f32) -> Self {
+        Self { eye: place_m.into(), error_per_m, ..self }
     }
 
     /// The same, but only trees that reach into the square of that many metres to all four sides of a place.

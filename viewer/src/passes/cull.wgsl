@@ -11,8 +11,9 @@ override QUALITY: u32;
 override SIMPLE: u32;
 override DISCRETE: u32;
 override OFF: u32;
-// No mode: all trees are pictures.
+// No modes: all trees are pictures, or all are meshes at one level.
 override PICTURES: u32;
+override MESHES: u32;
 // Indices of a picture.
 override PICTURE_INDICES: u32;
 // Sines of the angles from which on pictures are too steep to be of use, and are not used.
@@ -124,7 +125,7 @@ fn lod_number(mode: u32, template_index: u32, scale: f32, distance: f32) -> f32 
             break;
         }
     }
-    if (mode == DISCRETE) {
+    if (mode == DISCRETE || mode == MESHES) {
         return floor(lambda);
     }
     return lambda;
@@ -135,7 +136,7 @@ fn lod_number(mode: u32, template_index: u32, scale: f32, distance: f32) -> f32 
 fn pictured(mode: u32, template_index: u32, scale: f32, distance: f32, steepness: f32) -> f32 {
     let times = cull.error_per_m * distance / (scale * templates[template_index].picture_error);
     let share = clamp(log2(max(times, 1.0)), 0.0, 1.0) * (1.0 - smoothstep(STEEP, TOO_STEEP, steepness));
-    if (mode == OFF) {
+    if (mode == OFF || mode == MESHES) {
         return 0.0;
     }
     if (mode == PICTURES) {

@@ -40,8 +40,8 @@ fn fragment(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
     if (length(at) < 0.48) {
         var away = 0.0;
         var count = 0.0;
-        for (var k = 0u; k < 4u; k++) {
-            let corner = vec2f(f32(k & 1u), f32(k >> 1u)) - 0.5;
+        for (var k = 0u; k < 5u; k++) {
+            let corner = select(vec2f(f32(k & 1u), f32(k >> 1u)) - 0.5, vec2f(0.0), k == 4u);
             let before = (seen.z - textureGather(seen_by_sun, nearest, uv + corner * widest)) / depth_per_m;
             let hides = select(vec4f(0.0), vec4f(1.0), before > vec4f(0.0));
             away += dot(before, hides);
@@ -50,11 +50,11 @@ fn fragment(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
         let edge = view.sun_angular_radius * away / max(count, 1.0) * uv_per_m;
         let reach = clamp(edge, 0.6 * texel, widest + 0.6 * texel);
         let turn = 6.2831853 * dither(pixel.xy);
-        lit = 0.0;
-        for (var k = 0u; k < TAPS; k++) {
+        // Where nothing is before it, nothing more is looked up.
+        for (var k = 0u; k < TAPS && count > 0.0; k++) {
             let angle = turn + f32(k) * GOLDEN_ANGLE;
             let way = sqrt((f32(k) + 0.5) / f32(TAPS)) * vec2f(cos(angle), sin(angle));
-            lit += is_lit(uv + way * reach, seen.z) / f32(TAPS);
+            lit -= (1.0 - is_lit(uv + way * reach, seen.z)) / f32(TAPS);
         }
     }
     return vec4f(lit);

@@ -319,26 +319,27 @@ pub(super) fn spire() -> PlantShape {
         .map(|(top, wide)| (Vec3::from_array(top), wide));
     let foot = |top: Vec3| top.with_y(0.0) * 0.3;
     for (top, wide) in spikes {
-        let low = foot(top).lerp(top, 0.45);
+        let low = foot(top).lerp(top, 0.42);
         for side in [Vec3::X, Vec3::Z] {
-            let half = 0.024 * wide * side;
-            d.leaf([low - half, low + half, top], [0.95, 0.95, 0.6]);
+            let half = 0.016 * wide * side;
+            d.leaf([low - half, low + half, top], [0.6, 0.6, 0.35]);
         }
         d.stem(foot(top), top, 0.005);
     }
     d.coarse();
     for (top, wide) in spikes {
-        for k in 0..24 {
-            let part = k as f32 / 24.0;
-            let from = foot(top).lerp(top, 0.40 + 0.58 * part);
-            let (turn, reach) = (2.4 * k as f32 + 0.8 * d.unit(), 0.042 * wide * (1.1 - 0.8 * part));
-            let out = heading(turn) * reach;
-            let side = Vec3::new(-out.z, 0.0, out.x) * 0.62;
-            let tip = from + out - Vec3::Y * (0.55 * reach * (1.0 - part));
-            let tint = 0.7 + 0.3 * d.unit();
-            // Buds at the top are green.
-            let open = (1.3 - part).min(1.0);
-            d.leaf([from + 0.014 * Vec3::Y, tip + side, tip - side], [0.5 * open, tint * open, tint * open]);
+        let flowers = (44.0 * wide) as usize;
+        for k in 0..flowers {
+            let part = (k as f32 + 0.5) / flowers as f32;
+            let from = foot(top).lerp(top, 0.38 + 0.61 * part);
+            let out = heading(2.4 * k as f32 + 0.5 * d.unit());
+            let reach = wide * (0.034 - 0.027 * part) * (0.85 + 0.3 * d.unit());
+            let side = Vec3::new(-out.z, 0.0, out.x) * (0.44 * reach);
+            let tip = from + (out - Vec3::Y * (0.7 * (1.0 - part) - 0.15)) * reach;
+            // Buds at the top are green, and within a flower is shade.
+            let (open, tint) = ((1.25 - part).min(1.0), 0.72 + 0.28 * d.unit());
+            let tints = [0.3 * open, tint * open, tint * open];
+            d.lit([from + 0.4 * reach * Vec3::Y, tip + side, tip - side], out + 0.7 * Vec3::Y, tints);
         }
     }
     for k in 0..7 {
@@ -356,22 +357,28 @@ pub(super) fn umbel() -> PlantShape {
     for (head, reach) in heads {
         let root = head.with_y(0.0) * 0.2;
         d.stem(root, head, 0.004);
-        // Three leaves of a disc.
+        // Rays that carry the flowers, as three leaves of a disc.
         for k in 0..3 {
-            let out = |turn: f32| head + reach * heading(turn + head.x * 20.0);
+            let out = |turn: f32| head + 0.8 * reach * heading(turn + head.x * 20.0);
             let turn = k as f32 / 3.0 * TAU;
-            d.leaf([head, out(turn), out(turn + 0.6)], [0.8, 1.0, 1.0]);
+            d.leaf([head - 0.3 * reach * Vec3::Y, out(turn), out(turn + 0.9)], [0.2, 0.75, 0.75]);
         }
     }
     d.coarse();
     for (head, reach) in heads {
-        for k in 0..9 {
-            let from = if k == 0 { 0.0 } else { reach * (0.5 + 0.45 * d.unit()) };
-            let middle = head + from * heading(2.4 * k as f32) + Vec3::Y * (0.012 + 0.014 * d.unit());
-            let small = 0.3 * reach;
-            let out = |k: usize| middle + small * heading(k as f32 / 3.0 * TAU + 9.0 * from);
-            let tint = 0.86 + 0.14 * d.unit();
-            d.leaf([out(0), out(1), out(2)], [tint; 3]);
+        // In each umbellet a few flowers, the middle ones higher.
+        let umbellets = if reach > 0.08 { 13 } else { 9 };
+        for k in 0..umbellets {
+            let part = (k as f32 + 0.3) / umbellets as f32;
+            let from = head + reach * part.sqrt() * heading(2.4 * k as f32) + Vec3::Y * (0.02 * (1.0 - part));
+            let small = 0.30 * reach;
+            for _ in 0..3 {
+                let middle = from + 0.5 * small * heading(d.unit() * TAU) + Vec3::Y * (0.006 * d.unit());
+                let (turn, size) = (d.unit() * TAU, small * (0.4 + 0.2 * d.unit()));
+                let out = |k: usize| middle + size * heading(turn + k as f32 / 3.0 * TAU);
+                let tint = 0.7 + 0.3 * d.unit();
+                d.lit([out(0), out(1), out(2)], Vec3::Y + 0.4 * (middle - head) / reach, [tint; 3]);
+            }
         }
     }
     for k in 0..7 {
@@ -382,22 +389,41 @@ pub(super) fn umbel() -> PlantShape {
     d.done()
 }
 
-/// Tall grass in seed: stalks that nod under their ears; tint 1 is the ears'.
+/// Tall grass in seed: stalks that lean under their panicles; tint 1 is the ears'.
 pub(super) fn hay() -> PlantShape {
     let mut d = Drawing::new(73);
-    for k in 0..11 {
-        let (turn, high) = (2.4 * k as f32 + d.unit(), 0.55 + 0.33 * d.unit());
-        let root = heading(d.unit() * TAU) * (0.14 * d.unit());
-        let (out, lean) = (heading(turn), 0.10 + 0.16 * d.unit());
+    // From where to where, and where the panicle begins.
+    let stalks: Vec<[Vec3; 3]> = (0..11)
+        .map(|k| {
+            let (turn, high) = (2.4 * k as f32 + d.unit(), 0.55 + 0.33 * d.unit());
+            let root = heading(d.unit() * TAU) * (0.14 * d.unit());
+            let tip = root + heading(turn) * (0.10 + 0.16 * d.unit()) + Vec3::Y * high;
+            [root, tip, root.lerp(tip, 0.74)]
+        })
+        .collect();
+    for (k, &[root, tip, ear]) in stalks.iter().enumerate() {
+        let out = (tip - root).with_y(0.0).normalize_or(Vec3::X);
         let side = Vec3::new(-out.z, 0.0, out.x);
-        let top = root + out * lean + Vec3::Y * high;
-        let wide = if k < 5 { 0.006 } else { 0.004 };
-        d.leaf([root - wide * side, root + wide * side, top], [0.0, 0.0, 0.5]);
-        let (ear, tip) = (root.lerp(top, 0.78), top + out * 0.05 - Vec3::Y * 0.01);
-        let half = side * (1.2 * wide);
-        d.diamond([ear, top.lerp(ear, 0.4), tip], half, Vec3::Y + 0.6 * out, [0.6, 1.0, 0.9]);
+        let wide = if k < 5 { 0.005 } else { 0.0035 };
+        d.leaf([root - wide * side, root + wide * side, tip], [0.0, 0.0, 0.5]);
+        let normal = Vec3::Y + 0.6 * out;
+        d.diamond([ear, ear.lerp(tip, 0.4), tip], side * wide, normal, [0.6, 1.0, 0.9]);
         if k == 4 {
             d.coarse();
+        }
+    }
+    for [_, tip, ear] in stalks {
+        let loose = 0.3 + 0.7 * d.unit();
+        for k in 0..10 {
+            // Shorter branches towards the tip, and what they carry hangs.
+            let part = (k as f32 + 0.5) / 10.0;
+            let from = ear.lerp(tip, part);
+            let out = heading(2.4 * k as f32 + d.unit());
+            let at = from + out * (0.036 * loose * (1.0 - 0.75 * part)) + Vec3::Y * 0.006;
+            let end = at + out * 0.006 - Vec3::Y * (0.013 + 0.010 * d.unit()) * (1.2 * loose - 0.45);
+            let across = Vec3::new(-out.z, 0.0, out.x) * 0.004;
+            let tint = 0.65 + 0.35 * d.unit();
+            d.lit([from, at + across, end - across], Vec3::Y + 0.6 * out, [0.6, tint, tint]);
         }
     }
     d.done()

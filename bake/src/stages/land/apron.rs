@@ -60,6 +60,35 @@ pub(super) fn follow(apron: &mut Grid, raw: &Grid, worn: &Grid) {
     }
 }
 
+/// How far below the water's surface what was an island of a few samples lies.
+const SHOAL_M: f32 = 1.5;
+/// Islands of so many samples are sunk.
+const SPECK: usize = 3;
+
+/// Sinks islands of a few samples: these are so far apart that such islands are pyramids.
+pub(super) fn sink_specks(apron: &mut Grid, water_m: f32) {
+    let side = SIDE as usize;
+    let mut is_dry: Vec<bool> = apron.values.iter().map(|&height_m| height_m > water_m).collect();
+    let near = |at: usize| at.saturating_sub(1)..(at + 2).min(side);
+    for first in 0..is_dry.len() {
+        if !std::mem::take(&mut is_dry[first]) {
+            continue;
+        }
+        let (mut island, mut next) = (vec![first], 0);
+        while let Some(&at) = island.get(next) {
+            for (z, x) in near(at / side).flat_map(|z| near(at % side).map(move |x| (z, x))) {
+                if std::mem::take(&mut is_dry[z * side + x]) {
+                    island.push(z * side + x);
+                }
+            }
+            next += 1;
+        }
+        if island.len() <= SPECK {
+            island.into_iter().for_each(|at| apron.values[at] = water_m - SHOAL_M);
+        }
+    }
+}
+
 /// Gives the apron's samples inside and on the border of the field the field's own heights.
 pub(super) fn join(apron: &mut Grid, field: &Grid) {
     let middle = (SIDE - 1) / 2;

@@ -97,6 +97,9 @@ fn shaped(params: &LandParams, size: u32, grids: &Grids) -> Landform {
     }
     let paddies = Paddies::new(params, &worn, level.water_m).map(|paddies| paddies.cut(&mut field));
     level.settle(&mut field.values);
+    if let Some(water_m) = level.water_m {
+        apron::sink_specks(&mut apron, water_m);
+    }
     level.settle(&mut apron.values);
     apron::join(&mut apron, &field);
 

@@ -16,7 +16,7 @@ pub struct LandStage {
 
 impl Stage for LandStage {
     const NAME: &'static str = "landform";
-    const VERSION: u32 = 3;
+    const VERSION: u32 = 4;
     type Output = Landform;
 
     fn run(&self, _: &Context<'_>) -> Result<Landform, StageError> {

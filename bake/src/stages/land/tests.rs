@@ -278,3 +278,24 @@ fn paddies_are_level_and_follow_the_slope() {
     let most = cut.iter().map(moved).fold(0.0, f32::max);
     assert!(most < 6.0, "a field lies {most} m from the slope that it is cut into");
 }
+
+#[test]
+fn no_island_beyond_the_field_is_a_pyramid() {
+    let mut small = 0;
+    for terrain_seed in 0..12 {
+        let land = landform(&LandParams { terrain_seed, cliff_m: 20.0, ..downs() }, 129);
+        let water_m = land.water_level_m.expect("a sea");
+        let dry_around = |x: u32, z: u32| {
+            let around = (z - 1..z + 2).flat_map(|j| (x - 1..x + 2).map(move |i| (i, j)));
+            around.filter(|&(i, j)| land.apron.at(i, j) > water_m).count()
+        };
+        // Whose neighbours are beyond the field, too.
+        let outer = (1..128).flat_map(|z| (1..128).map(move |x| (x, z)));
+        for (x, z) in outer.filter(|&(x, z)| [x, z].iter().any(|at| !(55..=73).contains(at))) {
+            let dry = dry_around(x, z);
+            assert!(land.apron.at(x, z) <= water_m || dry > 1, "seed {terrain_seed}, sample {x}, {z}");
+            small += usize::from(dry == 4);
+        }
+    }
+    assert!(small > 0, "no land tried it");
+}

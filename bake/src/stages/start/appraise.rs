@@ -21,7 +21,7 @@ pub enum Want {
     Depth,
     /// Of high land, its slopes at a distance: it is by them that a person tells lands from each other.
     Relief,
-    /// Trees between 10 m and 60 m; none in the face, and not nothing but trees.
+    /// Trees between 10 m and 60 m, whole, and others beside them; none in the face, and not nothing but trees.
     Trees,
     /// Water in sight where there is much of it, but not at the feet and not everywhere.
     Water,
@@ -143,7 +143,12 @@ impl Picture<'_> {
         // Those at the edge alone are half as good.
         let good = 0.5 * (good + self.middle_share_between(10.0..60.0, |kind| kind == Kind::Tree));
         let some = 0.08 + 0.92 * ramp(0.0, 0.2, good + 0.2 * far);
-        some * none_near * not_all * not_in_the_way * not_cut
+        // One tree alone before a view is what every other picture has.
+        let columns =
+            self.part_of_columns(|seen| seen.kind == Kind::Tree && (10.0..200.0).contains(&seen.depth_m));
+        let not_alone = 0.85 + 0.15 * ramp(0.25, 0.6, columns);
+        let whole = 0.5 + 0.5 * ramp(0.3, 0.04, self.cut_crowns);
+        some * none_near * not_all * not_in_the_way * not_cut * not_alone * whole
     }
 
     /// The more of the land is under water, the more is missed where none is seen.

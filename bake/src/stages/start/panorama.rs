@@ -15,7 +15,7 @@ pub(super) const COLUMNS: usize = 96;
 pub(super) const ROWS: usize = 28;
 /// Slope of the lower edge of the lowest row; the picture is as high as deep.
 const REACH: f32 = 0.84;
-const ROW_STEP: f32 = 2.0 * REACH / ROWS as f32;
+pub(super) const ROW_STEP: f32 = 2.0 * REACH / ROWS as f32;
 
 /// The ray's first step and its growth: about 80 steps to the end.
 const FIRST_M: f32 = 1.5;

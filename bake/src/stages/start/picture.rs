@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use super::panorama::{COLUMNS, Column, Kind, Panorama, ROWS, Seen, slope_of};
+use super::panorama::{COLUMNS, Column, Kind, Panorama, ROW_STEP, ROWS, Seen, slope_of};
 use crate::math::ramp;
 use crate::model::Lookout;
 
@@ -15,6 +15,9 @@ pub(super) const HALF_HEIGHT: f32 = 0.577;
 const SKYLINE_AT: f32 = 0.45;
 /// The look goes no steeper up or down.
 const MAX_PITCH: f32 = 0.17;
+
+/// Crowns that are cut off farther away than this are small.
+const NEAR_M: f32 = 60.0;
 
 /// Depths in metres between which rays are counted.
 const BANDS_M: [f32; 7] = [6.0, 10.0, 30.0, 60.0, 90.0, 270.0, 1e4];
@@ -29,6 +32,8 @@ pub(super) struct Picture<'a> {
     pub pitch: f32,
     /// Part of the picture's width that stems near by take whose crowns its upper edge cuts off.
     pub cut_stems: f32,
+    /// Part of the upper edge that crowns near by reach beyond.
+    pub cut_crowns: f32,
     /// Rays of each kind in each band of depths.
     counts: Counts,
     /// The same of the picture's middle half.
@@ -46,6 +51,7 @@ impl<'a> Picture<'a> {
             skyline: 0.0,
             pitch: 0.0,
             cut_stems: 0.0,
+            cut_crowns: 0.0,
             counts: Counts::default(),
             in_middle: Counts::default(),
         };
@@ -53,6 +59,9 @@ impl<'a> Picture<'a> {
         let pitch = picture.skyline - 2.0 * HALF_HEIGHT * (0.5 - SKYLINE_AT);
         picture.pitch = pitch.clamp(-MAX_PITCH, MAX_PITCH);
         picture.cut_stems = cut_stems(panorama, middle, picture.pitch);
+        let edge = picture.pitch + HALF_HEIGHT;
+        let is_cut = |_: f32, seen: &Seen| seen.kind == Kind::Tree && seen.depth_m < NEAR_M;
+        picture.cut_crowns = picture.part([edge - ROW_STEP, edge], is_cut);
         let [mut counts, mut in_middle] = [Counts::default(); 2];
         for (k, (_, seen)) in picture.rays().enumerate() {
             let is_in_middle = (k % picture.columns.len()).abs_diff(HALF_COLUMNS) <= HALF_COLUMNS / 2;
@@ -66,6 +75,11 @@ impl<'a> Picture<'a> {
     /// Of all columns.
     pub fn mean(&self, value: impl Fn(&Column<'_>) -> f32) -> f32 {
         self.columns.iter().map(value).sum::<f32>() / self.columns.len() as f32
+    }
+
+    /// Part of the columns that show something that is wanted.
+    pub fn part_of_columns(&self, is_wanted: impl Fn(&Seen) -> bool) -> f32 {
+        self.mean(|column| f32::from(u8::from(column.seen.iter().any(&is_wanted))))
     }
 
     /// All of it: slope and what is seen.

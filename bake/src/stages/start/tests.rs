@@ -226,6 +226,16 @@ fn crowns_that_fill_the_picture_spoil_it_and_the_same_farther_away_do_not() {
 }
 
 #[test]
+fn one_tree_alone_is_worth_less_than_several_that_take_as_much_of_the_picture() {
+    let round = |crown_radius_m: f32| TreeFootprint { crown_radius_m, ..TREE };
+    let (alone, several) = (
+        trees_north(round(6.0), [(0, 25.0)]),
+        trees_north(round(2.0), [22, 23, 0, 1, 2].map(|heading| (heading, 25.0))),
+    );
+    assert!(alone < 0.9 * several, "{alone} {several}");
+}
+
+#[test]
 fn a_stem_whose_crown_is_cut_off_does_not_stand_across_the_picture() {
     let term = |trunk_radius_m: f32, heading: usize| {
         let pine = TreeFootprint { height_m: 20.0, clear_trunk: 0.6, trunk_radius_m, ..TREE };

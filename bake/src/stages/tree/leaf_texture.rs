@@ -222,26 +222,36 @@ impl Brush {
         self.leaves(&spots, leaf, (0.9, 0.2));
     }
 
-    /// A flat spray of conifer twigs, needles all along.
+    /// A flat spray of conifer twigs that branch once more, needles all along: no side twig is as long as the next, or the whole
+    /// looks like a feather.
     fn needles(&mut self, leaf: f32) {
-        let needle = (0.17 * leaf).clamp(0.030, 0.040);
-        let mut twigs = vec![(Vec2::ZERO, 0.0, 0.93)];
-        for k in 0..11 {
-            let t = 0.05 + 0.075 * k as f32;
-            for sign in [-1.0, 1.0] {
-                let at = Vec2::new(0.0, 0.93 * (t + 0.02 * self.dice.signed()));
-                let length = (0.46 - 0.30 * t) * (1.0 + 0.15 * self.dice.signed());
-                twigs.push((at, sign * (0.92 + 0.1 * self.dice.signed()), length));
+        const SIDE_TWIGS: usize = 12;
+        let needle = (0.15 * leaf).clamp(0.027, 0.036);
+        let bend = 0.22 * self.dice.signed();
+        let main = self.twig(Vec2::ZERO, -0.4 * bend, 0.93, bend, 0.007);
+        let mut twigs = Vec::new();
+        for (k, sign) in (0..SIDE_TWIGS).flat_map(|k| [(k, -1.0), (k, 1.0)]) {
+            let t = (0.05 + (k as f32 + 0.6 * self.dice.signed()) / 13.5).max(0.02);
+            let (at, angle) = point(&main, t);
+            let length = (0.47 - 0.32 * t) * (0.95 + 0.35 * self.dice.signed());
+            let turn = angle + sign * (0.98 - 0.15 * t + 0.12 * self.dice.signed());
+            let side = self.twig(at, turn, length, -0.3 * sign, 0.005);
+            let finer = (length / 0.075) as usize;
+            for k in 0..if finer < 3 { 0 } else { finer } {
+                let t = 0.18 + 0.7 * (k as f32 + 0.5 * self.dice.unit()) / finer as f32;
+                let ((at, angle), way) = (point(&side, t), alternating(k));
+                let length = length * (0.42 - 0.3 * t) * (1.0 + 0.3 * self.dice.signed());
+                let turn = angle + way * (0.75 + 0.15 * self.dice.signed());
+                twigs.push(self.twig(at, turn, length, -0.2 * way, 0.003));
             }
+            twigs.push(side);
         }
-        for &(at, angle, length) in &twigs {
-            self.canvas.stroke(at, at + towards(angle) * length, (0.007, 0.004), TWIG);
-        }
-        for &(at, angle, length) in twigs.iter().rev() {
-            let count = (length / 0.0082) as usize;
+        twigs.push(main);
+        for twig in &twigs {
+            let count = (length(twig) / 0.0095) as usize;
             for k in 0..count {
                 let t = k as f32 / count as f32;
-                let base = at + towards(angle) * (length * t);
+                let (base, angle) = point(twig, t);
                 for sign in [-1.0, 1.0] {
                     let lean = angle + sign * (0.75 - 0.3 * t + 0.22 * self.dice.signed());
                     let size = needle * (1.0 - 0.3 * t) * (0.9 + 0.2 * self.dice.signed());
