@@ -15,8 +15,8 @@ const SIDE: [u32; 2] = [768, 2048];
 const LEVELS: u32 = 8;
 /// Of a tree the level is drawn whose error is that large, and larger with its distance: the sun's disc blurs what is finer, by a
 /// hundredth of the way from a leaf to its shadow. Near trees in full took a graphics card longer than all else of a picture.
-const ERROR_M: f32 = 0.16;
-const ERROR_PER_M: f32 = 0.005;
+const ERROR_M: f32 = 0.2;
+const ERROR_PER_M: f32 = 0.01;
 /// How wide the square is. Shaders look up less of it (`near_shade_at` of `common.wgsl`): by as much as the eye may be beside its
 /// middle.
 const EXTENT_M: f32 = 104.0;
