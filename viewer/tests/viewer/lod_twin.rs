@@ -196,6 +196,12 @@ fn compare(studio: &Headless, seed: u64) -> [usize; 4] {
     let scene = made_up::scene(made_up::field(17, 2.0, 1.0, 0.1), [90; 4], [1.0; 3], forest.trees.clone());
     let buffers = genescape_viewer::upload::Uploader::new(&studio.gpu).upload(&scene).expect("uploaded");
     let set = buffers.trees.as_ref().expect("trees");
+    // What throws a shadow is never a picture, which has no depth, however far away it stands.
+    let shadow = CullUniform::for_shadow(set, 0.1, 0..set.count).coarser_from(Vec3::ZERO, 1.0);
+    for (tree, shown) in chosen(studio, &buffers, &shadow, &forest).into_iter().enumerate() {
+        let is_mesh = shown.is_some_and(|one| one.mesh == 1.0 && one.lambda.fract() == 0.0);
+        assert!(is_mesh, "seed {seed}, tree {tree}");
+    }
     let mut seen = [0; 4];
     for &mode in TreeLodMode::VARIANTS {
         let camera = eye(&mut rng, &forest.trees);
