@@ -40,6 +40,7 @@ fn fragment(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
     if (length(at) < 0.48) {
         var away = 0.0;
         var count = 0.0;
+        // Four around, and what lies right before it.
         for (var k = 0u; k < 5u; k++) {
             let corner = select(vec2f(f32(k & 1u), f32(k >> 1u)) - 0.5, vec2f(0.0), k == 4u);
             let before = (seen.z - textureGather(seen_by_sun, nearest, uv + corner * widest)) / depth_per_m;

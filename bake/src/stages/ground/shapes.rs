@@ -73,7 +73,7 @@ impl Drawing {
     /// side: of a tuft one sees that of the nearest blades, and within it is dark.
     pub(super) fn blade(&mut self, root: Vec3, turn: f32, [height, lean, width]: [f32; 3], tints: [f32; 2]) {
         let out = heading(turn);
-        let side = Vec3::new(-out.z, 0.0, out.x) * (0.5 * width);
+        let side = aside(out) * (0.5 * width);
         let middle = root + out * (0.3 * lean) + Vec3::Y * (0.62 * height);
         let tip = root + out * lean + Vec3::Y * height;
         let half = lerp(tints[0], tints[1], 0.6);
@@ -127,6 +127,11 @@ impl Drawing {
 /// Level, from +x towards +z.
 pub(super) fn heading(turn: f32) -> Vec3 {
     Vec3::new(libm::cosf(turn), 0.0, libm::sinf(turn))
+}
+
+/// Level, across a level direction; as long as it.
+pub(super) fn aside(out: Vec3) -> Vec3 {
+    Vec3::new(-out.z, 0.0, out.x)
 }
 
 /// Across a triangle, to one of its sides; unit length.
@@ -302,12 +307,7 @@ pub(super) fn rice(is_in_ear: bool) -> PlantShape {
         let from = out * 0.06 + Vec3::Y * high;
         let tip = out * (0.20 + 0.06 * d.unit()) + Vec3::Y * (high - 0.09);
         let middle = from.lerp(tip, 0.45) + 0.008 * Vec3::Y;
-        d.diamond(
-            [from, middle, tip],
-            Vec3::new(-out.z, 0.0, out.x) * 0.010,
-            Vec3::Y + 0.6 * out,
-            [0.7, 1.0, 1.0],
-        );
+        d.diamond([from, middle, tip], aside(out) * 0.010, Vec3::Y + 0.6 * out, [0.7, 1.0, 1.0]);
     }
     d.done()
 }
@@ -334,7 +334,7 @@ pub(super) fn spire() -> PlantShape {
             let from = foot(top).lerp(top, 0.38 + 0.61 * part);
             let out = heading(2.4 * k as f32 + 0.5 * d.unit());
             let reach = wide * (0.034 - 0.027 * part) * (0.85 + 0.3 * d.unit());
-            let side = Vec3::new(-out.z, 0.0, out.x) * (0.44 * reach);
+            let side = aside(out) * (0.44 * reach);
             let tip = from + (out - Vec3::Y * (0.7 * (1.0 - part) - 0.15)) * reach;
             // Buds at the top are green, and within a flower is shade.
             let (open, tint) = ((1.25 - part).min(1.0), 0.72 + 0.28 * d.unit());
@@ -403,7 +403,7 @@ pub(super) fn hay() -> PlantShape {
         .collect();
     for (k, &[root, tip, ear]) in stalks.iter().enumerate() {
         let out = (tip - root).with_y(0.0).normalize_or(Vec3::X);
-        let side = Vec3::new(-out.z, 0.0, out.x);
+        let side = aside(out);
         let wide = if k < 5 { 0.005 } else { 0.0035 };
         d.leaf([root - wide * side, root + wide * side, tip], [0.0, 0.0, 0.5]);
         let normal = Vec3::Y + 0.6 * out;
@@ -421,7 +421,7 @@ pub(super) fn hay() -> PlantShape {
             let out = heading(2.4 * k as f32 + d.unit());
             let at = from + out * (0.036 * loose * (1.0 - 0.75 * part)) + Vec3::Y * 0.006;
             let end = at + out * 0.006 - Vec3::Y * (0.013 + 0.010 * d.unit()) * (1.2 * loose - 0.45);
-            let across = Vec3::new(-out.z, 0.0, out.x) * 0.004;
+            let across = aside(out) * 0.004;
             let tint = 0.65 + 0.35 * d.unit();
             d.lit([from, at + across, end - across], Vec3::Y + 0.6 * out, [0.6, tint, tint]);
         }
@@ -442,7 +442,7 @@ pub(super) fn herb() -> PlantShape {
         };
         let [root, low, high, tip] =
             [at(0.1, 0.1), at(0.45, 0.62), at(0.78, 0.88), at(1.05, 0.86 - 0.3 * age)];
-        let across = Vec3::new(-out.z, 0.0, out.x);
+        let across = aside(out);
         let (pale, rib) = (0.45 + 0.55 * d.unit(), 0.35);
         for way in [-1.0, 1.0] {
             let edge = |middle: Vec3, wide: f32| middle + (way * across + 0.25 * Vec3::Y) * (wide * long);

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::shapes::{Drawing, heading};
+use super::shapes::{Drawing, aside, heading};
 use crate::math::lerp;
 use crate::model::PlantShape;
 
@@ -118,7 +118,7 @@ fn spire(d: &mut Drawing) {
         let long = lerp(0.62, 0.1, t) * small * (0.85 + 0.3 * d.unit());
         let (out, root) = (heading(turn), Vec3::Y * lerp(0.16, 1.72, t));
         let tip = root + out * long + Vec3::Y * (0.12 - 0.22 * long);
-        let side = Vec3::new(-out.z, 0.0, out.x) * (0.32 * long);
+        let side = aside(out) * (0.32 * long);
         let middle = root.lerp(tip, 0.45) + Vec3::Y * 0.05;
         let tint = 0.55 + 0.4 * d.unit();
         d.diamond([root, middle, tip], side, out + 0.7 * Vec3::Y, [0.1, 0.8 * tint, tint]);

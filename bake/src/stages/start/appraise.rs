@@ -4,6 +4,8 @@
 //! nearly to 0. What
 //! each wants is said at [`Want`].
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 
 use super::panorama::{Kind, Seen, Surroundings};
@@ -143,11 +145,13 @@ impl Picture<'_> {
         // Those at the edge alone are half as good.
         let good = 0.5 * (good + self.middle_share_between(10.0..60.0, |kind| kind == Kind::Tree));
         let some = 0.08 + 0.92 * ramp(0.0, 0.2, good + 0.2 * far);
+        let is_tree =
+            |seen: &Seen, depths_m: Range<f32>| seen.kind == Kind::Tree && depths_m.contains(&seen.depth_m);
         // One tree alone before a view is what every other picture has.
-        let columns =
-            self.part_of_columns(|seen| seen.kind == Kind::Tree && (10.0..200.0).contains(&seen.depth_m));
+        let columns = self.part_of_columns(|seen| is_tree(seen, 10.0..200.0));
         let not_alone = 0.85 + 0.15 * ramp(0.25, 0.6, columns);
-        let whole = 0.5 + 0.5 * ramp(0.3, 0.04, self.cut_crowns);
+        // Crowns that are cut off farther away are small.
+        let whole = 0.5 + 0.5 * ramp(0.3, 0.04, self.part_of_upper_edge(|seen| is_tree(seen, 0.0..60.0)));
         some * none_near * not_all * not_in_the_way * not_cut * not_alone * whole
     }
 

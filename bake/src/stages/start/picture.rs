@@ -16,9 +16,6 @@ const SKYLINE_AT: f32 = 0.45;
 /// The look goes no steeper up or down.
 const MAX_PITCH: f32 = 0.17;
 
-/// Crowns that are cut off farther away than this are small.
-const NEAR_M: f32 = 60.0;
-
 /// Depths in metres between which rays are counted.
 const BANDS_M: [f32; 7] = [6.0, 10.0, 30.0, 60.0, 90.0, 270.0, 1e4];
 
@@ -32,8 +29,6 @@ pub(super) struct Picture<'a> {
     pub pitch: f32,
     /// Part of the picture's width that stems near by take whose crowns its upper edge cuts off.
     pub cut_stems: f32,
-    /// Part of the upper edge that crowns near by reach beyond.
-    pub cut_crowns: f32,
     /// Rays of each kind in each band of depths.
     counts: Counts,
     /// The same of the picture's middle half.
@@ -51,7 +46,6 @@ impl<'a> Picture<'a> {
             skyline: 0.0,
             pitch: 0.0,
             cut_stems: 0.0,
-            cut_crowns: 0.0,
             counts: Counts::default(),
             in_middle: Counts::default(),
         };
@@ -59,9 +53,6 @@ impl<'a> Picture<'a> {
         let pitch = picture.skyline - 2.0 * HALF_HEIGHT * (0.5 - SKYLINE_AT);
         picture.pitch = pitch.clamp(-MAX_PITCH, MAX_PITCH);
         picture.cut_stems = cut_stems(panorama, middle, picture.pitch);
-        let edge = picture.pitch + HALF_HEIGHT;
-        let is_cut = |_: f32, seen: &Seen| seen.kind == Kind::Tree && seen.depth_m < NEAR_M;
-        picture.cut_crowns = picture.part([edge - ROW_STEP, edge], is_cut);
         let [mut counts, mut in_middle] = [Counts::default(); 2];
         for (k, (_, seen)) in picture.rays().enumerate() {
             let is_in_middle = (k % picture.columns.len()).abs_diff(HALF_COLUMNS) <= HALF_COLUMNS / 2;
@@ -80,6 +71,12 @@ impl<'a> Picture<'a> {
     /// Part of the columns that show something that is wanted.
     pub fn part_of_columns(&self, is_wanted: impl Fn(&Seen) -> bool) -> f32 {
         self.mean(|column| f32::from(u8::from(column.seen.iter().any(&is_wanted))))
+    }
+
+    /// Part of the upper edge that shows something that is wanted.
+    pub fn part_of_upper_edge(&self, is_wanted: impl Fn(&Seen) -> bool) -> f32 {
+        let edge = self.pitch + HALF_HEIGHT;
+        self.part([edge - ROW_STEP, edge], |_, seen| is_wanted(seen))
     }
 
     /// All of it: slope and what is seen.

@@ -236,6 +236,17 @@ fn one_tree_alone_is_worth_less_than_several_that_take_as_much_of_the_picture() 
 }
 
 #[test]
+fn trees_are_worth_more_whole_than_with_their_tops_cut_off() {
+    // Crowns that begin as high above the ground, and as wide.
+    let row = |height_m: f32, clear_trunk: f32| {
+        let footprint = TreeFootprint { height_m, clear_trunk, crown_radius_m: 1.5, ..TREE };
+        trees_north(footprint, [22, 0, 2].map(|heading| (heading, 20.0)))
+    };
+    let (whole, cut) = (row(10.0, 0.12), row(24.0, 0.05));
+    assert!(cut < 0.9 * whole, "{cut} {whole}");
+}
+
+#[test]
 fn a_stem_whose_crown_is_cut_off_does_not_stand_across_the_picture() {
     let term = |trunk_radius_m: f32, heading: usize| {
         let pine = TreeFootprint { height_m: 20.0, clear_trunk: 0.6, trunk_radius_m, ..TREE };

@@ -236,8 +236,12 @@ impl Brush {
             let length = (0.47 - 0.32 * t) * (0.95 + 0.35 * self.dice.signed());
             let turn = angle + sign * (0.98 - 0.15 * t + 0.12 * self.dice.signed());
             let side = self.twig(at, turn, length, -0.3 * sign, 0.005);
-            let finer = (length / 0.075) as usize;
-            for k in 0..if finer < 3 { 0 } else { finer } {
+            // Short ones bear none.
+            let finer = match (length / 0.075) as usize {
+                ..3 => 0,
+                many => many,
+            };
+            for k in 0..finer {
                 let t = 0.18 + 0.7 * (k as f32 + 0.5 * self.dice.unit()) / finer as f32;
                 let ((at, angle), way) = (point(&side, t), alternating(k));
                 let length = length * (0.42 - 0.3 * t) * (1.0 + 0.3 * self.dice.signed());
