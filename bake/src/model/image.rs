@@ -43,35 +43,36 @@ pub struct ImageF16 {
 }
 
 /// Texels a side of an [`AlphaMask`].
-const MASK_SIDE: usize = 32;
+const MASK_SIDE: usize = 64;
 
-/// Which part of a texture is opaque, in 32 × 32 texels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// Which part of a texture is opaque, in 64 × 64 texels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AlphaMask {
     /// A word a row from the top, a bit a texel from the left.
-    rows: [u32; MASK_SIDE],
+    rows: [u64; MASK_SIDE],
     /// The same of texels in which anything is.
-    reach: [u32; MASK_SIDE],
+    reach: [u64; MASK_SIDE],
 }
 
 impl Default for AlphaMask {
     /// Nothing is cut away.
     fn default() -> Self {
-        Self { rows: [u32::MAX; MASK_SIDE], reach: [u32::MAX; MASK_SIDE] }
+        Self { rows: [u64::MAX; MASK_SIDE], reach: [u64::MAX; MASK_SIDE] }
     }
 }
 
 impl AlphaMask {
-    /// The texels of a picture of 32 × 32 RGBA pixels whose alpha reaches `cutoff`; all of any other picture.
+    /// The texels of a square picture of 64, 32, 16 … RGBA pixels a side whose alpha reaches `cutoff`; all of any other picture.
     pub fn of(image: &Image8, cutoff: f32) -> Self {
-        if (image.width as usize, image.height as usize, image.channels) != (MASK_SIDE, MASK_SIDE, 4) {
+        let side = image.width as usize;
+        if side == 0 || MASK_SIDE % side != 0 || image.height != image.width || image.channels != 4 {
             return Self::default();
         }
-        let opaque = |pixel: &[u8]| f32::from(pixel[3]) >= 255.0 * cutoff;
-        let mut rows = [0; MASK_SIDE];
-        for (i, _) in image.data.chunks_exact(4).enumerate().filter(|(_, pixel)| opaque(pixel)) {
-            rows[i / MASK_SIDE] |= 1 << (i % MASK_SIDE);
-        }
+        let texels = MASK_SIDE / side;
+        let is_opaque = |x: usize, y: usize| f32::from(image.data[4 * (y * side + x) + 3]) >= 255.0 * cutoff;
+        let rows = std::array::from_fn(|y| {
+            (0..MASK_SIDE).fold(0, |row, x| row | u64::from(is_opaque(x / texels, y / texels)) << x)
+        });
         Self { rows, reach: rows }
     }
 
@@ -95,7 +96,7 @@ impl AlphaMask {
             |t: Vec4| (t * MASK_SIDE as f32).clamp(Vec4::ZERO, last).to_array().map(|t| t as i32 as usize);
         let [x, y] = uv.map(texels);
         let bit = |k: usize| (self.rows[y[k] % MASK_SIDE] >> x[k] & 1) << k;
-        u64::from((bit(0) | bit(1) | bit(2) | bit(3)) & (inside(uv[0]) & inside(uv[1])).bitmask())
+        (bit(0) | bit(1) | bit(2) | bit(3)) & u64::from((inside(uv[0]) & inside(uv[1])).bitmask())
     }
 
     /// Whether it is of lines thinner than its texels.
@@ -108,11 +109,19 @@ impl AlphaMask {
         *self == Self::default()
     }
 
+    /// Texture coordinates of the middles of texels in which anything is, of every second row and column.
+    pub fn shown(&self) -> impl Iterator<Item = [f32; 2]> {
+        let every_second = || (0..MASK_SIDE).step_by(2);
+        let texels = every_second().flat_map(move |y| every_second().map(move |x| [x, y]));
+        let shown = texels.filter(|&[x, y]| self.reach[y] >> x & 1 == 1);
+        shown.map(|texel| texel.map(|t| (t as f32 + 0.5) / MASK_SIDE as f32))
+    }
+
     /// Texture coordinates of the corners of the first and the last texel of each row in which anything is: all of the convex
     /// hull of what is shown is among them.
     pub fn outline(&self) -> impl Iterator<Item = [f32; 2]> {
-        let of_row = |(y, row): (usize, &u32)| {
-            let ends = [row.trailing_zeros(), 32 - row.leading_zeros()];
+        let of_row = |(y, row): (usize, &u64)| {
+            let ends = [row.trailing_zeros(), 64 - row.leading_zeros()];
             ends.map(|x| [y, y + 1].map(|y| [x as f32, y as f32].map(|t| t / MASK_SIDE as f32)))
         };
         let rows = self.reach.iter().enumerate().filter(|(_, row)| **row != 0);

@@ -36,8 +36,8 @@ pub struct TreeTextures<P> {
     pub is_thin: bool,
     /// Mean colour of the bark, linear RGB.
     pub bark_linear: [f32; 3],
-    /// The leaf card's mip level of 32 × 32 pixels, from which templates are simplified and their impostors made: these
-    /// need a card's shape and colours, but nothing finer.
+    /// The leaf card's mip level of 32 × 32 pixels, 64 × 64 of fronds, from which templates are simplified and their impostors made:
+    /// these need a card's shape and colours, but nothing finer.
     pub leaf_small: Image8,
     /// Blossom card, likewise.
     pub blossom_small: Image8,

@@ -72,7 +72,7 @@ impl Aggregate {
         let steps = if state.attributes.uvs { flattening::plan(state, span, mask) } else { Vec::new() };
         let mut aggregate = Self {
             part,
-            step_errors_m: flattening::errors_m(state, span, &steps),
+            step_errors_m: flattening::errors_m(state, span, &steps, mask),
             steps,
             turns: BinaryHeap::with_capacity(count),
             order,

@@ -68,8 +68,11 @@ impl Calibration {
     ) -> Self {
         let thickens = options.thickens;
         let elements: usize = aggregates.iter().map(Aggregate::living).sum();
-        let are_many = elements >= MANY && !options.masks.iter().any(AlphaMask::is_of_lines);
-        let detail = if are_many { Detail::Many } else { Detail::Few };
+        let detail = match elements {
+            _ if options.masks.iter().any(AlphaMask::is_of_lines) => Detail::Thin,
+            MANY.. => Detail::Many,
+            _ => Detail::Few,
+        };
         let diagonal_m = (high - low).max(Vec3::ZERO).length();
         let mut calibration = Self {
             camera: Camera::of([low, high], detail),

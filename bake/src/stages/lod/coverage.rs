@@ -11,11 +11,15 @@ use crate::silhouette::Silhouette;
 
 /// Unit vectors to the right in each view, the first two across each other, and how far each looks from below or above: the tangent
 /// of its elevation.
-const VIEWS: [View; 4] = [
+const VIEWS: [View; 8] = [
     (Vec3::new(FRAC_1_SQRT_2, 0.0, FRAC_1_SQRT_2), 0.2),
     (Vec3::new(-FRAC_1_SQRT_2, 0.0, FRAC_1_SQRT_2), -0.2),
     (Vec3::X, 0.2),
     (Vec3::Z, -0.2),
+    (Vec3::new(FRAC_1_SQRT_2, 0.0, FRAC_1_SQRT_2), -0.2),
+    (Vec3::new(-FRAC_1_SQRT_2, 0.0, FRAC_1_SQRT_2), 0.2),
+    (Vec3::X, -0.2),
+    (Vec3::Z, 0.2),
 ];
 
 type View = (Vec3, f32);
@@ -25,7 +29,9 @@ type View = (Vec3, f32);
 pub enum Detail {
     /// Of many elements, for which two views will do.
     Many,
-    /// Of few, which hide each other from one side and not from another, or of thin ones.
+    /// Of thin ones.
+    Thin,
+    /// Of few, which hide each other from one side and not from another, from above and not from below.
     Few,
 }
 
@@ -34,6 +40,7 @@ impl Detail {
     fn views(self) -> (&'static [View], usize) {
         match self {
             Self::Many => (&VIEWS[..2], 128),
+            Self::Thin => (&VIEWS[..4], 320),
             Self::Few => (&VIEWS, 320),
         }
     }

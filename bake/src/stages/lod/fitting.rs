@@ -55,22 +55,23 @@ fn direction(index: usize) -> Vec2 {
     Vec2::new(cos, sin)
 }
 
-/// How far, in metres, a card's vertices lie from the plane in which its picture is laid on evenly; `None` if its texture
+/// How far, in metres, a card's vertices lie from the plane in which its picture is laid on evenly, as the root of their mean square; `None` if its texture
 /// coordinates lie in a line.
 pub fn error_m(vertices: &[Vertex]) -> Option<f32> {
     let plane = Plane::of(vertices)?;
-    let off = |v: &Vertex| plane.position(Vec2::from_array(v.uv)).distance(Vec3::from_array(v.position));
-    Some(vertices.iter().map(off).fold(0.0, f32::max))
+    let off =
+        |v: &Vertex| plane.position(Vec2::from_array(v.uv)).distance_squared(Vec3::from_array(v.position));
+    Some((vertices.iter().map(off).sum::<f32>() / vertices.len() as f32).sqrt())
 }
 
-/// Makes a living card of four vertices and two triangles a triangle with these texture coordinates. The element's first
-/// vertex stays. Nothing happens to a card whose texture coordinates lie in a line.
+/// Makes a living card of four vertices and two triangles a triangle with these texture coordinates, in the plane that is nearest to
+/// all vertices that the element had. Its first vertex stays. Nothing happens to a card whose texture coordinates lie in a line.
 pub fn fit(state: &mut State, span: &PartSpan, element: u32, triangle: [Vec2; 3]) {
     let [ids, triangles] = span.element(element);
+    let plane = Plane::of(&state.vertices[ids.clone()]);
     let ids: Vec<u32> = ids.filter(|&id| state.vertex_lives[id]).map(|id| id as u32).collect();
     let triangles: Vec<usize> = triangles.filter(|&t| state.triangle_lives[t]).collect();
-    let vertices: Vec<Vertex> = ids.iter().map(|&id| state.vertices[id as usize]).collect();
-    let (Some(plane), &[a, b, c, d], &[kept, gone]) = (Plane::of(&vertices), &ids[..], &triangles[..]) else {
+    let (Some(plane), &[a, b, c, d], &[kept, gone]) = (plane, &ids[..], &triangles[..]) else {
         return;
     };
     let uv = |id: u32| Vec2::from_array(state.vertices[id as usize].uv);

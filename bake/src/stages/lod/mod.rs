@@ -7,7 +7,7 @@
 //! Planck, Ryu 2007). One cost in metres orders both.
 //!
 //! Read `repair`, `state` and `log` (the mesh being simplified), `topology`, `quadric`, `edge`, `merge` and
-//! `collapse` (one edge), `flattening`, `fitting` and `aggregate` (leaf cards), `coverage` and `calibration` (as many pixels at
+//! `collapse` (one edge), `element`, `flattening`, `fitting` and `aggregate` (leaf cards), `coverage` and `calibration` (as many pixels at
 //! every level), `sequence` (the order of all steps), `levels`, `progressive` (the file format) and `strip`.
 
 mod aggregate;
@@ -15,6 +15,7 @@ mod calibration;
 mod collapse;
 mod coverage;
 mod edge;
+mod element;
 mod fitting;
 mod flattening;
 mod levels;

@@ -12,6 +12,10 @@ use super::skeleton::perpendicular;
 use crate::math::unit_to_byte;
 use crate::model::{Material, Mesh, Part, PartKind};
 
+/// Where the columns of a frond, from left to right, are in each row of vertices: the rib is first, for the first vertex of an
+/// element stays as long as the element, and of a frond's corners nothing is seen.
+const FROND_COLUMNS: [u32; 3] = [1, 0, 2];
+
 /// Appends the cards of leaves or of blossom to `mesh` as a part, if there are any.
 pub(super) fn build(habit: Habit, cards: &[Card], blossom: bool, shade: &Shade, mesh: &mut Mesh) {
     let (rows, columns) = habit.grid();
@@ -23,10 +27,14 @@ pub(super) fn build(habit: Habit, cards: &[Card], blossom: bool, shade: &Shade, 
         } else {
             flat(card, rows, shade, mesh);
         }
+        let vertex = |row: u32, column: u32| {
+            let place = if habit == Habit::Frond { FROND_COLUMNS[column as usize] } else { column };
+            start + row * columns + place
+        };
         for row in 0..rows - 1 {
             for column in 0..columns - 1 {
-                let a = start + row * columns + column;
-                let (b, c, d) = (a + 1, a + columns, a + columns + 1);
+                let [a, b] = [column, column + 1].map(|column| vertex(row, column));
+                let [c, d] = [column, column + 1].map(|column| vertex(row + 1, column));
                 triangles.push([a, b, d]);
                 triangles.push([a, d, c]);
             }
@@ -87,7 +95,7 @@ fn arch(card: &Card, rows: u32, shade: &Shade, mesh: &mut Mesh) {
         let t = row as f32 / steps;
         let up = across.cross(axis).normalize_or(Vec3::Y);
         let light = shade.at(at) * (0.86 + 0.14 * t);
-        for sign in [-1.0, 0.0, 1.0_f32] {
+        for sign in [0.0, -1.0, 1.0_f32] {
             // Leaflets hang from the rib, more so towards the tip.
             let fold = up * (-(0.32 + 0.25 * t) * sign.abs());
             let position = at + (across * sign * 0.9 + fold) * (0.5 * card.width_m);

@@ -23,7 +23,7 @@ const BARE_PIECE_WEIGHT: f32 = 2.0;
 
 /// Where leaves stay single to the end, as fronds do, a stem keeps its width for longer: else it would be a thorn when half of the
 /// fronds' bends still stand. FLIP of the outlines of twelve palms fell by 7 % at D_2 and by 11 % at D_3.
-const FROND_SURFACE_WEIGHT: f32 = 2.0;
+const FROND_SURFACE_WEIGHT: f32 = 1.4;
 
 /// Cards of twigs are all that is seen of a crown in winter, and stay longer than leaves: FLIP of the outlines of two bare oaks is
 /// .028 and .033 at D_1 by it, and .039 and .036 by the weight of leaves.

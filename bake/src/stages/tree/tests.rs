@@ -144,7 +144,7 @@ fn elements_are_consecutive() {
             let PartKind::Aggregate { vertices, triangles } = part.kind else {
                 panic!("leaves are an aggregate")
             };
-            let first = part.triangles[0][0];
+            let first = part.triangles.as_flattened().iter().copied().min().unwrap_or(0);
             for (element, chunk) in part.triangles.chunks(triangles as usize).enumerate() {
                 assert_eq!(chunk.len(), triangles as usize);
                 let from = first + element as u32 * vertices;
