@@ -65,7 +65,8 @@ impl AlphaMask {
     /// The texels of a square picture of 64, 32, 16 … RGBA pixels a side whose alpha reaches `cutoff`; all of any other picture.
     pub fn of(image: &Image8, cutoff: f32) -> Self {
         let side = image.width as usize;
-        if side == 0 || MASK_SIDE % side != 0 || image.height != image.width || image.channels != 4 {
+        let is_square = side > 0 && image.height == image.width;
+        if !is_square || !MASK_SIDE.is_multiple_of(side) || image.channels != 4 {
             return Self::default();
         }
         let texels = MASK_SIDE / side;

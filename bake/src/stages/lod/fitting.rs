@@ -55,8 +55,8 @@ fn direction(index: usize) -> Vec2 {
     Vec2::new(cos, sin)
 }
 
-/// How far, in metres, a card's vertices lie from the plane in which its picture is laid on evenly, as the root of their mean square; `None` if its texture
-/// coordinates lie in a line.
+/// How far, in metres, a card's vertices lie from the plane in which its picture is laid on evenly: the root of their mean square;
+/// `None` if its texture coordinates lie in a line.
 pub fn error_m(vertices: &[Vertex]) -> Option<f32> {
     let plane = Plane::of(vertices)?;
     let off =
