@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn what_bends_most_goes_last_and_moves_as_far_as_it_is_said_to() {
+    fn a_picture_moves_as_far_as_it_is_said_to() {
         let state = fronds();
         let elements = Elements::new(&state, &state.parts[0], 1, &AlphaMask::default());
         let mut element = elements.whole();
