@@ -122,7 +122,7 @@ impl AlphaMask {
     /// hull of what is shown is among them.
     pub fn outline(&self) -> impl Iterator<Item = [f32; 2]> {
         let of_row = |(y, row): (usize, &u64)| {
-            let ends = [row.trailing_zeros(), 64 - row.leading_zeros()];
+            let ends = [row.trailing_zeros(), u64::BITS - row.leading_zeros()];
             ends.map(|x| [y, y + 1].map(|y| [x as f32, y as f32].map(|t| t / MASK_SIDE as f32)))
         };
         let rows = self.reach.iter().enumerate().filter(|(_, row)| **row != 0);

@@ -11,7 +11,6 @@ use std::collections::BinaryHeap;
 use glam::Vec3;
 
 use super::flattening::{self, Change, Step};
-use super::log::Vertex;
 use super::state::{PartSpan, State};
 use crate::model::AlphaMask;
 
@@ -174,13 +173,10 @@ struct Place {
 }
 
 fn places(state: &State, span: &PartSpan) -> Option<Vec<Place>> {
-    let (count, per, _) = span.elements()?;
+    let (count, ..) = span.elements()?;
     let place = |element: u32| {
         let [ids, _] = span.element(element);
-        let centre = state.centre(ids.clone());
-        let square = |v: &Vertex| Vec3::from_array(v.position).distance_squared(centre);
-        let sum: f32 = state.vertices[ids].iter().map(square).sum();
-        Place { centre, radius: (sum / per as f32).sqrt() }
+        Place { centre: state.centre(ids.clone()), radius: state.radius_m(ids) }
     };
     let places: Vec<_> = (0..count).map(place).collect();
     let sound = places.iter().all(|p| p.centre.is_finite() && p.radius.is_finite());

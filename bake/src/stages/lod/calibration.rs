@@ -68,11 +68,9 @@ impl Calibration {
     ) -> Self {
         let thickens = options.thickens;
         let elements: usize = aggregates.iter().map(Aggregate::living).sum();
-        let detail = match elements {
-            _ if options.masks.iter().any(AlphaMask::is_of_lines) => Detail::Thin,
-            MANY.. => Detail::Many,
-            _ => Detail::Few,
-        };
+        let are_thin = options.masks.iter().any(AlphaMask::is_of_lines);
+        let of_leaves = if elements >= MANY { Detail::Many } else { Detail::Few };
+        let detail = if are_thin { Detail::Thin } else { of_leaves };
         let diagonal_m = (high - low).max(Vec3::ZERO).length();
         let mut calibration = Self {
             camera: Camera::of([low, high], detail),

@@ -27,7 +27,7 @@ pub struct Merge {
 }
 
 /// Elements as they are at first.
-pub struct Elements {
+pub struct Pattern {
     triangles: Vec<[u32; 3]>,
     uvs: Vec<Vec2>,
     /// Where the vertices lie, in metres, of each element that is looked at.
@@ -59,7 +59,7 @@ impl Point {
     }
 }
 
-impl Elements {
+impl Pattern {
     /// Of a part with elements, of which every nth is looked at; `mask` is their picture's.
     pub fn new(state: &State, span: &PartSpan, nth: usize, mask: &AlphaMask) -> Self {
         let [ids, triangles] = span.element(0);
@@ -69,23 +69,23 @@ impl Elements {
             let vertices = &state.vertices[span.element(e)[0].clone()];
             vertices.iter().map(|v| Vec3::from_array(v.position)).collect()
         };
-        let mut elements = Self {
+        let looked_at = || (0..count).step_by(nth);
+        let radii_m = looked_at().map(|e| f64::from(state.radius_m(span.element(e)[0].clone())));
+        let mut pattern = Self {
             triangles: state.triangles[triangles].iter().map(|t| t.map(|v| v - first)).collect(),
             uvs: state.vertices[ids].iter().map(|v| Vec2::from_array(v.uv)).collect(),
-            places: (0..count).step_by(nth).map(places).collect(),
-            radius_m: 0.0,
+            places: looked_at().map(places).collect(),
+            radius_m: radii_m.sum::<f64>() / looked_at().count().max(1) as f64,
             shown: if mask.is_full() { Vec::new() } else { mask.shown().map(Vec2::from_array).collect() },
             watched: Vec::new(),
         };
-        let radii = elements.places.iter().map(|places| f64::from(radius(places)));
-        elements.radius_m = radii.sum::<f64>() / elements.places.len().max(1) as f64;
         let nearest = |&uv: &Vec2| {
             let away = |p: &&Vec2| p.distance_squared(uv);
-            elements.shown.iter().min_by(|p, q| away(p).total_cmp(&away(q))).copied().unwrap_or(uv)
+            pattern.shown.iter().min_by(|p, q| away(p).total_cmp(&away(q))).copied().unwrap_or(uv)
         };
-        let points = elements.uvs.iter().map(nearest);
-        elements.watched = points.filter_map(|uv| elements.point(elements.triangles.iter(), uv)).collect();
-        elements
+        let points = pattern.uvs.iter().map(nearest);
+        pattern.watched = points.filter_map(|uv| pattern.point(pattern.triangles.iter(), uv)).collect();
+        pattern
     }
 
     /// All of their vertices and triangles.
@@ -117,16 +117,10 @@ impl Elements {
     }
 }
 
-fn radius(places: &[Vec3]) -> f32 {
-    let count = places.len().max(1) as f32;
-    let centre = places.iter().sum::<Vec3>() / count;
-    (places.iter().map(|p| p.distance_squared(centre)).sum::<f32>() / count).sqrt()
-}
-
 /// What is left of them after some merges.
 #[derive(Clone)]
 pub struct Element<'a> {
-    of: &'a Elements,
+    of: &'a Pattern,
     triangles: Vec<Option<[u32; 3]>>,
     living: BTreeSet<u32>,
     /// The part of what the picture shows that is cut off.
@@ -198,8 +192,8 @@ impl Element<'_> {
             // All of it shows, and nothing may be cut off.
             return 1.0;
         }
-        let is_lost = |&&uv: &&Vec2| !self.point(uv).is_some_and(|point| point.is_inside());
-        shown.iter().filter(is_lost).count() as f64 / shown.len() as f64
+        let is_left = |&&uv: &&Vec2| self.point(uv).is_some_and(|point| point.is_inside());
+        (shown.len() - shown.iter().filter(is_left).count()) as f64 / shown.len() as f64
     }
 
     fn point(&self, uv: Vec2) -> Option<Point> {
@@ -266,8 +260,8 @@ mod tests {
     /// The vertices that are left when nothing more can go but the first, and the part of the picture that is lost.
     fn merged(mask: &AlphaMask) -> (BTreeSet<u32>, f64) {
         let state = fronds();
-        let elements = Elements::new(&state, &state.parts[0], 1, mask);
-        let mut element = elements.whole();
+        let pattern = Pattern::new(&state, &state.parts[0], 1, mask);
+        let mut element = pattern.whole();
         let mut last = 0.0;
         while let Some((error_m, merge)) = (1..18).filter_map(|v| element.best(v)).min_by(by_error) {
             element.take(&merge);
@@ -294,8 +288,8 @@ mod tests {
     #[test]
     fn a_picture_moves_as_far_as_it_is_said_to() {
         let state = fronds();
-        let elements = Elements::new(&state, &state.parts[0], 1, &AlphaMask::default());
-        let mut element = elements.whole();
+        let pattern = Pattern::new(&state, &state.parts[0], 1, &AlphaMask::default());
+        let mut element = pattern.whole();
         // All of the left column but its ends: the arch becomes a chord, from which a parabola is a quarter of its height away,
         // and the places along it which are as far up.
         for [vertex, into] in [[3, 0], [6, 0], [9, 0], [12, 0]] {

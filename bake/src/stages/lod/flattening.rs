@@ -7,7 +7,7 @@
 
 use glam::Vec2;
 
-use super::element::{Elements, Merge, by_error};
+use super::element::{Merge, Pattern, by_error};
 use super::fitting;
 use super::log::Vertex;
 use super::repair::repaired;
@@ -39,8 +39,8 @@ pub fn plan(state: &State, span: &PartSpan, mask: &AlphaMask) -> Vec<Step> {
     let Some((count, per_element, _)) = span.elements().filter(|&(count, ..)| count > 0) else {
         return Vec::new();
     };
-    let elements = Elements::new(state, span, (count as usize / SAMPLES).max(1), mask);
-    let mut element = elements.whole();
+    let pattern = Pattern::new(state, span, one_in(count), mask);
+    let mut element = pattern.whole();
     let mut steps: Vec<Step> = Vec::new();
     loop {
         // The first vertex stays: that it lives says that the element does.
@@ -60,12 +60,18 @@ pub fn plan(state: &State, span: &PartSpan, mask: &AlphaMask) -> Vec<Step> {
     }
 }
 
+/// Of how many elements, of that many, one is looked at.
+fn one_in(count: u32) -> usize {
+    (count as usize / SAMPLES).max(1)
+}
+
 /// The triangle for elements, and how far their vertices lie from it on average, in metres.
 fn fitted_card(state: &State, span: &PartSpan, mask: &AlphaMask) -> Option<(f64, [Vec2; 3])> {
     let triangle = fitting::triangle(mask)?;
     let (count, ..) = span.elements()?;
-    let some = (0..count).step_by((count as usize / SAMPLES).max(1));
-    let errors_m = some.map(|element| fitting::error_m(vertices(state, span, element)).map(f64::from));
+    let errors_m = (0..count)
+        .step_by(one_in(count))
+        .map(|element| fitting::error_m(vertices(state, span, element)).map(f64::from));
     let errors_m = errors_m.collect::<Option<Vec<f64>>>()?;
     Some((errors_m.iter().sum::<f64>() / errors_m.len() as f64, triangle))
 }
@@ -76,8 +82,8 @@ pub fn errors_m(state: &State, span: &PartSpan, steps: &[Step], mask: &AlphaMask
     let Some((count, ..)) = span.elements().filter(|&(count, ..)| count > 0) else {
         return Vec::new();
     };
-    let elements = Elements::new(state, span, 1, mask);
-    let mut element = elements.whole();
+    let pattern = Pattern::new(state, span, 1, mask);
+    let mut element = pattern.whole();
     let mut worst_m = vec![0.0_f64; count as usize];
     let after = |step: &Step| {
         match &step.change {

@@ -7,8 +7,8 @@
 //! Planck, Ryu 2007). One cost in metres orders both.
 //!
 //! Read `repair`, `state` and `log` (the mesh being simplified), `topology`, `quadric`, `edge`, `merge` and
-//! `collapse` (one edge), `element`, `flattening`, `fitting` and `aggregate` (leaf cards), `coverage` and `calibration` (as many pixels at
-//! every level), `sequence` (the order of all steps), `levels`, `progressive` (the file format) and `strip`.
+//! `collapse` (one edge), `element`, `flattening`, `fitting` and `aggregate` (leaf cards), `coverage` and `calibration` (as many
+//! pixels at every level), `sequence` (the order of all steps), `levels`, `progressive` (the file format) and `strip`.
 
 mod aggregate;
 mod calibration;

@@ -240,6 +240,13 @@ impl State {
         (0..elements).filter(|&element| self.vertex_lives[span.element(element)[0].start])
     }
 
+    /// Root mean square distance of consecutive vertices from the centre of the living ones, in metres.
+    pub fn radius_m(&self, ids: Range<usize>) -> f32 {
+        let (centre, count) = (self.centre(ids.clone()), ids.len().max(1));
+        let square = |vertex: &Vertex| Vec3::from_array(vertex.position).distance_squared(centre);
+        (self.vertices[ids].iter().map(square).sum::<f32>() / count as f32).sqrt()
+    }
+
     /// The mean of the living ones of consecutive vertices' positions.
     pub fn centre(&self, ids: Range<usize>) -> Vec3 {
         let living = ids.filter(|&id| self.vertex_lives[id]);
