@@ -11,6 +11,7 @@ mod cache_commands;
 pub mod chosen_parents;
 pub mod cli;
 pub mod commands;
+pub mod cutout;
 mod distance_command;
 pub mod events;
 mod explain_command;

@@ -27,7 +27,7 @@ pub struct TreeTextures<P> {
     /// Tiling tangent-space bark normals, RGB.
     pub bark_normal: P,
     /// Leaf card with its mip levels, sRGB with alpha, RGBA; colour bled under the transparent texels. Every level's
-    /// alpha keeps the coverage of level 0 at the cutoff; only level 0 of what is thin, since alpha of plain averages is the
+    /// alpha keeps the coverage of level 0 at the cutoff, as it is drawn between texels; only level 0 of what is thin, since alpha of plain averages is the
     /// share that is covered.
     pub leaf: Vec<P>,
     /// Blossom card, likewise.
@@ -36,8 +36,8 @@ pub struct TreeTextures<P> {
     pub is_thin: bool,
     /// Mean colour of the bark, linear RGB.
     pub bark_linear: [f32; 3],
-    /// The leaf card's mip level of 32 × 32 pixels, 64 × 64 of fronds, from which templates are simplified and their impostors made:
-    /// these need a card's shape and colours, but nothing finer.
+    /// The leaf card's mip level of 32 × 32 pixels, 64 × 64 of fronds, of which as many texels reach the cutoff as of level 0:
+    /// templates are simplified and their impostors made from it, who need a card's shape and colours, but nothing finer.
     pub leaf_small: Image8,
     /// Blossom card, likewise.
     pub blossom_small: Image8,

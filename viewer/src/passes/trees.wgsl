@@ -28,7 +28,7 @@ struct Out {
     @location(0) world: vec3f,
     @location(1) normal: vec3f,
     @location(2) tangent: vec4f,
-    // Within the triangle: a leaf smaller than a pixel seldom holds the pixel's middle.
+    // Within the triangle.
     @location(3) @interpolate(perspective, centroid) uv: vec2f,
     @location(4) color: vec3f,
     // Leaves: share of the open sky and ground that they see between their neighbours.
@@ -40,6 +40,8 @@ struct Out {
     @location(8) @interpolate(flat) chance: f32,
     // Beyond the field, what is left of the sun behind the crown; else 1.
     @location(9) sun: f32,
+    // At the middle of the pixel.
+    @location(10) middle: vec2f,
 }
 
 fn placed(in: In) -> Out {
@@ -54,6 +56,7 @@ fn placed(in: In) -> Out {
     out.normal = normalize(normal_from_template(rows, turned));
     out.tangent = vec4f(normalize(tangent), in.color.a * 2.0 - 1.0);
     out.uv = in.uv + alpha * in.uv_delta;
+    out.middle = out.uv;
     out.color = select(in.color.rgb, level_tint(in.lambda) * 1.6, view.tint_levels != 0u);
     out.open = in.color.a;
     out.shown = in.shown.xy;
@@ -148,9 +151,12 @@ struct Card {
     samples: u32,
 }
 
-// Colour, and alpha.
+// Colour, and alpha: where the pixel's middle is, as other triangles of the same card have it. Within the triangle, pixels at the
+// card's edges would all show what is farther in, and the card cover more than it does. But a leaf smaller than a pixel seldom
+// holds the pixel's middle.
 fn picture_at(in: Out) -> vec4f {
-    return vec4f(in.color, 1.0) * material.factor * textureSampleBias(color_map, clamped, in.uv, view.mip_bias);
+    let uv = select(in.uv, in.middle, is_on_picture(in.middle));
+    return vec4f(in.color, 1.0) * material.factor * textureSampleBias(color_map, clamped, uv, view.mip_bias);
 }
 
 // A number in [0, 1) by chance: another for each of the cards that may lie at a pixel.

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use genescape_bake::cutout::Alpha;
 use rayon::prelude::*;
 
 use super::Uploader;
@@ -89,7 +90,7 @@ impl Uploader {
 }
 
 /// The least alpha that is drawn of a cutout.
-const CUT: u8 = 128;
+const CUTOFF: f32 = 0.5;
 
 /// An image's mip levels: its own, or averages down to one pixel.
 pub(super) fn mip_levels(image: &Image, kind: ImageUse) -> Vec<Arc<[u8]>> {
@@ -104,26 +105,26 @@ pub(super) fn mip_levels(image: &Image, kind: ImageUse) -> Vec<Arc<[u8]>> {
         levels.push(coarser.into());
     }
     if kind == ImageUse::Cutout {
-        keep_coverage(&mut levels);
+        keep_coverage(&mut levels, image.width_px as usize);
     }
     levels
 }
 
-/// Scales the alpha of each level so that as much of it passes ½ as of the first (Castaño, "Computing Alpha Mipmaps", 2010).
-fn keep_coverage(levels: &mut [Arc<[u8]>]) {
+/// Scales the alpha of each level so that as much of it is drawn as of the first, which is so wide.
+fn keep_coverage(levels: &mut [Arc<[u8]>], mut width: usize) {
     let Some((first, coarser)) = levels.split_first_mut() else { return };
-    let passes = first.chunks_exact(4).filter(|pixel| pixel[3] >= CUT).count();
-    let share = passes as f32 / (first.len() / 4).max(1) as f32;
+    let alphas = |level: &[u8]| -> Vec<f32> {
+        level.chunks_exact(4).map(|pixel| f32::from(pixel[3]) / 255.0).collect()
+    };
+    let share = Alpha::new(&alphas(first), width).share(CUTOFF);
+    if share == 0.0 {
+        return;
+    }
     for level in coarser {
-        let mut alphas: Vec<u8> = level.chunks_exact(4).map(|pixel| pixel[3]).collect();
-        let wanted = (share * alphas.len() as f32 + 0.5) as usize;
-        if wanted == 0 {
-            continue;
-        }
-        let (_, &mut lowest, _) = alphas.select_nth_unstable_by(wanted - 1, |a, b| b.cmp(a));
-        let scale = f32::from(CUT) / f32::from(lowest.max(1));
+        width = (width / 2).max(1);
+        let scale = Alpha::new(&alphas(level), width).scale_for(share, CUTOFF);
         let scaled = level.chunks_exact(4).flat_map(|pixel| {
-            let alpha = (f32::from(pixel[3]) * scale).ceil().min(255.0) as u8;
+            let alpha = (f32::from(pixel[3]) * scale).round().min(255.0) as u8;
             [pixel[0], pixel[1], pixel[2], alpha]
         });
         *level = scaled.collect();
@@ -209,12 +210,12 @@ mod tests {
         let pixels: Vec<u8> = pixels.collect();
         let image = Image { name: "leaf".into(), width_px: 64, height_px: 64, levels: vec![pixels.into()] };
         let share = |level: &Arc<[u8]>| {
-            let passes = level.chunks_exact(4).filter(|pixel| pixel[3] >= CUT).count();
-            passes as f32 / (level.len() / 4) as f32
+            let alphas: Vec<f32> = level.chunks_exact(4).map(|pixel| f32::from(pixel[3]) / 255.0).collect();
+            Alpha::new(&alphas, alphas.len().isqrt()).share(CUTOFF)
         };
         let [cut, plain] = [ImageUse::Cutout, ImageUse::Color].map(|kind| mip_levels(&image, kind));
         for level in &cut[1..4] {
-            assert!((share(level) - share(&cut[0])).abs() < 0.04, "{} of {}", share(level), share(&cut[0]));
+            assert!((share(level) - share(&cut[0])).abs() < 0.02, "{} of {}", share(level), share(&cut[0]));
         }
         assert!((share(&plain[3]) - share(&plain[0])).abs() > 0.1, "plain averages would not");
     }

@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 
 use super::canvas::{Canvas, Paint};
 use super::leaf_outline::Outline;
-use super::mips;
+use super::mips::{self, Chain};
 use super::params::{Habit, TreeTextureParams, autumn, card_length_m};
 use crate::math::{cell, lerp};
 use crate::model::Image8;
@@ -15,24 +15,29 @@ use crate::seed::Dice;
 
 /// Texels a side.
 const SIZE: usize = 256;
+/// The mip level from which trees are simplified: 32 × 32 texels.
+const SMALL_LEVEL: usize = 3;
+/// The same of fronds. In 32 × 32 they lose the gaps between their leaflets: D_3, where few of them overlap, then covered .95 of
+/// what it should.
+const SMALL_LEVEL_OF_FRONDS: usize = 2;
 /// Albedo of young wood, linear.
 const TWIG: Vec3 = Vec3::new(0.10, 0.062, 0.033);
 /// The same in winter, when nothing green is among it.
 pub(super) const WINTER_TWIG: Vec3 = Vec3::new(0.078, 0.053, 0.038);
 
 /// The blossom card; one transparent texel if the template does not blossom.
-pub(super) fn paint_blossom(params: &TreeTextureParams) -> Vec<Image8> {
+pub(super) fn paint_blossom(params: &TreeTextureParams) -> Chain {
     let habit = params.habit();
     if params.blossom <= 0.0 || habit == Habit::Frond {
-        return vec![Image8::new(1, 1, 4)];
+        return Chain { levels: vec![Image8::new(1, 1, 4)], small: Image8::new(1, 1, 4) };
     }
     let mut brush = Brush::new(params, habit, Outline::petal(), 1);
     brush.flowers();
-    brush.finished()
+    brush.finished(SMALL_LEVEL)
 }
 
 /// The leaf card.
-pub(super) fn paint_leaves(params: &TreeTextureParams) -> Vec<Image8> {
+pub(super) fn paint_leaves(params: &TreeTextureParams) -> Chain {
     let habit = params.habit();
     let mut brush = Brush::new(params, habit, Outline::new(params.leaf_shape, params.leaf_aspect), 0);
     let card_m = card_length_m(habit, params.levels, params.height_m, params.leaf_size_m);
@@ -44,7 +49,7 @@ pub(super) fn paint_leaves(params: &TreeTextureParams) -> Vec<Image8> {
         Habit::Broad => brush.broad(leaf),
         Habit::Twigs => brush.bare_twigs(),
     }
-    brush.finished()
+    brush.finished(if habit == Habit::Frond { SMALL_LEVEL_OF_FRONDS } else { SMALL_LEVEL })
 }
 
 struct Brush {
@@ -85,9 +90,9 @@ impl Brush {
     }
 
     /// With a transparent rim: beyond a card's picture nothing is shown.
-    fn finished(mut self) -> Vec<Image8> {
+    fn finished(mut self, small: usize) -> Chain {
         self.canvas.clear_rim();
-        mips::chain(&self.canvas)
+        mips::chain(&self.canvas, small)
     }
 
     /// One leaf's paint: no two are quite alike; those laid on later are lighter.

@@ -1,11 +1,12 @@
 //! A canvas → a mip chain in sRGB with alpha whose coverage at the cutoff is that of its first level.
 //!
 //! Alpha-tested foliage thins out in the distance because averaged alpha falls below the cutoff; each level's alpha
-//! is scaled until as much of it passes as at level 0 (Castaño, "Computing Alpha Mipmaps", 2010). Colour is
-//! averaged by alpha and bled outwards under transparent texels, so no dark rim appears.
+//! is scaled until as much of it passes as at level 0 (`cutout`). Colour is averaged by alpha and bled outwards under
+//! transparent texels, so no dark rim appears.
 
 use super::ALPHA_CUTOFF;
 use super::canvas::Canvas;
+use crate::cutout::Alpha;
 use crate::math::{linear_from_srgb, unit_to_byte};
 use crate::model::Image8;
 
@@ -15,26 +16,68 @@ struct Level {
     pixels: Vec<[f32; 4]>,
 }
 
-/// All levels down to one texel.
-pub(super) fn chain(canvas: &Canvas) -> Vec<Image8> {
+/// A card's picture.
+pub(super) struct Chain {
+    /// All levels down to one texel.
+    pub levels: Vec<Image8>,
+    /// One of them of which as many texels pass as of level 0: for those who don't interpolate.
+    pub small: Image8,
+}
+
+/// All levels; `small` is the number of the one that is made twice.
+pub(super) fn chain(canvas: &Canvas, small: usize) -> Chain {
     let pixels = canvas.pixels.iter().map(|&[r, g, b, a]| [r * a, g * a, b * a, a]).collect();
     let mut levels = vec![Level { size: canvas.size, pixels }];
     while let Some(last) = levels.last().filter(|level| level.size > 1) {
         levels.push(halved(last));
     }
-    let kept =
-        levels[0].pixels.iter().filter(|p| f32::from(unit_to_byte(p[3])) >= 255.0 * ALPHA_CUTOFF).count();
-    let target = kept as f32 / levels[0].pixels.len() as f32;
+    let whole = &levels[0];
+    let (shown, passing) = (whole.shown(), whole.passing());
+    let small = small.min(levels.len() - 1);
     let mut colors: Vec<[f32; 3]> = Vec::new();
-    let mut images = Vec::with_capacity(levels.len());
+    let mut chain = Chain { levels: Vec::with_capacity(levels.len()), small: Image8::default() };
     let encode = Encoder::new();
-    for level in levels.iter().rev() {
+    for (n, level) in levels.iter().enumerate().rev() {
         colors = bled(level, &colors);
-        let scale = if level.size == canvas.size { 1.0 } else { alpha_scale(level, target) };
-        images.push(encode.image(level, &colors, scale));
+        let scale = if n == 0 { 1.0 } else { level.scale_to_show(shown) };
+        chain.levels.push(encode.image(level, &colors, scale));
+        if n == small {
+            chain.small = encode.image(level, &colors, level.scale_to_pass(passing));
+        }
     }
-    images.reverse();
-    images
+    chain.levels.reverse();
+    chain
+}
+
+impl Level {
+    fn alphas(&self) -> Vec<f32> {
+        self.pixels.iter().map(|p| p[3]).collect()
+    }
+
+    /// The share that is left by the cutoff.
+    fn shown(&self) -> f32 {
+        Alpha::new(&self.alphas(), self.size).share(ALPHA_CUTOFF)
+    }
+
+    fn scale_to_show(&self, share: f32) -> f32 {
+        Alpha::new(&self.alphas(), self.size).scale_for(share, ALPHA_CUTOFF)
+    }
+
+    /// The same of texels that each are there or not.
+    fn passing(&self) -> f32 {
+        let passes = |p: &&[f32; 4]| f32::from(unit_to_byte(p[3])) >= 255.0 * ALPHA_CUTOFF;
+        self.pixels.iter().filter(passes).count() as f32 / self.pixels.len() as f32
+    }
+
+    fn scale_to_pass(&self, share: f32) -> f32 {
+        let wanted = (share * self.pixels.len() as f32 + 0.5) as usize;
+        if wanted == 0 {
+            return 1.0;
+        }
+        let mut alphas = self.alphas();
+        let (_, &mut lowest, _) = alphas.select_nth_unstable_by(wanted - 1, |a, b| b.total_cmp(a));
+        if lowest < 1e-3 { 1.0 } else { (ALPHA_CUTOFF + 0.4 / 255.0) / lowest }
+    }
 }
 
 fn halved(level: &Level) -> Level {
@@ -47,17 +90,6 @@ fn halved(level: &Level) -> Level {
         }
     }
     Level { size, pixels }
-}
-
-/// The factor on alpha that keeps the part `target` of the texels.
-fn alpha_scale(level: &Level, target: f32) -> f32 {
-    let wanted = (target * level.pixels.len() as f32 + 0.5) as usize;
-    if wanted == 0 {
-        return 1.0;
-    }
-    let mut alphas: Vec<f32> = level.pixels.iter().map(|p| p[3]).collect();
-    let (_, &mut lowest, _) = alphas.select_nth_unstable_by(wanted - 1, |a, b| b.total_cmp(a));
-    if lowest < 1e-3 { 1.0 } else { (ALPHA_CUTOFF + 0.4 / 255.0) / lowest }
 }
 
 /// Colour of every texel: its own where it has alpha, else that of the coarser level.

@@ -48,11 +48,6 @@ pub use params::{TreeParams, TreeTextureParams};
 
 /// Texels of leaf and blossom cards with less alpha than this are not drawn.
 pub const ALPHA_CUTOFF: f32 = 0.5;
-/// The mip level of a card of 256 texels from which trees are simplified: 32 × 32.
-const SMALL_LEVEL: usize = 3;
-/// The same of fronds. In 32 × 32 they lose the gaps between their leaflets: D_3, where few of them overlap, then covered .95 of
-/// what it should.
-const SMALL_LEVEL_OF_FRONDS: usize = 2;
 
 /// Grows the `index`th template: a closed `Bark` surface, then `Leaf` and `Blossom` aggregates if it
 /// bears any. Metres; at most about 26,000 triangles.
@@ -86,24 +81,19 @@ pub fn textures(params: &TreeTextureParams) -> TreeTextures<Image8> {
         || bark_texture::paint(params),
         || join(|| leaf_texture::paint_leaves(params), || leaf_texture::paint_blossom(params)),
     );
-    let [leaf_small, blossom_small] = [&leaf, &blossom].map(|levels: &Vec<Image8>| {
-        let level = if params.habit() == Habit::Frond { SMALL_LEVEL_OF_FRONDS } else { SMALL_LEVEL };
-        let small = levels.get(level).or(levels.last());
-        small.cloned().unwrap_or_default()
-    });
     let is_thin = params.habit() == Habit::Twigs;
     if is_thin {
-        leaf.truncate(1);
+        leaf.levels.truncate(1);
     }
     TreeTextures {
         bark_linear: bark_texture::mean_linear(&bark_color),
         bark_color,
         bark_normal,
-        leaf,
-        blossom,
+        leaf: leaf.levels,
+        blossom: blossom.levels,
         is_thin,
-        leaf_small,
-        blossom_small,
+        leaf_small: leaf.small,
+        blossom_small: blossom.small,
         alpha_cutoff: ALPHA_CUTOFF,
     }
 }

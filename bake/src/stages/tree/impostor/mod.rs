@@ -6,6 +6,7 @@ mod tests;
 use glam::Vec3;
 use rayon::prelude::*;
 
+use super::clusters;
 use super::mips::Encoder;
 use super::picture::{self, Picture};
 use super::raster::{Drawing, Look};
@@ -86,8 +87,10 @@ pub fn impostor_error_m<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> f32 {
     Frame::of(mesh, textures).error_m()
 }
 
-/// The level of which pictures are drawn: with half of the leaves, which cover as much, in half of the time; a leaf is less
-/// than a pixel of them. A tree without leaves has no twig to spare.
+/// The level of which pictures are drawn: with half of the leaves, which cover as much, in half of the time, where a leaf is less
+/// than a pixel of them. A tree without leaves has no twig to spare, and fronds are few and large.
 pub fn drawn_from_afar<'a, P>(levels: &'a [Level], textures: &TreeTextures<P>) -> &'a Mesh {
-    &levels[usize::from(has_leaves(&levels[0].mesh, textures) && levels.len() > 1)].mesh
+    let full = &levels[0].mesh;
+    let has_small_leaves = has_leaves(full, textures) && clusters::first_level(full).is_some();
+    &levels[usize::from(has_small_leaves && levels.len() > 1)].mesh
 }
