@@ -129,3 +129,23 @@ fn trees_beyond_the_field_are_there_and_as_bright_as_on_it() {
     }
     assert!(all.iter().all(|(is_like, _)| *is_like), "{all:#?}");
 }
+
+#[test]
+#[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
+fn light_ground_lights_trees_from_below() {
+    let backdrops = Backdrops::open();
+    for scene in starters(backdrops.studio()) {
+        let on = |byte: u8, mode| {
+            let mut scene = scene.clone();
+            let color = &mut scene.ground.surface.color;
+            color.name = format!("ground of {byte}");
+            color.levels = vec![vec![byte; 4 * (color.width_px * color.height_px) as usize].into()];
+            look(&backdrops, &scene, 0, mode, 1).brightness()
+        };
+        for mode in [TreeLodMode::Off, TreeLodMode::Simple] {
+            let lighter = on(200, mode) / on(60, mode);
+            genescape_bake::say!("{}, {mode:?}: {lighter:.3} times as bright on light ground", scene.name);
+            assert!((1.03..1.6).contains(&lighter), "{}, {mode:?}: {lighter}", scene.name);
+        }
+    }
+}

@@ -44,6 +44,8 @@ struct View {
     part: f32,
     // Up to so many metres the terrain's blocks have level 0.
     lod_unit: f32,
+    // Of the field, on average, linear.
+    ground_albedo: vec3f,
     // Moves numbers by chance, [0, 1): another in each of the pictures of which a still one is the mean.
     noise: f32,
     // Added to the mip levels of textures that cover much of the picture: less than 0 in those pictures, whose mean is as smooth.
@@ -166,11 +168,16 @@ fn way_to_template(rows: array<vec4f, 3>, way: vec3f) -> vec3f {
     return rows[0].xyz * way.x + rows[1].xyz * way.y + rows[2].xyz * way.z;
 }
 
+// Irradiance from level ground that as much of the sun and of the sky reaches.
+fn light_from_ground(sun: f32, sky: f32) -> vec3f {
+    let on_ground = view.sun_irradiance * (sun * max(view.sun_direction.y, 0.0)) + view.sky_irradiance * sky;
+    return view.ground_albedo * on_ground;
+}
+
 // Irradiance from the sky above and the ground below on what faces upwards by that share of the way from straight down to
 // straight up: what a crown among other crowns gets on average.
 fn ambient_light(up: f32) -> vec3f {
-    let ground = 0.12 * (view.sky_irradiance + view.sun_irradiance * max(view.sun_direction.y, 0.0));
-    return mix(ground, view.sky_irradiance, up);
+    return mix(light_from_ground(1.0, 1.0), view.sky_irradiance, up);
 }
 
 // Share of the open sky and ground that leaves see between their neighbours, by their place within the ellipsoid around the

@@ -39,10 +39,11 @@ pub struct ViewUniform {
     pub lod_top: f32,
     pub part: f32,
     pub lod_unit: f32,
+    pub ground_albedo: [f32; 3],
     pub noise: f32,
     pub mip_bias: f32,
     /// WGSL rounds the size up.
-    pub unused: [f32; 2],
+    pub unused: [f32; 3],
 }
 
 /// What stands for "no lake".
@@ -105,6 +106,7 @@ impl ViewUniform {
             last_tile,
             lod_top: detail.top,
             lod_unit: detail.unit_m,
+            ground_albedo: scene.land.albedo_linear.to_array(),
             shadow_from_world: SunView::of_field(scene).clip_from_world().to_cols_array_2d(),
             shade,
             field: Self::field(scene),

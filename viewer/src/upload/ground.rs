@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::texture::mip_levels;
+use super::texture::{mean_light, mip_levels};
 use super::{ImageUse, Lake, PlantBuffers, Ring, Uploader};
 use crate::lod::block;
 use crate::lod::nested::Nested;
@@ -22,6 +22,8 @@ pub struct GroundBuffers {
     pub heights: Arc<wgpu::Texture>,
     /// Albedo over the field.
     pub color: Arc<wgpu::Texture>,
+    /// The same on average.
+    pub albedo_linear: Vec3,
     /// x and z of its normals, a texel a sample.
     pub normals: Arc<wgpu::Texture>,
     /// Parts of the tiling textures 1 to 4.
@@ -66,6 +68,7 @@ impl Uploader {
                 self.array(&[&normals(field)], ImageUse::Data, 1)
             }),
             color: self.image(&surface.color, ImageUse::Color),
+            albedo_linear: mean_light(&surface.color),
             weights: self.image(&surface.weights, ImageUse::Data),
             light: self.image(&surface.light, ImageUse::Data),
             details: self.tiling(&surface.details)?,

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use genescape_bake::cutout::Alpha;
+use glam::Vec3;
 use rayon::prelude::*;
 
 use super::Uploader;
@@ -155,6 +156,16 @@ fn halve(pixels: &[u8], width: u32, height: u32, kind: ImageUse) -> Vec<u8> {
     halved.into_flattened()
 }
 
+/// The mean of an image's colours, linear, by some of its pixels, evenly spread.
+pub(super) fn mean_light(image: &Image) -> Vec3 {
+    let table = linear_table();
+    let pixels = image.levels.first().map_or(&[][..], |level| level.as_chunks::<4>().0);
+    // No side is a multiple of it, so that all columns are among them.
+    let some = || pixels.iter().step_by(61);
+    let light = |pixel: &[u8; 4]| Vec3::from_array([0, 1, 2].map(|c| table[usize::from(pixel[c])]));
+    some().map(light).sum::<Vec3>() / some().count().max(1) as f32
+}
+
 /// Light of each byte of sRGB, [0, 1].
 fn linear_table() -> &'static [f32; 256] {
     static TABLE: std::sync::OnceLock<[f32; 256]> = std::sync::OnceLock::new();
@@ -218,6 +229,14 @@ mod tests {
             assert!((share(level) - share(&cut[0])).abs() < 0.02, "{} of {}", share(level), share(&cut[0]));
         }
         assert!((share(&plain[3]) - share(&plain[0])).abs() > 0.1, "plain averages would not");
+    }
+
+    #[test]
+    fn the_mean_of_an_image_is_that_of_its_light() {
+        let pixels: Vec<u8> =
+            (0..64u32 * 64).flat_map(|n| [if n % 64 < 32 { 255 } else { 0 }, 188, 0, 9]).collect();
+        let image = Image { name: "halves".into(), width_px: 64, height_px: 64, levels: vec![pixels.into()] };
+        assert!(mean_light(&image).abs_diff_eq(Vec3::new(0.5, 0.503, 0.0), 0.02), "{}", mean_light(&image));
     }
 
     #[test]

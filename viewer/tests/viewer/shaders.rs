@@ -103,6 +103,7 @@ fn uniforms_are_laid_out_alike() {
             lod_top,
             part,
             lod_unit,
+            ground_albedo,
             noise,
             mip_bias,
         }
