@@ -11,7 +11,7 @@ pub struct Alpha<'a> {
 /// but at most so many.
 const PLACES: usize = 128;
 const MAX_PLACES: usize = 256;
-/// Which factors are searched, as powers of two, and to what part of that range.
+/// Factors from 2⁻⁶ to 2⁶ are searched, by halving what is left of these powers so many times.
 const POWERS: f32 = 6.0;
 const STEPS: usize = 14;
 
