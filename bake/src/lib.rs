@@ -11,7 +11,6 @@ mod cache_commands;
 pub mod chosen_parents;
 pub mod cli;
 pub mod commands;
-pub mod cutout;
 mod distance_command;
 pub mod events;
 mod explain_command;

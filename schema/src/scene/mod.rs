@@ -12,6 +12,7 @@
 //! Right-handed, y up, metres, radians; colours linear unless a name says `_srgb`.
 
 pub mod bintree;
+mod cutout;
 pub mod floats;
 mod ground;
 mod heightfield;
@@ -25,6 +26,7 @@ mod sky;
 pub mod svd;
 mod view;
 
+pub use cutout::Alpha;
 pub use ground::{GroundDetail, GroundSurface};
 pub use heightfield::{GSC_HEIGHTFIELD, Heightfield, HeightfieldExtension, TerrainLod};
 pub use heightfield_bytes::HeightfieldError;

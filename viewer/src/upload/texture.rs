@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use genescape_bake::cutout::Alpha;
+use genescape_schema::scene::Alpha;
 use glam::Vec3;
 use rayon::prelude::*;
 

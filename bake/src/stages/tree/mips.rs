@@ -1,12 +1,13 @@
 //! A canvas → a mip chain in sRGB with alpha whose coverage at the cutoff is that of its first level.
 //!
 //! Alpha-tested foliage thins out in the distance because averaged alpha falls below the cutoff; each level's alpha
-//! is scaled until as much of it passes as at level 0 (`cutout`). Colour is averaged by alpha and bled outwards under
+//! is scaled until as much of it passes as at level 0 (`Alpha`). Colour is averaged by alpha and bled outwards under
 //! transparent texels, so no dark rim appears.
+
+use genescape_schema::scene::Alpha;
 
 use super::ALPHA_CUTOFF;
 use super::canvas::Canvas;
-use crate::cutout::Alpha;
 use crate::math::{linear_from_srgb, unit_to_byte};
 use crate::model::Image8;
 

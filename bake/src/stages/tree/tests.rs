@@ -6,11 +6,11 @@ use std::sync::LazyLock;
 
 use glam::{Vec2, Vec3};
 
+use genescape_schema::scene::Alpha;
 use genescape_schema::{Category, Genome, Population, Space, TreePreset};
 
 use super::budget::Budget;
 use super::{ALPHA_CUTOFF, TreeParams, TreeTextureParams, cards, skeleton, template, textures};
-use crate::cutout::Alpha;
 use crate::model::{Image8, Material, Mesh, Part, PartKind, TreeTemplate, TreeTextures};
 use crate::seed::Dice;
 
