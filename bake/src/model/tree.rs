@@ -27,8 +27,8 @@ pub struct TreeTextures<P> {
     /// Tiling tangent-space bark normals, RGB.
     pub bark_normal: P,
     /// Leaf card with its mip levels, sRGB with alpha, RGBA; colour bled under the transparent texels. Every level's
-    /// alpha keeps the coverage of level 0 at the cutoff, as it is drawn between texels; only level 0 of what is thin, since alpha of plain averages is the
-    /// share that is covered.
+    /// alpha keeps the coverage of level 0 at the cutoff, as it is drawn between texels; only level 0 of what is thin, since
+    /// alpha of plain averages is the share that is covered.
     pub leaf: Vec<P>,
     /// Blossom card, likewise.
     pub blossom: Vec<P>,

@@ -29,9 +29,9 @@ impl<'a> Alpha<'a> {
     }
 
     /// The factor on alpha by which `share` of the picture reaches `cutoff`, as nearly as that can be, with alpha ending at 1
-    /// (Castaño, "Computing Alpha Mipmaps", 2010); 1 where no alpha is.
+    /// (Castaño, "Computing Alpha Mipmaps", 2010); 1 where no alpha is or nothing is to be left.
     pub fn scale_for(&self, share: f32, cutoff: f32) -> f32 {
-        if self.values.iter().all(|alpha| *alpha <= 0.0) {
+        if share <= 0.0 || self.values.iter().all(|alpha| *alpha <= 0.0) {
             return 1.0;
         }
         let [mut less, mut more] = [-POWERS, POWERS];
@@ -121,5 +121,6 @@ mod tests {
             assert_eq!(Alpha::new(&[0.4 * scale], 1).share(0.5), shown);
         }
         assert_eq!(Alpha::new(&[0.0; 4], 2).scale_for(0.5, 0.5), 1.0);
+        assert_eq!(Alpha::new(&[0.4; 4], 2).scale_for(0.0, 0.5), 1.0);
     }
 }

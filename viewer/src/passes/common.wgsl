@@ -168,16 +168,17 @@ fn way_to_template(rows: array<vec4f, 3>, way: vec3f) -> vec3f {
     return rows[0].xyz * way.x + rows[1].xyz * way.y + rows[2].xyz * way.z;
 }
 
-// Irradiance from level ground that as much of the sun and of the sky reaches.
-fn light_from_ground(sun: f32, sky: f32) -> vec3f {
-    let on_ground = view.sun_irradiance * (sun * max(view.sun_direction.y, 0.0)) + view.sky_irradiance * sky;
-    return view.ground_albedo * on_ground;
+// Irradiance from the sky above and the ground below on what faces upwards by that share of the way from straight down to
+// straight up, where as much of the sun and of the sky arrives.
+fn light_around(up: f32, sun: f32, sky: f32) -> vec3f {
+    let from_sky = view.sky_irradiance * sky;
+    let on_ground = view.sun_irradiance * (sun * max(view.sun_direction.y, 0.0)) + from_sky;
+    return mix(view.ground_albedo * on_ground, from_sky, up);
 }
 
-// Irradiance from the sky above and the ground below on what faces upwards by that share of the way from straight down to
-// straight up: what a crown among other crowns gets on average.
+// The same in the open: what a crown among other crowns gets on average.
 fn ambient_light(up: f32) -> vec3f {
-    return mix(light_from_ground(1.0, 1.0), view.sky_irradiance, up);
+    return light_around(up, 1.0, 1.0);
 }
 
 // Share of the open sky and ground that leaves see between their neighbours, by their place within the ellipsoid around the

@@ -49,9 +49,8 @@ fn vertex(plant: Plant, corner: Corner) -> Out {
     let sun_on = mix(max(facing, 0.0), max(0.25 + 0.75 * facing, -0.3 * facing), leafy);
     // Roots stand in each other's shade.
     let open = mix(1.0, 0.55 + 0.45 * clamp(3.0 * corner.position.y, 0.0, 1.0), leafy);
-    let sky_on = 0.5 + 0.5 * normal.y;
-    let irradiance = view.sun_irradiance * light.b * sun_on + view.sky_irradiance * light.r * sky_on
-        + light_from_ground(light.b, light.r) * (1.0 - sky_on);
+    let around = light_around(0.5 + 0.5 * normal.y, light.b, light.r);
+    let irradiance = view.sun_irradiance * light.b * sun_on + around;
     let radiance = hazed(air_before(world), albedo / PI * irradiance * open);
     return Out(view.clip_from_world * vec4f(world, 1.0), radiance, radiance);
 }

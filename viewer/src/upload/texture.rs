@@ -114,13 +114,7 @@ pub(super) fn mip_levels(image: &Image, kind: ImageUse) -> Vec<Arc<[u8]>> {
 /// Scales the alpha of each level so that as much of it is drawn as of the first, which is so wide.
 fn keep_coverage(levels: &mut [Arc<[u8]>], mut width: usize) {
     let Some((first, coarser)) = levels.split_first_mut() else { return };
-    let alphas = |level: &[u8]| -> Vec<f32> {
-        level.chunks_exact(4).map(|pixel| f32::from(pixel[3]) / 255.0).collect()
-    };
     let share = Alpha::new(&alphas(first), width).share(CUTOFF);
-    if share == 0.0 {
-        return;
-    }
     for level in coarser {
         width = (width / 2).max(1);
         let scale = Alpha::new(&alphas(level), width).scale_for(share, CUTOFF);
@@ -130,6 +124,10 @@ fn keep_coverage(levels: &mut [Arc<[u8]>], mut width: usize) {
         });
         *level = scaled.collect();
     }
+}
+
+fn alphas(level: &[u8]) -> Vec<f32> {
+    level.chunks_exact(4).map(|pixel| f32::from(pixel[3]) / 255.0).collect()
 }
 
 /// Averages of 2 × 2 pixels; colour is averaged as light.
@@ -221,7 +219,7 @@ mod tests {
         let pixels: Vec<u8> = pixels.collect();
         let image = Image { name: "leaf".into(), width_px: 64, height_px: 64, levels: vec![pixels.into()] };
         let share = |level: &Arc<[u8]>| {
-            let alphas: Vec<f32> = level.chunks_exact(4).map(|pixel| f32::from(pixel[3]) / 255.0).collect();
+            let alphas = alphas(level);
             Alpha::new(&alphas, alphas.len().isqrt()).share(CUTOFF)
         };
         let [cut, plain] = [ImageUse::Cutout, ImageUse::Color].map(|kind| mip_levels(&image, kind));
