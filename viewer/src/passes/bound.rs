@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::layouts::LEAF_LIGHT;
 use super::{Binding, BoundMirror, BoundShade, CullUniform, Layouts, bind};
 use crate::gpu::Gpu;
 use crate::upload::{SceneBuffers, TreeSet};
@@ -48,6 +49,8 @@ pub struct BoundTrees {
     pub(super) material_groups: Vec<wgpu::BindGroup>,
     /// Of the pictures, if there are any.
     pub(super) impostors_group: Option<wgpu::BindGroup>,
+    /// Of what lights them.
+    pub(super) leaf_light_group: Option<wgpu::BindGroup>,
     /// Trees for each level and template: u32 at level · templates + template; then pictures.
     pub counts: wgpu::Buffer,
     /// Number of each visible tree, its λ, and the share of its pixels that are drawn.
@@ -149,6 +152,7 @@ impl BoundTrees {
         let room = 12 * u64::from(set.list_capacity);
         let visible = gpu.empty_buffer("visible trees", room, written | Usage::VERTEX);
         let commands = gpu.buffer("commands", &set.commands, written | Usage::INDIRECT);
+        let lights = gpu.empty_buffer("light of leaves", 16 * u64::from(set.count.max(1)), Usage::STORAGE);
         let culled = [&uniform, &set.trees, &set.templates, &counts, &visible, &commands];
         let culled = (0..).zip(culled.map(Binding::Buffer));
         let material = |material: &crate::upload::TreeMaterial| {
@@ -161,9 +165,15 @@ impl BoundTrees {
             impostors_group: set.impostors.as_ref().map(|pictures| {
                 let [colors, reliefs] =
                     [&pictures.colors, &pictures.reliefs].map(|layers| Binding::layers(layers));
-                let [trees, frames, visible] = [&set.trees, &pictures.frames, &visible].map(Binding::Buffer);
-                let bound = [trees, frames, colors, reliefs, visible];
+                let [trees, frames, visible, lights] =
+                    [&set.trees, &pictures.frames, &visible, &lights].map(Binding::Buffer);
+                let bound = [trees, frames, colors, reliefs, visible, lights];
                 bind(gpu, "pictures of trees", &layouts.impostors, (0..).zip(bound))
+            }),
+            leaf_light_group: set.impostors.as_ref().map(|pictures| {
+                let buffers = [&set.trees, &pictures.frames, &visible, &lights, &counts].map(Binding::Buffer);
+                let numbers = LEAF_LIGHT.map(|(number, _)| number);
+                bind(gpu, "light of leaves", &layouts.leaf_light, numbers.into_iter().zip(buffers))
             }),
             trees_group: bind(gpu, "trees", &layouts.trees, [(0, Binding::Buffer(&set.trees))]),
             material_groups: set.materials.iter().map(material).collect(),

@@ -18,7 +18,7 @@ const REACH: f32 = 0.12;
 #[derive(Debug)]
 pub struct BoundMirror {
     pub(super) uniform: wgpu::Buffer,
-    pub(super) view_group: wgpu::BindGroup,
+    pub view_group: wgpu::BindGroup,
     /// None if the landscape has none, or no pictures of them.
     pub trees: Option<BoundTrees>,
     /// Numbers of samples: triangles of the land.

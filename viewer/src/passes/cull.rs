@@ -14,9 +14,9 @@ use crate::options::Options;
 use crate::upload::{PICTURE_INDICES, TreeSet};
 
 /// Threads of a workgroup.
-const GROUP: u32 = 64;
+pub(super) const GROUP: u32 = 64;
 /// The most workgroups along one axis.
-const MAX_GROUPS: u32 = 65535;
+pub(super) const MAX_GROUPS: u32 = 65535;
 /// What stands in the place of a mode where all trees are to be drawn as their pictures, and where none is.
 const PICTURES: u32 = TreeLodMode::VARIANTS.len() as u32;
 const MESHES: u32 = PICTURES + 1;
@@ -128,7 +128,8 @@ impl Cull {
 
     pub(super) fn new(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
         let module = compiler.module(&SHADER)?;
-        let pipeline = |entry: &str| compiler.compute(&module, &compiler.layouts.cull, entry);
+        let groups = [None, Some(&compiler.layouts.cull)];
+        let pipeline = |entry: &str| compiler.compute(&module, groups, entry);
         let (clear, choose) = (pipeline("clear"), pipeline("choose"));
         Ok(Self { clear, choose, write_commands: pipeline("write_commands") })
     }
@@ -139,11 +140,16 @@ impl Cull {
         pass.set_pipeline(&self.clear);
         pass.dispatch_workgroups((trees.buckets + 1).div_ceil(GROUP), 1, 1);
         pass.set_pipeline(&self.choose);
-        let groups = trees.instances.div_ceil(GROUP);
-        pass.dispatch_workgroups(groups.min(MAX_GROUPS), groups.div_ceil(MAX_GROUPS), 1);
+        dispatch_each(pass, trees.instances);
         pass.set_pipeline(&self.write_commands);
         pass.dispatch_workgroups(trees.command_count.div_ceil(GROUP), 1, 1);
     }
+}
+
+/// A thread for each of so many trees.
+pub(super) fn dispatch_each(pass: &mut wgpu::ComputePass<'_>, trees: u32) {
+    let groups = trees.div_ceil(GROUP);
+    pass.dispatch_workgroups(groups.min(MAX_GROUPS), groups.div_ceil(MAX_GROUPS), 1);
 }
 
 const _: () =

@@ -1,6 +1,7 @@
 //! Draws the pictures of trees that are far away: one draw for all of them, and one instance, for four vertices would be little for
 //! each of thousands of instances.
 
+use super::cull::{GROUP, MAX_GROUPS};
 use super::shaders::ShaderError;
 use super::{BoundScene, BoundTrees, Compiler, DrawPass, FilledOrWire, PipelineDesc, Shader};
 use crate::options::Options;
@@ -14,6 +15,8 @@ pub const SHADER: Shader = Shader {
         ("LEAVES", LEAVES as f64),
         ("ROWS", IMPOSTOR_ROWS as f64),
         ("PICTURES_LEVEL", MAX_LEVELS as f64),
+        ("GROUP", GROUP as f64),
+        ("MAX_GROUPS", MAX_GROUPS as f64),
     ],
 };
 

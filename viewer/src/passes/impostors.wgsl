@@ -7,12 +7,20 @@ override LEAVES: u32;
 override ROWS: u32;
 // The number by which tints know pictures from meshes.
 override PICTURES_LEVEL: f32;
+// Threads of a workgroup, and the most workgroups along one axis.
+override GROUP: u32;
+override MAX_GROUPS: u32;
 
 @group(1) @binding(0) var<storage, read> trees: array<Tree>;
 @group(1) @binding(1) var<storage, read> frames: array<Frame>;
 @group(1) @binding(2) var colors: texture_2d_array<f32>;
 @group(1) @binding(3) var reliefs: texture_2d_array<f32>;
 @group(1) @binding(4) var<storage, read> visible: array<Visible>;
+// What `leaf_light` is of each of them: for corners, and while it is worked out.
+@group(1) @binding(5) var<storage, read> lights: array<vec3f>;
+@group(1) @binding(6) var<storage, read_write> new_lights: array<vec3f>;
+// The last is how many of `visible` are pictures.
+@group(1) @binding(7) var<storage, read> counts: array<u32>;
 
 // As in `cull.wgsl`.
 struct Visible {
@@ -91,11 +99,34 @@ fn leaf_light(template_index: u32, to_eye: vec3f, to_sun: vec3f) -> vec3f {
     return sum / seen;
 }
 
+// Towards the eye in a template's space, from the middle of its picture; as far as it is.
+fn way_to_eye(rows: array<vec4f, 3>, template_index: u32) -> vec3f {
+    let axis = frames[template_index].axis;
+    let middle = vec3f(axis.x, frames[template_index].low + 0.5 * frames[template_index].size.y, axis.y);
+    return way_to_template(rows, view.eye - from_template(rows, middle));
+}
+
+// Once for each of the trees that are visible: as a part of `vertex`, four times, it took a sixth of a frame in software.
+@compute @workgroup_size(GROUP)
+fn light_leaves(@builtin(global_invocation_id) id: vec3u) {
+    let slot = id.x + id.y * MAX_GROUPS * GROUP;
+    if (slot >= counts[arrayLength(&counts) - 1u]) {
+        return;
+    }
+    let tree = visible[slot].tree;
+    let rows = trees[tree].rows;
+    let template_index = trees[tree].template_index;
+    let to_eye = normalize(way_to_eye(rows, template_index));
+    let to_sun = normalize(way_to_template(rows, view.sun_direction));
+    new_lights[slot] = leaf_light(template_index, to_eye, to_sun);
+}
+
 // Four vertices for each of the trees that are visible.
 @vertex
 fn vertex(@builtin(vertex_index) vertex: u32) -> Out {
-    let tree = visible[vertex >> 2u].tree;
-    let shown = visible[vertex >> 2u].shown;
+    let slot = vertex >> 2u;
+    let tree = visible[slot].tree;
+    let shown = visible[slot].shown;
     let index = vertex & 3u;
     let rows = trees[tree].rows;
     let template_index = trees[tree].template_index;
@@ -103,9 +134,7 @@ fn vertex(@builtin(vertex_index) vertex: u32) -> Out {
     let size = frames[template_index].size;
     let low = frames[template_index].low;
     let corner = vec2f(f32(index & 1u), f32(index >> 1u));
-    let middle = vec3f(axis.x, low + 0.5 * size.y, axis.y);
-    let to_eye = view.eye - from_template(rows, middle);
-    let back = way_to_template(rows, to_eye);
+    let back = way_to_eye(rows, template_index);
     let ahead = normalize(back.xz + vec2f(0.0, 1e-6));
     let across = vec3f(ahead.y, 0.0, -ahead.x) * ((corner.x - 0.5) * size.x);
     let local = vec3f(axis.x, low + corner.y * size.y, axis.y) + across;
@@ -122,7 +151,7 @@ fn vertex(@builtin(vertex_index) vertex: u32) -> Out {
     out.air = air_before(out.world);
     out.to_eye = normalize(back);
     out.to_sun = normalize(way_to_template(rows, view.sun_direction));
-    out.leaf_light = leaf_light(template_index, out.to_eye, out.to_sun);
+    out.leaf_light = lights[slot];
     out.chance = scattered(vec2f(f32(tree), 5.3));
     out.is_beyond_field = select(0.0, 1.0, is_beyond_field(rows));
     return out;

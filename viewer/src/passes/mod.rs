@@ -14,6 +14,7 @@ mod cull;
 pub mod grass;
 pub mod impostors;
 mod layouts;
+mod leaf_light;
 mod mean;
 mod mirror;
 mod pipeline;
@@ -37,6 +38,7 @@ pub use bound_mirror::{BoundMirror, Reflection};
 pub use bound_shade::BoundShade;
 pub use cull::{Cull, CullUniform};
 pub use layouts::{Binding, Layouts, bind};
+pub use leaf_light::LeafLight;
 pub use mean::{Mean, Shift, pictures};
 pub use mirror::Mirror;
 pub use pipeline::Shader;
@@ -101,6 +103,8 @@ pub struct Passes {
     /// Of near trees on the ground, before the picture.
     pub shade: Shade,
     pub cull: Cull,
+    /// Of trees that are drawn as pictures, after culling.
+    pub leaf_light: LeafLight,
     /// What a lake mirrors, before the picture.
     pub mirror: Mirror,
     /// By name, in the order in which they draw.
@@ -123,6 +127,7 @@ impl Passes {
             shadow: Shadow::new(&compiler)?,
             shade: Shade::new(&compiler)?,
             cull: Cull::new(&compiler)?,
+            leaf_light: LeafLight::new(&compiler)?,
             mirror: Mirror::new(&compiler)?,
             picture: [
                 (trees::SHADER.name, Box::new(trees::Trees::new(&compiler)?)),

@@ -102,11 +102,16 @@ impl Compiler<'_> {
         })
     }
 
-    /// A compute pipeline whose bindings are all in group 1: group 0 is what `common.wgsl` declares.
-    pub fn compute(&self, shader: &Module, group: &BindGroupLayout, entry: &str) -> ComputePipeline {
+    /// A compute pipeline. `None` is a group that it does not use: group 0 is what `common.wgsl` declares.
+    pub fn compute(
+        &self,
+        shader: &Module,
+        groups: [Option<&BindGroupLayout>; 2],
+        entry: &str,
+    ) -> ComputePipeline {
         self.gpu.device.create_compute_pipeline(&ComputePipelineDescriptor {
             label: Some(entry),
-            layout: Some(&self.layout(shader.shader.name, &[None, Some(group)])),
+            layout: Some(&self.layout(shader.shader.name, &groups)),
             module: &shader.module,
             entry_point: Some(entry),
             compilation_options: shader.options(),

@@ -54,7 +54,9 @@ impl LandscapeChoice {
             let (eye_m, focal_px) = (lod_camera.position_m, lod_camera.focal_px(size[1]));
             let culling = CullUniform::for_view(set, &frustum, eye_m, focal_px, options);
             trees.set(&gpu.queue, &culling);
-            passes.cull.dispatch(&mut scope.scoped_compute_pass(Cull::NAME), trees);
+            let mut pass = scope.scoped_compute_pass(Cull::NAME);
+            passes.cull.dispatch(&mut pass, trees);
+            passes.leaf_light.dispatch(&mut pass, &bound.view_group, trees);
         }
         self.clumps.clear();
         self.plants.clear();

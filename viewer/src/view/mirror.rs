@@ -66,7 +66,9 @@ fn cull(
 ) {
     if let Some((set, trees)) = scene.trees.as_ref().zip(mirror.trees.as_ref()) {
         trees.set(&gpu.queue, &CullUniform::for_mirror(set, &reflection.frustum));
-        passes.cull.dispatch(&mut scope.scoped_compute_pass(Cull::NAME), trees);
+        let mut pass = scope.scoped_compute_pass(Cull::NAME);
+        passes.cull.dispatch(&mut pass, trees);
+        passes.leaf_light.dispatch(&mut pass, &mirror.view_group, trees);
     }
 }
 
