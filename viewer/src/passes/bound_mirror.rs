@@ -57,7 +57,7 @@ impl Reflection {
     pub fn of(lake: &Lake, camera: &Camera, size_px: [u32; 2]) -> Option<Self> {
         let [width, height] = size_px.map(|side| side as f32);
         let clip_from_world = camera.clip_from_world(width / height);
-        let window = lake.seen(&clip_from_world)?.grown(REACH)?;
+        let window = lake.seen(&clip_from_world, camera.position_m)?.grown(REACH)?;
         let lifted = Mat4::from_translation(Vec3::Y * 2.0 * lake.level_m);
         let clip_from_world = clip_from_world * lifted * Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0));
         Some(Self {

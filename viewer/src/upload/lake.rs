@@ -1,10 +1,12 @@
 //! Where a landscape's lake lies, and which part of a picture shows it.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
-use crate::scene::{Apron, Ground};
+use super::horizon::Horizon;
+use crate::scene::{Apron, Ground, Heightfield};
 
 /// Metres a side of a tile.
 const TILE_M: f32 = 64.0;
@@ -18,6 +20,8 @@ pub struct Lake {
     pub level_m: f32,
     /// Tile (i, k) is [`TILE_M`] wide from (i, k) · [`TILE_M`].
     tiles: BTreeSet<[i32; 2]>,
+    /// The land around it, which may hide it.
+    field: Arc<Heightfield>,
 }
 
 /// A rectangle of a picture, as clip space divided by w has it: from −1 at the left and bottom to 1.
@@ -30,22 +34,37 @@ pub struct Window {
 impl Lake {
     /// `None` where the land is dry.
     pub fn of(ground: &Ground) -> Option<Self> {
-        let level_m = ground.water_level_m?;
-        let (field, mut tiles) = (&ground.field, BTreeSet::new());
+        Some(Self::between(&ground.field, &ground.apron, ground.water_level_m?))
+    }
+
+    /// Where that land and the ring around it are below a level.
+    fn between(field: &Arc<Heightfield>, apron: &Apron, level_m: f32) -> Self {
+        let mut tiles = BTreeSet::new();
         let side = field.side as usize;
         for (n, _) in field.heights_m.iter().enumerate().filter(|(_, height_m)| **height_m < level_m) {
             let middle_m = Vec2::new(field.place_m((n % side) as u32), field.place_m((n / side) as u32));
             insert(&mut tiles, middle_m - field.spacing_m, middle_m + field.spacing_m);
         }
-        for [low_m, high_m] in wet_triangles(&ground.apron, level_m) {
+        for [low_m, high_m] in wet_triangles(apron, level_m) {
             insert(&mut tiles, low_m, high_m);
         }
-        Some(Self { level_m, tiles })
+        Self { level_m, tiles, field: field.clone() }
     }
 
-    /// The part of a picture that may show the lake, as if no land hid it. `None` if there is none.
-    pub fn seen(&self, clip_from_world: &Mat4) -> Option<Window> {
-        self.tiles.iter().filter_map(|tile| self.window(*tile, clip_from_world)).reduce(Window::union)
+    /// The part of a picture that may show the lake to an eye. `None` if there is none.
+    pub fn seen(&self, clip_from_world: &Mat4, eye_m: Vec3) -> Option<Window> {
+        let mut horizon = Horizon::new(&self.field, eye_m);
+        let mut is_hidden = |tile: [i32; 2]| {
+            let corner_m = |aside: i32| Vec2::from(tile.map(|number| (number + aside) as f32 * TILE_M));
+            horizon.hides(corner_m(0), corner_m(1), self.level_m)
+        };
+        let windows =
+            self.tiles.iter().filter_map(|tile| Some((*tile, self.window(*tile, clip_from_world)?)));
+        windows.fold(None, |seen: Option<Window>, (tile, window)| match seen {
+            Some(seen) if seen.contains(&window) => Some(seen),
+            _ if is_hidden(tile) => seen,
+            _ => Some(seen.map_or(window, |seen| seen.union(window))),
+        })
     }
 
     fn window(&self, [i, k]: [i32; 2], clip_from_world: &Mat4) -> Option<Window> {
@@ -62,6 +81,10 @@ impl Lake {
 impl Window {
     fn union(self, other: Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    fn contains(&self, other: &Self) -> bool {
+        self.low.cmple(other.low).all() && self.high.cmpge(other.high).all()
     }
 
     /// With a margin to all sides, as far as the picture reaches; `None` if that is nowhere.
@@ -126,6 +149,67 @@ mod tests {
     use super::*;
     use crate::camera::Camera;
     use proptest::prelude::*;
+    use std::sync::LazyLock;
+
+    /// 1024 m × 1024 m, by the height at each x and z.
+    fn land(height_m: impl Fn(f32, f32) -> f32) -> Arc<Heightfield> {
+        let mut field = Heightfield { side: 257, spacing_m: 4.0, heights_m: Vec::new() };
+        let places: Vec<f32> = (0..field.side).map(|line| field.place_m(line)).collect();
+        field.heights_m = places.iter().flat_map(|z| places.iter().map(|x| height_m(*x, *z))).collect();
+        Arc::new(field)
+    }
+
+    /// Hills between lakes at height 0.
+    fn hills(x: f32, z: f32) -> f32 {
+        16.0 * libm::sinf(x / 37.0 + 0.3) * libm::cosf(z / 29.0)
+            + 9.0 * libm::sinf((x - 2.0 * z) / 61.0)
+            + 4.0
+    }
+
+    proptest! {
+        // Of random places few are under water, and of those land hides many.
+        #![proptest_config(ProptestConfig { cases: 500, max_global_rejects: 100_000, ..Default::default() })]
+        #[test]
+        fn water_that_no_land_hides_lies_within_the_window(
+            from in prop::array::uniform2(-480f32..480.), above in 1.6f32..12., way in prop::array::uniform2(-300f32..300.),
+        ) {
+            static HILLS: LazyLock<Arc<Heightfield>> = LazyLock::new(|| land(hills));
+            let field = &*HILLS;
+            let eye = Vec3::new(from[0], field.height_m(from[0], from[1]).max(0.0) + above, from[1]);
+            let place = Vec3::new(from[0] + way[0], 0.0, from[1] + way[1]);
+            prop_assume!(place.abs().max_element() < 500.0 && field.height_m(place.x, place.z) < -0.5);
+            let is_free = |n: u16| {
+                let at = place.lerp(eye, f32::from(n) / 1000.0);
+                field.height_m(at.x, at.z) < at.y
+            };
+            prop_assume!((1..1000).all(is_free));
+            let lake = Lake::between(field, &Apron::default(), 0.0);
+            let look = place - eye;
+            let camera = Camera {
+                position_m: eye,
+                yaw_rad: libm::atan2f(-look.x, -look.z),
+                pitch_rad: libm::atan2f(look.y, Vec2::new(look.x, look.z).length()),
+                fov_y_rad: 0.05,
+            };
+            prop_assert!(lake.seen(&camera.clip_from_world(1.5), eye).is_some());
+        }
+    }
+
+    #[test]
+    fn a_lake_behind_a_ridge_is_seen_from_its_top_alone() {
+        let ridge = |_: f32, z: f32| if (-40.0..40.0).contains(&z) { 30.0 } else { z.signum() * 2.0 };
+        let lake = Lake { level_m: 0.0, tiles: [[-1, -3], [0, -3], [0, -4]].into(), field: land(ridge) };
+        let look = |y: f32, z: f32| {
+            let position_m = Vec3::new(0.0, y, z);
+            let camera = Camera { position_m, yaw_rad: 0.0, pitch_rad: -0.1, fov_y_rad: 1.2 };
+            lake.seen(&camera.clip_from_world(1.5), position_m)
+        };
+        assert_eq!(look(4.0, 200.0), None);
+        assert_eq!(look(31.0, 36.0), None, "the ridge's far edge");
+        assert!(look(32.0, -39.0).is_some());
+        assert!(look(120.0, 200.0).is_some());
+        assert!(look(1.7, -100.0).is_some());
+    }
 
     proptest! {
         #[test]
@@ -138,12 +222,12 @@ mod tests {
             let yaw = Vec2::new(-way.z, -way.x).to_angle() + aside;
             let level_m = Vec2::new(way.x, way.z).length();
             let pitch = (Vec2::new(level_m, way.y).to_angle() + up).clamp(-1.5, 1.0);
-            let lake = Lake { level_m: 0.0, tiles: [[0, -1], [0, 0], [1, -1], [1, 0]].into() };
+            let lake = Lake { level_m: 0.0, tiles: [[0, -1], [0, 0], [1, -1], [1, 0]].into(), field: land(|_, _| -1.0) };
             let camera = Camera { position_m: Vec3::new(x, y, z), yaw_rad: yaw, pitch_rad: pitch, fov_y_rad: 1.0 };
             let clip_from_world = camera.clip_from_world(1.5);
             let clip = clip_from_world * Vec4::new(place_x, 0.0, place_z, 1.0);
             prop_assume!(clip.w > 2.0 * NEAR_M && clip.x.abs() < clip.w && clip.y.abs() < clip.w);
-            let window = lake.seen(&clip_from_world).expect("some of it is seen");
+            let window = lake.seen(&clip_from_world, camera.position_m).expect("some of it is seen");
             let ndc = clip.truncate().truncate() / clip.w;
             prop_assert!((ndc - window.low).min_element() > -1e-3 && (window.high - ndc).min_element() > -1e-3);
             // The window as a picture of its own shows the same.
@@ -158,11 +242,11 @@ mod tests {
 
     #[test]
     fn a_lake_behind_the_eye_or_below_the_picture_is_not_seen() {
-        let lake = Lake { level_m: 0.0, tiles: [[0, 0]].into() };
+        let lake = Lake { level_m: 0.0, tiles: [[0, 0]].into(), field: land(|_, _| -1.0) };
         let look = |yaw_rad, pitch_rad| {
             let camera =
                 Camera { position_m: Vec3::new(32.0, 20.0, 200.0), yaw_rad, pitch_rad, fov_y_rad: 1.0 };
-            lake.seen(&camera.clip_from_world(1.5))
+            lake.seen(&camera.clip_from_world(1.5), camera.position_m)
         };
         assert!(look(0.0, 0.0).is_some());
         assert_eq!(look(std::f32::consts::PI, 0.0), None);

@@ -5,6 +5,7 @@ mod asset;
 mod clusters;
 mod exhibit;
 mod ground;
+mod horizon;
 mod impostors;
 mod lake;
 mod plants;
