@@ -152,7 +152,6 @@ impl BoundTrees {
         let room = 12 * u64::from(set.list_capacity);
         let visible = gpu.empty_buffer("visible trees", room, written | Usage::VERTEX);
         let commands = gpu.buffer("commands", &set.commands, written | Usage::INDIRECT);
-        let lights = gpu.empty_buffer("light of leaves", 16 * u64::from(set.count.max(1)), Usage::STORAGE);
         let culled = [&uniform, &set.trees, &set.templates, &counts, &visible, &commands];
         let culled = (0..).zip(culled.map(Binding::Buffer));
         let material = |material: &crate::upload::TreeMaterial| {
@@ -160,21 +159,23 @@ impl BoundTrees {
             let bound = [Binding::Buffer(&material.uniform), color, normal];
             bind(gpu, &material.name, &layouts.material, (0..).zip(bound))
         };
+        let pictures = set.impostors.as_ref().map(|pictures| {
+            let lights = gpu.empty_buffer("light of leaves", 16 * u64::from(set.count), Usage::STORAGE);
+            let lit = [&set.trees, &pictures.frames, &visible, &lights, &counts].map(Binding::Buffer);
+            let lit = LEAF_LIGHT.into_iter().map(|(number, _)| number).zip(lit);
+            let [colors, reliefs] =
+                [&pictures.colors, &pictures.reliefs].map(|layers| Binding::layers(layers));
+            let [trees, frames, visible, lights] =
+                [&set.trees, &pictures.frames, &visible, &lights].map(Binding::Buffer);
+            let drawn = [trees, frames, colors, reliefs, visible, lights];
+            let drawn = bind(gpu, "pictures of trees", &layouts.impostors, (0..).zip(drawn));
+            (drawn, bind(gpu, "light of leaves", &layouts.leaf_light, lit))
+        });
+        let (impostors_group, leaf_light_group) = pictures.unzip();
         Self {
             cull_group: bind(gpu, "culling", &layouts.cull, culled),
-            impostors_group: set.impostors.as_ref().map(|pictures| {
-                let [colors, reliefs] =
-                    [&pictures.colors, &pictures.reliefs].map(|layers| Binding::layers(layers));
-                let [trees, frames, visible, lights] =
-                    [&set.trees, &pictures.frames, &visible, &lights].map(Binding::Buffer);
-                let bound = [trees, frames, colors, reliefs, visible, lights];
-                bind(gpu, "pictures of trees", &layouts.impostors, (0..).zip(bound))
-            }),
-            leaf_light_group: set.impostors.as_ref().map(|pictures| {
-                let buffers = [&set.trees, &pictures.frames, &visible, &lights, &counts].map(Binding::Buffer);
-                let numbers = LEAF_LIGHT.map(|(number, _)| number);
-                bind(gpu, "light of leaves", &layouts.leaf_light, numbers.into_iter().zip(buffers))
-            }),
+            impostors_group,
+            leaf_light_group,
             trees_group: bind(gpu, "trees", &layouts.trees, [(0, Binding::Buffer(&set.trees))]),
             material_groups: set.materials.iter().map(material).collect(),
             uniform,

@@ -7,6 +7,7 @@ use glam::{Mat4, Vec3};
 use super::{Binding, BoundTrees, DEPTH, Elements, Layouts, RADIANCE, ViewUniform, bind};
 use crate::camera::{Camera, Frustum};
 use crate::gpu::{Gpu, cleared, flat};
+use crate::lod::nested::Sight;
 use crate::upload::{Lake, SceneBuffers};
 
 /// The mirror's pixels are that many of the picture's wide and high: waves blur them anyway.
@@ -53,11 +54,11 @@ struct Targets {
 }
 
 impl Reflection {
-    /// `None` if a picture of that size as `camera` sees it shows nothing of the lake.
-    pub fn of(lake: &Lake, camera: &Camera, size_px: [u32; 2]) -> Option<Self> {
+    /// `None` if a picture of that size as `camera` sees it, with land drawn for that sight, shows nothing of the lake.
+    pub fn of(lake: &Lake, camera: &Camera, size_px: [u32; 2], drawn: Sight) -> Option<Self> {
         let [width, height] = size_px.map(|side| side as f32);
         let clip_from_world = camera.clip_from_world(width / height);
-        let window = lake.seen(&clip_from_world, camera.position_m)?.grown(REACH)?;
+        let window = lake.seen(&clip_from_world, camera.position_m, drawn)?.grown(REACH)?;
         let lifted = Mat4::from_translation(Vec3::Y * 2.0 * lake.level_m);
         let clip_from_world = clip_from_world * lifted * Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0));
         Some(Self {

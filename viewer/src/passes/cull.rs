@@ -138,17 +138,17 @@ impl Cull {
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, trees: &BoundTrees) {
         pass.set_bind_group(1, &trees.cull_group, &[]);
         pass.set_pipeline(&self.clear);
-        pass.dispatch_workgroups((trees.buckets + 1).div_ceil(GROUP), 1, 1);
+        dispatch_each(pass, trees.buckets + 1);
         pass.set_pipeline(&self.choose);
         dispatch_each(pass, trees.instances);
         pass.set_pipeline(&self.write_commands);
-        pass.dispatch_workgroups(trees.command_count.div_ceil(GROUP), 1, 1);
+        dispatch_each(pass, trees.command_count);
     }
 }
 
-/// A thread for each of so many trees.
-pub(super) fn dispatch_each(pass: &mut wgpu::ComputePass<'_>, trees: u32) {
-    let groups = trees.div_ceil(GROUP);
+/// A thread for each of so many.
+pub(super) fn dispatch_each(pass: &mut wgpu::ComputePass<'_>, count: u32) {
+    let groups = count.div_ceil(GROUP);
     pass.dispatch_workgroups(groups.min(MAX_GROUPS), groups.div_ceil(MAX_GROUPS), 1);
 }
 

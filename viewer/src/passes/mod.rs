@@ -119,6 +119,18 @@ pub struct Passes {
 }
 
 impl Passes {
+    /// Culls the trees of a view, and lights the pictures of those that are left.
+    pub fn choose_trees(
+        &self,
+        scope: &mut wgpu_profiler::Scope<'_, wgpu::CommandEncoder>,
+        view: &wgpu::BindGroup,
+        trees: &BoundTrees,
+    ) {
+        let mut pass = scope.scoped_compute_pass(Cull::NAME);
+        self.cull.dispatch(&mut pass, trees);
+        self.leaf_light.dispatch(&mut pass, view, trees);
+    }
+
     /// Compiles everything. `samples` is 1 or 4.
     pub fn new(gpu: &Gpu, shaders: &Shaders, samples: u32) -> Result<Self, ShaderError> {
         let layouts = Layouts::new(gpu);

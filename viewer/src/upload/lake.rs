@@ -6,6 +6,7 @@ use std::sync::Arc;
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
 use super::horizon::Horizon;
+use crate::lod::nested::Sight;
 use crate::scene::{Apron, Ground, Heightfield};
 
 /// Metres a side of a tile.
@@ -51,9 +52,9 @@ impl Lake {
         Self { level_m, tiles, field: field.clone() }
     }
 
-    /// The part of a picture that may show the lake to an eye. `None` if there is none.
-    pub fn seen(&self, clip_from_world: &Mat4, eye_m: Vec3) -> Option<Window> {
-        let mut horizon = Horizon::new(&self.field, eye_m);
+    /// The part of a picture that may show the lake to an eye, where the land is drawn for that sight. `None` if there is none.
+    pub fn seen(&self, clip_from_world: &Mat4, eye_m: Vec3, drawn: Sight) -> Option<Window> {
+        let mut horizon = Horizon::new(&self.field, eye_m, drawn);
         let mut is_hidden = |tile: [i32; 2]| {
             let corner_m = |aside: i32| Vec2::from(tile.map(|number| (number + aside) as f32 * TILE_M));
             horizon.hides(corner_m(0), corner_m(1), self.level_m)
@@ -159,6 +160,11 @@ mod tests {
         Arc::new(field)
     }
 
+    /// Land that may be two pixels off in a picture where a radian has 500.
+    fn usual(eye_m: Vec3) -> Sight {
+        Sight { eye_m, pixels: 250.0 }
+    }
+
     /// Hills between lakes at height 0.
     fn hills(x: f32, z: f32) -> f32 {
         16.0 * libm::sinf(x / 37.0 + 0.3) * libm::cosf(z / 29.0)
@@ -170,7 +176,7 @@ mod tests {
         // Of random places few are under water, and of those land hides many.
         #![proptest_config(ProptestConfig { cases: 500, max_global_rejects: 100_000, ..Default::default() })]
         #[test]
-        fn water_that_no_land_hides_lies_within_the_window(
+        fn water_that_no_land_hides_is_seen(
             from in prop::array::uniform2(-480f32..480.), above in 1.6f32..12., way in prop::array::uniform2(-300f32..300.),
         ) {
             static HILLS: LazyLock<Arc<Heightfield>> = LazyLock::new(|| land(hills));
@@ -191,7 +197,7 @@ mod tests {
                 pitch_rad: libm::atan2f(look.y, Vec2::new(look.x, look.z).length()),
                 fov_y_rad: 0.05,
             };
-            prop_assert!(lake.seen(&camera.clip_from_world(1.5), eye).is_some());
+            prop_assert!(lake.seen(&camera.clip_from_world(1.5), eye, usual(eye)).is_some());
         }
     }
 
@@ -202,7 +208,12 @@ mod tests {
         let look = |y: f32, z: f32| {
             let position_m = Vec3::new(0.0, y, z);
             let camera = Camera { position_m, yaw_rad: 0.0, pitch_rad: -0.1, fov_y_rad: 1.2 };
-            lake.seen(&camera.clip_from_world(1.5), position_m)
+            let seen = |pixels| {
+                lake.seen(&camera.clip_from_world(1.5), position_m, Sight { eye_m: position_m, pixels })
+            };
+            // Land that may be drawn anyhow hides nothing.
+            assert!(seen(0.0).is_some());
+            seen(usual(position_m).pixels)
         };
         assert_eq!(look(4.0, 200.0), None);
         assert_eq!(look(31.0, 36.0), None, "the ridge's far edge");
@@ -227,7 +238,7 @@ mod tests {
             let clip_from_world = camera.clip_from_world(1.5);
             let clip = clip_from_world * Vec4::new(place_x, 0.0, place_z, 1.0);
             prop_assume!(clip.w > 2.0 * NEAR_M && clip.x.abs() < clip.w && clip.y.abs() < clip.w);
-            let window = lake.seen(&clip_from_world, camera.position_m).expect("some of it is seen");
+            let window = lake.seen(&clip_from_world, camera.position_m, usual(camera.position_m)).expect("some of it is seen");
             let ndc = clip.truncate().truncate() / clip.w;
             prop_assert!((ndc - window.low).min_element() > -1e-3 && (window.high - ndc).min_element() > -1e-3);
             // The window as a picture of its own shows the same.
@@ -246,7 +257,7 @@ mod tests {
         let look = |yaw_rad, pitch_rad| {
             let camera =
                 Camera { position_m: Vec3::new(32.0, 20.0, 200.0), yaw_rad, pitch_rad, fov_y_rad: 1.0 };
-            lake.seen(&camera.clip_from_world(1.5), camera.position_m)
+            lake.seen(&camera.clip_from_world(1.5), camera.position_m, usual(camera.position_m))
         };
         assert!(look(0.0, 0.0).is_some());
         assert_eq!(look(std::f32::consts::PI, 0.0), None);

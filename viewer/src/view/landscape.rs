@@ -3,13 +3,13 @@
 use super::Drawn;
 use super::mirror::MirrorChoice;
 use super::targets::Targets;
-use super::terrain::TerrainChoice;
+use super::terrain::{TerrainChoice, sight};
 use crate::camera::Camera;
 use crate::gpu::Gpu;
 use crate::options::{FrameInput, Options};
 use crate::passes::grass::{self, Clump};
 use crate::passes::plants::PlantChoice;
-use crate::passes::{BoundScene, Cull, CullUniform, Passes, ViewUniform};
+use crate::passes::{BoundScene, CullUniform, Passes, ViewUniform};
 
 /// Lists that are kept from frame to frame.
 #[derive(Debug, Default)]
@@ -54,9 +54,7 @@ impl LandscapeChoice {
             let (eye_m, focal_px) = (lod_camera.position_m, lod_camera.focal_px(size[1]));
             let culling = CullUniform::for_view(set, &frustum, eye_m, focal_px, options);
             trees.set(&gpu.queue, &culling);
-            let mut pass = scope.scoped_compute_pass(Cull::NAME);
-            passes.cull.dispatch(&mut pass, trees);
-            passes.leaf_light.dispatch(&mut pass, &bound.view_group, trees);
+            passes.choose_trees(scope, &bound.view_group, trees);
         }
         self.clumps.clear();
         self.plants.clear();
@@ -71,7 +69,9 @@ impl LandscapeChoice {
         bound.plants.write(gpu, &self.plants.instances);
         bound.plant_draws.write(gpu, &self.plants.draws);
         bound.scene.land.ring.seen(&camera.frustum(size[0] / size[1]), &mut bound.ring);
-        let mirrored = self.mirror.record(bound, gpu, scope, passes, size_px, frame, [camera, lod_camera]);
+        let drawn = sight(&detail, lod_camera, options);
+        let mirrored =
+            self.mirror.record(bound, gpu, scope, passes, size_px, frame, [camera, lod_camera], drawn);
         let draws = mirrored + draw(scope, passes, bound, targets, options);
         Drawn { draws, triangles, copies_by_level: Vec::new() }
     }

@@ -5,7 +5,7 @@ use crate::gpu::Gpu;
 use crate::lod::nested::Sight;
 use crate::lod::quadtree;
 use crate::options::FrameInput;
-use crate::passes::{BoundMirror, BoundScene, Cull, CullUniform, Mirror, Passes, Reflection, ViewUniform};
+use crate::passes::{BoundMirror, BoundScene, CullUniform, Mirror, Passes, Reflection, ViewUniform};
 use crate::upload::SceneBuffers;
 
 use super::terrain::{MAX_BLOCK_M, pixels};
@@ -20,7 +20,8 @@ pub(super) struct MirrorChoice {
 }
 
 impl MirrorChoice {
-    /// Records what the lake mirrors and tells how many draws that takes: none where the picture does not show the lake.
+    /// Records what the lake mirrors and tells how many draws that takes: none where the picture, whose land is drawn for that sight,
+    /// does not show the lake.
     #[expect(clippy::too_many_arguments, reason = "what a frame is drawn from")]
     pub fn record(
         &mut self,
@@ -31,10 +32,11 @@ impl MirrorChoice {
         size_px: [u32; 2],
         frame: &FrameInput,
         [camera, lod_camera]: [&Camera; 2],
+        drawn: Sight,
     ) -> u32 {
         let (scene, Some(mirror)) = (&bound.scene, &mut bound.mirror) else { return 0 };
         let lake = scene.land.lake.as_ref().filter(|_| frame.options.draw_terrain);
-        mirror.reflection = lake.and_then(|lake| Reflection::of(lake, camera, size_px));
+        mirror.reflection = lake.and_then(|lake| Reflection::of(lake, camera, size_px, drawn));
         let Some(reflection) = mirror.reflection.clone() else { return 0 };
         let error_px = frame.options.terrain_error_px.max(MIN_ERROR_PX);
         let (lod, eye_m) = (&scene.ground.lod, lod_camera.position_m);
@@ -66,9 +68,7 @@ fn cull(
 ) {
     if let Some((set, trees)) = scene.trees.as_ref().zip(mirror.trees.as_ref()) {
         trees.set(&gpu.queue, &CullUniform::for_mirror(set, &reflection.frustum));
-        let mut pass = scope.scoped_compute_pass(Cull::NAME);
-        passes.cull.dispatch(&mut pass, trees);
-        passes.leaf_light.dispatch(&mut pass, &mirror.view_group, trees);
+        passes.choose_trees(scope, &mirror.view_group, trees);
     }
 }
 

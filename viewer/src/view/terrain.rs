@@ -75,6 +75,12 @@ impl TerrainChoice {
     }
 }
 
+/// What the land of a picture is drawn for: that of a budget with ROAM may be off by anything.
+pub(super) fn sight(detail: &Detail, camera: &Camera, options: &Options) -> Sight {
+    let is_unknown = options.terrain_lod == TerrainLodMode::Roam && options.terrain_triangles.is_some();
+    Sight { eye_m: camera.position_m, pixels: if is_unknown { 0.0 } else { detail.pixels } }
+}
+
 /// [`Sight::pixels`] of a picture in which a radian covers `focal_px` pixels and the land may be `error_px` off.
 pub(super) fn pixels(focal_px: f32, error_px: f32) -> f32 {
     focal_px / error_px.max(MIN_ERROR_PX)
