@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use super::panorama::{Kind, Seen, Surroundings};
+use super::panorama::{Kind, Seen, Stature, Surroundings};
 use super::picture::{HALF_HEIGHT, Picture};
 use crate::math::{lerp, ramp};
 
@@ -23,7 +23,8 @@ pub enum Want {
     Depth,
     /// Of high land, its slopes at a distance: it is by them that a person tells lands from each other.
     Relief,
-    /// Trees between 10 m and 60 m, whole, and others beside them; none in the face, and not nothing but trees.
+    /// Trees between 10 m and 60 m, or 90 m if they are tall, whole, and others beside them; none in the face, and not nothing but
+    /// trees.
     Trees,
     /// Water in sight where there is much of it, but not at the feet and not everywhere.
     Water,
@@ -101,7 +102,7 @@ pub(super) fn appraise(
         picture.open(),
         picture.depth(),
         picture.relief(scene.relief),
-        picture.trees(),
+        picture.trees(scene.stature),
         picture.water(scene.wet),
         light,
         picture.horizon(),
@@ -133,7 +134,7 @@ impl Picture<'_> {
         lerp(lerp(1.0, 0.3, relief), 1.0, ramp(0.0, 0.16, slopes))
     }
 
-    fn trees(&self) -> f32 {
+    fn trees(&self, stature: Stature) -> f32 {
         let between = |low_m: f32, high_m: f32| self.share_between(low_m..high_m, |kind| kind == Kind::Tree);
         let (near, good, far) = (between(0.0, 10.0), between(10.0, 60.0), between(60.0, 1e4));
         let none_near = 0.2 + 0.8 * ramp(0.2, 0.04, near);
@@ -142,16 +143,24 @@ impl Picture<'_> {
         let not_in_the_way = 0.3 + 0.7 * ramp(0.5, 0.25, near + between(10.0, 30.0));
         // A stem without its crown is a bar across the picture.
         let not_cut = 0.35 + 0.65 * ramp(0.06, 0.015, self.cut_stems);
+        // Tall trees are seen whole from farther away.
+        let tall = ramp(15.0, 25.0, stature.height_m);
+        let (good, far) = (good + tall * between(60.0, 90.0), far - tall * between(60.0, 90.0));
         // Those at the edge alone are half as good.
-        let good = 0.5 * (good + self.middle_share_between(10.0..60.0, |kind| kind == Kind::Tree));
-        let some = 0.08 + 0.92 * ramp(0.0, 0.2, good + 0.2 * far);
+        let in_middle = |depths_m: Range<f32>| self.middle_share_between(depths_m, |kind| kind == Kind::Tree);
+        let good = 0.5 * (good + in_middle(10.0..60.0) + tall * in_middle(60.0..90.0));
+        // Columns of leaves take less of a picture than crowns do.
+        let wanted = lerp(0.06, 0.2, ramp(0.1, 0.32, stature.breadth));
+        let some = 0.08 + 0.92 * ramp(0.0, wanted, good + 0.2 * far);
         let is_tree =
             |seen: &Seen, depths_m: Range<f32>| seen.kind == Kind::Tree && depths_m.contains(&seen.depth_m);
         // One tree alone before a view is what every other picture has.
         let columns = self.part_of_columns(|seen| is_tree(seen, 10.0..200.0));
         let not_alone = 0.85 + 0.15 * ramp(0.25, 0.6, columns);
-        // Crowns that are cut off farther away are small.
-        let whole = 0.5 + 0.5 * ramp(0.3, 0.04, self.part_of_upper_edge(|seen| is_tree(seen, 0.0..60.0)));
+        // Crowns that are cut off farther away are small. Of a picture narrow ones take little, but may be all that it shows.
+        let cut = self.part_of_upper_edge(|seen| is_tree(seen, 0.0..60.0));
+        let of_all = cut / self.part_of_columns(|seen| is_tree(seen, 0.0..60.0)).max(cut).max(1e-3);
+        let whole = (0.5 + 0.5 * ramp(0.3, 0.04, cut)) * lerp(1.0, 0.4, of_all);
         some * none_near * not_all * not_in_the_way * not_cut * not_alone * whole
     }
 

@@ -72,6 +72,27 @@ pub(super) struct Surroundings<'a> {
     highest_m: f32,
     /// How much of a land is missed where none of its slopes are in sight, 0 … 1: nothing of level land, or in fog.
     pub relief: f32,
+    pub stature: Stature,
+}
+
+/// How the trees are shaped, on the mean.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Stature {
+    pub height_m: f32,
+    /// Width of the crown as a part of the height.
+    pub breadth: f32,
+}
+
+impl Stature {
+    fn of(footprints: &[TreeFootprint]) -> Self {
+        let mean = |value: fn(&TreeFootprint) -> f32| {
+            footprints.iter().map(value).sum::<f32>() / footprints.len().max(1) as f32
+        };
+        Self {
+            height_m: mean(|tree| tree.height_m),
+            breadth: mean(|tree| 2.0 * tree.crown_radius_m / tree.height_m),
+        }
+    }
 }
 
 /// A tree as an ellipsoid on a stem, which counts only where it is near.
@@ -119,7 +140,8 @@ impl<'a> Surroundings<'a> {
         let around = Around::of(land);
         let heights_m = [&land.field, &land.apron].map(|heights| heights.range_m()[1]);
         let highest_m = heights_m.into_iter().chain(land.water_level_m).fold(f32::MIN, f32::max);
-        Self { land, trees, highest_m, wet: around.wet(), relief: around.relief() * clear(light) }
+        let (wet, relief) = (around.wet(), around.relief() * clear(light));
+        Self { land, trees, highest_m, wet, relief, stature: Stature::of(footprints) }
     }
 
     /// The trees whose feet are no farther from a place.

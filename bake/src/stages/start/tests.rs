@@ -247,6 +247,15 @@ fn trees_are_worth_more_whole_than_with_their_tops_cut_off() {
 }
 
 #[test]
+fn tall_columns_are_looked_at_from_where_their_tops_are_in_the_picture() {
+    let poplar = TreeFootprint { height_m: 28.0, crown_radius_m: 1.8, clear_trunk: 0.05, ..TREE };
+    let row = |away_m: f32| trees_north(poplar, [22, 23, 0, 1, 2].map(|heading| (heading, away_m)));
+    let (whole, cut) = (row(62.0), row(25.0));
+    assert!(cut < 0.8 * whole, "{cut} {whole}");
+    assert!(whole > 0.6, "{whole}");
+}
+
+#[test]
 fn a_stem_whose_crown_is_cut_off_does_not_stand_across_the_picture() {
     let term = |trunk_radius_m: f32, heading: usize| {
         let pine = TreeFootprint { height_m: 20.0, clear_trunk: 0.6, trunk_radius_m, ..TREE };
