@@ -38,7 +38,7 @@ struct Frame {
     crown_half: vec3f,
     // How wide a leaf is.
     leaf_m: f32,
-    // Of as many leaves as `LEAVES` in Rust, packed: the normal by which each is lit, and that by which the eye sees more or less of it.
+    // Of as many leaves as `LEAVES` in Rust, octahedral: the normal by which each is lit, and that by which the eye sees more or less of it.
     leaves: array<vec2u, 32>,
     // Where the tree's middle is in each row from the top, x and z from the axis.
     middles: array<vec2f, 32>,
@@ -72,15 +72,9 @@ struct Out {
     @location(13) @interpolate(flat) is_beyond_field: f32,
 }
 
-// A unit vector or its opposite.
-fn unpacked(bits: u32) -> vec3f {
-    let xy = unpack2x16snorm(bits);
-    return vec3f(xy, sqrt(saturate(1.0 - dot(xy, xy))));
-}
-
 // What `leaf` of `trees.wgsl` makes of the sun and of a leaf's normal. Directions are in the template's space.
 fn light_of(template_index: u32, leaf: u32, to_eye: vec3f, to_sun: vec3f) -> vec3f {
-    let normal = unpacked(frames[template_index].leaves[leaf].x);
+    let normal = octahedral(unpack2x16snorm(frames[template_index].leaves[leaf].x));
     let toward_sun = dot(normal, to_sun);
     let lit = abs(toward_sun) * 0.75 + 0.25;
     let sides = select(vec2f(0.0, lit), vec2f(lit, 0.0), toward_sun * dot(normal, to_eye) > 0.0);
@@ -89,7 +83,7 @@ fn light_of(template_index: u32, leaf: u32, to_eye: vec3f, to_sun: vec3f) -> vec
 
 // How much of a leaf the eye sees, as a share of its area.
 fn share_of(template_index: u32, leaf: u32, to_eye: vec3f) -> f32 {
-    return abs(dot(unpacked(frames[template_index].leaves[leaf].y), to_eye));
+    return abs(dot(octahedral(unpack2x16snorm(frames[template_index].leaves[leaf].y)), to_eye));
 }
 
 // The light of all leaves, averaged by how much of each the eye sees.

@@ -29,7 +29,7 @@ pub struct Impostor {
     pub error_m: f32,
     /// The ellipsoid around the leaves.
     pub crown: Crown,
-    /// Some leaves, evenly spread over all their area, for the light that leaves get on average; zero where there are none.
+    /// Some leaves, evenly spread over all their area, for the light that leaves get on average; means nothing where there are none.
     pub leaves: [LeafSide; LEAVES],
     /// How wide what shows of a leaf is, above 0.
     pub leaf_m: f32,
@@ -38,13 +38,14 @@ pub struct Impostor {
     pub middles_m: [[f32; 2]; IMPOSTOR_ROWS],
 }
 
-/// How a leaf lies; unit vectors in the template's space, on either side.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// How a leaf lies: octahedral unit vectors in the template's space, in 2 × 16 bits, signed, on either side.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct LeafSide {
     /// The normal by which it is lit.
-    pub normal: [f32; 3],
+    pub normal_oct: [i16; 2],
     /// That of its triangle, by which an eye sees more or less of it.
-    pub face: [f32; 3],
+    pub face_oct: [i16; 2],
 }
 
 /// The ellipsoid around the leaves of a tree; metres in the template's space.

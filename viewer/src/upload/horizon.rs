@@ -10,13 +10,13 @@ use crate::scene::Heightfield;
 /// Directions all around in which the land is looked at: at 500 m they are 12 m apart.
 const RAYS: usize = 256;
 /// Distances at which that is done: the first in metres, and the ratio of each to the one before. Between them land counts as low.
-const FIRST_M: f32 = 3.0;
-const RATIO: f32 = 1.07;
-const STEPS: usize = 108;
+const FIRST_M: f32 = 2.0;
+const RATIO: f32 = 1.05;
+const STEPS: usize = 160;
 /// By so much land counts as lower than it is drawn at least: between its samples it is not quite what triangles make of it.
 const MARGIN_M: f32 = 0.3;
 
-/// Of one eye; land is looked at when it is first asked for.
+/// Of one eye; directions are looked at when they are first asked for.
 #[derive(Debug)]
 pub struct Horizon<'a> {
     field: &'a Heightfield,
@@ -24,8 +24,8 @@ pub struct Horizon<'a> {
     /// By how much the land may be off as it is drawn, and counts as lower.
     drawn: Sight,
     distances_m: [f32; STEPS],
-    /// The steepest slope upwards from the eye to land up to each distance, as far as anybody asked.
-    rays: [Vec<f32>; RAYS],
+    /// The steepest slope upwards from the eye to land up to each distance.
+    rays: [Option<Box<[f32; STEPS]>>; RAYS],
 }
 
 impl<'a> Horizon<'a> {
@@ -35,7 +35,7 @@ impl<'a> Horizon<'a> {
             next_m *= RATIO;
             next_m
         });
-        Self { field, eye_m, drawn, distances_m, rays: [const { Vec::new() }; RAYS] }
+        Self { field, eye_m, drawn, distances_m, rays: [const { None }; RAYS] }
     }
 
     /// True if land stands before all of a level rectangle between two corners (x and z, the lower coordinates first). False where
@@ -57,29 +57,29 @@ impl<'a> Horizon<'a> {
         let upwards_m = level_m - self.eye_m.y;
         let steepest = (upwards_m / nearest_m).max(upwards_m / farthest_m);
         let before = self.distances_m.partition_point(|&distance_m| distance_m < nearest_m);
-        let Some(step) = before.checked_sub(1) else { return false };
-        (first..=last).all(|ray| self.slope(ray.rem_euclid(RAYS as i32) as usize, step) > steepest)
+        (first..=last).all(|ray| {
+            let slopes = self.ray(ray.rem_euclid(RAYS as i32) as usize);
+            before.checked_sub(1).is_some_and(|step| slopes[step] > steepest)
+        })
     }
 
-    /// The steepest one of a ray up to a step.
-    fn slope(&mut self, ray: usize, step: usize) -> f32 {
-        let way = Vec2::from_angle(ray as f32 / RAYS as f32 * TAU);
-        let half_m = 0.5 * self.field.extent_m();
-        let (eye_m, drawn, slopes) = (self.eye_m, self.drawn, &mut self.rays[ray]);
-        while slopes.len() <= step {
-            let distance_m = self.distances_m[slopes.len()];
-            let steepest = slopes.last().copied().unwrap_or(f32::NEG_INFINITY);
-            let place_m = eye_m.xz() + way * distance_m;
-            slopes.push(match place_m.abs().max_element() < half_m {
-                true => {
-                    let height_m = self.field.height_m(place_m.x, place_m.y);
+    fn ray(&mut self, number: usize) -> &[f32; STEPS] {
+        let (field, eye_m, drawn, distances_m) = (self.field, self.eye_m, self.drawn, &self.distances_m);
+        self.rays[number].get_or_insert_with(|| {
+            let way = Vec2::from_angle(number as f32 / RAYS as f32 * TAU);
+            let half_m = 0.5 * field.extent_m();
+            let mut steepest = f32::NEG_INFINITY;
+            let slope = |distance_m: f32| {
+                let place_m = eye_m.xz() + way * distance_m;
+                if place_m.abs().max_element() < half_m {
+                    let height_m = field.height_m(place_m.x, place_m.y);
                     let place_m = Vec3::new(place_m.x, height_m, place_m.y);
                     let lowest_m = height_m - MARGIN_M - place_m.distance(drawn.eye_m) / drawn.pixels;
-                    steepest.max((lowest_m - eye_m.y) / distance_m)
+                    steepest = steepest.max((lowest_m - eye_m.y) / distance_m);
                 }
-                false => steepest,
-            });
-        }
-        slopes[step]
+                steepest
+            };
+            Box::new(distances_m.map(slope))
+        })
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{ImageUse, Uploader};
-use crate::scene::{IMPOSTOR_ROWS, Impostor, LEAVES, Template};
+use crate::scene::{IMPOSTOR_ROWS, Impostor, LEAVES, LeafSide, Template};
 
 /// Mip levels end where a picture of a strip has so many pixels a side.
 const MIN_PX: u32 = 8 * genescape_schema::scene::IMPOSTOR_PICTURES;
@@ -24,8 +24,8 @@ pub struct ImpostorData {
     pub crown_half: [f32; 3],
     /// The width of a leaf.
     pub leaf_m: f32,
-    /// Of some leaves, the normal by which each is lit and that of its triangle, as [`packed`] has them.
-    pub leaves: [[u32; 2]; LEAVES],
+    /// How some leaves lie. Shaders look up one after another, and software takes as long again for each 32 bits.
+    pub leaves: [LeafSide; LEAVES],
     /// Where the tree's middle is in each row from the top, x and z from the axis.
     pub middles: [[f32; 2]; IMPOSTOR_ROWS],
 }
@@ -80,15 +80,6 @@ impl Uploader {
     }
 }
 
-/// A unit vector or its opposite, that whose z is not below 0, as x and y in 16 bits each, signed, x in the lower ones. Shaders look up
-/// one leaf after another, and software takes as long again for each number of a leaf.
-fn packed(way: [f32; 3]) -> u32 {
-    let [x, y, z] = way;
-    let side = if z < 0.0 { -1.0 } else { 1.0 };
-    let bits = |part: f32| u32::from((libm::roundf(side * part.clamp(-1.0, 1.0) * 32767.0) as i16) as u16);
-    bits(x) | (bits(y) << 16)
-}
-
 fn frame(pictures: &Impostor) -> ImpostorData {
     ImpostorData {
         axis: pictures.axis_m,
@@ -97,29 +88,7 @@ fn frame(pictures: &Impostor) -> ImpostorData {
         low: pictures.low_m,
         crown_half: pictures.crown.half_m,
         leaf_m: pictures.leaf_m,
-        leaves: pictures.leaves.map(|leaf| [leaf.normal, leaf.face].map(packed)),
+        leaves: pictures.leaves,
         middles: pictures.middles_m,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use glam::Vec3;
-    use proptest::prelude::*;
-
-    proptest! {
-        #[test]
-        fn a_packed_way_comes_back_or_its_opposite_does(x in -1f32..1., y in -1f32..1., z in -1f32..1.) {
-            let way = Vec3::new(x, y, z);
-            prop_assume!(way.length() > 0.1);
-            let way = way.normalize();
-            let bits = packed(way.into());
-            let part = |bits: u32| f32::from(bits as u16 as i16) / 32767.0;
-            let (x, y) = (part(bits), part(bits >> 16));
-            // As `unpacked` of the shader does it.
-            let back = Vec3::new(x, y, (1.0 - x * x - y * y).clamp(0.0, 1.0).sqrt());
-            prop_assert!(back.dot(way).abs() > 0.9999, "{way} {back}");
-        }
     }
 }
