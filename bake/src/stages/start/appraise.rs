@@ -135,7 +135,8 @@ impl Picture<'_> {
     }
 
     fn trees(&self, stature: Stature) -> f32 {
-        let between = |low_m: f32, high_m: f32| self.share_between(low_m..high_m, |kind| kind == Kind::Tree);
+        let is_tree = |kind: Kind| kind == Kind::Tree;
+        let between = |low_m: f32, high_m: f32| self.share_between(low_m..high_m, is_tree);
         let (near, good, far) = (between(0.0, 10.0), between(10.0, 60.0), between(60.0, 1e4));
         let none_near = 0.2 + 0.8 * ramp(0.2, 0.04, near);
         let not_all = 0.4 + 0.6 * ramp(0.7, 0.4, near + good + far);
@@ -145,21 +146,22 @@ impl Picture<'_> {
         let not_cut = 0.35 + 0.65 * ramp(0.06, 0.015, self.cut_stems);
         // Tall trees are seen whole from farther away.
         let tall = ramp(15.0, 25.0, stature.height_m);
-        let (good, far) = (good + tall * between(60.0, 90.0), far - tall * between(60.0, 90.0));
+        let farther = tall * between(60.0, 90.0);
         // Those at the edge alone are half as good.
-        let in_middle = |depths_m: Range<f32>| self.middle_share_between(depths_m, |kind| kind == Kind::Tree);
-        let good = 0.5 * (good + in_middle(10.0..60.0) + tall * in_middle(60.0..90.0));
+        let in_middle = |low_m: f32, high_m: f32| self.middle_share_between(low_m..high_m, is_tree);
+        let well_placed = 0.5 * (good + farther + in_middle(10.0, 60.0) + tall * in_middle(60.0, 90.0));
         // Columns of leaves take less of a picture than crowns do.
         let wanted = lerp(0.06, 0.2, ramp(0.1, 0.32, stature.breadth));
-        let some = 0.08 + 0.92 * ramp(0.0, wanted, good + 0.2 * far);
-        let is_tree =
-            |seen: &Seen, depths_m: Range<f32>| seen.kind == Kind::Tree && depths_m.contains(&seen.depth_m);
+        let some = 0.08 + 0.92 * ramp(0.0, wanted, well_placed + 0.2 * (far - farther));
+        let is_at =
+            |seen: &Seen, depths_m: Range<f32>| is_tree(seen.kind) && depths_m.contains(&seen.depth_m);
         // One tree alone before a view is what every other picture has.
-        let columns = self.part_of_columns(|seen| is_tree(seen, 10.0..200.0));
+        let columns = self.part_of_columns(|seen| is_at(seen, 10.0..200.0));
         let not_alone = 0.85 + 0.15 * ramp(0.25, 0.6, columns);
         // Crowns that are cut off farther away are small. Of a picture narrow ones take little, but may be all that it shows.
-        let cut = self.part_of_upper_edge(|seen| is_tree(seen, 0.0..60.0));
-        let of_all = cut / self.part_of_columns(|seen| is_tree(seen, 0.0..60.0)).max(cut).max(1e-3);
+        let is_close = |seen: &Seen| is_at(seen, 0.0..60.0);
+        let cut = self.part_of_upper_edge(is_close);
+        let of_all = cut / self.part_of_columns(is_close).max(1e-3);
         let whole = (0.5 + 0.5 * ramp(0.3, 0.04, cut)) * lerp(1.0, 0.4, of_all);
         some * none_near * not_all * not_in_the_way * not_cut * not_alone * whole
     }
