@@ -161,8 +161,7 @@ impl Picture<'_> {
         // Crowns that are cut off farther away are small. Of a picture narrow ones take little, but may be all that it shows.
         let is_close = |seen: &Seen| is_at(seen, 0.0..60.0);
         let cut = self.part_of_upper_edge(is_close);
-        let of_all = cut / self.part_of_columns(is_close).max(1e-3);
-        let whole = (0.5 + 0.5 * ramp(0.3, 0.04, cut)) * lerp(1.0, 0.4, of_all);
+        let whole = (0.5 + 0.5 * ramp(0.3, 0.04, cut)) * lerp(1.0, 0.25, self.part_cut_off(is_close));
         some * none_near * not_all * not_in_the_way * not_cut * not_alone * whole
     }
 

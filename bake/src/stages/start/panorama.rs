@@ -303,7 +303,9 @@ impl Panorama {
         let reach = half.max(0.5) as i32 + 1;
         for offset in -reach..=reach {
             let column = libm::roundf(middle) as i32 + offset;
-            let aside = (column as f32 - middle) / half.max(0.5);
+            let away = (column as f32 - middle).abs();
+            // All of its height is in one column, or the tip of a slender tree would be between the middles of two.
+            let aside = if away <= 0.5 { 0.0 } else { away / half.max(0.5) };
             if aside * aside >= 1.0 {
                 continue;
             }

@@ -75,19 +75,40 @@ impl<'a> Picture<'a> {
 
     /// Part of the upper edge that shows something that is wanted.
     pub fn part_of_upper_edge(&self, is_wanted: impl Fn(&Seen) -> bool) -> f32 {
-        let edge = self.pitch + HALF_HEIGHT;
-        self.part([edge - ROW_STEP, edge], |_, seen| is_wanted(seen))
+        self.part(self.upper_edge(), |_, seen| is_wanted(seen))
+    }
+
+    /// Of what is wanted and shown, the part below places where the upper edge shows it, too.
+    pub fn part_cut_off(&self, is_wanted: impl Fn(&Seen) -> bool) -> f32 {
+        let shown = |column: &Column<'_>, slopes: [f32; 2]| {
+            rows_between(slopes).filter(|&(row, _)| is_wanted(&column.seen[row])).count()
+        };
+        let (mut all, mut cut) = (0, 0);
+        for column in &self.columns {
+            let rays = shown(column, self.slopes());
+            all += rays;
+            cut += if shown(column, self.upper_edge()) > 0 { rays } else { 0 };
+        }
+        cut as f32 / all.max(1) as f32
+    }
+
+    fn slopes(&self) -> [f32; 2] {
+        [self.pitch - HALF_HEIGHT, self.pitch + HALF_HEIGHT]
+    }
+
+    fn upper_edge(&self) -> [f32; 2] {
+        let [_, edge] = self.slopes();
+        [edge - ROW_STEP, edge]
     }
 
     /// All of it: slope and what is seen.
     pub fn rays(&self) -> impl Iterator<Item = (f32, &Seen)> {
-        self.rays_between([self.pitch - HALF_HEIGHT, self.pitch + HALF_HEIGHT])
+        self.rays_between(self.slopes())
     }
 
-    fn rays_between(&self, [low, high]: [f32; 2]) -> impl Iterator<Item = (f32, &Seen)> {
-        let rows = (0..ROWS).map(|row| (row, slope_of(row)));
-        let rows = rows.filter(move |(_, slope)| (low..=high).contains(slope));
-        rows.flat_map(|(row, slope)| self.columns.iter().map(move |column| (slope, &column.seen[row])))
+    fn rays_between(&self, slopes: [f32; 2]) -> impl Iterator<Item = (f32, &Seen)> {
+        rows_between(slopes)
+            .flat_map(|(row, slope)| self.columns.iter().map(move |column| (slope, &column.seen[row])))
     }
 
     /// Part of the rays with slopes between two bounds that meet what `wanted` says.
@@ -113,6 +134,11 @@ impl<'a> Picture<'a> {
     pub fn middle_share_between(&self, depths_m: Range<f32>, wanted: impl Fn(Kind) -> bool) -> f32 {
         share_of(&self.in_middle, depths_m, wanted)
     }
+}
+
+/// The panorama's rows between two slopes, with theirs.
+fn rows_between([low, high]: [f32; 2]) -> impl Iterator<Item = (usize, f32)> {
+    (0..ROWS).map(|row| (row, slope_of(row))).filter(move |(_, slope)| (low..=high).contains(slope))
 }
 
 /// [`Picture::cut_stems`] of the picture around a column. A crown counts wholly that begins in the picture's uppermost fifth,

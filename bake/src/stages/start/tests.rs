@@ -1,6 +1,8 @@
 //! What a person wants of a first look holds on made-up lands, told by marching over the heights once more, and on random
 //! ones.
 
+use std::f32::consts::TAU;
+
 use genescape_schema::{Genome, Kinds, Space};
 use glam::{Vec2, Vec3, Vec3Swizzles};
 
@@ -207,13 +209,18 @@ fn the_sun_is_not_in_the_eyes_and_lights_the_ground() {
     }
 }
 
-/// How good the trees are that one sees who looks north on level land, at `(heading, metres)` from there.
-fn trees_north(footprint: TreeFootprint, around: impl IntoIterator<Item = (usize, f32)>) -> f32 {
+/// How good the trees are that one sees who looks north on level land, at `(heading, metres)` from there; a heading is a 24th of a
+/// turn.
+fn trees_north(footprint: TreeFootprint, around: impl IntoIterator<Item = (f32, f32)>) -> f32 {
     let (land, light) = (land(|_, _| 0.0, None), light(40.0, 130.0));
     let first = Lookout::HEADINGS * 136;
-    let headings: Vec<Lookout> = Lookout::all().skip(first).take(Lookout::HEADINGS).collect();
-    let place = headings[0].place_m(land.field.extent_m());
-    let trees = trees(around.into_iter().map(|(heading, away_m)| place + away_m * headings[heading].ahead()));
+    let lookout = Lookout::all().nth(first).expect("a lookout");
+    let place = lookout.place_m(land.field.extent_m());
+    let towards = |heading: f32| {
+        let (sin, cos) = libm::sincosf(heading * TAU / Lookout::HEADINGS as f32);
+        Vec2::new(sin, -cos)
+    };
+    let trees = trees(around.into_iter().map(|(heading, away_m)| place + away_m * towards(heading)));
     looks(&land, &trees, &[footprint], &light, 1)[first].term(Want::Trees)
 }
 
@@ -221,7 +228,7 @@ fn trees_north(footprint: TreeFootprint, around: impl IntoIterator<Item = (usize
 fn crowns_that_fill_the_picture_spoil_it_and_the_same_farther_away_do_not() {
     let huge = TreeFootprint { height_m: 28.0, crown_radius_m: 8.0, clear_trunk: 0.0, ..TREE };
     // Before the eyes, and 30 degrees to both sides.
-    let score = |away_m: f32| trees_north(huge, [22, 0, 2].map(|heading| (heading, away_m)));
+    let score = |away_m: f32| trees_north(huge, [-2.0, 0.0, 2.0].map(|heading| (heading, away_m)));
     assert!(score(11.0) < 0.6 * score(36.0), "{} {}", score(11.0), score(36.0));
 }
 
@@ -229,8 +236,8 @@ fn crowns_that_fill_the_picture_spoil_it_and_the_same_farther_away_do_not() {
 fn one_tree_alone_is_worth_less_than_several_that_take_as_much_of_the_picture() {
     let round = |crown_radius_m: f32| TreeFootprint { crown_radius_m, ..TREE };
     let (alone, several) = (
-        trees_north(round(6.0), [(0, 25.0)]),
-        trees_north(round(2.0), [22, 23, 0, 1, 2].map(|heading| (heading, 25.0))),
+        trees_north(round(6.0), [(0.0, 25.0)]),
+        trees_north(round(2.0), [-2.0, -1.0, 0.0, 1.0, 2.0].map(|heading| (heading, 25.0))),
     );
     assert!(alone < 0.9 * several, "{alone} {several}");
 }
@@ -240,7 +247,7 @@ fn trees_are_worth_more_whole_than_with_their_tops_cut_off() {
     // Crowns that begin as high above the ground, and as wide.
     let row = |height_m: f32, clear_trunk: f32| {
         let footprint = TreeFootprint { height_m, clear_trunk, crown_radius_m: 1.5, ..TREE };
-        trees_north(footprint, [22, 0, 2].map(|heading| (heading, 20.0)))
+        trees_north(footprint, [-2.0, 0.0, 2.0].map(|heading| (heading, 20.0)))
     };
     let (whole, cut) = (row(10.0, 0.12), row(24.0, 0.05));
     assert!(cut < 0.9 * whole, "{cut} {whole}");
@@ -249,21 +256,35 @@ fn trees_are_worth_more_whole_than_with_their_tops_cut_off() {
 #[test]
 fn tall_columns_are_looked_at_from_where_their_tops_are_in_the_picture() {
     let poplar = TreeFootprint { height_m: 28.0, crown_radius_m: 1.8, clear_trunk: 0.05, ..TREE };
-    let row = |away_m: f32| trees_north(poplar, [22, 23, 0, 1, 2].map(|heading| (heading, away_m)));
+    let row = |away_m: f32| trees_north(poplar, [-2.0, -1.0, 0.0, 1.0, 2.0].map(|heading| (heading, away_m)));
     let (whole, cut) = (row(62.0), row(25.0));
     assert!(cut < 0.8 * whole, "{cut} {whole}");
     assert!(whole > 0.6, "{whole}");
 }
 
 #[test]
+fn a_slender_tree_before_others_is_worth_more_whole_wherever_it_stands() {
+    let poplars = |near_m: f32, heading: f32| {
+        let poplar = TreeFootprint { height_m: 20.0, crown_radius_m: 0.9, clear_trunk: 0.05, ..TREE };
+        let far = [-2.5, -1.5, 1.5, 2.5].map(|heading| (heading, 55.0));
+        trees_north(poplar, far.into_iter().chain([(heading, near_m)]))
+    };
+    // A panorama has four columns a heading.
+    for heading in [0.0, 0.0625, 0.125, 0.1875] {
+        let (whole, cut) = (poplars(40.0, heading), poplars(24.0, heading));
+        assert!(cut < 0.85 * whole, "{cut} of {whole} at {heading}");
+    }
+}
+
+#[test]
 fn a_stem_whose_crown_is_cut_off_does_not_stand_across_the_picture() {
-    let term = |trunk_radius_m: f32, heading: usize| {
+    let term = |trunk_radius_m: f32, heading: f32| {
         let pine = TreeFootprint { height_m: 20.0, clear_trunk: 0.6, trunk_radius_m, ..TREE };
-        let wood = (0..Lookout::HEADINGS).map(|heading| (heading, 40.0));
+        let wood = (0..Lookout::HEADINGS).map(|heading| (heading as f32, 40.0));
         trees_north(pine, wood.chain([(heading, 5.0)]))
     };
     // Before the eyes; behind the back; one that hides nothing.
-    let (before, behind, thin) = (term(0.3, 0), term(0.3, 12), term(0.03, 0));
+    let (before, behind, thin) = (term(0.3, 0.0), term(0.3, 12.0), term(0.03, 0.0));
     assert!(before < 0.6 * behind, "{before} {behind}");
     assert!(thin > 0.95 * behind, "{thin} {behind}");
 }
