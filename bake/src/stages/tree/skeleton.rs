@@ -12,8 +12,12 @@ use glam::Vec3;
 use super::budget::Budget;
 use super::culms;
 use super::params::{Habit, TreeParams};
-use crate::math::lerp;
+use crate::math::{lerp, ramp};
 use crate::seed::Dice;
+
+/// Where along a trunk the leader of a weeping tree begins to nod, and how far it turns until its tip, in degrees.
+const NODS_FROM: f32 = 0.6;
+const NODS_BY_DEG: f32 = 105.0;
 
 /// Branches keep this far above the ground, in metres.
 const GROUND_CLEARANCE_M: f32 = 0.25;
@@ -329,14 +333,19 @@ impl Grower<'_> {
         let step = 1.0 / segments as f32;
         let back = if z + 0.5 * step >= 0.5 { 2.0 * p.curve_back_deg } else { 0.0 };
         let gnarl = (p.curve_variation_deg * gnarl_gain * step).to_radians();
-        let curve = ((p.curve_deg + back) * curve_gain * step).to_radians() + gnarl * self.dice.signed();
+        // Where all hangs, a leader that stood upright would stand alone above it.
+        let weeps = if level == 0 && !palm { ramp(-0.5, -0.9, p.tropism) } else { 0.0 };
+        let nod_deg = if z >= NODS_FROM { weeps * NODS_BY_DEG / (1.0 - NODS_FROM) } else { 0.0 };
+        let curve =
+            (((p.curve_deg + back) * curve_gain + nod_deg) * step).to_radians() + gnarl * self.dice.signed();
         let mut next = turned(along, axis, curve);
         next = (next + axis * (gnarl * self.dice.signed())).normalize_or(along);
         let down = [0.0, 0.9, 3.4, 2.6][level];
         let up = [if palm { 0.4 } else { 0.0 }, 0.5, 0.9, 0.9][level];
         let pull = if p.tropism < 0.0 { p.tropism * down } else { p.tropism * up };
         // Leaders right themselves whatever the genes say, but for the tips of canes.
-        let pull = if level == 0 && !palm && !nods { 0.45 } else { pull };
+        let rights_itself = level == 0 && !palm && !nods && nod_deg == 0.0;
+        let pull = if rights_itself { 0.45 } else { pull };
         let level_part = Vec3::Y - next * next.y;
         (next + level_part * (pull * step)).normalize_or(next)
     }

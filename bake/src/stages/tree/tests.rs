@@ -240,6 +240,23 @@ fn every_card_is_rooted_on_a_stem() {
 }
 
 #[test]
+fn leaders_stand_upright_but_nod_where_all_hangs() {
+    // How high a trunk is, and how steeply it ends.
+    let trunk = |tropism: f32| {
+        let params = TreeParams { tropism, ..read(&oak()) };
+        let mut dice = Dice::new(params.tree_seed, "tree", 0);
+        let skeleton = skeleton::grow(&params, &Budget::new(&params), &mut dice);
+        let stem = skeleton.stems.iter().find(|stem| stem.level == 0).expect("a trunk");
+        let heights = skeleton.nodes[stem.nodes.clone()].iter().map(|node| node.at.y);
+        let (_, tip, _) = skeleton.along(stem, 1.0);
+        (heights.fold(0.0, f32::max), tip.y)
+    };
+    let ((upright_m, up), (nodding_m, down)) = (trunk(-0.4), trunk(-1.0));
+    assert!(up > 0.8 && down < 0.2, "{up} {down}");
+    assert!(nodding_m < 0.95 * upright_m, "{nodding_m} of {upright_m} m");
+}
+
+#[test]
 fn crowns_are_shaded_but_never_black() {
     let params = read(&oak());
     let ranges = [0, 1, 2, 3, 4].map(|index| {
