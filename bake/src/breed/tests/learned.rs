@@ -62,10 +62,10 @@ fn more_votes_bring_it_nearer() {
     let space = Space::builtin();
     let (kinds, _) = Kinds::shipped(&space);
     let after =
-        |rounds| mean((20..36).map(|seed| distance_after(Strategy::Learned, &space, &kinds, rounds, seed)));
+        |rounds| mean((20..68).map(|seed| distance_after(Strategy::Learned, &space, &kinds, rounds, seed)));
     let [start, few, many] = [0, 4, 16].map(after);
-    // Measured with 48 persons: 0.45 and 0.75. Means of 16 differ by a tenth with whatever changes a kind.
-    assert!(few < 0.6 * start && many < 0.9 * few, "{start}, {few}, {many}");
+    // Measured: 0.45 and 0.75. Means of 16 persons differ by a tenth with whatever changes a kind.
+    assert!(few < 0.6 * start && many < 0.8 * few, "{start}, {few}, {many}");
 }
 
 #[test]

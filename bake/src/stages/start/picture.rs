@@ -80,14 +80,13 @@ impl<'a> Picture<'a> {
 
     /// Of what is wanted and shown, the part below places where the upper edge shows it, too.
     pub fn part_cut_off(&self, is_wanted: impl Fn(&Seen) -> bool) -> f32 {
-        let shown = |column: &Column<'_>, slopes: [f32; 2]| {
-            rows_between(slopes).filter(|&(row, _)| is_wanted(&column.seen[row])).count()
-        };
         let (mut all, mut cut) = (0, 0);
         for column in &self.columns {
-            let rays = shown(column, self.slopes());
-            all += rays;
-            cut += if shown(column, self.upper_edge()) > 0 { rays } else { 0 };
+            let mut at_edge = rows_between(self.upper_edge());
+            let is_cut = at_edge.any(|(row, _)| is_wanted(&column.seen[row]));
+            let shown = rows_between(self.slopes()).filter(|&(row, _)| is_wanted(&column.seen[row])).count();
+            all += shown;
+            cut += if is_cut { shown } else { 0 };
         }
         cut as f32 / all.max(1) as f32
     }

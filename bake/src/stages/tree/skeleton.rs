@@ -334,8 +334,9 @@ impl Grower<'_> {
         let back = if z + 0.5 * step >= 0.5 { 2.0 * p.curve_back_deg } else { 0.0 };
         let gnarl = (p.curve_variation_deg * gnarl_gain * step).to_radians();
         // Where all hangs, a leader that stood upright would stand alone above it.
-        let weeps = if level == 0 && !palm { ramp(-0.5, -0.9, p.tropism) } else { 0.0 };
-        let nod_deg = if z >= NODS_FROM { weeps * NODS_BY_DEG / (1.0 - NODS_FROM) } else { 0.0 };
+        let weeps = level == 0 && !palm && z >= NODS_FROM;
+        let weeping = if weeps { ramp(-0.5, -0.9, p.tropism) } else { 0.0 };
+        let nod_deg = weeping * NODS_BY_DEG / (1.0 - NODS_FROM);
         let curve =
             (((p.curve_deg + back) * curve_gain + nod_deg) * step).to_radians() + gnarl * self.dice.signed();
         let mut next = turned(along, axis, curve);
@@ -344,8 +345,7 @@ impl Grower<'_> {
         let up = [if palm { 0.4 } else { 0.0 }, 0.5, 0.9, 0.9][level];
         let pull = if p.tropism < 0.0 { p.tropism * down } else { p.tropism * up };
         // Leaders right themselves whatever the genes say, but for the tips of canes.
-        let rights_itself = level == 0 && !palm && !nods && nod_deg == 0.0;
-        let pull = if rights_itself { 0.45 } else { pull };
+        let pull = if level == 0 && !palm && !nods { 0.45 * (1.0 - weeping) } else { pull };
         let level_part = Vec3::Y - next * next.y;
         (next + level_part * (pull * step)).normalize_or(next)
     }
