@@ -218,7 +218,7 @@ fn some_leaves(template: &Template) -> ([LeafSide; LEAVES], f32) {
         // Nearer now to the one corner, now to another.
         let near = triangle.iter().cycle().skip(leaf % 3).zip([0.6, 0.2, 0.2]);
         let normal: Vec3 = near.map(|(corner, part)| part * direction(corner.normal_oct)).sum();
-        LeafSide { normal_oct: octahedral(normal), face_oct: octahedral(twice_area_m2(triangle)) }
+        LeafSide { normal: normal.normalize_or_zero(), face: twice_area_m2(triangle).normalize_or_zero() }
     });
     (leaves, leaf_m)
 }

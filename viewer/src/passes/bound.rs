@@ -3,7 +3,6 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::layouts::LEAF_LIGHT;
 use super::{Binding, BoundMirror, BoundShade, CullUniform, Layouts, bind};
 use crate::gpu::Gpu;
 use crate::upload::{SceneBuffers, TreeSet};
@@ -49,8 +48,6 @@ pub struct BoundTrees {
     pub(super) material_groups: Vec<wgpu::BindGroup>,
     /// Of the pictures, if there are any.
     pub(super) impostors_group: Option<wgpu::BindGroup>,
-    /// Of what lights them.
-    pub(super) leaf_light_group: Option<wgpu::BindGroup>,
     /// Trees for each level and template: u32 at level · templates + template; then pictures.
     pub counts: wgpu::Buffer,
     /// Number of each visible tree, its λ, and the share of its pixels that are drawn.
@@ -90,6 +87,7 @@ impl BoundScene {
                 Binding::texture(&land.light),
                 Binding::texture(&land.bounds),
                 Binding::texture(&shade.texture),
+                Binding::texture(&sky.horizon),
             ];
             bind(gpu, "view", &layouts.view, (0..).zip(bound))
         };
@@ -159,23 +157,16 @@ impl BoundTrees {
             let bound = [Binding::Buffer(&material.uniform), color, normal];
             bind(gpu, &material.name, &layouts.material, (0..).zip(bound))
         };
-        let pictures = set.impostors.as_ref().map(|pictures| {
-            let lights = gpu.empty_buffer("light of leaves", 16 * u64::from(set.count), Usage::STORAGE);
-            let lit = [&set.trees, &pictures.frames, &visible, &lights, &counts].map(Binding::Buffer);
-            let lit = LEAF_LIGHT.into_iter().map(|(number, _)| number).zip(lit);
-            let [colors, reliefs] =
-                [&pictures.colors, &pictures.reliefs].map(|layers| Binding::layers(layers));
-            let [trees, frames, visible, lights] =
-                [&set.trees, &pictures.frames, &visible, &lights].map(Binding::Buffer);
+        let impostors_group = set.impostors.as_ref().map(|pictures| {
+            let [colors, reliefs, lights] = [&pictures.colors, &pictures.reliefs, &pictures.leaf_lights]
+                .map(|layers| Binding::layers(layers));
+            let [trees, frames, visible] = [&set.trees, &pictures.frames, &visible].map(Binding::Buffer);
             let drawn = [trees, frames, colors, reliefs, visible, lights];
-            let drawn = bind(gpu, "pictures of trees", &layouts.impostors, (0..).zip(drawn));
-            (drawn, bind(gpu, "light of leaves", &layouts.leaf_light, lit))
+            bind(gpu, "pictures of trees", &layouts.impostors, (0..).zip(drawn))
         });
-        let (impostors_group, leaf_light_group) = pictures.unzip();
         Self {
             cull_group: bind(gpu, "culling", &layouts.cull, culled),
             impostors_group,
-            leaf_light_group,
             trees_group: bind(gpu, "trees", &layouts.trees, [(0, Binding::Buffer(&set.trees))]),
             material_groups: set.materials.iter().map(material).collect(),
             uniform,

@@ -64,6 +64,8 @@ struct View {
 @group(0) @binding(9) var heights: texture_2d<f32>;
 @group(0) @binding(10) var light_map: texture_2d<f32>;
 @group(0) @binding(12) var near_shade: texture_2d<f32>;
+// The cloudless sky at the horizon: see `around`.
+@group(0) @binding(13) var horizon: texture_2d<f32>;
 
 // A tree, as `TreeData` in Rust.
 struct Tree {
@@ -127,10 +129,29 @@ struct Studio {
 
 const PI: f32 = 3.14159265;
 
+// How much light comes through leaves, as a part of the sun's, to an eye that looks against it: by the cosine of the angle between eye
+// and sun.
+fn glow(cosine: f32) -> f32 {
+    let facing = max(-cosine, 0.0);
+    return 0.6 * facing * facing * facing * facing * facing * facing;
+}
+
+// The albedo that a texel says, which is its root (`ImageUse::Albedo`).
+fn albedo_of(texel: vec3f) -> vec3f {
+    return texel * texel;
+}
+
+// How far around a direction is, x and z, as a part of the way around a square: from the one half-way between east and north.
+fn around(way: vec2f) -> f32 {
+    let along_x = abs(way.x) > abs(way.y);
+    let side = select(select(7.0, 3.0, way.y > 0.0), select(5.0, 1.0, way.x > 0.0), along_x);
+    return (side + select(-way.x / way.y, way.y / way.x, along_x)) / 8.0;
+}
+
 // The light of endless haze in a direction: that of the cloudless sky at the horizon, brighter towards the sun, so that land
-// fades into the sky behind it.
+// fades into the sky behind it. Of a cube it would be the same, but take software more time than all else of the air.
 fn haze_towards(way: vec3f) -> vec3f {
-    return clear_sky(vec3f(way.x, 0.0, way.z) + vec3f(1e-4, 0.0, 0.0));
+    return textureSampleLevel(horizon, repeating, vec2f(around(way.xz + vec2f(1e-4, 0.0)), 0.5), 0.0).rgb;
 }
 
 // Aerial perspective: the haze's own light before a place in the world, and the share of that place's light that comes through.
@@ -156,9 +177,9 @@ fn is_beyond_field(rows: array<vec4f, 3>) -> bool {
 }
 
 // Sunlight that is left on its way through a crown to a place in it, both as in the space where the crown is a sphere of radius 1
-// around the origin (Beer and Lambert).
+// around the origin, `to_sun` of unit length (Beer and Lambert).
 fn sun_through_crown(place: vec3f, to_sun: vec3f) -> f32 {
-    let along = dot(place, normalize(to_sun));
+    let along = dot(place, to_sun);
     let way = sqrt(along * along + max(1.0 - dot(place, place), 0.0)) - along;
     return exp(-CROWN_DENSITY * way);
 }

@@ -120,7 +120,7 @@ fn vertex(clump: Clump, @builtin(vertex_index) index: u32) -> Out {
     );
 
     let light = light_on(root);
-    var albedo = textureSampleLevel(ground_color, clamped, uv, 0.0).rgb;
+    var albedo = albedo_of(textureSampleLevel(ground_color, clamped, uv, 0.0).rgb);
     // Some blades are straw, some tufts are fresher.
     albedo *= select(vec3f(1.0, 1.0 + 0.12 * lush, 1.0 - 0.2 * lush), vec3f(1.8, 1.42, 1.15), more.z > 0.88);
     albedo *= 0.8 + 0.5 * dice.z;

@@ -1,23 +1,16 @@
 //! Draws the pictures of trees that are far away: one draw for all of them, and one instance, for four vertices would be little for
 //! each of thousands of instances.
 
-use super::cull::{GROUP, MAX_GROUPS};
 use super::shaders::ShaderError;
 use super::{BoundScene, BoundTrees, Compiler, DrawPass, FilledOrWire, PipelineDesc, Shader};
 use crate::options::Options;
-use crate::scene::{IMPOSTOR_ROWS, LEAVES};
+use crate::scene::IMPOSTOR_ROWS;
 use crate::upload::{DrawCommand, MAX_LEVELS, TreeSet};
 
 pub const SHADER: Shader = Shader {
     name: "impostors",
     source: include_str!("impostors.wgsl"),
-    constants: &[
-        ("LEAVES", LEAVES as f64),
-        ("ROWS", IMPOSTOR_ROWS as f64),
-        ("PICTURES_LEVEL", MAX_LEVELS as f64),
-        ("GROUP", GROUP as f64),
-        ("MAX_GROUPS", MAX_GROUPS as f64),
-    ],
+    constants: &[("ROWS", IMPOSTOR_ROWS as f64), ("PICTURES_LEVEL", MAX_LEVELS as f64)],
 };
 
 #[derive(Debug)]

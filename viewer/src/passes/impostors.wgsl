@@ -1,26 +1,18 @@
 // Trees that are far away: a rectangle around the tree's axis turns to the eye and shows the picture from the nearest of eight
 // sides (`GSC_impostor`), lit as its leaves and branches are on average.
 
-// Leaves whose normals are known of each template.
-override LEAVES: u32;
 // Rows of which a template's middle is known.
 override ROWS: u32;
 // The number by which tints know pictures from meshes.
 override PICTURES_LEVEL: f32;
-// Threads of a workgroup, and the most workgroups along one axis.
-override GROUP: u32;
-override MAX_GROUPS: u32;
-
 @group(1) @binding(0) var<storage, read> trees: array<Tree>;
 @group(1) @binding(1) var<storage, read> frames: array<Frame>;
 @group(1) @binding(2) var colors: texture_2d_array<f32>;
 @group(1) @binding(3) var reliefs: texture_2d_array<f32>;
 @group(1) @binding(4) var<storage, read> visible: array<Visible>;
-// What `leaf_light` is of each of them: for corners, and while it is worked out.
-@group(1) @binding(5) var<storage, read> lights: array<vec3f>;
-@group(1) @binding(6) var<storage, read_write> new_lights: array<vec3f>;
-// The last is how many of `visible` are pictures.
-@group(1) @binding(7) var<storage, read> counts: array<u32>;
+// How leaves are lit, by the cosine of the angle between eye and sun as seen from above and by the sine of the eye's height: what
+// `entry` of `leaf_light.rs` says.
+@group(1) @binding(5) var leaf_lights: texture_2d_array<f32>;
 
 // As in `cull.wgsl`.
 struct Visible {
@@ -38,8 +30,6 @@ struct Frame {
     crown_half: vec3f,
     // How wide a leaf is.
     leaf_m: f32,
-    // Of as many leaves as `LEAVES` in Rust, octahedral: the normal by which each is lit, and that by which the eye sees more or less of it.
-    leaves: array<vec2u, 32>,
     // Where the tree's middle is in each row from the top, x and z from the axis.
     middles: array<vec2f, 32>,
 }
@@ -47,77 +37,37 @@ struct Frame {
 struct Out {
     @builtin(position) clip: vec4f,
     @location(0) world: vec3f,
-    // The same in the template's space.
-    @location(1) local: vec3f,
+    // The same in the space in which the ellipsoid around the leaves is a sphere of radius 1.
+    @location(1) in_crown: vec3f,
     @location(2) uv: vec2f,
-    // Towards the eye in the template's space, level, of unit length; and what that is in the world.
-    @location(3) @interpolate(flat) ahead: vec2f,
-    @location(4) @interpolate(flat) toward: vec3f,
-    // Direction of the eye in eighths of a turn, [0, 8]; number of the template.
-    @location(5) @interpolate(flat) turn: f32,
-    @location(6) @interpolate(flat) template_index: u32,
-    // Which of its pixels are drawn.
-    @location(7) @interpolate(flat) shown: vec2f,
-    // Of the leaves that the eye sees, on average: how much sun falls on the side that it sees and on the other one, and how
-    // far they face upwards.
-    @location(8) @interpolate(flat) leaf_light: vec3f,
+    // Towards the eye, level, as far as the picture is wide: in the world and in that space.
+    @location(3) @interpolate(flat) toward: vec3f,
+    @location(4) @interpolate(flat) toward_in_crown: vec3f,
+    // Towards the sun in that space, of unit length.
+    @location(5) @interpolate(flat) sun_in_crown: vec3f,
+    // Between which of the eight sides one looks: the first, and how much of the next is seen.
+    @location(6) @interpolate(flat) side: u32,
+    @location(7) @interpolate(flat) next: f32,
+    // For either side, what to take of `middles` for how far to the right they are, as parts of the picture's width.
+    @location(8) @interpolate(flat) aside: vec4f,
+    @location(9) @interpolate(flat) template_index: u32,
+    // Which of its pixels are drawn; a number by chance, [0, 1), another for each tree; 1 beyond the field.
+    @location(10) @interpolate(flat) shown: vec4f,
+    // See `leaf_lights`.
+    @location(11) @interpolate(flat) leaf: vec4f,
+    // How many leaves the picture is wide and high; how many pixels a leaf is wide, at most 1.
+    @location(12) @interpolate(flat) leaves: vec3f,
     // See `air_before`.
-    @location(9) @interpolate(flat) air: vec4f,
-    // Towards the eye and towards the sun in the template's space, of unit length.
-    @location(10) @interpolate(flat) to_eye: vec3f,
-    @location(11) @interpolate(flat) to_sun: vec3f,
-    // By chance, [0, 1): another for each tree.
-    @location(12) @interpolate(flat) chance: f32,
-    // 1 beyond the field.
-    @location(13) @interpolate(flat) is_beyond_field: f32,
+    @location(13) @interpolate(flat) air: vec4f,
+    // What is seen of the sun's light by bark, averaged over all directions that face the eye, and through leaves.
+    @location(14) @interpolate(flat) sun: vec2f,
 }
 
-// What `leaf` of `trees.wgsl` makes of the sun and of a leaf's normal. Directions are in the template's space.
-fn light_of(template_index: u32, leaf: u32, to_eye: vec3f, to_sun: vec3f) -> vec3f {
-    let normal = octahedral(unpack2x16snorm(frames[template_index].leaves[leaf].x));
-    let toward_sun = dot(normal, to_sun);
-    let lit = abs(toward_sun) * 0.75 + 0.25;
-    let sides = select(vec2f(0.0, lit), vec2f(lit, 0.0), toward_sun * dot(normal, to_eye) > 0.0);
-    return vec3f(sides, 0.5 + 0.5 * abs(normal.y));
-}
-
-// How much of a leaf the eye sees, as a share of its area.
-fn share_of(template_index: u32, leaf: u32, to_eye: vec3f) -> f32 {
-    return abs(dot(octahedral(unpack2x16snorm(frames[template_index].leaves[leaf].y)), to_eye));
-}
-
-// The light of all leaves, averaged by how much of each the eye sees.
-fn leaf_light(template_index: u32, to_eye: vec3f, to_sun: vec3f) -> vec3f {
-    var sum = vec3f(0.0);
-    var seen = 1e-6;
-    for (var leaf = 0u; leaf < LEAVES; leaf++) {
-        let share = share_of(template_index, leaf, to_eye);
-        sum += share * light_of(template_index, leaf, to_eye, to_sun);
-        seen += share;
-    }
-    return sum / seen;
-}
-
-// Towards the eye in a template's space, from the middle of its picture; as far as it is.
-fn way_to_eye(rows: array<vec4f, 3>, template_index: u32) -> vec3f {
-    let axis = frames[template_index].axis;
-    let middle = vec3f(axis.x, frames[template_index].low + 0.5 * frames[template_index].size.y, axis.y);
-    return way_to_template(rows, view.eye - from_template(rows, middle));
-}
-
-// Once for each of the trees that are visible: as a part of `vertex`, four times, it took a sixth of a frame in software.
-@compute @workgroup_size(GROUP)
-fn light_leaves(@builtin(global_invocation_id) id: vec3u) {
-    let slot = id.x + id.y * MAX_GROUPS * GROUP;
-    if (slot >= counts[arrayLength(&counts) - 1u]) {
-        return;
-    }
-    let tree = visible[slot].tree;
-    let rows = trees[tree].rows;
-    let template_index = trees[tree].template_index;
-    let to_eye = normalize(way_to_eye(rows, template_index));
-    let to_sun = normalize(way_to_template(rows, view.sun_direction));
-    new_lights[slot] = leaf_light(template_index, to_eye, to_sun);
+// What to take of a place beside the axis, x and z, for how far it is to the right as it is seen from `ahead` beyond what the picture
+// from a side shows.
+fn aside(ahead: vec2f, side: u32) -> vec2f {
+    let angle = f32(side) * PI / 4.0;
+    return vec2f(ahead.y - cos(angle), sin(angle) - ahead.x);
 }
 
 // Four vertices for each of the trees that are visible.
@@ -132,41 +82,56 @@ fn vertex(@builtin(vertex_index) vertex: u32) -> Out {
     let axis = frames[template_index].axis;
     let size = frames[template_index].size;
     let low = frames[template_index].low;
-    let corner = vec2f(f32(index & 1u), f32(index >> 1u));
-    let back = way_to_eye(rows, template_index);
+    let crown_half = frames[template_index].crown_half;
+    let leaf_m = frames[template_index].leaf_m;
+    // Towards the eye in the template's space, from the middle of the picture; as far as it is.
+    let middle = from_template(rows, vec3f(axis.x, low + 0.5 * size.y, axis.y));
+    let back = way_to_template(rows, view.eye - middle);
     let ahead = normalize(back.xz + vec2f(0.0, 1e-6));
+    let corner = vec2f(f32(index & 1u), f32(index >> 1u));
     let across = vec3f(ahead.y, 0.0, -ahead.x) * ((corner.x - 0.5) * size.x);
     let local = vec3f(axis.x, low + corner.y * size.y, axis.y) + across;
+    let toward = vec3f(ahead.x, 0.0, ahead.y) * size.x;
+    let to_eye = normalize(back);
+    let to_sun = way_to_template(rows, view.sun_direction);
+    let turn = fract(atan2(ahead.x, ahead.y) / (2.0 * PI) + 1.0) * 8.0;
+    let side = u32(turn);
     var out: Out;
     out.world = from_template(rows, local);
     out.clip = view.clip_from_world * vec4f(out.world, 1.0);
-    out.local = local;
+    out.in_crown = (local - frames[template_index].crown_middle) / crown_half;
     out.uv = vec2f(corner.x, 1.0 - corner.y);
-    out.ahead = ahead;
-    out.toward = way_from_template(rows, vec3f(ahead.x, 0.0, ahead.y));
-    out.turn = fract(atan2(ahead.x, ahead.y) / (2.0 * PI) + 1.0) * 8.0;
+    out.toward = way_from_template(rows, toward);
+    out.toward_in_crown = toward / crown_half;
+    out.sun_in_crown = normalize(to_sun / crown_half);
+    out.side = side;
+    // Half-way between two sides some places of the tree are seen from the one, some from the other.
+    out.next = smoothstep(0.35, 0.65, fract(turn));
+    out.aside = vec4f(aside(ahead, side), aside(ahead, side + 1u)) / size.x;
     out.template_index = template_index;
-    out.shown = vec2f(vec2u(shown, shown >> 10u) & vec2u(1023u)) / 1023.0;
+    let chance = scattered(vec2f(f32(tree), 5.3));
+    let edges = vec2f(vec2u(shown, shown >> 10u) & vec2u(1023u)) / 1023.0;
+    out.shown = vec4f(edges, chance, select(0.0, 1.0, is_beyond_field(rows)));
+    let from_sun = dot(ahead, normalize(to_sun.xz + vec2f(0.0, 1e-6)));
+    let at = 0.5 + 0.5 * vec2f(from_sun, to_eye.y);
+    out.leaf = textureSampleLevel(leaf_lights, clamped, at, template_index, 0.0);
+    out.leaves = vec3f(size / leaf_m, saturate(leaf_m * view.focal_px / length(view.eye - middle)));
     out.air = air_before(out.world);
-    out.to_eye = normalize(back);
-    out.to_sun = normalize(way_to_template(rows, view.sun_direction));
-    out.leaf_light = lights[slot];
-    out.chance = scattered(vec2f(f32(tree), 5.3));
-    out.is_beyond_field = select(0.0, 1.0, is_beyond_field(rows));
+    let cosine = dot(normalize(view.eye - middle), view.sun_direction);
+    out.sun = vec2f(phase(cosine), glow(cosine));
     return out;
 }
 
-// The light of the leaf at a place of a picture, `place` in leaves' widths: one of those that are known, of two that which shows
-// more of itself to the eye more often. Single leaves gleam and are dark, also where all are of one size with the pixels; where
-// they are smaller, and `sharp` less than 1, nearly their mean is seen.
-fn one_leaf(in: Out, place: vec2f, sharp: f32) -> vec3f {
-    let cell = floor(place);
-    let first = min(u32(scattered(cell) * f32(LEAVES)), LEAVES - 1u);
-    let second = min(u32(scattered(cell + 71.7) * f32(LEAVES)), LEAVES - 1u);
-    let one = share_of(in.template_index, first, in.to_eye);
-    let other = share_of(in.template_index, second, in.to_eye);
-    let leaf = select(first, second, scattered(cell + 37.3) * (one + other) < other);
-    return mix(in.leaf_light, light_of(in.template_index, leaf, in.to_eye, in.to_sun), sharp);
+// The light of the leaf at a place of a picture, `place` in leaves' widths: how much sun falls on the side that the eye sees and on
+// the other one. Single leaves gleam and are dark, also where all are of one size with the pixels; where they are smaller, and
+// `sharp` less than 1, nearly their mean is seen. Of leaves that lie by chance the sun sees each share of their area as often
+// as any other, and so is in `entry` of `leaf_light.rs` from 0.4 to 1.6 times what it is on average.
+fn one_leaf(leaf: vec4f, place: vec2f, sharp: f32) -> vec2f {
+    let number = scattered(floor(place));
+    let is_front = number < leaf.x;
+    let part = select((number - leaf.x) / (1.0 - leaf.x), number / leaf.x, is_front);
+    let one = select(vec2f(0.0, leaf.z), vec2f(leaf.y, 0.0), is_front) * (0.4 + 1.2 * part);
+    return mix(vec2f(leaf.x * leaf.y, (1.0 - leaf.x) * leaf.z), one, sharp);
 }
 
 // The relief of a pixel is a mean: so far before it are the outermost leaves, which are not in their own shade.
@@ -176,60 +141,47 @@ const SHADOW_BIAS_M = 1.1;
 // than others have more sun, too. By so much farther out a leaf would be that is as bright as all of them.
 const OUTWARD = 1.08;
 
-// How far the middle of a tree lies to the right, at a height, as a part of its picture's width: as it is seen from `ahead` beyond
-// what the picture from a side shows.
-fn shift(template_index: u32, v: f32, ahead: vec2f, side: u32) -> f32 {
+// How far the middle of a tree lies to the right, at a height, as a part of its picture's width: see `aside`.
+fn shift(template_index: u32, v: f32, aside: vec2f) -> f32 {
     let row = clamp(v * f32(ROWS) - 0.5, 0.0, f32(ROWS - 1u));
     let first = u32(row);
     let above = frames[template_index].middles[first];
     let below = frames[template_index].middles[min(first + 1u, ROWS - 1u)];
-    let middle = mix(above, below, row - f32(first));
-    let angle = f32(side) * PI / 4.0;
-    return dot(middle, vec2f(ahead.y - cos(angle), sin(angle) - ahead.x)) / frames[template_index].size.x;
+    return dot(mix(above, below, row - f32(first)), aside);
 }
 
 fn pixel(in: Out, is_kept: bool) -> Pixel {
-    // Half-way between two sides some places of the tree are seen from the one, some from the other.
-    let part = smoothstep(0.35, 0.65, fract(in.turn));
-    let place = floor(in.uv * 32.0);
-    let side = u32(in.turn) + select(0u, 1u, scattered(place) < part);
-    let beside = in.uv.x - shift(in.template_index, in.uv.y, in.ahead, side);
+    let is_next = scattered(floor(in.uv * 32.0)) < in.next;
+    let side = in.side + select(0u, 1u, is_next);
+    let beside = in.uv.x - shift(in.template_index, in.uv.y, select(in.aside.xy, in.aside.zw, is_next));
     // From behind it is its own mirror image.
     let u = clamp(select(beside, 1.0 - beside, (side & 4u) != 0u), 0.0, 1.0);
     let at = vec2f((f32(side & 3u) + u) * 0.25, in.uv.y);
     // By `uv`: `at` leaps from place to place.
     let moved = max(length(dpdx(in.uv)), length(dpdy(in.uv)));
     let level = log2(moved * f32(textureDimensions(colors).y)) + view.mip_bias;
-    let seen = textureSampleLevel(colors, clamped, at, in.template_index, level);
+    let seen = textureSampleLevel(colors, clamped, at, in.template_index, level).rgb;
     let relief = textureSampleLevel(reliefs, clamped, at, in.template_index, level).rgb;
     // The share of the pixel that the tree covers: leaves and twigs are smaller than it, and the sky shows between them.
-    let samples = samples_of(relief.b, scattered_anew(floor(in.clip.xy) + 977.0 * in.chance));
+    let samples = samples_of(relief.b, scattered_anew(floor(in.clip.xy) + 977.0 * in.shown.z));
     if (samples == 0u || !is_kept) {
         discard;
     }
-    let before = (relief.r - 0.5) * frames[in.template_index].size.x;
-    let local = in.local + vec3f(in.ahead.x, 0.0, in.ahead.y) * before;
+    let before = relief.r - 0.5;
     let world = in.world + in.toward * before;
-    let albedo = select(seen.rgb, level_tint(PICTURES_LEVEL) * 0.5, view.tint_levels != 0u);
+    let in_crown = in.in_crown + in.toward_in_crown * before;
+    let albedo = select(albedo_of(seen), level_tint(PICTURES_LEVEL) * 0.5, view.tint_levels != 0u);
 
-    let to_eye = normalize(view.eye - in.world);
-    let cosine = dot(to_eye, view.sun_direction);
-    let in_crown = (local - frames[in.template_index].crown_middle) / frames[in.template_index].crown_half;
     let open = openness(OUTWARD * in_crown);
-    // As `leaf` and `bark` of `trees.wgsl`; bark averaged over all directions that face the eye.
+    // As `leaf` and `bark` of `trees.wgsl`.
     let through = albedo * vec3f(0.75, 0.9, 0.3);
-    let facing = max(-cosine, 0.0);
-    let glow = 0.6 * facing * facing * facing * facing * facing * facing;
-    let leaf_m = frames[in.template_index].leaf_m;
-    let at_leaf = in.uv * frames[in.template_index].size / leaf_m;
-    let sharp = saturate(leaf_m * view.focal_px / distance(view.eye, in.world));
-    let leaf = one_leaf(in, at_leaf, sharp);
-    let leaf_sun = (albedo * 0.8 * leaf.x + through * (0.6 * leaf.y + glow)) * smoothstep(0.0, 0.7, open);
+    let leaf = one_leaf(in.leaf, in.uv * in.leaves.xy, in.leaves.z);
+    let leaf_sun = (albedo * 0.8 * leaf.x + through * (0.6 * leaf.y + in.sun.y)) * smoothstep(0.0, 0.7, open);
     // Where no shadow map tells, by what is between the place and the sun if it is leaves.
-    let left = sun_through_crown(in_crown, in.to_sun / frames[in.template_index].crown_half);
-    let shade = sun_visibility(world, SHADOW_BIAS_M) * mix(1.0, left, in.is_beyond_field * relief.g);
-    let sun = mix(albedo * phase(cosine), leaf_sun, relief.g) * shade;
-    let up = mix(0.5, leaf.z, relief.g);
+    let left = sun_through_crown(in_crown, in.sun_in_crown);
+    let shade = sun_visibility(world, SHADOW_BIAS_M) * mix(1.0, left, in.shown.w * relief.g);
+    let sun = mix(albedo * in.sun.x, leaf_sun, relief.g) * shade;
+    let up = mix(0.5, in.leaf.w, relief.g);
     let ambient = ambient_light(up) * mix(0.8, 0.15 + 0.75 * open * open, relief.g);
     let radiance = (albedo * ambient + view.sun_irradiance * sun) / PI;
     return Pixel(vec4f(hazed(in.air, radiance), 1.0), samples);
@@ -237,7 +189,7 @@ fn pixel(in: Out, is_kept: bool) -> Pixel {
 
 @fragment
 fn fragment(in: Out) -> Pixel {
-    return pixel(in, is_shown(in.clip.xy, in.shown));
+    return pixel(in, is_shown(in.clip.xy, in.shown.xy));
 }
 
 // As a lake mirrors it: what is above the water.

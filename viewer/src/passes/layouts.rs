@@ -24,8 +24,6 @@ pub struct Layouts {
     pub trees: BindGroupLayout,
     /// Group 1 of pictures of trees.
     pub impostors: BindGroupLayout,
-    /// Group 1 of what lights them before they are drawn.
-    pub leaf_light: BindGroupLayout,
     /// Group 2 of trees: a material.
     pub material: BindGroupLayout,
     /// Group 1 of culling.
@@ -48,10 +46,6 @@ pub struct Layouts {
 
 /// The bindings of `common.wgsl` that are read while a shadow map is drawn.
 pub(super) const SUN_VIEW: [u32; 4] = [0, 2, 8, 9];
-
-/// Of the bindings of `impostors.wgsl` those of `light_leaves`.
-pub(super) const LEAF_LIGHT: [(u32, BindingType); 5] =
-    [(0, READ), (1, READ), (4, READ), (6, WRITE), (7, READ)];
 
 const UNIFORM: BindingType = buffer(BufferBindingType::Uniform);
 const READ: BindingType = buffer(BufferBindingType::Storage { read_only: true });
@@ -97,6 +91,7 @@ impl Layouts {
             IMAGE,
             DATA,
             IMAGE,
+            IMAGE,
         ];
         let sun_view = SUN_VIEW.map(|binding| (binding, view[binding as usize]));
         Self {
@@ -107,8 +102,7 @@ impl Layouts {
             surface: all("surface", fragment, &[&[UNIFORM][..], &[IMAGE; 5], &[FILTERING; 5]].concat()),
             ground: all("ground", both, &[IMAGE, IMAGE, LAYERS, IMAGE]),
             trees: all("trees", ShaderStages::VERTEX, &[READ]),
-            impostors: all("pictures of trees", both, &[READ, READ, LAYERS, LAYERS, READ, READ]),
-            leaf_light: layout(gpu, "light of leaves", ShaderStages::COMPUTE, LEAF_LIGHT),
+            impostors: all("pictures of trees", both, &[READ, READ, LAYERS, LAYERS, READ, LAYERS]),
             material: all("material", fragment, &[UNIFORM, IMAGE, IMAGE]),
             cull: all("culling", ShaderStages::COMPUTE, &[READ, READ, READ, WRITE, WRITE, WRITE]),
             mirror: all("mirror", fragment, &[IMAGE, DEPTH_MAP]),

@@ -14,7 +14,6 @@ mod cull;
 pub mod grass;
 pub mod impostors;
 mod layouts;
-mod leaf_light;
 mod mean;
 mod mirror;
 mod pipeline;
@@ -38,7 +37,6 @@ pub use bound_mirror::{BoundMirror, Reflection};
 pub use bound_shade::BoundShade;
 pub use cull::{Cull, CullUniform};
 pub use layouts::{Binding, Layouts, bind};
-pub use leaf_light::LeafLight;
 pub use mean::{Mean, Shift, pictures};
 pub use mirror::Mirror;
 pub use pipeline::Shader;
@@ -103,8 +101,6 @@ pub struct Passes {
     /// Of near trees on the ground, before the picture.
     pub shade: Shade,
     pub cull: Cull,
-    /// Of trees that are drawn as pictures, after culling.
-    pub leaf_light: LeafLight,
     /// What a lake mirrors, before the picture.
     pub mirror: Mirror,
     /// By name, in the order in which they draw.
@@ -119,18 +115,6 @@ pub struct Passes {
 }
 
 impl Passes {
-    /// Culls the trees of a view, and lights the pictures of those that are left.
-    pub fn choose_trees(
-        &self,
-        scope: &mut wgpu_profiler::Scope<'_, wgpu::CommandEncoder>,
-        view: &wgpu::BindGroup,
-        trees: &BoundTrees,
-    ) {
-        let mut pass = scope.scoped_compute_pass(Cull::NAME);
-        self.cull.dispatch(&mut pass, trees);
-        self.leaf_light.dispatch(&mut pass, view, trees);
-    }
-
     /// Compiles everything. `samples` is 1 or 4.
     pub fn new(gpu: &Gpu, shaders: &Shaders, samples: u32) -> Result<Self, ShaderError> {
         let layouts = Layouts::new(gpu);
@@ -139,7 +123,6 @@ impl Passes {
             shadow: Shadow::new(&compiler)?,
             shade: Shade::new(&compiler)?,
             cull: Cull::new(&compiler)?,
-            leaf_light: LeafLight::new(&compiler)?,
             mirror: Mirror::new(&compiler)?,
             picture: [
                 (trees::SHADER.name, Box::new(trees::Trees::new(&compiler)?)),

@@ -216,7 +216,7 @@ fn looks(at: Surface, parts: array<f32, 5>, far: f32) -> Tiles {
         | select(0u, scales << 4u, at.sides.z > 0.02);
     var left = 0u;
     for (var layer = 0u; layer < 5u; layer++) {
-        left |= select(0u, seen << (6u * layer), entry(parts, layer) > 0.01);
+        left |= select(0u, seen << (6u * layer), entry(parts, layer) > 0.0);
     }
     var sum = Tiles(vec3f(0.0), vec3f(0.0));
     loop {
@@ -257,6 +257,18 @@ fn close_up(at: Surface, parts: array<f32, 5>, near: f32) -> Tiles {
 
 const FINER: f32 = 5.3;
 
+// What covers less of the ground is not worth a look.
+const LEAST_PART: f32 = 0.06;
+
+// How much each tiling texture counts, from the weights of all but the first: nothing, or their sum is 1.
+fn parts_of(weights: vec4f) -> array<f32, 5> {
+    let first = max(1.0 - dot(weights, vec4f(1.0)) - LEAST_PART, 0.0);
+    let others = max(weights - LEAST_PART, vec4f(0.0));
+    let scale = 1.0 / max(first + dot(others, vec4f(1.0)), 1e-3);
+    let scaled = scale * others;
+    return array<f32, 5>(scale * first, scaled.r, scaled.g, scaled.b, scaled.a);
+}
+
 // A place on the ground, its change from pixel to pixel, and how much of it each axis sees.
 struct Surface {
     world: vec3f,
@@ -279,7 +291,7 @@ fn ground(in: Out) -> @location(0) vec4f {
     let uv = field_uv(place);
     let away = distance(in.world, view.eye);
     let color = textureSampleBias(ground_color, clamped, uv, view.mip_bias);
-    var albedo = color.rgb;
+    var albedo = albedo_of(color.rgb);
     let weights = textureSampleBias(ground_weights, clamped, uv, view.mip_bias);
     let light = textureSampleBias(light_map, clamped, uv, view.mip_bias);
     let near = near_shade_at(place);
@@ -292,8 +304,7 @@ fn ground(in: Out) -> @location(0) vec4f {
     if (away < 240.0) {
         let shorter = less_stretched(dx, dy);
         let at = Surface(in.world, dx * shorter.x, dy * shorter.y, sides_of(normal));
-        let rest = max(1.0 - weights.r - weights.g - weights.b - weights.a, 0.0);
-        let parts = array<f32, 5>(rest, weights.r, weights.g, weights.b, weights.a);
+        let parts = parts_of(weights);
         var tiles = looks(at, parts, smoothstep(7.0, 22.0, away));
         let close = close_up(at, parts, smoothstep(5.0, 1.5, away));
         tiles = Tiles(tiles.factor * close.factor, tiles.bump + close.bump);
@@ -310,8 +321,8 @@ fn ground(in: Out) -> @location(0) vec4f {
     let irradiance = view.sun_irradiance * (light.g * shade * relief) + view.sky_irradiance * light.r * (0.6 + 0.4 * normal.y);
     var radiance = albedo / PI * irradiance;
     // Water stands on level ground, and shows the sky. A loop, because Mesa's software driver leaves one early.
-    for (var is_flooded = color.a < 0.99; is_flooded; is_flooded = false) {
-        radiance = mix(radiance, flooded(radiance, in.world, light.r), smoothstep(0.7, 0.3, color.a));
+    for (var water = smoothstep(0.7, 0.3, color.a); water > 0.0; water = 0.0) {
+        radiance = mix(radiance, flooded(radiance, in.world, light.r), water);
     }
     return vec4f(hazed(air_before(in.world), radiance), 1.0);
 }
@@ -348,7 +359,7 @@ fn is_sunk(world: vec3f) -> bool {
 @fragment
 fn mirrored_ground(in: Out) -> @location(0) vec4f {
     let uv = field_uv(in.world.xz);
-    let albedo = textureSample(ground_color, clamped, uv).rgb;
+    let albedo = albedo_of(textureSample(ground_color, clamped, uv).rgb);
     let light = textureSample(light_map, clamped, uv);
     if (is_sunk(in.world)) {
         discard;

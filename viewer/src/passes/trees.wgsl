@@ -73,7 +73,7 @@ fn sun_behind_crown(tree: u32, place: vec3f) -> f32 {
     let height_and_x = unpack2x16float(trees[tree].crown.x);
     let half = vec3f(height_and_x.y, unpack2x16float(trees[tree].crown.y));
     let to_sun = way_to_template(trees[tree].rows, view.sun_direction);
-    return sun_through_crown((place - vec3f(0.0, height_and_x.x, 0.0)) / half, to_sun / half);
+    return sun_through_crown((place - vec3f(0.0, height_and_x.x, 0.0)) / half, normalize(to_sun / half));
 }
 
 @vertex
@@ -107,7 +107,7 @@ fn ambient(normal: vec3f, albedo: vec3f) -> vec3f {
 fn bark(in: Out) -> @location(0) vec4f {
     var albedo = in.color * material.factor.rgb;
     var normal = normalize(in.normal);
-    albedo *= textureSampleBias(color_map, repeating, in.uv, view.mip_bias).rgb;
+    albedo *= albedo_of(textureSampleBias(color_map, repeating, in.uv, view.mip_bias).rgb);
     let bump = textureSampleBias(normal_map, repeating, in.uv, view.mip_bias).xyz * 2.0 - 1.0;
     // Not before its textures are read: their mip levels depend on the pixels around.
     if ((in.shown.x > 0.0 && !is_shown(in.clip.xy, in.shown)) || is_beyond(in.color)) {
@@ -136,12 +136,10 @@ fn leaf_light(in: Out, card: Card, normal: vec3f, bias_m: f32) -> Pixel {
     // Chlorophyll takes red and blue on the way through.
     let through = albedo * vec3f(0.75, 0.9, 0.3);
     let reflected = select(through * 0.6, albedo * 0.8, same_side) * lit;
-    let facing = max(dot(-to_eye, view.sun_direction), 0.0);
-    let glow = 0.6 * facing * facing * facing * facing * facing * facing;
     let sun = in.sun * sun_visibility(in.world, bias_m) * smoothstep(0.0, 0.7, in.open);
     let outward = select(-normal, normal, normal.y > 0.0);
     var radiance = ambient(outward, albedo) * (0.15 + 0.75 * in.open * in.open);
-    radiance += (reflected + through * glow) / PI * view.sun_irradiance * sun;
+    radiance += (reflected + through * glow(dot(to_eye, view.sun_direction))) / PI * view.sun_irradiance * sun;
     return Pixel(vec4f(hazed(in.air, radiance), 1.0), card.samples);
 }
 
@@ -156,7 +154,8 @@ struct Card {
 // holds the pixel's middle.
 fn picture_at(in: Out) -> vec4f {
     let uv = select(in.uv, in.middle, is_on_picture(in.middle));
-    return vec4f(in.color, 1.0) * material.factor * textureSampleBias(color_map, clamped, uv, view.mip_bias);
+    let texel = textureSampleBias(color_map, clamped, uv, view.mip_bias);
+    return vec4f(in.color, 1.0) * material.factor * vec4f(albedo_of(texel.rgb), texel.a);
 }
 
 // A number in [0, 1) by chance: another for each of the cards that may lie at a pixel.

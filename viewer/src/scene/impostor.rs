@@ -38,14 +38,13 @@ pub struct Impostor {
     pub middles_m: [[f32; 2]; IMPOSTOR_ROWS],
 }
 
-/// How a leaf lies: octahedral unit vectors in the template's space, in 2 × 16 bits, signed, on either side.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+/// How a leaf lies: unit vectors in the template's space, on either side.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LeafSide {
     /// The normal by which it is lit.
-    pub normal_oct: [i16; 2],
+    pub normal: Vec3,
     /// That of its triangle, by which an eye sees more or less of it.
-    pub face_oct: [i16; 2],
+    pub face: Vec3,
 }
 
 /// The ellipsoid around the leaves of a tree; metres in the template's space.

@@ -67,7 +67,7 @@ impl Uploader {
             normals: self.shared(format!("normals {}", ground.name), || {
                 self.array(&[&normals(field)], ImageUse::Data, 1)
             }),
-            color: self.image(&surface.color, ImageUse::Color),
+            color: self.image(&surface.color, ImageUse::Albedo),
             albedo_linear: mean_light(&surface.color),
             weights: self.image(&surface.weights, ImageUse::Data),
             light: self.image(&surface.light, ImageUse::Data),

@@ -2,8 +2,10 @@
 
 use std::sync::Arc;
 
+use glam::Vec3;
+
 use super::{ImageUse, Uploader};
-use crate::scene::{IMPOSTOR_ROWS, Impostor, LEAVES, LeafSide, Template};
+use crate::scene::{IMPOSTOR_ROWS, Impostor, LeafSide, Template};
 
 /// Mip levels end where a picture of a strip has so many pixels a side.
 const MIN_PX: u32 = 8 * genescape_schema::scene::IMPOSTOR_PICTURES;
@@ -24,8 +26,6 @@ pub struct ImpostorData {
     pub crown_half: [f32; 3],
     /// The width of a leaf.
     pub leaf_m: f32,
-    /// How some leaves lie. Shaders look up one after another, and software takes as long again for each 32 bits.
-    pub leaves: [LeafSide; LEAVES],
     /// Where the tree's middle is in each row from the top, x and z from the axis.
     pub middles: [[f32; 2]; IMPOSTOR_ROWS],
 }
@@ -39,6 +39,8 @@ pub struct ImpostorSet {
     pub colors: Arc<wgpu::Texture>,
     /// Relief, likewise.
     pub reliefs: Arc<wgpu::Texture>,
+    /// How its leaves are lit, likewise.
+    pub leaf_lights: Arc<wgpu::Texture>,
     /// Two triangles for each tree, of four vertices.
     pub indices: wgpu::Buffer,
 }
@@ -58,8 +60,13 @@ impl ImpostorSet {
 pub const PICTURE_INDICES: [u32; 6] = [0, 1, 2, 2, 1, 3];
 
 impl Uploader {
-    /// For so many trees of these templates.
-    pub(super) fn impostors(&self, templates: &[Arc<Template>], trees: usize) -> Option<ImpostorSet> {
+    /// For so many trees of these templates, with the sun in that direction.
+    pub(super) fn impostors(
+        &self,
+        templates: &[Arc<Template>],
+        trees: usize,
+        sun: Vec3,
+    ) -> Option<ImpostorSet> {
         use wgpu::BufferUsages as Usage;
         if !ImpostorSet::suits(templates) {
             return None;
@@ -69,12 +76,14 @@ impl Uploader {
         let frames: Vec<ImpostorData> = all.iter().map(|one| frame(one)).collect();
         let [colors, reliefs]: [Vec<_>; 2] =
             [all.iter().map(|one| &one.color).collect(), all.iter().map(|one| &one.relief).collect()];
+        let leaves: Vec<&[LeafSide]> = all.iter().map(|one| &one.leaves[..]).collect();
         let indices: Vec<u32> =
             (0..trees as u32).flat_map(|tree| PICTURE_INDICES.map(|corner| 4 * tree + corner)).collect();
         Some(ImpostorSet {
             frames: self.gpu.buffer("frames of pictures", &frames, Usage::STORAGE),
             colors: self.strips(&colors, ImageUse::Cutout, MIN_PX),
             reliefs: self.strips(&reliefs, ImageUse::Data, MIN_PX),
+            leaf_lights: self.leaf_lights(&leaves, sun),
             indices: self.gpu.buffer("triangles of pictures", &indices, Usage::INDEX),
         })
     }
@@ -88,7 +97,6 @@ fn frame(pictures: &Impostor) -> ImpostorData {
         low: pictures.low_m,
         crown_half: pictures.crown.half_m,
         leaf_m: pictures.leaf_m,
-        leaves: pictures.leaves,
         middles: pictures.middles_m,
     }
 }

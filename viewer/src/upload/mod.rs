@@ -8,6 +8,7 @@ mod ground;
 mod horizon;
 mod impostors;
 mod lake;
+mod leaf_light;
 mod plants;
 mod ring;
 mod sky;
@@ -74,7 +75,12 @@ impl Uploader {
     pub fn upload(&self, scene: &Scene) -> Result<SceneBuffers, String> {
         let (land, (trees, sky_textures)) = rayon::join(
             || self.ground(&scene.ground),
-            || rayon::join(|| self.trees(&scene.trees), || self.sky(&scene.sky)),
+            || {
+                rayon::join(
+                    || self.trees(&scene.trees, scene.sky.light.sun_direction),
+                    || self.sky(&scene.sky),
+                )
+            },
         );
         Ok(SceneBuffers {
             name: scene.name.clone(),

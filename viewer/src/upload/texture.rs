@@ -13,9 +13,12 @@ use crate::scene::{HdrImage, Image};
 /// What an image's numbers mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ImageUse {
-    /// Colour in sRGB.
+    /// Colour in sRGB of a file that is no landscape: filtered as light, as glTF demands.
     Color,
-    /// The same, of which nothing is drawn where alpha is below ½: each level covers as much as the first.
+    /// The same of a landscape. On the device it is square roots of light, which shaders square: software filters these as bytes,
+    /// but decodes each texel of sRGB that it reads, eight for a pixel.
+    Albedo,
+    /// Albedo of which nothing is drawn where alpha is below ½: each level covers as much as the first.
     Cutout,
     /// Numbers: normals, weights, light.
     Data,
@@ -28,8 +31,8 @@ const MIN_CUTOUT_PX: u32 = 16;
 impl ImageUse {
     fn format(self) -> wgpu::TextureFormat {
         match self {
-            Self::Color | Self::Cutout => wgpu::TextureFormat::Rgba8UnormSrgb,
-            Self::Data => wgpu::TextureFormat::Rgba8Unorm,
+            Self::Color => wgpu::TextureFormat::Rgba8UnormSrgb,
+            Self::Albedo | Self::Cutout | Self::Data => wgpu::TextureFormat::Rgba8Unorm,
         }
     }
 }
@@ -60,7 +63,11 @@ impl Uploader {
         texture.size.depth_or_array_layers = images.len() as u32;
         texture.mip_level_count = levels as u32;
         let texels: Vec<&[u8]> = chains.iter().flat_map(|chain| &chain[..levels]).map(Arc::as_ref).collect();
-        self.gpu.texture(&texture, &texels.concat())
+        let mut texels = texels.concat();
+        if matches!(kind, ImageUse::Albedo | ImageUse::Cutout) {
+            take_roots(&mut texels);
+        }
+        self.gpu.texture(&texture, &texels)
     }
 
     /// Six faces of half floats, all squares of one size, as a cube.
@@ -173,6 +180,14 @@ fn linear_table() -> &'static [f32; 256] {
             if value <= 0.04045 { value / 12.92 } else { libm::powf((value + 0.055) / 1.055, 2.4) }
         })
     })
+}
+
+/// sRGB to square roots of light, with alpha as it is.
+fn take_roots(texels: &mut [u8]) {
+    let roots = linear_table().map(|light| (255.0 * light.sqrt()).round() as u8);
+    for [colors @ .., _] in texels.as_chunks_mut::<4>().0 {
+        *colors = colors.map(|byte| roots[usize::from(byte)]);
+    }
 }
 
 /// The byte of sRGB whose light is nearest.

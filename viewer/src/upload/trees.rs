@@ -4,6 +4,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use glam::Vec3;
 use half::f16;
 
 use super::clusters::{self, ClusterSheet};
@@ -140,8 +141,8 @@ pub struct TreeMaterial {
 }
 
 impl Uploader {
-    /// `None` if there are no trees to draw.
-    pub(super) fn trees(&self, trees: &Trees) -> Option<TreeSet> {
+    /// With the sun in that direction; `None` if there are no trees to draw.
+    pub(super) fn trees(&self, trees: &Trees, sun: Vec3) -> Option<TreeSet> {
         if trees.all().next().is_none() || trees.templates.is_empty() {
             return None;
         }
@@ -176,7 +177,7 @@ impl Uploader {
             mesh_draws: lists.mesh_draws as u32,
             triangles: lists.triangles,
             materials: materials.iter().map(|material| self.material(material)).collect(),
-            impostors: self.impostors(&trees.templates, all_trees.len()),
+            impostors: self.impostors(&trees.templates, all_trees.len(), sun),
             list_capacity: lists.capacity,
         })
     }
@@ -194,7 +195,7 @@ impl Uploader {
             None => self.image(&Image::of_one_pixel(otherwise), kind),
         };
         let masked = material.alpha_cutoff.is_some();
-        let cutout_or_color = if masked && !material.thin { ImageUse::Cutout } else { ImageUse::Color };
+        let cutout_or_color = if masked && !material.thin { ImageUse::Cutout } else { ImageUse::Albedo };
         TreeMaterial {
             name: material.name.clone(),
             masked,

@@ -9,7 +9,7 @@ use crate::gpu::Gpu;
 use crate::options::{FrameInput, Options};
 use crate::passes::grass::{self, Clump};
 use crate::passes::plants::PlantChoice;
-use crate::passes::{BoundScene, CullUniform, Passes, ViewUniform};
+use crate::passes::{BoundScene, Cull, CullUniform, Passes, ViewUniform};
 
 /// Lists that are kept from frame to frame.
 #[derive(Debug, Default)]
@@ -54,7 +54,7 @@ impl LandscapeChoice {
             let (eye_m, focal_px) = (lod_camera.position_m, lod_camera.focal_px(size[1]));
             let culling = CullUniform::for_view(set, &frustum, eye_m, focal_px, options);
             trees.set(&gpu.queue, &culling);
-            passes.choose_trees(scope, &bound.view_group, trees);
+            passes.cull.dispatch(&mut scope.scoped_compute_pass(Cull::NAME), trees);
         }
         self.clumps.clear();
         self.plants.clear();

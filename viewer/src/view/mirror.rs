@@ -5,7 +5,7 @@ use crate::gpu::Gpu;
 use crate::lod::nested::Sight;
 use crate::lod::quadtree;
 use crate::options::FrameInput;
-use crate::passes::{BoundMirror, BoundScene, CullUniform, Mirror, Passes, Reflection, ViewUniform};
+use crate::passes::{BoundMirror, BoundScene, Cull, CullUniform, Mirror, Passes, Reflection, ViewUniform};
 use crate::upload::SceneBuffers;
 
 use super::terrain::{MAX_BLOCK_M, pixels};
@@ -68,7 +68,7 @@ fn cull(
 ) {
     if let Some((set, trees)) = scene.trees.as_ref().zip(mirror.trees.as_ref()) {
         trees.set(&gpu.queue, &CullUniform::for_mirror(set, &reflection.frustum));
-        passes.choose_trees(scope, &mirror.view_group, trees);
+        passes.cull.dispatch(&mut scope.scoped_compute_pass(Cull::NAME), trees);
     }
 }
 

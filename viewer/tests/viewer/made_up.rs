@@ -180,7 +180,7 @@ pub fn impostor(name: &str, error_m: f32) -> Impostor {
         size_m: [5.0, 6.0],
         error_m,
         crown: Crown { middle_m: [0.0, 3.4, 0.0], half_m: [1.6, 2.6, 1.6] },
-        leaves: [LeafSide { normal_oct: [0, i16::MAX], face_oct: [0, 0] }; LEAVES],
+        leaves: [LeafSide { normal: Vec3::Y, face: Vec3::Z }; LEAVES],
         middles_m: [[0.0; 2]; IMPOSTOR_ROWS],
         leaf_m: 0.1,
     }

@@ -152,7 +152,7 @@ fn elements_of_buffers_are_laid_out_alike() {
     same!(
         ["impostors"],
         "Frame",
-        ImpostorData { axis, size, crown_middle, low, crown_half, leaf_m, leaves, middles }
+        ImpostorData { axis, size, crown_middle, low, crown_half, leaf_m, middles }
     );
     same!(["cull"], "Command", DrawCommand { indices, instances, first_index, base_vertex, first_instance });
     // What one pass writes as `Visible` the next reads as attributes.
