@@ -5,6 +5,7 @@
 override ROWS: u32;
 // The number by which tints know pictures from meshes.
 override PICTURES_LEVEL: f32;
+
 @group(1) @binding(0) var<storage, read> trees: array<Tree>;
 @group(1) @binding(1) var<storage, read> frames: array<Frame>;
 @group(1) @binding(2) var colors: texture_2d_array<f32>;
@@ -124,8 +125,8 @@ fn vertex(@builtin(vertex_index) vertex: u32) -> Out {
 
 // The light of the leaf at a place of a picture, `place` in leaves' widths: how much sun falls on the side that the eye sees and on
 // the other one. Single leaves gleam and are dark, also where all are of one size with the pixels; where they are smaller, and
-// `sharp` less than 1, nearly their mean is seen. Of leaves that lie by chance the sun sees each share of their area as often
-// as any other, and so is in `entry` of `leaf_light.rs` from 0.4 to 1.6 times what it is on average.
+// `sharp` less than 1, nearly their mean is seen. A leaf that lies by chance meets the sun at each cosine equally often, and so
+// gets from 0.4 to 1.6 times the mean: see `entry` of `leaf_light.rs`.
 fn one_leaf(leaf: vec4f, place: vec2f, sharp: f32) -> vec2f {
     let number = scattered(floor(place));
     let is_front = number < leaf.x;
