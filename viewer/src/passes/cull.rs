@@ -14,9 +14,9 @@ use crate::options::Options;
 use crate::upload::{PICTURE_INDICES, TreeSet};
 
 /// Threads of a workgroup.
-pub(super) const GROUP: u32 = 64;
+const GROUP: u32 = 64;
 /// The most workgroups along one axis.
-pub(super) const MAX_GROUPS: u32 = 65535;
+const MAX_GROUPS: u32 = 65535;
 /// What stands in the place of a mode where all trees are to be drawn as their pictures, and where none is.
 const PICTURES: u32 = TreeLodMode::VARIANTS.len() as u32;
 const MESHES: u32 = PICTURES + 1;
@@ -147,7 +147,7 @@ impl Cull {
 }
 
 /// A thread for each of so many.
-pub(super) fn dispatch_each(pass: &mut wgpu::ComputePass<'_>, count: u32) {
+fn dispatch_each(pass: &mut wgpu::ComputePass<'_>, count: u32) {
     let groups = count.div_ceil(GROUP);
     pass.dispatch_workgroups(groups.min(MAX_GROUPS), groups.div_ceil(MAX_GROUPS), 1);
 }

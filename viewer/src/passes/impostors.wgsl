@@ -87,7 +87,9 @@ fn vertex(@builtin(vertex_index) vertex: u32) -> Out {
     let leaf_m = frames[template_index].leaf_m;
     // Towards the eye in the template's space, from the middle of the picture; as far as it is.
     let middle = from_template(rows, vec3f(axis.x, low + 0.5 * size.y, axis.y));
-    let back = way_to_template(rows, view.eye - middle);
+    let way = view.eye - middle;
+    let away = length(way);
+    let back = way_to_template(rows, way);
     let ahead = normalize(back.xz + vec2f(0.0, 1e-6));
     let corner = vec2f(f32(index & 1u), f32(index >> 1u));
     let across = vec3f(ahead.y, 0.0, -ahead.x) * ((corner.x - 0.5) * size.x);
@@ -116,9 +118,9 @@ fn vertex(@builtin(vertex_index) vertex: u32) -> Out {
     let from_sun = dot(ahead, normalize(to_sun.xz + vec2f(0.0, 1e-6)));
     let at = 0.5 + 0.5 * vec2f(from_sun, to_eye.y);
     out.leaf = textureSampleLevel(leaf_lights, clamped, at, template_index, 0.0);
-    out.leaves = vec3f(size / leaf_m, saturate(leaf_m * view.focal_px / length(view.eye - middle)));
+    out.leaves = vec3f(size / leaf_m, saturate(leaf_m * view.focal_px / away));
     out.air = air_before(out.world);
-    let cosine = dot(normalize(view.eye - middle), view.sun_direction);
+    let cosine = dot(way / away, view.sun_direction);
     out.sun = vec2f(phase(cosine), glow(cosine));
     return out;
 }

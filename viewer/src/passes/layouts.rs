@@ -95,7 +95,7 @@ impl Layouts {
         ];
         let sun_view = SUN_VIEW.map(|binding| (binding, view[binding as usize]));
         Self {
-            view: all("view", both | ShaderStages::COMPUTE, &view),
+            view: all("view", both, &view),
             sun_view: layout(gpu, "view of the sun", both, sun_view),
             camera: all("camera", both, &[UNIFORM]),
             studio: all("studio", both, &[UNIFORM, READ]),

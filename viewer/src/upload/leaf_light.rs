@@ -44,9 +44,8 @@ fn table(leaves: &[LeafSide], sun: Vec3) -> Vec<[u8; 4]> {
         .collect()
 }
 
-/// Of the leaves' area that the eye sees: the share of which it sees the side that the sun shines on; how much sun there is on that
-/// side, and on the other where it sees this one, on average; and how far they face upwards. What `leaf` of `trees.wgsl` makes of
-/// the sun and of a leaf's normal.
+/// Of the leaves' area that the eye sees: the share of which it sees the lit side; how much sun, on average, falls on leaves that it
+/// sees from there, and on those that it sees from behind; and how far they face upwards. As `leaf_light` of `trees.wgsl` has it.
 fn entry(leaves: &[LeafSide], sun: Vec3, cosine: f32, eye_y: f32) -> [f32; 4] {
     let direction = |azimuth: f32, y: f32| {
         let level = Vec2::from_angle(azimuth) * (1.0 - y * y).max(0.0).sqrt();

@@ -29,8 +29,9 @@ impl Uploader {
     pub(super) fn sky(&self, sky: &Sky) -> SkyTextures {
         let layer = |name: &str| sky.images.layers.iter().find(|layer| layer.name == name);
         let none = Image::of_one_pixel([0; 4]);
+        // Of sheets only alpha is read.
         let texture =
-            |name: &str| self.image(layer(name).map_or(&none, |layer| &layer.image), ImageUse::Color);
+            |name: &str| self.image(layer(name).map_or(&none, |layer| &layer.image), ImageUse::Data);
         let measure = |name: &str| layer(name).map_or([0.0; 2], |layer| [layer.altitude_m, layer.extent_m]);
         let ([a, b], [c, d]) = (measure("cumulus"), measure("cirrus"));
         SkyTextures {
