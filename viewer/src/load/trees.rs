@@ -17,6 +17,7 @@ use super::octahedral::{direction, octahedral};
 use super::{Result, images};
 use crate::scene::{
     Crown, Image, Impostor, LEAVES, LeafSide, Level, Material, Range, Template, TreeVertex, Trees, middles_m,
+    sort_by_place,
 };
 
 /// The trees; none if the scene has none.
@@ -34,7 +35,8 @@ pub(super) fn read(document: &Document) -> Result<Trees> {
     };
     let Some(value) = of_node(false) else { return Ok(Trees::default()) };
     let (extension, instances) = records(&value)?;
-    let far = of_node(true).map_or(Ok(Vec::new()), |value| Ok(records(&value)?.1))?;
+    let mut far = of_node(true).map_or(Ok(Vec::new()), |value| Ok(records(&value)?.1))?;
+    sort_by_place(&mut far);
     let templates = extension
         .templates
         .par_iter()

@@ -175,13 +175,20 @@ fn choose(@builtin(global_invocation_id) id: vec3u) {
     let center = from_template(trees[index].rows, templates[template_index].center);
     let scale = trees[index].scale;
     let radius = templates[template_index].radius * scale;
-    if (cull.planes_used != 0u) {
-        for (var plane = 0u; plane < 5u; plane++) {
-            if (dot(cull.planes[plane], vec4f(center, 1.0)) < -radius) {
-                return;
-            }
-        }
+    var seen = true;
+    for (var plane = 0u; plane < 5u; plane++) {
+        seen = seen && (cull.planes_used == 0u || dot(cull.planes[plane], vec4f(center, 1.0)) >= -radius);
     }
+    // A loop, because Mesa's software driver takes both ways of an `if`, but leaves a loop when no thread of several needs it any more.
+    for (var once = select(1u, 0u, seen); once < 1u; once++) {
+        list_tree(index, center, radius);
+    }
+}
+
+// Enters a tree that is seen into the lists of what it is drawn as.
+fn list_tree(index: u32, center: vec3f, radius: f32) {
+    let template_index = trees[index].template_index;
+    let scale = trees[index].scale;
     let distance = max(length(center - cull.eye) - radius, MIN_DISTANCE_M);
     // Beyond the field nobody looks at a tree so closely that its finest mesh would be worth what thousands of them cost.
     let mode = select(cull.lod_mode, QUALITY, cull.lod_mode == OFF && index >= cull.field);

@@ -21,7 +21,7 @@ pub use ground::{Apron, Ground};
 pub use image::{HdrImage, Image};
 pub use impostor::{Crown, IMPOSTOR_ROWS, Impostor, LEAVES, LeafSide, middles_m};
 pub use sky::Sky;
-pub use trees::{Level, Material, Range, Template, TreeVertex, Trees};
+pub use trees::{Level, Material, Range, Template, TreeVertex, Trees, sort_by_place};
 
 /// One landscape.
 #[derive(Clone, Debug)]

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use genescape_schema::scene::Instance;
+use glam::Vec2;
 
 use super::{Image, Impostor};
 
@@ -22,6 +23,28 @@ impl Trees {
     pub fn all(&self) -> impl Iterator<Item = &Instance> {
         self.instances.iter().chain(self.far.iter())
     }
+}
+
+/// Puts trees that stand close to each other close to each other in the list, along a Z-order curve (Morton 1966): the device culls
+/// and draws some at a time, which is soon done where none of them is seen, and reads what lies together.
+pub fn sort_by_place(trees: &mut [Instance]) {
+    let place = |tree: &Instance| Vec2::new(tree.world_from_tree[0][3], tree.world_from_tree[2][3]);
+    let low = trees.iter().map(place).fold(Vec2::MAX, Vec2::min);
+    let extent = trees.iter().map(place).fold(Vec2::MIN, Vec2::max) - low;
+    let scale = f32::from(u16::MAX) / extent.max_element().max(f32::MIN_POSITIVE);
+    trees.sort_by_cached_key(|tree| {
+        let [x, z] = ((place(tree) - low) * scale).to_array().map(|along| spread(along as u16));
+        x | z << 1
+    });
+}
+
+/// Each bit at twice its place.
+fn spread(bits: u16) -> u32 {
+    let mut spread = u32::from(bits);
+    for (shift, mask) in [(8, 0x00ff_00ff), (4, 0x0f0f_0f0f), (2, 0x3333_3333), (1, 0x5555_5555)] {
+        spread = (spread | spread << shift) & mask;
+    }
+    spread
 }
 
 /// A tree that stands in many places, with all its levels of detail.
@@ -114,4 +137,36 @@ pub struct Material {
     pub thin: bool,
     /// Whether it shows pictures of clusters of leaves.
     pub clusters: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn trees_that_follow_each_other_stand_close_to_each_other() {
+        // Spread evenly, each far from the one before it.
+        let mut trees: Vec<Instance> = (0..1024u16)
+            .map(|number| {
+                let along = |step: f32| 1000.0 * (f32::from(number) * step).fract() - 300.0;
+                let [x, z] = [0.754_877_7, 0.569_840_3].map(along);
+                let world_from_tree = [[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, 7.0], [0.0, 0.0, 1.0, z]];
+                Instance { world_from_tree, template: number.into(), trunk_cylinder_m: [x, z, 0.3] }
+            })
+            .collect();
+        let step_m = |trees: &[Instance]| {
+            let place = |tree: &Instance| Vec2::from_slice(&tree.trunk_cylinder_m);
+            trees.windows(2).map(|pair| place(&pair[0]).distance(place(&pair[1]))).sum::<f32>() / 1023.0
+        };
+        let before_m = step_m(&trees);
+        sort_by_place(&mut trees);
+        // Some 31 m are between a tree and the nearest one.
+        assert!(before_m > 300.0 && step_m(&trees) < 60.0, "{before_m} m, then {} m", step_m(&trees));
+        trees.sort_by_key(|tree| tree.template);
+        assert!(trees.iter().zip(0..).all(|(tree, number)| tree.template == number), "none is lost");
+        // One place, or none at all.
+        trees.truncate(1);
+        sort_by_place(&mut trees);
+        sort_by_place(&mut []);
+    }
 }
