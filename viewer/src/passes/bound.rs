@@ -22,6 +22,8 @@ pub struct BoundScene {
     pub terrain: Elements,
     /// Sides of the picture as a part of full resolution.
     pub part: f32,
+    /// Whether one copy of the clouds fades into the other.
+    pub clouds_fade: bool,
     /// Clumps of grass.
     pub clumps: Elements,
     /// What is drawn of the ring's indices.
@@ -78,7 +80,7 @@ impl BoundScene {
                 Sampler(&layouts.repeating),
                 Sampler(&layouts.clamped),
                 Binding::cube(&sky.cube),
-                Binding::cube(&sky.clear_cube),
+                Binding::texture(&sky.clear_dome),
                 Binding::texture(&sky.cumulus),
                 Binding::texture(&sky.cirrus),
                 Binding::texture(&scene.shadow_map),
@@ -87,7 +89,6 @@ impl BoundScene {
                 Binding::texture(&land.light),
                 Binding::texture(&land.bounds),
                 Binding::texture(&shade.texture),
-                Binding::texture(&sky.horizon),
             ];
             bind(gpu, "view", &layouts.view, (0..).zip(bound))
         };
@@ -101,6 +102,7 @@ impl BoundScene {
             shade,
             terrain: Elements::new(gpu, "terrain"),
             part: 1.0,
+            clouds_fade: false,
             clumps: Elements::new(gpu, "clumps of grass"),
             ring: Vec::new(),
             plants: Elements::new(gpu, "small plants"),

@@ -19,14 +19,17 @@ struct View {
     water_level: f32,
     // Pixels that one radian covers in the middle of the picture.
     focal_px: f32,
-    // 1 if it is so: colours say the level of detail, clouds drift. For `select`: no `if` or loop may
-    // depend on a uniform buffer alone, or Mesa's software driver (22.3) compiles the shader for each draw and leaks it.
+    // 1 if colours say the level of detail. For `select`: no `if` or loop may depend on a uniform buffer alone, or Mesa's
+    // software driver (22.3) compiles the shader for each draw and leaks it.
     tint_levels: u32,
-    drift_clouds: u32,
+    // How much is seen of the clouds that `drift` names last, 0 to ½.
+    other_clouds: f32,
     // Pixels a radian for each pixel by which the land may be off.
     lod_pixels: f32,
     // Altitude and extent in metres of the cumulus layer, then of the cirrus layer; extent 0 if there is none.
     clouds: vec4f,
+    // How far clouds have drifted, x and z in metres: those that are seen more of, and those into or out of which they fade.
+    drift: vec4f,
     // The eye for which levels of detail are chosen: that of the walker, also when one looks on from above.
     lod_eye: vec3f,
     // How far it is above the highest land.
@@ -56,7 +59,8 @@ struct View {
 @group(0) @binding(1) var repeating: sampler;
 @group(0) @binding(2) var clamped: sampler;
 @group(0) @binding(3) var sky_cube: texture_cube<f32>;
-@group(0) @binding(4) var clear_cube: texture_cube<f32>;
+// The cloudless sky down to the horizon, which is all around the edge: see `on_dome`.
+@group(0) @binding(4) var clear_dome: texture_2d<f32>;
 @group(0) @binding(5) var cumulus_layer: texture_2d<f32>;
 @group(0) @binding(6) var cirrus_layer: texture_2d<f32>;
 @group(0) @binding(7) var shadow_map: texture_depth_2d;
@@ -64,8 +68,6 @@ struct View {
 @group(0) @binding(9) var heights: texture_2d<f32>;
 @group(0) @binding(10) var light_map: texture_2d<f32>;
 @group(0) @binding(12) var near_shade: texture_2d<f32>;
-// The cloudless sky at the horizon: see `around`.
-@group(0) @binding(13) var horizon: texture_2d<f32>;
 
 // A tree, as `TreeData` in Rust.
 struct Tree {
@@ -141,17 +143,23 @@ fn albedo_of(texel: vec3f) -> vec3f {
     return texel * texel;
 }
 
-// How far around a direction is, x and z, as a part of the way around a square: from the one half-way between east and north.
-fn around(way: vec2f) -> f32 {
-    let along_x = abs(way.x) > abs(way.y);
-    let side = select(select(7.0, 3.0, way.y > 0.0), select(5.0, 1.0, way.x > 0.0), along_x);
-    return (side + select(-way.x / way.y, way.y / way.x, along_x)) / 8.0;
+// Where `clear_dome` has a direction, up to a factor, that is not downwards: Meyer's octahedron (2010), of which the upper half is a square.
+// Its corners are the axes, and the middles of the outermost texels its edge.
+fn on_dome(way: vec3f) -> vec2f {
+    let flat = way.xz / (abs(way.x) + way.y + abs(way.z));
+    let size = f32(textureDimensions(clear_dome).x);
+    return 0.5 + vec2f(flat.x + flat.y, flat.x - flat.y) * (0.5 - 0.5 / size);
+}
+
+// Of that direction or, if it is downwards, the horizon below which it is. Software takes less time for this than for a cube.
+fn clear_sky(way: vec3f) -> vec3f {
+    return textureSampleLevel(clear_dome, clamped, on_dome(vec3f(way.x, max(way.y, 0.0), way.z)), 0.0).rgb;
 }
 
 // The light of endless haze in a direction: that of the cloudless sky at the horizon, brighter towards the sun, so that land
-// fades into the sky behind it. Of a cube it would be the same, but take software more time than all else of the air.
+// fades into the sky behind it.
 fn haze_towards(way: vec3f) -> vec3f {
-    return textureSampleLevel(horizon, repeating, vec2f(around(way.xz + vec2f(1e-4, 0.0)), 0.5), 0.0).rgb;
+    return clear_sky(vec3f(way.x + 1e-4, 0.0, way.z));
 }
 
 // Aerial perspective: the haze's own light before a place in the world, and the share of that place's light that comes through.
@@ -406,27 +414,6 @@ fn level_tint(level: f32) -> vec3f {
     return 0.55 + 0.45 * cos(vec3f(phase, phase + 2.1, phase + 4.2));
 }
 
-// How far clouds have drifted, in metres, at two moments half a cycle apart, and the share of the first: each is faded in
-// and out while it is far from where the clouds were painted, so that they drift for ever.
-struct Drift {
-    first: vec2f,
-    second: vec2f,
-    share: f32,
-}
-
-const WIND_M_PER_S: vec2f = vec2f(9.0, 4.0);
-const CYCLE_S: f32 = 200.0;
-
-fn drift() -> Drift {
-    let first = fract(view.time_s / CYCLE_S + 0.5) - 0.5;
-    let second = fract(view.time_s / CYCLE_S) - 0.5;
-    // Most of the time only one of the two is seen.
-    let share = smoothstep(0.4, 0.6, 1.0 - 2.0 * abs(first));
-    let still = view.drift_clouds == 0u;
-    let way = select(WIND_M_PER_S * CYCLE_S, vec2f(0.0), still);
-    return Drift(way * first, way * second, select(share, 1.0, still));
-}
-
 // Where a cloud that is seen in `direction` was painted before it drifted by `moved` metres.
 fn before_drift(direction: vec3f, moved: vec2f) -> vec3f {
     let away = max(view.clouds.x, 400.0) / max(direction.y, 0.02);
@@ -471,10 +458,6 @@ fn frayed(direction: vec3f) -> vec3f {
     return direction + (right * beside.x + cross(direction, right) * beside.y) * reach;
 }
 
-fn clear_sky(direction: vec3f) -> vec3f {
-    return textureSampleLevel(clear_cube, clamped, direction, 0.0).rgb;
-}
-
 // What clouds that stand still add to the clear sky, or take from it.
 fn painted_clouds(direction: vec3f, are_frayed: bool) -> vec3f {
     var there = direction;
@@ -484,17 +467,25 @@ fn painted_clouds(direction: vec3f, are_frayed: bool) -> vec3f {
     return textureSampleLevel(sky_cube, clamped, there, 0.0).rgb - clear_sky(there);
 }
 
-// The same of the painted clouds, drifting if that is wished for. At the horizon they stand still. A loop, because Mesa's
-// software driver leaves a loop early but takes both ways of an `if`.
+// How much of the way that clouds drift is seen in a direction: at the horizon they stand still.
+fn drifting(direction: vec3f) -> f32 {
+    return smoothstep(0.005, 0.06, direction.y);
+}
+
+// The same of those clouds alone that are seen more of.
+fn main_clouds(direction: vec3f, are_frayed: bool) -> vec3f {
+    return painted_clouds(before_drift(direction, view.drift.xy * drifting(direction)), are_frayed);
+}
+
+// The same of all clouds that are seen. A loop, because Mesa's software driver leaves a loop early but takes both ways of an `if`.
 fn clouds_towards(direction: vec3f, are_frayed: bool) -> vec3f {
-    let d = drift();
-    let lift = smoothstep(0.005, 0.06, direction.y);
+    let lift = drifting(direction);
+    let other = select(view.other_clouds, 0.0, lift <= 0.0);
+    let copies = select(1, 2, other > 0.0);
     var radiance = vec3f(0.0);
-    let first = select(0, 1, d.share <= 0.0 && lift > 0.0);
-    let last = select(2, 1, d.share >= 1.0 || lift <= 0.0);
-    for (var copy = first; copy < last; copy++) {
-        let moved = select(d.second, d.first, copy == 0) * lift;
-        let share = select(select(1.0 - d.share, d.share, copy == 0), 1.0, lift <= 0.0);
+    for (var copy = 0; copy < copies; copy++) {
+        let share = select(other, 1.0 - other, copy == 0);
+        let moved = select(view.drift.zw, view.drift.xy, copy == 0) * lift;
         radiance += share * painted_clouds(before_drift(direction, moved), are_frayed);
     }
     return radiance;
@@ -506,10 +497,13 @@ fn layer_alpha(image: texture_2d<f32>, direction: vec3f, altitude: f32, extent: 
     return select(0.0, alpha, extent > 0.0);
 }
 
-// Share of the sun's disc that clouds let through.
-fn sun_clearness() -> f32 {
-    let moved = drift().first;
+// Share of the sun's disc that clouds let through which have drifted so far.
+fn clearness(moved: vec2f) -> f32 {
     let low = layer_alpha(cumulus_layer, view.sun_direction, view.clouds.x, view.clouds.y, moved);
     let high = layer_alpha(cirrus_layer, view.sun_direction, view.clouds.z, view.clouds.w, moved);
     return (1.0 - low) * (1.0 - 0.7 * high);
+}
+
+fn sun_clearness() -> f32 {
+    return mix(clearness(view.drift.xy), clearness(view.drift.zw), view.other_clouds);
 }

@@ -82,7 +82,7 @@ impl Layouts {
             FILTERING,
             FILTERING,
             CUBE,
-            CUBE,
+            IMAGE,
             IMAGE,
             IMAGE,
             DEPTH_MAP,
@@ -90,7 +90,6 @@ impl Layouts {
             DATA,
             IMAGE,
             DATA,
-            IMAGE,
             IMAGE,
         ];
         let sun_view = SUN_VIEW.map(|binding| (binding, view[binding as usize]));

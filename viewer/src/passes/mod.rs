@@ -11,6 +11,7 @@ mod bound_asset;
 mod bound_mirror;
 mod bound_shade;
 mod cull;
+mod drift;
 pub mod grass;
 pub mod impostors;
 mod layouts;

@@ -8,20 +8,25 @@ pub const SHADER: Shader = Shader { name: "sky", source: include_str!("sky.wgsl"
 
 #[derive(Debug)]
 pub struct Sky {
-    pipeline: wgpu::RenderPipeline,
+    usual: wgpu::RenderPipeline,
+    /// While one copy of the clouds fades into the other.
+    fading: wgpu::RenderPipeline,
 }
 
 impl Sky {
     pub(super) fn new(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
         let (module, groups) = (compiler.module(&SHADER)?, [&compiler.layouts.view]);
-        let desc = PipelineDesc { depth_write: false, ..PipelineDesc::new(&module, &groups) };
-        Ok(Self { pipeline: compiler.pipeline(&desc) })
+        let pipeline = |fragment: &str| {
+            let usual = PipelineDesc::new(&module, &groups);
+            compiler.pipeline(&PipelineDesc { fragment: Some(fragment), depth_write: false, ..usual })
+        };
+        Ok(Self { usual: pipeline("fragment"), fading: pipeline("fading") })
     }
 }
 
 impl DrawPass for Sky {
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, _: &BoundScene, _: &Options) -> u32 {
-        pass.set_pipeline(&self.pipeline);
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, bound: &BoundScene, _: &Options) -> u32 {
+        pass.set_pipeline(if bound.clouds_fade { &self.fading } else { &self.usual });
         pass.draw(0..3, 0..1);
         1
     }

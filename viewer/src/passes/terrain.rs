@@ -33,10 +33,17 @@ pub struct Terrain {
 
 #[derive(Debug)]
 struct Pipelines {
+    dry: Field,
+    /// For land on which water stands.
+    wet: Field,
+    ring: wgpu::RenderPipeline,
+}
+
+#[derive(Debug)]
+struct Field {
     blocks: wgpu::RenderPipeline,
     strip: wgpu::RenderPipeline,
     risen: wgpu::RenderPipeline,
-    ring: wgpu::RenderPipeline,
 }
 
 impl Terrain {
@@ -47,21 +54,22 @@ impl Terrain {
         let blocks = &[buffer_layout::<block::Block>(VertexStepMode::Instance, &BLOCK)];
         let ring = &[buffer_layout::<RingVertex>(VertexStepMode::Vertex, &RING)];
         let pipelines = |wireframe: bool| {
-            let usual = || PipelineDesc {
-                fragment: Some("ground"),
+            let drawn = |fragment| PipelineDesc {
+                fragment: Some(fragment),
                 cull: Some(wgpu::Face::Back),
                 wireframe,
                 ..PipelineDesc::new(shader, groups)
             };
-            let topology = PrimitiveTopology::TriangleStrip;
-            let blocks = PipelineDesc { vertex: "block_vertex", buffers: blocks, ..usual() };
-            let strip = PipelineDesc { vertex: "sample_vertex", topology, ..usual() };
-            let risen = PipelineDesc { vertex: "risen_vertex", ..usual() };
-            let ring =
-                PipelineDesc { vertex: "ring_vertex", fragment: Some("ring"), buffers: ring, ..usual() };
-            let [blocks, strip, risen, ring] =
-                [blocks, strip, risen, ring].map(|desc| compiler.pipeline(&desc));
-            Pipelines { blocks, strip, risen, ring }
+            let field = |fragment| {
+                let topology = PrimitiveTopology::TriangleStrip;
+                let blocks = PipelineDesc { vertex: "block_vertex", buffers: blocks, ..drawn(fragment) };
+                let strip = PipelineDesc { vertex: "sample_vertex", topology, ..drawn(fragment) };
+                let risen = PipelineDesc { vertex: "risen_vertex", ..drawn(fragment) };
+                let [blocks, strip, risen] = [blocks, strip, risen].map(|desc| compiler.pipeline(&desc));
+                Field { blocks, strip, risen }
+            };
+            let ring = PipelineDesc { vertex: "ring_vertex", buffers: ring, ..drawn("ring") };
+            Pipelines { dry: field("ground"), wet: field("wet_ground"), ring: compiler.pipeline(&ring) }
         };
         let indices = block::block_indices(1 << block::BLOCK_BITS);
         Ok(Self {
@@ -79,18 +87,19 @@ impl DrawPass for Terrain {
 
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, bound: &BoundScene, options: &Options) -> u32 {
         let (pipelines, terrain) = (self.pipelines.get(options.wireframe), &bound.terrain);
+        let field = if bound.scene.land.is_wet { &pipelines.wet } else { &pipelines.dry };
         pass.set_bind_group(1, &bound.ground_group, &[]);
         match options.terrain_lod {
             TerrainLodMode::Morph => {
-                pass.set_pipeline(&pipelines.risen);
+                pass.set_pipeline(&field.risen);
                 terrain.draw_as_indices(pass);
             }
             TerrainLodMode::Roam => {
-                pass.set_pipeline(&pipelines.strip);
+                pass.set_pipeline(&field.strip);
                 terrain.draw_as_indices(pass);
             }
             TerrainLodMode::Distance | TerrainLodMode::Off => {
-                pass.set_pipeline(&pipelines.blocks);
+                pass.set_pipeline(&field.blocks);
                 pass.set_vertex_buffer(0, terrain.buffer.slice(..));
                 pass.set_index_buffer(self.block_indices.slice(..), wgpu::IndexFormat::Uint16);
                 pass.draw_indexed(0..self.block_index_count, 0, 0..terrain.count);

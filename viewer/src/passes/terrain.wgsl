@@ -285,8 +285,15 @@ fn sides_of(normal: vec3f) -> vec3f {
     return vec3f(shares.x * steep, 1.0 - steep, shares.y * steep);
 }
 
-@fragment
-fn ground(in: Out) -> @location(0) vec4f {
+// Light of the ground before that of the air, and how much of it is under still water.
+struct Ground {
+    radiance: vec3f,
+    water: f32,
+    // Share of the sky that arrives there.
+    open: f32,
+}
+
+fn ground_at(in: Out) -> Ground {
     let place = in.world.xz;
     let uv = field_uv(place);
     let away = distance(in.world, view.eye);
@@ -319,10 +326,23 @@ fn ground(in: Out) -> @location(0) vec4f {
     }
     albedo = select(albedo * wetness(in.world.y), level_tint(in.level) * 0.5, view.tint_levels != 0u);
     let irradiance = view.sun_irradiance * (light.g * shade * relief) + view.sky_irradiance * light.r * (0.6 + 0.4 * normal.y);
-    var radiance = albedo / PI * irradiance;
-    // Water stands on level ground, and shows the sky. A loop, because Mesa's software driver leaves one early.
-    for (var water = smoothstep(0.7, 0.3, color.a); water > 0.0; water = 0.0) {
-        radiance = mix(radiance, flooded(radiance, in.world, light.r), water);
+    return Ground(albedo / PI * irradiance, smoothstep(0.7, 0.3, color.a), light.r);
+}
+
+// Where no water stands on the land.
+@fragment
+fn ground(in: Out) -> @location(0) vec4f {
+    return vec4f(hazed(air_before(in.world), ground_at(in).radiance), 1.0);
+}
+
+// Where some does, as on rice terraces. It shows the sky. A loop, because Mesa's software driver leaves one early; but land without
+// water would pay a tenth of its light's time for it.
+@fragment
+fn wet_ground(in: Out) -> @location(0) vec4f {
+    let here = ground_at(in);
+    var radiance = here.radiance;
+    for (var water = here.water; water > 0.0; water = 0.0) {
+        radiance = mix(radiance, flooded(radiance, in.world, here.open), water);
     }
     return vec4f(hazed(air_before(in.world), radiance), 1.0);
 }

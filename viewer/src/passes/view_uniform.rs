@@ -2,6 +2,7 @@
 
 use glam::{Mat4, Vec3};
 
+use super::drift::Drift;
 use super::{Shift, SunView};
 use crate::camera::Camera;
 use crate::lod::morph::Detail;
@@ -27,9 +28,10 @@ pub struct ViewUniform {
     pub water_level: f32,
     pub focal_px: f32,
     pub tint_levels: u32,
-    pub drift_clouds: u32,
+    pub other_clouds: f32,
     pub lod_pixels: f32,
     pub clouds: [f32; 4],
+    pub drift: [f32; 4],
     pub lod_eye: [f32; 3],
     pub lod_above: f32,
     pub field: [f32; 4],
@@ -89,6 +91,8 @@ impl ViewUniform {
     ) -> Self {
         let (options, sky) = (&frame.options, &scene.sky);
         let [tiles @ .., last_tile] = scene.land.tiles_m;
+        let drift = if options.drift_clouds { Drift::after(frame.time_s) } else { Drift::default() };
+        let ([x, z], [other_x, other_z]) = (drift.main_m.to_array(), drift.other_m.to_array());
         Self {
             sun_direction: sky.sun_direction.to_array(),
             sun_angular_radius: sky.sun_angular_radius_rad,
@@ -97,9 +101,10 @@ impl ViewUniform {
             haze_extinction: sky.haze_extinction_per_m,
             haze: sky.haze_linear,
             water_level: scene.ground.water_level_m.unwrap_or(NO_WATER_M),
-            drift_clouds: options.drift_clouds.into(),
+            other_clouds: drift.other_share,
             lod_pixels: detail.pixels,
             clouds: scene.sky_textures.sheets_m,
+            drift: [x, z, other_x, other_z],
             lod_eye: lod_camera.position_m.into(),
             lod_above: detail.above_m,
             tiles,

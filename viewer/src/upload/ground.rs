@@ -24,6 +24,8 @@ pub struct GroundBuffers {
     pub color: Arc<wgpu::Texture>,
     /// The same on average.
     pub albedo_linear: Vec3,
+    /// Whether water stands on it: the colour's alpha is less there.
+    pub is_wet: bool,
     /// x and z of its normals, a texel a sample.
     pub normals: Arc<wgpu::Texture>,
     /// Parts of the tiling textures 1 to 4.
@@ -69,6 +71,7 @@ impl Uploader {
             }),
             color: self.image(&surface.color, ImageUse::Albedo),
             albedo_linear: mean_light(&surface.color),
+            is_wet: is_wet(&surface.color),
             weights: self.image(&surface.weights, ImageUse::Data),
             light: self.image(&surface.light, ImageUse::Data),
             details: self.tiling(&surface.details)?,
@@ -97,6 +100,12 @@ impl Uploader {
             self.array(&packed.iter().collect::<Vec<_>>(), ImageUse::Data, 1)
         }))
     }
+}
+
+/// Whether its alpha is anywhere less than what `ground_at` of `terrain.wgsl` takes for dry.
+fn is_wet(color: &Image) -> bool {
+    const DRY: u8 = 179;
+    color.levels.first().is_some_and(|texels| texels.chunks_exact(4).any(|texel| texel[3] < DRY))
 }
 
 /// x and z of the normal at each sample.

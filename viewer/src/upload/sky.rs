@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
+use glam::{Vec2, Vec3, Vec4};
 use half::f16;
+use rayon::prelude::*;
 
 use super::{ImageUse, Uploader};
 use crate::gpu::flat;
@@ -13,10 +15,8 @@ use crate::scene::{HdrImage, Image, Sky};
 pub struct SkyTextures {
     /// With clouds.
     pub cube: Arc<wgpu::Texture>,
-    /// Without.
-    pub clear_cube: Arc<wgpu::Texture>,
-    /// The same at the horizon: one row, once around, as `around` of `common.wgsl` has it.
-    pub horizon: wgpu::Texture,
+    /// Without, down to the horizon: see [`dome`].
+    pub clear_dome: wgpu::Texture,
     /// Sheet of cumulus.
     pub cumulus: Arc<wgpu::Texture>,
     /// Sheet of cirrus.
@@ -36,65 +36,99 @@ impl Uploader {
         let ([a, b], [c, d]) = (measure("cumulus"), measure("cirrus"));
         SkyTextures {
             cube: self.cube(&sky.images.faces),
-            clear_cube: self.cube(&sky.images.clear_faces),
-            horizon: self.horizon(&sky.images.clear_faces),
+            clear_dome: self.dome(&sky.images.clear_faces),
             cumulus: texture("cumulus"),
             cirrus: texture("cirrus"),
             sheets_m: [a, b, c, d],
         }
     }
 
-    fn horizon(&self, faces: &[HdrImage]) -> wgpu::Texture {
-        let row = horizon(faces);
+    fn dome(&self, faces: &[HdrImage]) -> wgpu::Texture {
         let (format, usage) = (wgpu::TextureFormat::Rgba16Float, wgpu::TextureUsages::TEXTURE_BINDING);
-        let texture = flat("horizon", [row.len() as u32, 1], format, usage);
-        self.gpu.texture(&texture, bytemuck::cast_slice(&row))
+        let texture = flat("clear sky", [DOME_PX as u32; 2], format, usage);
+        self.gpu.texture(&texture, bytemuck::cast_slice(&dome(faces)))
     }
 }
 
-/// What a cube has half-way between up and down, from north-east by east, south and west: east is +x, south +z. Faces are in the order of
-/// their axes, +x, −x, +y and so on.
-fn horizon(faces: &[HdrImage]) -> Vec<[f16; 4]> {
-    let around = [0, 4, 1, 5].into_iter().filter_map(|side| faces.get(side));
-    let middle = |face: &HdrImage| {
-        let (wide, high) = (face.width_px as usize, face.height_px as usize);
-        let at = move |x: usize, y: usize, part: usize| {
-            let first = 8 * (y * wide + x) + 2 * part;
-            f16::from_le_bytes([face.pixels[first], face.pixels[first + 1]]).to_f32()
-        };
-        let mean = move |x: usize| {
-            let rows = [(high - 1) / 2, high / 2];
-            std::array::from_fn(|part| f16::from_f32(0.5 * rows.map(|y| at(x, y, part)).iter().sum::<f32>()))
-        };
-        // Seen from within, all go from left to right around the other way.
-        (0..wide).rev().map(mean).collect::<Vec<[f16; 4]>>()
+/// Texels along a side of the clear sky: no coarser than those of its cube are, 128 along a face.
+const DOME_PX: usize = 256;
+
+/// What a cube has above the horizon, row by row, where `on_dome` of `common.wgsl` asks for it.
+fn dome(faces: &[HdrImage]) -> Vec<[f16; 4]> {
+    let along = |texel: usize| 2.0 * texel as f32 / (DOME_PX - 1) as f32 - 1.0;
+    let texel = |number: usize| {
+        let [u, v] = [along(number % DOME_PX), along(number / DOME_PX)];
+        // East and south, as parts of the way from straight up to the horizon.
+        let [x, z] = [0.5 * (u + v), 0.5 * (u - v)];
+        smooth(faces, Vec3::new(x, 1.0 - x.abs() - z.abs(), z)).to_array().map(f16::from_f32)
     };
-    around.flat_map(middle).collect()
+    (0..DOME_PX * DOME_PX).into_par_iter().map(texel).collect()
+}
+
+/// Between the four texels of a cube that are nearest to a direction, also where its faces meet.
+fn smooth(faces: &[HdrImage], way: Vec3) -> Vec4 {
+    let (face, place) = on_face(way);
+    let side = faces[face].width_px as f32;
+    let at = 0.5 * side * (place + 1.0) - 0.5;
+    let part = at - at.floor();
+    let texel = |x: f32, y: f32| {
+        let place = 2.0 * (at.floor() + Vec2::new(x, y) + 0.5) / side - 1.0;
+        nearest(faces, towards(face, place))
+    };
+    let rows = [0.0, 1.0].map(|y| texel(0.0, y).lerp(texel(1.0, y), part.x));
+    rows[0].lerp(rows[1], part.y)
+}
+
+fn nearest(faces: &[HdrImage], way: Vec3) -> Vec4 {
+    let (face, place) = on_face(way);
+    let image = &faces[face];
+    let side = image.width_px as usize;
+    let [x, y] = (0.5 * side as f32 * (place + 1.0)).to_array().map(|along| (along as usize).min(side - 1));
+    let texel = &image.pixels[8 * (y * side + x)..];
+    Vec4::from_array(std::array::from_fn(|part| {
+        f16::from_le_bytes([texel[2 * part], texel[2 * part + 1]]).to_f32()
+    }))
+}
+
+/// Faces in the order of their axes, +x, −x, +y and so on: its axis, and what points right and down on it, which seen from within
+/// is mirrored, as it is in all cube maps.
+const FACES: [[Vec3; 3]; 6] = [
+    [Vec3::X, Vec3::NEG_Z, Vec3::NEG_Y],
+    [Vec3::NEG_X, Vec3::Z, Vec3::NEG_Y],
+    [Vec3::Y, Vec3::X, Vec3::Z],
+    [Vec3::NEG_Y, Vec3::X, Vec3::NEG_Z],
+    [Vec3::Z, Vec3::X, Vec3::NEG_Y],
+    [Vec3::NEG_Z, Vec3::NEG_X, Vec3::NEG_Y],
+];
+
+/// Which face of a cube a direction meets, and where on it: right and down, −1 to 1.
+fn on_face(way: Vec3) -> (usize, Vec2) {
+    let axis = way.abs().max_position();
+    let face = 2 * axis + usize::from(way[axis] < 0.0);
+    let [_, right, down] = FACES[face];
+    (face, Vec2::new(way.dot(right), way.dot(down)) / way[axis].abs())
+}
+
+fn towards(face: usize, place: Vec2) -> Vec3 {
+    let [ahead, right, down] = FACES[face];
+    ahead + place.x * right + place.y * down
 }
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
-
     use super::*;
 
     #[test]
-    fn the_horizon_goes_around_once() {
-        let side = 8;
+    fn the_dome_has_each_direction_where_shaders_ask_for_it() {
+        let side = 128;
         // Each texel is the direction in which it is seen.
         let face = |number: usize| {
             let texels = (0..side * side).map(|texel| {
-                let [u, v] = [texel % side, texel / side].map(|t| 2.0 * (t as f32 + 0.5) / side as f32 - 1.0);
-                match number {
-                    0 => Vec3::new(1.0, -v, -u),
-                    1 => Vec3::new(-1.0, -v, u),
-                    4 => Vec3::new(u, -v, 1.0),
-                    5 => Vec3::new(-u, -v, -1.0),
-                    _ => Vec3::ZERO,
-                }
+                let place = [texel % side, texel / side].map(|t| 2.0 * (t as f32 + 0.5) / side as f32 - 1.0);
+                towards(number, Vec2::from_array(place)).normalize().extend(1.0)
             });
             let pixels: Vec<u8> = texels
-                .flat_map(|way| way.extend(1.0).to_array())
+                .flat_map(|texel| texel.to_array())
                 .flat_map(|part| f16::from_f32(part).to_le_bytes())
                 .collect();
             HdrImage {
@@ -104,18 +138,31 @@ mod tests {
                 pixels: pixels.into(),
             }
         };
-        let row = horizon(&[0, 1, 2, 3, 4, 5].map(face));
-        let ways: Vec<Vec3> =
-            row.iter().map(|texel| Vec3::from_slice(&texel.map(f16::to_f32)).normalize()).collect();
-        assert_eq!(ways.len(), 4 * side);
-        for (number, way) in ways.iter().enumerate() {
-            let next = ways[(number + 1) % ways.len()];
-            assert!(
-                way.y == 0.0 && way.dot(next) > 0.95 && way.cross(next).y < 0.0,
-                "{number}: {way}, {next}"
-            );
+        let dome = dome(&[0, 1, 2, 3, 4, 5].map(face));
+        for (number, texel) in dome.iter().enumerate() {
+            let way = Vec4::from_array(texel.map(f16::to_f32)).truncate().normalize();
+            // `on_dome` of `common.wgsl`.
+            let flat = Vec2::new(way.x, way.z) / (way.x.abs() + way.y.abs() + way.z.abs());
+            let at = 0.5 * (Vec2::new(flat.x + flat.y, flat.x - flat.y) + 1.0) * (DOME_PX - 1) as f32;
+            let expected = Vec2::new((number % DOME_PX) as f32, (number / DOME_PX) as f32);
+            // Near the corners of the cube there is no fourth texel.
+            assert!((at - expected).length() < 0.3, "texel {expected}: {way} at {at}");
         }
-        // From north-east to south-east the first quarter: by so much it is as a shader asks for it.
-        assert!(ways[0].abs_diff_eq(Vec3::new(1.0, 0.0, -0.875).normalize(), 1e-3), "{}", ways[0]);
+        // No seam where faces meet.
+        let step = |a: usize, b: usize| {
+            let [a, b] = [a, b].map(|at| Vec4::from_array(dome[at].map(f16::to_f32)));
+            (a - b).truncate().length()
+        };
+        let steps = (0..DOME_PX * (DOME_PX - 1)).map(|at| step(at, at + DOME_PX));
+        let longest = steps.fold(0.0, f32::max);
+        assert!(longest < 0.02, "{longest}");
+    }
+
+    #[test]
+    fn faces_are_those_of_a_cube_map() {
+        for (face, [ahead, right, down]) in FACES.into_iter().enumerate() {
+            assert_eq!(right.cross(down), -ahead, "face {face}");
+            assert_eq!(on_face(ahead).0, face);
+        }
     }
 }

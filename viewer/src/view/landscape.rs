@@ -65,6 +65,7 @@ impl LandscapeChoice {
             self.plants.choose(ground, &bound.scene.land.plants.kinds, eye_m, &frustum, frame.part);
         }
         bound.part = frame.part;
+        bound.clouds_fade = numbers.other_clouds > 0.0;
         bound.clumps.write(gpu, &self.clumps);
         bound.plants.write(gpu, &self.plants.instances);
         bound.plant_draws.write(gpu, &self.plants.draws);

@@ -75,3 +75,28 @@ fn clouds_at_the_horizon_are_not_torn_into_streaks() {
     let [across, up] = [edges(&low), edges(&turned)];
     assert!(up < 1.3 * across, "{across} edges a row and {up} a column");
 }
+
+#[test]
+#[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
+fn clouds_fade_into_their_other_copy_without_a_leap() {
+    let studio = made_up::studio();
+    let camera =
+        Camera { position_m: Vec3::new(0.0, 50.0, 0.0), yaw_rad: 2.5, pitch_rad: 0.9, fov_y_rad: FRAC_PI_3 };
+    let mut view = studio.view(made_up::upload(&studio, &cloudy()), [96; 2]);
+    let mut after = |time_s: f32| {
+        let frame = FrameInput { time_s, ..FrameInput::default() };
+        studio.shoot(&mut view, &frame, &camera, &camera).expect("a picture")
+    };
+    let mut differ = |from_s: f32, to_s: f32| {
+        let (a, b): (RgbaImage, RgbaImage) = (after(from_s), after(to_s));
+        let pairs = a.pixels().zip(b.pixels());
+        pairs.map(|(a, b)| f32::from(a[0].abs_diff(b[0]))).sum::<f32>() / (96.0 * 96.0)
+    };
+    // Another shader draws the sky from the 40th second on, and up to the 60th; in the middle the copies change places.
+    for leap_s in [40.0, 50.0, 60.0] {
+        let step = differ(leap_s - 0.01, leap_s + 0.01);
+        assert!(step < 0.5, "{step} at {leap_s} s");
+    }
+    let fading = differ(44.0, 56.0);
+    assert!(fading > 5.0, "{fading} while they fade");
+}
