@@ -64,6 +64,16 @@ impl Drawing {
         }
     }
 
+    /// A thin rod: two crossed bands, each with a radius and a tint at either end, lit from the side.
+    fn rod(&mut self, [low, high]: [Vec3; 2], radii: [f32; 2], [at_low, at_high]: [f32; 2]) {
+        for across in [Vec3::X, Vec3::Z] {
+            let [wide, thin] = radii.map(|radius| radius * across);
+            let normal = aside(across) + 0.6 * Vec3::Y;
+            self.lit([low - wide, low + wide, high - thin], normal, [at_low, at_low, at_high]);
+            self.lit([low + wide, high + thin, high - thin], normal, [at_low, at_high, at_high]);
+        }
+    }
+
     /// A thin stem of tint 0, seen from one side and its other.
     fn stem(&mut self, root: Vec3, tip: Vec3, radius: f32) {
         self.leaf([root - radius * Vec3::X, root + radius * Vec3::X, tip], [0.0; 3]);
@@ -258,15 +268,43 @@ pub(super) fn reed() -> PlantShape {
     }
     for _ in 0..2 {
         let root = heading(d.unit() * TAU) * 0.08;
-        let top = root + Vec3::new(0.04, 1.45 + 0.3 * d.unit(), 0.02);
-        d.leaf([root - Vec3::X * 0.005, root + Vec3::X * 0.005, top], [0.0, 0.0, 0.6]);
-        let [low, high] = [top - 0.1 * Vec3::Y, top + 0.1 * Vec3::Y];
-        for side in [Vec3::X, Vec3::Z] {
-            d.leaf([low, top + 0.018 * side, high], [1.0; 3]);
-            d.leaf([low, high, top - 0.018 * side], [1.0; 3]);
-        }
+        let neck = root + Vec3::new(0.04, 1.32 + 0.3 * d.unit(), 0.02);
+        let long = 0.13 + 0.05 * d.unit();
+        d.rod([root, neck], [0.006, 0.004], [0.0, 0.2]);
+        cattail(&mut d, neck, long);
+        // What is left of the flowers above.
+        let bare = neck + long * Vec3::Y;
+        let top = bare + (0.10 + 0.06 * d.unit()) * Vec3::Y;
+        d.rod([bare, top], [0.004, 0.0015], [0.5, 0.6]);
     }
     d.done()
+}
+
+/// The head of a cattail, a cylinder with rounded ends.
+fn cattail(d: &mut Drawing, low: Vec3, long: f32) {
+    const SIDES: usize = 6;
+    // Height, radius, how much it faces upwards, and tint of each ring.
+    let rings = [
+        (0.0, 0.003, -1.0, 0.75),
+        (0.016, 0.0125, -0.35, 0.9),
+        (long - 0.014, 0.0135, 0.35, 1.0),
+        (long, 0.004, 1.0, 0.85),
+    ];
+    // Every ring is turned by half a side against the one below.
+    let corner = |ring: usize, k: usize| {
+        let (high, radius, up, tint) = rings[ring];
+        let out = heading((k as f32 + 0.5 * ring as f32) / SIDES as f32 * TAU);
+        (low + high * Vec3::Y + radius * out, out + up * Vec3::Y, tint)
+    };
+    for (ring, k) in (0..rings.len() - 1).flat_map(|ring| (0..SIDES).map(move |k| (ring, k))) {
+        let quad = [corner(ring, k), corner(ring, k + 1), corner(ring + 1, k), corner(ring + 1, k + 1)];
+        for triangle in halves(quad) {
+            // Of its own: the foreground of a file turns each triangle to the eye.
+            let vertices = triangle.map(|(at, normal, tint)| d.vertex(at, normal, tint));
+            let out = triangle.iter().map(|(at, ..)| *at - low).sum::<Vec3>();
+            d.triangle(vertices, triangle.map(|(at, ..)| at), out.with_y(0.0));
+        }
+    }
 }
 
 /// A tuft of long arching grass: blades within stand, those around them lean out.
