@@ -336,7 +336,7 @@ fn ground(in: Out) -> @location(0) vec4f {
 }
 
 // Where some does, as on rice terraces. It shows the sky. A loop, because Mesa's software driver leaves one early; but land without
-// water would pay a tenth of its light's time for it.
+// water would pay a tenth of its light's time for it, or more.
 @fragment
 fn wet_ground(in: Out) -> @location(0) vec4f {
     let here = ground_at(in);
