@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 
 use crate::camera::Camera;
 use crate::options::Options;
-use crate::scene::{Instance, Scene, sort_by_place};
+use crate::scene::{Instance, Scene};
 use crate::walk::{EYE_HEIGHT_M, Land, nearest_free};
 
 /// The camera's path: straight across the middle of the land, a quarter of its extent to each side, at a walker's height
@@ -65,9 +65,7 @@ pub fn forest(scene: &Scene, count: usize) -> Scene {
     let any = (0..1000).map(place).any(|place_m| dry(&place_m));
     let places = (0..).map(place).filter(|place_m| !any || dry(place_m));
     let copies = known.iter().cycle().zip(places).map(|(tree, place_m)| moved(tree, place_m, field));
-    let mut trees: Vec<Instance> = known.iter().copied().chain(copies).take(count).collect();
-    sort_by_place(&mut trees);
-    scene_with.trees.instances = trees.into();
+    scene_with.trees.instances = known.iter().copied().chain(copies).take(count).collect();
     scene_with
 }
 

@@ -151,15 +151,17 @@ fn on_dome(way: vec3f) -> vec2f {
     return 0.5 + vec2f(flat.x + flat.y, flat.x - flat.y) * (0.5 - 0.5 / size);
 }
 
-// Of that direction or, if it is downwards, the horizon below which it is. Software takes less time for this than for a cube.
+// Of that direction or, if it is downwards, the horizon below which it is: any of it straight down. Software takes less time for this
+// than for a cube.
 fn clear_sky(way: vec3f) -> vec3f {
-    return textureSampleLevel(clear_dome, clamped, on_dome(vec3f(way.x, max(way.y, 0.0), way.z)), 0.0).rgb;
+    let above = vec3f(way.x + 1e-4, max(way.y, 0.0), way.z);
+    return textureSampleLevel(clear_dome, clamped, on_dome(above), 0.0).rgb;
 }
 
 // The light of endless haze in a direction: that of the cloudless sky at the horizon, brighter towards the sun, so that land
 // fades into the sky behind it.
 fn haze_towards(way: vec3f) -> vec3f {
-    return clear_sky(vec3f(way.x + 1e-4, 0.0, way.z));
+    return clear_sky(vec3f(way.x, 0.0, way.z));
 }
 
 // Aerial perspective: the haze's own light before a place in the world, and the share of that place's light that comes through.
@@ -472,12 +474,7 @@ fn drifting(direction: vec3f) -> f32 {
     return smoothstep(0.005, 0.06, direction.y);
 }
 
-// The same of those clouds alone that are seen more of.
-fn main_clouds(direction: vec3f, are_frayed: bool) -> vec3f {
-    return painted_clouds(before_drift(direction, view.drift.xy * drifting(direction)), are_frayed);
-}
-
-// The same of all clouds that are seen. A loop, because Mesa's software driver leaves a loop early but takes both ways of an `if`.
+// What all clouds that are seen add to the clear sky, or take from it. A loop, because Mesa's software driver leaves a loop early but takes both ways of an `if`.
 fn clouds_towards(direction: vec3f, are_frayed: bool) -> vec3f {
     let lift = drifting(direction);
     let other = select(view.other_clouds, 0.0, lift <= 0.0);

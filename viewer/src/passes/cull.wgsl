@@ -175,10 +175,11 @@ fn choose(@builtin(global_invocation_id) id: vec3u) {
     let center = from_template(trees[index].rows, templates[template_index].center);
     let scale = trees[index].scale;
     let radius = templates[template_index].radius * scale;
-    var seen = true;
+    var inside = true;
     for (var plane = 0u; plane < 5u; plane++) {
-        seen = seen && (cull.planes_used == 0u || dot(cull.planes[plane], vec4f(center, 1.0)) >= -radius);
+        inside = inside && dot(cull.planes[plane], vec4f(center, 1.0)) >= -radius;
     }
+    let seen = inside || cull.planes_used == 0u;
     // A loop, because Mesa's software driver takes both ways of an `if`, but leaves a loop when no thread of several needs it any more.
     for (var once = select(1u, 0u, seen); once < 1u; once++) {
         list_tree(index, center, radius);

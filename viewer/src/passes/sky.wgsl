@@ -28,7 +28,9 @@ fn above_horizon(direction: vec3f) -> vec3f {
 @fragment
 fn fragment(corner: Corner) -> @location(0) vec4f {
     let direction = direction_of(corner);
-    return radiance_of(corner, direction, main_clouds(above_horizon(direction), true));
+    let above = above_horizon(direction);
+    let clouds = painted_clouds(before_drift(above, view.drift.xy * drifting(above)), true);
+    return radiance_of(corner, direction, clouds);
 }
 
 // While one copy fades into the other.

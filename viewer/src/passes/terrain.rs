@@ -5,7 +5,7 @@ use super::{BoundScene, Compiler, DrawPass, FilledOrWire, PipelineDesc, Shader, 
 use crate::lod::{block, morph, nested};
 use crate::lod_mode::TerrainLodMode;
 use crate::options::Options;
-use crate::upload::RingVertex;
+use crate::upload::{DRY_ALPHA, RingVertex};
 
 pub const SHADER: Shader = Shader {
     name: "terrain",
@@ -14,6 +14,7 @@ pub const SHADER: Shader = Shader {
         ("GAP", morph::GAP as f64),
         ("BLOCK_VERTICES", (1 << block::BLOCK_BITS) as f64 + 1.0),
         ("RATIO", nested::RATIO as f64),
+        ("DRY_ALPHA", DRY_ALPHA as f64),
     ],
 };
 

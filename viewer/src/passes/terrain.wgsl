@@ -293,6 +293,9 @@ struct Ground {
     open: f32,
 }
 
+// From this alpha of the colour on no water stands there.
+override DRY_ALPHA: f32;
+
 fn ground_at(in: Out) -> Ground {
     let place = in.world.xz;
     let uv = field_uv(place);
@@ -326,7 +329,7 @@ fn ground_at(in: Out) -> Ground {
     }
     albedo = select(albedo * wetness(in.world.y), level_tint(in.level) * 0.5, view.tint_levels != 0u);
     let irradiance = view.sun_irradiance * (light.g * shade * relief) + view.sky_irradiance * light.r * (0.6 + 0.4 * normal.y);
-    return Ground(albedo / PI * irradiance, smoothstep(0.7, 0.3, color.a), light.r);
+    return Ground(albedo / PI * irradiance, smoothstep(DRY_ALPHA, 0.3, color.a), light.r);
 }
 
 // Where no water stands on the land.

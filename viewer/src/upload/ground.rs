@@ -102,10 +102,12 @@ impl Uploader {
     }
 }
 
-/// Whether its alpha is anywhere less than what `ground_at` of `terrain.wgsl` takes for dry.
+/// From this alpha of the ground's colour on no water stands there.
+pub const DRY_ALPHA: f32 = 0.7;
+
 fn is_wet(color: &Image) -> bool {
-    const DRY: u8 = 179;
-    color.levels.first().is_some_and(|texels| texels.chunks_exact(4).any(|texel| texel[3] < DRY))
+    let is_wet = |texel: &[u8]| f32::from(texel[3]) < 255.0 * DRY_ALPHA;
+    color.levels.first().is_some_and(|texels| texels.chunks_exact(4).any(is_wet))
 }
 
 /// x and z of the normal at each sample.

@@ -24,7 +24,7 @@ pub use asset::{
     AssetBuffers, CopyData, MAX_LIGHTS, ShapeData, StudioUniform, SurfaceData, SurfaceUniform, UvMap,
 };
 pub use exhibit::{Exhibit, WeakExhibit};
-pub use ground::GroundBuffers;
+pub use ground::{DRY_ALPHA, GroundBuffers};
 pub use impostors::{ImpostorData, ImpostorSet, PICTURE_INDICES};
 pub use lake::{Lake, Window};
 pub use plants::{PLANT_BLOCK_M, PlantBuffers, PlantBuffersOfKind, PlantVertex};

@@ -16,7 +16,7 @@ pub struct SkyTextures {
     /// With clouds.
     pub cube: Arc<wgpu::Texture>,
     /// Without, down to the horizon: see [`dome`].
-    pub clear_dome: wgpu::Texture,
+    pub clear_dome: Arc<wgpu::Texture>,
     /// Sheet of cumulus.
     pub cumulus: Arc<wgpu::Texture>,
     /// Sheet of cirrus.
@@ -43,10 +43,13 @@ impl Uploader {
         }
     }
 
-    fn dome(&self, faces: &[HdrImage]) -> wgpu::Texture {
-        let (format, usage) = (wgpu::TextureFormat::Rgba16Float, wgpu::TextureUsages::TEXTURE_BINDING);
-        let texture = flat("clear sky", [DOME_PX as u32; 2], format, usage);
-        self.gpu.texture(&texture, bytemuck::cast_slice(&dome(faces)))
+    fn dome(&self, faces: &[HdrImage]) -> Arc<wgpu::Texture> {
+        let names: Vec<&str> = faces.iter().map(|face| face.name.as_str()).collect();
+        self.shared(format!("dome {}", names.join(" ")), || {
+            let (format, usage) = (wgpu::TextureFormat::Rgba16Float, wgpu::TextureUsages::TEXTURE_BINDING);
+            let texture = flat("clear sky", [DOME_PX as u32; 2], format, usage);
+            self.gpu.texture(&texture, bytemuck::cast_slice(&dome(faces)))
+        })
     }
 }
 
