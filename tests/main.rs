@@ -3,6 +3,7 @@
 mod backdrop;
 mod distance;
 mod docs;
+mod far_ground;
 mod round;
 mod strips;
 mod wood;

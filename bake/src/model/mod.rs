@@ -26,8 +26,8 @@ pub use lookout::Lookout;
 pub use mesh::{Bounds, Material, Mesh, Part, PartKind};
 pub use terrain::{Landform, TerrainMesh};
 pub use tree::{
-    Clusters, Impostor, Level, LevelledMesh, Morph, Placement, TreeFootprint, TreeTemplate, TreeTextures,
-    is_dead,
+    Caster, Clusters, Impostor, Level, LevelledMesh, Morph, Placement, TreeFootprint, TreeTemplate,
+    TreeTextures, is_dead,
 };
 
 /// The sky as pixels.

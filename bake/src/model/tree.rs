@@ -19,6 +19,15 @@ pub struct TreeTemplate {
     pub crown_radius_m: f32,
 }
 
+/// What casts a template's shadow.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Caster {
+    /// Some hundred to two thousand triangles.
+    pub mesh: Mesh,
+    /// The part of the light that a triangle of each of its parts holds back, on average: 1 for bark.
+    pub opacities: Vec<f32>,
+}
+
 /// The textures that all templates of a scene share, as images `P`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TreeTextures<P> {

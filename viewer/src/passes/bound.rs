@@ -92,8 +92,9 @@ impl BoundScene {
             ];
             bind(gpu, "view", &layouts.view, (0..).zip(bound))
         };
-        let ground = [&land.color, &land.weights, &land.details, &land.normals];
-        let ground = (0..).zip(ground.map(|texture| Binding::texture(texture)));
+        let ground: [&wgpu::Texture; 5] =
+            [&land.color, &land.weights, &land.details, &land.normals, &land.far_shade];
+        let ground = (0..).zip(ground.map(Binding::texture));
         Self {
             view_group: view(uniform),
             ground_group: bind(gpu, "ground", &layouts.ground, ground),

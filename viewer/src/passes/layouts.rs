@@ -99,7 +99,7 @@ impl Layouts {
             camera: all("camera", both, &[UNIFORM]),
             studio: all("studio", both, &[UNIFORM, READ]),
             surface: all("surface", fragment, &[&[UNIFORM][..], &[IMAGE; 5], &[FILTERING; 5]].concat()),
-            ground: all("ground", both, &[IMAGE, IMAGE, LAYERS, IMAGE]),
+            ground: all("ground", both, &[IMAGE, IMAGE, LAYERS, IMAGE, IMAGE]),
             trees: all("trees", ShaderStages::VERTEX, &[READ]),
             impostors: all("pictures of trees", both, &[READ, READ, LAYERS, LAYERS, READ, LAYERS]),
             material: all("material", fragment, &[UNIFORM, IMAGE, IMAGE]),

@@ -5,7 +5,7 @@ use super::{BoundScene, Compiler, DrawPass, FilledOrWire, PipelineDesc, Shader, 
 use crate::lod::{block, morph, nested};
 use crate::lod_mode::TerrainLodMode;
 use crate::options::Options;
-use crate::upload::{DRY_ALPHA, RingVertex};
+use crate::upload::{DRY_ALPHA, RingVertex, SHADED_M};
 
 pub const SHADER: Shader = Shader {
     name: "terrain",
@@ -15,6 +15,7 @@ pub const SHADER: Shader = Shader {
         ("BLOCK_VERTICES", (1 << block::BLOCK_BITS) as f64 + 1.0),
         ("RATIO", nested::RATIO as f64),
         ("DRY_ALPHA", DRY_ALPHA as f64),
+        ("SHADED_M", SHADED_M as f64),
     ],
 };
 

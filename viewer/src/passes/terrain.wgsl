@@ -23,6 +23,8 @@ struct Out {
 @group(1) @binding(2) var details: texture_2d_array<f32>;
 // x and z of the land's normals, however coarse its triangles.
 @group(1) @binding(3) var ground_normals: texture_2d<f32>;
+// What far trees leave of the sun on the ring.
+@group(1) @binding(4) var far_shade: texture_2d<f32>;
 
 fn sample_place(s: vec2u) -> vec3f {
     return vec3f(place_m(f32(s.x)), textureLoad(heights, vec2i(s), 0).r, place_m(f32(s.y)));
@@ -392,6 +394,9 @@ fn mirrored_ground(in: Out) -> @location(0) vec4f {
     return vec4f(hazed(air_before(in.world), albedo * wetness(in.world.y) / PI * irradiance), 1.0);
 }
 
+// Metres beyond the field that `far_shade` shows.
+override SHADED_M: f32;
+
 // The ring around the field.
 struct RingVertex {
     @location(0) position: vec3f,
@@ -440,7 +445,9 @@ fn ring_radiance(in: RingOut) -> vec3f {
     let lean = tiles.bump.xy * (CRAGS_LEAN * rough);
     let normal = normalize(vec3f(smooth_normal.x + lean.x, smooth_normal.y, smooth_normal.z - lean.y));
     let albedo = in.color * mix(patches(in.color, tiles.factor), tiles.factor, rough);
-    let sun = view.sun_irradiance * max(dot(normal, view.sun_direction), 0.0);
+    let shaded = in.world.xz / (2.0 * (view.field.z + SHADED_M)) + 0.5;
+    let left = textureSample(far_shade, clamped, shaded).r;
+    let sun = view.sun_irradiance * (max(dot(normal, view.sun_direction), 0.0) * left);
     let sky = view.sky_irradiance * (0.5 + 0.5 * normal.y);
     return hazed(air_before(in.world), albedo / PI * (sun + sky));
 }

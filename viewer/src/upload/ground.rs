@@ -9,7 +9,7 @@ use super::texture::{mean_light, mip_levels};
 use super::{ImageUse, Lake, PlantBuffers, Ring, Uploader};
 use crate::lod::block;
 use crate::lod::nested::Nested;
-use crate::scene::{Ground, GroundDetail, Heightfield, Image};
+use crate::scene::{GroundDetail, Heightfield, Image, Scene};
 
 /// The land on the device.
 #[derive(Debug)]
@@ -38,6 +38,8 @@ pub struct GroundBuffers {
     pub tiles_m: [f32; 5],
     /// The coarse land around the field.
     pub ring: Ring,
+    /// What trees leave there of the sun.
+    pub far_shade: wgpu::Texture,
     /// Where water is, if there is any.
     pub lake: Option<Lake>,
     /// Small plants, stones and leaves.
@@ -45,7 +47,8 @@ pub struct GroundBuffers {
 }
 
 impl Uploader {
-    pub(super) fn ground(&self, ground: &Ground) -> Result<GroundBuffers, String> {
+    pub(super) fn ground(&self, scene: &Scene) -> Result<GroundBuffers, String> {
+        let ground = &scene.ground;
         let surface = &ground.surface;
         if surface.details.len() != 5 {
             return Err(format!("the ground has {} tiling textures instead of 5", surface.details.len()));
@@ -55,6 +58,7 @@ impl Uploader {
             return Err(format!("a heightfield of {side} samples a side is too small to be drawn"));
         }
         let (field, nested) = (&ground.field, Nested::of(&ground.field));
+        let half_m = 0.5 * field.extent_m();
         let samples = |what: &str, format, bytes: &[u8]| {
             self.samples(&format!("{what} {}", ground.name), field.side, format, bytes)
         };
@@ -76,7 +80,8 @@ impl Uploader {
             light: self.image(&surface.light, ImageUse::Data),
             details: self.tiling(&surface.details)?,
             tiles_m: std::array::from_fn(|layer| surface.details[layer].tile_m),
-            ring: self.ring(&ground.apron, 0.5 * ground.field.extent_m()),
+            ring: self.ring(&ground.apron, half_m),
+            far_shade: self.far_shade(&scene.trees, &ground.apron, half_m, scene.sky.light.sun_direction),
             lake: Lake::of(ground),
             plants: self.plants(ground),
         })

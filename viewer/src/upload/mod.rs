@@ -4,6 +4,7 @@
 mod asset;
 mod clusters;
 mod exhibit;
+mod far_shade;
 mod ground;
 mod horizon;
 mod impostors;
@@ -24,6 +25,7 @@ pub use asset::{
     AssetBuffers, CopyData, MAX_LIGHTS, ShapeData, StudioUniform, SurfaceData, SurfaceUniform, UvMap,
 };
 pub use exhibit::{Exhibit, WeakExhibit};
+pub use far_shade::SHADED_M;
 pub use ground::{DRY_ALPHA, GroundBuffers};
 pub use impostors::{ImpostorData, ImpostorSet, PICTURE_INDICES};
 pub use lake::{Lake, Window};
@@ -74,7 +76,7 @@ impl Uploader {
     /// Uploads a landscape. May run on any thread.
     pub fn upload(&self, scene: &Scene) -> Result<SceneBuffers, String> {
         let (land, (trees, sky_textures)) = rayon::join(
-            || self.ground(&scene.ground),
+            || self.ground(scene),
             || {
                 rayon::join(
                     || self.trees(&scene.trees, scene.sky.light.sun_direction),

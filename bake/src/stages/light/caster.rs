@@ -12,10 +12,8 @@ use std::ops::Range;
 use glam::{Vec2, Vec3};
 
 use super::sun::Sun;
-use crate::model::{Mesh, Part, PartKind};
+use crate::model::Caster;
 
-/// Part of the light that a leaf card holds back: cards are about half empty.
-const LEAF_OPACITY: f32 = 0.55;
 /// Greatest number of cells of an image, across and up.
 const MAX_CELLS: [usize; 2] = [96, 192];
 /// Cells per texel of the light map.
@@ -35,10 +33,9 @@ pub(super) struct Crown {
 
 impl Crown {
     /// From the spread of leaves and wood, weighted by area.
-    pub fn of(mesh: &Mesh) -> Self {
+    pub fn of(Caster { mesh, opacities }: &Caster) -> Self {
         let (mut area, mut height, mut spread, mut plan) = (0.0_f32, 0.0, 0.0, 0.0);
-        for part in &mesh.parts {
-            let opacity = opacity(mesh, part);
+        for (part, opacity) in mesh.parts.iter().zip(opacities) {
             for triangle in &part.triangles {
                 let [a, b, c] = triangle.map(|v| Vec3::from_array(mesh.positions[v as usize]));
                 let (middle, normal) = ((a + b + c) / 3.0, (b - a).cross(c - a) * 0.5);
@@ -59,21 +56,6 @@ impl Crown {
     }
 }
 
-/// The part of the light that a part's triangles hold back. Where each shows a whole card, and reaches beyond its picture, it is
-/// as much in all as the card's.
-fn opacity(mesh: &Mesh, part: &Part) -> f32 {
-    if !part.material.is_card() {
-        return 1.0;
-    }
-    let is_whole = matches!(part.kind, PartKind::Aggregate { triangles: 1, .. });
-    let cards = part.triangles.first().filter(|_| is_whole).map_or(1.0, |triangle| {
-        let [a, b, c] =
-            triangle.map(|v| mesh.uvs.get(v as usize).copied().map_or(Vec2::ZERO, Vec2::from_array));
-        0.5 * (b - a).perp_dot(c - a).abs()
-    });
-    LEAF_OPACITY / cards.max(LEAF_OPACITY)
-}
-
 /// A tree's shadow.
 pub(super) struct Shadow {
     /// Rows from low `c` to high.
@@ -91,8 +73,9 @@ pub(super) struct Shadow {
 }
 
 impl Shadow {
-    /// Of a mesh seen from the sun if it stood in plan direction `front` (x, z; unit), with texels of `texel_m`.
-    pub fn draw(mesh: &Mesh, sun: &Sun, front: [f32; 2], texel_m: f32) -> Option<Self> {
+    /// Of a tree seen from the sun if it stood in plan direction `front` (x, z; unit), with texels of `texel_m`.
+    pub fn draw(caster: &Caster, sun: &Sun, front: [f32; 2], texel_m: f32) -> Option<Self> {
+        let mesh = &caster.mesh;
         let project = |p: &[f32; 3]| {
             let (away, right) = (p[0] * front[0] + p[2] * front[1], p[2] * front[0] - p[0] * front[1]);
             Vec2::new(right, p[1] * sun.cos_elevation - away * sun.sin_elevation)
@@ -122,7 +105,7 @@ impl Shadow {
             let mut layer = vec![1.0; columns * rows];
             let widths = filter.widths(0.5 * (range[0] + range[1].min(top_m)));
             let range = [if slab == 0 { f32::MIN } else { range[0] }, range[1]];
-            if let Some(drawn) = shadow.slab(mesh, &grid, range, &mut layer) {
+            if let Some(drawn) = shadow.slab(caster, &grid, range, &mut layer) {
                 let blurred = shadow.blur(&mut layer, drawn, widths);
                 let cells = blurred.start * columns..blurred.end * columns;
                 let whole = &mut shadow.transmittance[cells.clone()];
@@ -133,10 +116,16 @@ impl Shadow {
     }
 
     /// Draws the triangles whose middle lies in a range of heights; the rows that it touched.
-    fn slab(&self, mesh: &Mesh, grid: &[Vec2], range: [f32; 2], layer: &mut [f32]) -> Option<Range<usize>> {
+    fn slab(
+        &self,
+        Caster { mesh, opacities }: &Caster,
+        grid: &[Vec2],
+        range: [f32; 2],
+        layer: &mut [f32],
+    ) -> Option<Range<usize>> {
         let mut drawn: Option<Range<usize>> = None;
-        for part in &mesh.parts {
-            let left = 1.0 - opacity(mesh, part);
+        for (part, opacity) in mesh.parts.iter().zip(opacities) {
+            let left = 1.0 - opacity;
             for triangle in &part.triangles {
                 let heights = triangle.map(|v| mesh.positions[v as usize][1]);
                 let middle = (heights[0] + heights[1] + heights[2]) / 3.0;

@@ -22,7 +22,7 @@ use std::borrow::Borrow;
 use rayon::prelude::*;
 
 use crate::math::{cell, lerp_array};
-use crate::model::{Instance, Landform, LightMap, Mesh, SkyLight};
+use crate::model::{Caster, Instance, Landform, LightMap, SkyLight};
 use crate::raster::square_image;
 pub use stage::LightMapStage;
 use sun::Sun;
@@ -30,17 +30,16 @@ use trees::{Ground, Texels};
 
 /// The light on the field of `land`, `side_px`² texels (at least one).
 ///
-/// `casters[i]` stands for template i in shadows: some hundred to two thousand triangles are enough, bark solid and
-/// leaf cards half transparent. Instances of templates without a caster, or flattened to nothing, cast no shadow.
+/// `casters[i]` stands for template i in shadows. Instances of templates without a caster, or flattened to nothing, cast no shadow.
 /// Visibility of the sun is relative to open level ground: a sun that a flat horizon cuts still gives 255 there.
 pub fn light_map(
     light: &SkyLight,
     land: &Landform,
     trees: &[Instance],
-    casters: &[impl Borrow<Mesh>],
+    casters: &[impl Borrow<Caster>],
     side_px: u32,
 ) -> LightMap {
-    let casters: Vec<&Mesh> = casters.iter().map(Borrow::borrow).collect();
+    let casters: Vec<&Caster> = casters.iter().map(Borrow::borrow).collect();
     let side = side_px.max(1) as usize;
     let sun = Sun::of(light);
     let samples = land.field.side as usize;

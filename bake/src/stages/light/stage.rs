@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::light_map;
 use crate::gltf::png;
 use crate::graph::{Context, File, Input, Stage, StageError, Stored};
-use crate::model::{Instance, Landform, Mesh, SkyLight};
+use crate::model::{Caster, Instance, Landform, SkyLight};
 
 /// Sun, landform, placement, trees → light on the ground, as PNG.
 #[derive(Serialize)]
@@ -14,14 +14,14 @@ pub struct LightMapStage {
     pub side_px: u32,
     pub landform: Input<Landform>,
     /// For each template what casts its shadow.
-    pub casters: Vec<Input<Stored<Mesh>>>,
+    pub casters: Vec<Input<Stored<Caster>>>,
     pub trees: Input<Vec<Instance>>,
     pub light: Input<SkyLight>,
 }
 
 impl Stage for LightMapStage {
     const NAME: &'static str = "light map";
-    const VERSION: u32 = 3;
+    const VERSION: u32 = 4;
     type Output = File;
 
     fn run(&self, context: &Context<'_>) -> Result<File, StageError> {

@@ -4,7 +4,7 @@
 use glam::Vec3;
 
 use super::*;
-use crate::model::{Heightfield, Instance, Material, Part, PartKind};
+use crate::model::{Heightfield, Instance, Material, Mesh, Part, PartKind};
 use crate::noise::fbm2;
 
 /// A sky without clouds whose sun stands at an elevation and azimuth (clockwise from north), in degrees.
@@ -50,6 +50,12 @@ fn trunk(radius_m: f32, height_m: f32) -> Mesh {
     mesh
 }
 
+/// Cards are half empty.
+fn caster(mesh: Mesh) -> Caster {
+    let opacity = |part: &Part| if part.material.is_card() { 0.55 } else { 1.0 };
+    Caster { opacities: mesh.parts.iter().map(opacity).collect(), mesh }
+}
+
 fn at(template: u32, x: f32, y: f32, z: f32, turn_rad: f32, scale: f32) -> Instance {
     let (sin, cos) = libm::sincosf(turn_rad);
     let world_from_tree =
@@ -58,7 +64,7 @@ fn at(template: u32, x: f32, y: f32, z: f32, turn_rad: f32, scale: f32) -> Insta
 }
 
 fn bare(light: &SkyLight, land: &Landform, side_px: u32) -> LightMap {
-    light_map(light, land, &[], &[] as &[Mesh], side_px)
+    light_map(light, land, &[], &[] as &[Caster], side_px)
 }
 
 /// R, G, B, A at world (x, z).
@@ -159,7 +165,7 @@ fn a_trunks_shadow_touches_its_foot_and_points_away_from_the_sun() {
                 let light = light(elevation, azimuth, 0.53);
                 let (x, z) = (40.5, -20.5);
                 let placement = vec![at(0, x, slope(x, z), z, turn, 1.0)];
-                let map = light_map(&light, &land, &placement, &[trunk(1.5, 15.0)], 1024);
+                let map = light_map(&light, &land, &placement, &[caster(trunk(1.5, 15.0))], 1024);
                 let open = bare(&light, &land, 1024);
                 let s = light.sun_direction;
                 let level = (s.x * s.x + s.z * s.z).sqrt();
@@ -192,11 +198,11 @@ fn a_shadow_climbs_a_step_where_the_land_does() {
     // Sun in the west at 45°: a trunk of 20 m at x = 0 shades 20 m of plain, but only 8 m if a step of 12 m rises.
     let land = land(513, |x, _| if x > 4.0 { 12.0 } else { 0.0 });
     let placement = vec![at(0, 0.0, 0.0, 0.5, 0.0, 1.0)];
-    let map = light_map(&light(45.0, 270.0, 0.53), &land, &placement, &[trunk(1.0, 20.0)], 1024);
+    let map = light_map(&light(45.0, 270.0, 0.53), &land, &placement, &[caster(trunk(1.0, 20.0))], 1024);
     assert!(texel(&map, 6.5, 0.5)[3] < 128 && texel(&map, 12.0, 0.5)[3] == 255);
 }
 
-fn forest(count: u32) -> (Landform, Vec<Instance>, Vec<Mesh>) {
+fn forest(count: u32) -> (Landform, Vec<Instance>, Vec<Caster>) {
     let height = |x: f32, z: f32| 80.0 * fbm2(5, x / 300.0, z / 300.0, 5, 0.5, 0);
     let land = land(129, height);
     let mut leafy = trunk(0.4, 9.0);
@@ -206,7 +212,7 @@ fn forest(count: u32) -> (Landform, Vec<Instance>, Vec<Mesh>) {
         let (x, z) = (x * 1000.0 - 500.0, z * 1000.0 - 500.0);
         at(k % 2, x, height(x, z), z, k as f32, 0.7 + (k % 7) as f32 * 0.1)
     });
-    (land, instances.collect(), vec![trunk(0.5, 12.0), leafy])
+    (land, instances.collect(), vec![caster(trunk(0.5, 12.0)), caster(leafy)])
 }
 
 #[test]
@@ -238,7 +244,7 @@ fn more_trees_never_make_it_lighter() {
 #[test]
 fn nothing_breaks_on_odd_input() {
     let (land, mut placement, mut casters) = forest(20);
-    casters.push(Mesh::default());
+    casters.push(Caster::default());
     placement[0].template = 2;
     placement[1].template = 99;
     placement[2].world_from_tree = [[0.0; 4]; 3];

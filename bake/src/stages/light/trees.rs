@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::caster::{Crown, Shadow};
 use super::sun::Sun;
-use crate::model::{Instance, Mesh};
+use crate::model::{Caster, Instance};
 
 /// Directions around a template for which shadows are drawn.
 const DIRECTIONS: usize = 16;
@@ -32,7 +32,7 @@ pub(super) struct Shade {
 }
 
 /// Lays all trees' shadows on the ground.
-pub(super) fn shade(sun: &Sun, trees: &[Instance], casters: &[&Mesh], ground: &Ground) -> Shade {
+pub(super) fn shade(sun: &Sun, trees: &[Instance], casters: &[&Caster], ground: &Ground) -> Shade {
     let Texels { side, extent_m } = ground.texels;
     let texels = Texels { side: side.div_ceil(2), extent_m };
     let mut shade = Shade { sun: vec![1.0; side * side], crowns: vec![1.0; texels.side * texels.side] };
@@ -64,7 +64,7 @@ fn bands(image: &mut [f32], side: usize, work: impl Fn(usize, &mut [f32]) + Sync
 }
 
 /// The shadows that some instance needs.
-fn draw_shadows(sun: &Sun, casters: &[&Mesh], poses: &[Pose], texel_m: f32) -> Vec<Option<Shadow>> {
+fn draw_shadows(sun: &Sun, casters: &[&Caster], poses: &[Pose], texel_m: f32) -> Vec<Option<Shadow>> {
     let mut wanted = vec![false; casters.len() * DIRECTIONS];
     poses.iter().for_each(|pose| wanted[pose.template * DIRECTIONS + pose.direction] = true);
     let draw = |(index, &wanted): (usize, &bool)| {
@@ -129,7 +129,7 @@ struct Pose {
 }
 
 impl Pose {
-    fn of(instance: &Instance, sun: &Sun, casters: &[&Mesh]) -> Option<Self> {
+    fn of(instance: &Instance, sun: &Sun, casters: &[&Caster]) -> Option<Self> {
         let template = instance.template as usize;
         let [x, y, z] = instance.world_from_tree.map(|row| Vec3::new(row[0], row[1], row[2]));
         let world_from_tree = Mat3::from_cols(x, y, z).transpose();

@@ -1,13 +1,16 @@
 //! A template → its levels of detail, as its file has them: with clusters, errors of pictures, and what casts its shadow.
 
 use genescape_schema::scene::error_weight;
+use glam::Vec2;
 
 use super::ALPHA_CUTOFF;
 use super::clusters;
 use super::impostor::impostor_error_m;
 use super::seen::{Compared, compare};
 use super::surfaces::Surfaces;
-use crate::model::{AlphaMask, Clusters, Level, LevelledMesh, Material, Mesh, Part, TreeTextures};
+use crate::model::{
+    AlphaMask, Caster, Clusters, Image8, Level, LevelledMesh, Material, Mesh, Part, PartKind, TreeTextures,
+};
 use crate::stages::lod::{self, LodOptions, Step};
 
 /// Triangles that are enough to cast a shadow onto a texel of a metre.
@@ -36,18 +39,17 @@ pub struct Levelled {
     pub mesh: LevelledMesh,
     /// Pictures of the clusters that stand for leaves in coarse levels, if any do.
     pub clusters: Option<Clusters>,
-    /// The mesh that casts the template's shadow.
-    pub caster: Mesh,
+    pub caster: Caster,
 }
 
 /// Makes the levels of a template; tells when each part of the work has ended.
 pub fn levelled<P>(mesh: &Mesh, textures: &TreeTextures<P>, ended: &mut dyn FnMut(Step)) -> Levelled {
-    let (mut caster, mut pictures, mut coverage) = (Mesh::default(), None, None);
+    let (mut caster, mut pictures, mut coverage) = (Caster::default(), None, None);
     let options = options(mesh, textures);
     let full = lod::fitted(mesh, &options.masks);
     let mut finish = |levels: &mut Vec<Level>| {
-        // What a shadow is cast by lets light through between its leaves, which a map of such coarse texels knows by itself.
-        caster = smallest_enough(levels).clone();
+        // What a shadow is cast by lets light through between its leaves, which a map of such coarse texels does not draw.
+        caster = caster_of(smallest_enough(levels), textures);
         let (surfaces, found) = match textures.is_thin {
             // A picture of sixteen pixels has room for leaves, not for twigs.
             true => (Surfaces::of(textures), None),
@@ -91,6 +93,39 @@ fn options<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> LodOptions {
     options
 }
 
+/// What casts the shadow of a template, with cards that hold back as much as their pictures do on average.
+fn caster_of<P>(mesh: &Mesh, textures: &TreeTextures<P>) -> Caster {
+    let opacity = |part: &Part| match part.material {
+        Material::Leaf => card_opacity(mesh, part, shown(&textures.leaf_small, textures.is_thin)),
+        Material::Blossom => card_opacity(mesh, part, shown(&textures.blossom_small, false)),
+        _ => 1.0,
+    };
+    Caster { opacities: mesh.parts.iter().map(opacity).collect(), mesh: mesh.clone() }
+}
+
+/// The share that a picture of a card shows; its alpha is that of each texel where it is of thin lines.
+fn shown(picture: &Image8, is_thin: bool) -> f32 {
+    let share = |texel: &[u8; 4]| match f32::from(texel[3]) / 255.0 {
+        alpha if is_thin => alpha,
+        alpha => f32::from(u8::from(alpha >= ALPHA_CUTOFF)),
+    };
+    let texels = picture.data.as_chunks().0;
+    if texels.is_empty() { 1.0 } else { texels.iter().map(share).sum::<f32>() / texels.len() as f32 }
+}
+
+/// The same of the cards of a part: all that the picture shows is within an element's triangles, which may reach beyond it or leave
+/// out where it is empty.
+fn card_opacity(mesh: &Mesh, part: &Part, shown: f32) -> f32 {
+    let PartKind::Aggregate { triangles, .. } = part.kind else { return shown };
+    let area = |triangle: &[u32; 3]| {
+        let [a, b, c] =
+            triangle.map(|v| mesh.uvs.get(v as usize).copied().map_or(Vec2::ZERO, Vec2::from_array));
+        0.5 * (b - a).perp_dot(c - a).abs()
+    };
+    let element: f32 = part.triangles.iter().take(triangles as usize).map(area).sum();
+    shown / element.max(shown).max(f32::MIN_POSITIVE)
+}
+
 /// The finest level that is small enough to be rasterised for every instance, else the coarsest.
 fn smallest_enough(levels: &[Level]) -> &Mesh {
     let small = |level: &&Level| level.mesh.triangle_count() <= CASTER_TRIANGLES;
@@ -99,8 +134,6 @@ fn smallest_enough(levels: &[Level]) -> &Mesh {
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec2;
-
     use super::*;
     use crate::stages::tree::tests::{presets, read};
     use crate::stages::tree::{template, textures};

@@ -9,7 +9,7 @@ use super::{
 use crate::gltf::{Picture, TreePictures, png, tree_glb};
 use crate::graph::{Context, File, Input, Stage, StageError, Stored};
 use crate::model::TreeFootprint;
-use crate::model::{Image8, Mesh, TreeTextures};
+use crate::model::{Caster, Image8, TreeTextures};
 
 /// Mip levels of a card smaller than this are left to the viewer: at that distance a crown covers a few pixels.
 const MIN_MIP_PX: u32 = 16;
@@ -81,13 +81,13 @@ pub struct TreeFiles {
     /// The template with all its levels, self-contained.
     pub glb: File,
     pub footprint: TreeFootprint,
-    /// The mesh that casts the template's shadow.
-    pub caster: Stored<Mesh>,
+    /// What casts the template's shadow.
+    pub caster: Stored<Caster>,
 }
 
 impl Stage for TreeStage {
     const NAME: &'static str = "tree";
-    const VERSION: u32 = 37;
+    const VERSION: u32 = 38;
     type Output = TreeFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<TreeFiles, StageError> {
