@@ -14,6 +14,8 @@ const AREA_TOLERANCE: f32 = 1e-3;
 const MAX_LOST: f64 = 0.25;
 /// How far outside of a triangle a point may lie and belong to it, in barycentric coordinates.
 const ROUNDING: f32 = 1e-4;
+/// Points in a word.
+const WORD: usize = u64::BITS as usize;
 
 /// One vertex of an element merges into another; ids count from the element's first vertex or triangle.
 #[derive(Clone, Debug)]
@@ -55,8 +57,12 @@ impl Point {
     }
 
     fn is_inside(&self) -> bool {
-        self.weights.iter().all(|&weight| weight >= -ROUNDING)
+        are_inside(&self.weights)
     }
+}
+
+fn are_inside(weights: &[f32; 3]) -> bool {
+    weights.iter().all(|&weight| weight >= -ROUNDING)
 }
 
 impl Pattern {
@@ -92,7 +98,7 @@ impl Pattern {
     pub fn whole(&self) -> Element<'_> {
         Element {
             of: self,
-            triangles: self.triangles.iter().copied().map(Some).collect(),
+            triangles: self.triangles.iter().map(|&corners| Some(self.triangle(corners))).collect(),
             living: (0..self.uvs.len() as u32).collect(),
             lost: 0.0,
         }
@@ -103,25 +109,47 @@ impl Pattern {
         0.5 * (b - a).perp_dot(c - a)
     }
 
+    fn triangle(&self, corners: [u32; 3]) -> Triangle {
+        let weights = self.weights(corners);
+        let word = |points: &[Vec2]| {
+            let bits = points.iter().enumerate().map(|(bit, &uv)| u64::from(are_inside(&weights(uv))) << bit);
+            bits.fold(0, |word, bit| word | bit)
+        };
+        Triangle { corners, shown: self.shown.chunks(WORD).map(word).collect() }
+    }
+
+    /// Barycentric coordinates in a triangle; not finite where it has no area.
+    fn weights(&self, corners: [u32; 3]) -> impl Fn(Vec2) -> [f32; 3] + use<> {
+        let [a, b, c] = corners.map(|v| self.uvs[v as usize]);
+        let area = (b - a).perp_dot(c - a);
+        move |uv| {
+            let weights = [(b - uv).perp_dot(c - uv), (c - uv).perp_dot(a - uv), (a - uv).perp_dot(b - uv)];
+            weights.map(|weight| weight / area)
+        }
+    }
+
     /// A point of the picture in that of some triangles in which it is or else nearest to which it is.
     fn point<'a>(&self, triangles: impl Iterator<Item = &'a [u32; 3]>, uv: Vec2) -> Option<Point> {
-        let in_triangle = |&corners: &[u32; 3]| {
-            let [a, b, c] = corners.map(|v| self.uvs[v as usize]);
-            let area = (b - a).perp_dot(c - a);
-            let weights = [(b - uv).perp_dot(c - uv), (c - uv).perp_dot(a - uv), (a - uv).perp_dot(b - uv)];
-            Point { uv, corners, weights: weights.map(|weight| weight / area) }
-        };
+        let in_triangle = |&corners: &[u32; 3]| Point { uv, corners, weights: self.weights(corners)(uv) };
         let least = |point: &Point| point.weights.into_iter().fold(f32::MAX, f32::min);
         let points = triangles.map(in_triangle).filter(|point| point.weights.iter().all(|w| w.is_finite()));
         points.max_by(|p, q| least(p).total_cmp(&least(q)))
     }
 }
 
+/// A triangle of an element.
+#[derive(Clone)]
+struct Triangle {
+    corners: [u32; 3],
+    /// Which of the points that the picture shows are in it, a bit each.
+    shown: Vec<u64>,
+}
+
 /// What is left of them after some merges.
 #[derive(Clone)]
 pub struct Element<'a> {
     of: &'a Pattern,
-    triangles: Vec<Option<[u32; 3]>>,
+    triangles: Vec<Option<Triangle>>,
     living: BTreeSet<u32>,
     /// The part of what the picture shows that is cut off.
     lost: f64,
@@ -135,7 +163,7 @@ impl Element<'_> {
 
     /// The neighbour that a vertex may best merge into, with the error in metres.
     pub fn best(&self, vertex: u32) -> Option<(f64, Merge)> {
-        let around = self.triangles.iter().flatten().filter(|t| t.contains(&vertex));
+        let around = self.corners().filter(|t| t.contains(&vertex));
         let others: BTreeSet<u32> = around.flatten().copied().filter(|&v| v != vertex).collect();
         others.into_iter().filter_map(|into| self.merge(vertex, into)).min_by(by_error)
     }
@@ -144,8 +172,8 @@ impl Element<'_> {
     /// metres.
     fn merge(&self, vertex: u32, into: u32) -> Option<(f64, Merge)> {
         let mut merge = Merge { vertex, into, removed: Vec::new(), corners: Vec::new() };
-        let living = (0_u32..).zip(&self.triangles).filter_map(|(t, triangle)| Some((t, (*triangle)?)));
-        for (t, triangle) in living {
+        let living = (0_u32..).zip(&self.triangles);
+        for (t, triangle) in living.filter_map(|(t, triangle)| Some((t, triangle.as_ref()?.corners))) {
             let Some(corner) = triangle.iter().position(|&v| v == vertex) else { continue };
             if triangle.contains(&into) {
                 merge.removed.push(t);
@@ -173,7 +201,8 @@ impl Element<'_> {
         }
         for &corner in &merge.corners {
             if let Some(triangle) = &mut self.triangles[corner as usize / 3] {
-                triangle[corner as usize % 3] = merge.into;
+                triangle.corners[corner as usize % 3] = merge.into;
+                *triangle = self.of.triangle(triangle.corners);
             }
         }
         self.living.remove(&merge.vertex);
@@ -182,22 +211,29 @@ impl Element<'_> {
         }
     }
 
+    fn corners(&self) -> impl Iterator<Item = &[u32; 3]> {
+        self.triangles.iter().flatten().map(|triangle| &triangle.corners)
+    }
+
     fn area(&self) -> f32 {
-        self.triangles.iter().flatten().map(|t| self.of.signed_area(t).abs()).sum()
+        self.corners().map(|t| self.of.signed_area(t).abs()).sum()
     }
 
     fn lost_now(&self) -> f64 {
-        let shown = &self.of.shown;
-        if shown.is_empty() {
+        let all = self.of.shown.len();
+        if all == 0 {
             // All of it shows, and nothing may be cut off.
             return 1.0;
         }
-        let is_left = |&&uv: &&Vec2| self.point(uv).is_some_and(|point| point.is_inside());
-        (shown.len() - shown.iter().filter(is_left).count()) as f64 / shown.len() as f64
+        let in_word = |word: usize| {
+            self.triangles.iter().flatten().fold(0, |left, triangle| left | triangle.shown[word])
+        };
+        let left: u32 = (0..all.div_ceil(WORD)).map(|word| in_word(word).count_ones()).sum();
+        (all - left as usize) as f64 / all as f64
     }
 
     fn point(&self, uv: Vec2) -> Option<Point> {
-        self.of.point(self.triangles.iter().flatten(), uv)
+        self.of.point(self.corners(), uv)
     }
 
     /// By how much it differs from the whole, in metres: how far what is seen of the picture has moved at most, on average over the

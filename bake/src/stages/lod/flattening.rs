@@ -115,6 +115,10 @@ pub fn fitted(mesh: &Mesh, masks: &[AlphaMask]) -> Mesh {
     let mut state = State::new(&repaired(mesh.clone()));
     for (part, mask) in masks.iter().enumerate().take(state.parts.len()) {
         let span = state.parts[part].clone();
+        let are_cards = matches!(span.elements(), Some((_, 4, 2)));
+        if !are_cards {
+            continue;
+        }
         let [Step { error_m, change: Change::Fit(triangle) }] = plan(&state, &span, mask)[..] else {
             continue;
         };
