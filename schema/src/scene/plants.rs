@@ -28,6 +28,9 @@ pub struct PlantKind {
     pub reach_m: f32,
     /// How far its top moves in the wind, as a part of its height.
     pub sway: f32,
+    /// The tiling texture of the ground that it is made of, by number, if it is not plain.
+    #[serde(default)]
+    pub texture: Option<u32>,
     /// Linear albedo at tint 0 and at tint 1; each plant has one of these pairs.
     pub colors: Vec<[[f32; 3]; 2]>,
     pub shape: PlantShape,

@@ -18,6 +18,8 @@ pub(super) const MAX_SKY_PX: usize = 4096;
 const MAX_PLANT_REACH_M: f32 = 400.0;
 const MAX_PLANTS: f32 = 100_000.0;
 const MAX_PLANT_TRIANGLES: usize = 1000;
+/// Tiling textures of the ground.
+const DETAILS: u32 = 5;
 
 /// Whether all are numbers, none of them beyond ±`max`.
 pub(super) fn within<'a>(values: impl IntoIterator<Item = &'a f32>, max: f32) -> bool {
@@ -37,11 +39,12 @@ pub(super) fn is_placed(tree: &Instance) -> bool {
 
 /// Whether a kind of small plants is one: few and small enough to be drawn, of corners that are there.
 pub(super) fn is_plant(kind: &PlantKind, maps: usize) -> bool {
-    let PlantKind { channel, per_m2, scale, reach_m, sway, colors, shape, .. } = kind;
+    let PlantKind { channel, per_m2, scale, reach_m, sway, texture, colors, shape, .. } = kind;
     let count = shape.positions_m.len();
     let corners = shape.triangles.as_flattened().iter().all(|&v| (v as usize) < count);
     let numbers = [reach_m, sway].into_iter().chain(scale).chain(colors.as_flattened().as_flattened());
     (*channel as usize) < 4 * maps
+        && texture.is_none_or(|number| number < DETAILS)
         && *per_m2 > 0.0
         && *reach_m > 0.0
         && per_m2 * (reach_m + 12.0) * (reach_m + 12.0) < MAX_PLANTS

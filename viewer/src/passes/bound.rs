@@ -32,6 +32,8 @@ pub struct BoundScene {
     pub plants: Elements,
     /// Which of them are drawn together: [`crate::upload::DrawCommand`].
     pub plant_draws: Elements,
+    /// How many of these draws are of plants without a texture: the first ones.
+    pub plain_plants: u32,
 }
 
 /// A buffer of vertices, instances, indices or draws that is written anew for each frame and grows as needed.
@@ -108,6 +110,7 @@ impl BoundScene {
             ring: Vec::new(),
             plants: Elements::new(gpu, "small plants"),
             plant_draws: Elements::new(gpu, "draws of small plants"),
+            plain_plants: 0,
             scene,
         }
     }

@@ -504,3 +504,20 @@ fn clearness(moved: vec2f) -> f32 {
 fn sun_clearness() -> f32 {
     return mix(clearness(view.drift.xy), clearness(view.drift.zw), view.other_clouds);
 }
+
+// What a tiling texture of the ground says: a factor on the colour, and a normal of the texture's.
+struct Tiles {
+    factor: vec3f,
+    bump: vec3f,
+}
+
+// What a texel of `details` says. Ground varies between dark and light and between warm and cool, never between green and
+// purple: so green follows from red and blue, and colour and normal are one look at a texture instead of two.
+fn tiles_of(texel: vec4f) -> Tiles {
+    let tone = texel.rg * (255.0 / 128.0);
+    let bump = texel.ba * 2.0 - 1.0;
+    return Tiles(
+        vec3f(tone.x, dot(tone, vec2f(0.6, 0.4)), tone.y),
+        vec3f(bump, sqrt(saturate(1.0 - dot(bump, bump)))),
+    );
+}

@@ -37,7 +37,7 @@ pub struct PlantInstance {
     pub turn: [f32; 2],
     /// Albedo at tint 0; how far it moves in the wind.
     pub root: [f16; 4],
-    /// Albedo at tint 1; 1 if light comes through it.
+    /// Albedo at tint 1; 1 if light comes through it, or the number of its texture if it has one.
     pub tip: [f16; 4],
 }
 
@@ -52,8 +52,10 @@ pub const VERTEX: [wgpu::VertexAttribute; 3] =
 #[derive(Debug, Default)]
 pub struct PlantChoice {
     pub instances: Vec<PlantInstance>,
-    /// Of plants of one kind, equally fine.
+    /// Of plants of one kind, equally fine; first of those that are plain.
     pub draws: Vec<DrawCommand>,
+    /// How many of the draws are of those.
+    pub plain: u32,
     coarse: Vec<PlantInstance>,
     /// The plants of blocks that are or were within reach, by number of their kind and block.
     known: HashMap<(usize, [i32; 2]), Box<[Standing]>>,
@@ -74,19 +76,26 @@ const FORGETFUL: usize = 512;
 
 #[derive(Debug)]
 pub struct Plants {
-    pipeline: wgpu::RenderPipeline,
+    plain: wgpu::RenderPipeline,
+    textured: wgpu::RenderPipeline,
 }
 
 impl Plants {
     pub(super) fn new(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
         let module = compiler.module(&SHADER)?;
-        let groups = [&compiler.layouts.view];
+        let groups = [&compiler.layouts.view, &compiler.layouts.ground];
         let buffers = [
             buffer_layout::<PlantInstance>(wgpu::VertexStepMode::Instance, &INSTANCE),
             buffer_layout::<PlantVertex>(wgpu::VertexStepMode::Vertex, &VERTEX),
         ];
-        let desc = PipelineDesc { buffers: &buffers, ..PipelineDesc::new(&module, &groups) };
-        Ok(Self { pipeline: compiler.pipeline(&desc) })
+        let plain = PipelineDesc { buffers: &buffers, ..PipelineDesc::new(&module, &groups[..1]) };
+        let textured = PipelineDesc {
+            vertex: "textured_vertex",
+            fragment: Some("textured"),
+            buffers: &buffers,
+            ..PipelineDesc::new(&module, &groups)
+        };
+        Ok(Self { plain: compiler.pipeline(&plain), textured: compiler.pipeline(&textured) })
     }
 }
 
@@ -97,12 +106,21 @@ impl DrawPass for Plants {
 
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, bound: &BoundScene, _: &Options) -> u32 {
         let shapes = &bound.scene.land.plants;
-        pass.set_pipeline(&self.pipeline);
         pass.set_vertex_buffer(0, bound.plants.buffer.slice(..));
         pass.set_vertex_buffer(1, shapes.vertices.slice(..));
         pass.set_index_buffer(shapes.indices.slice(..), wgpu::IndexFormat::Uint32);
-        pass.multi_draw_indexed_indirect(&bound.plant_draws.buffer, 0, bound.plant_draws.count);
-        1
+        let (draws, plain) = (&bound.plant_draws, bound.plain_plants);
+        if plain > 0 {
+            pass.set_pipeline(&self.plain);
+            pass.multi_draw_indexed_indirect(&draws.buffer, 0, plain);
+        }
+        if plain < draws.count {
+            pass.set_bind_group(1, &bound.ground_group, &[]);
+            pass.set_pipeline(&self.textured);
+            let first = u64::from(plain) * size_of::<DrawCommand>() as u64;
+            pass.multi_draw_indexed_indirect(&draws.buffer, first, draws.count - plain);
+        }
+        u32::from(plain > 0) + u32::from(plain < draws.count)
     }
 }
 
@@ -111,6 +129,7 @@ impl PlantChoice {
     pub fn clear(&mut self) {
         self.instances.clear();
         self.draws.clear();
+        self.plain = 0;
     }
 
     /// The plants that an eye may see in a picture drawn at `part` of full resolution, instead of what was chosen before.
@@ -124,7 +143,10 @@ impl PlantChoice {
     ) {
         self.clear();
         self.forget(ground, eye_m);
-        for (number, (kind, shape)) in ground.surface.plants.kinds.iter().zip(buffers).enumerate() {
+        let all = || ground.surface.plants.kinds.iter().zip(buffers).enumerate();
+        let [plain, textured] =
+            [false, true].map(|is| all().filter(move |(_, (kind, _))| kind.texture.is_some() == is));
+        for (number, (kind, shape)) in plain.chain(textured) {
             let Some(map) = ground.plant_map(kind) else { continue };
             // What has as few pixels at full resolution is so far away.
             let reach_m = kind.reach_m * part;
@@ -154,6 +176,9 @@ impl PlantChoice {
             let all = self.instances.len() as u32;
             let draws = [(&shape.fine, first..fine), (&shape.coarse, fine..all)];
             self.draws.extend(draws.into_iter().filter(|(_, plants)| !plants.is_empty()).map(command));
+            if kind.texture.is_none() {
+                self.plain = self.draws.len() as u32;
+            }
         }
     }
 
@@ -202,7 +227,7 @@ fn instance(plant: &Plant, kind: &PlantKind, height_m: f32) -> PlantInstance {
         place: [plant.x_m, plant.z_m, height_m],
         turn: (plant.scale * Vec2::from_angle(plant.turn_rad)).to_array(),
         root: with(root, kind.sway),
-        tip: with(tip, if kind.sway > 0.0 { 1.0 } else { 0.0 }),
+        tip: with(tip, kind.texture.map_or(f32::from(u8::from(kind.sway > 0.0)), |number| number as f32)),
     }
 }
 

@@ -142,22 +142,6 @@ fn risen_vertex(@builtin(vertex_index) index: u32) -> Out {
     return out_at(select(risen_place(inner), sample_place(s), is_corner), f32(level_of(s)));
 }
 
-struct Tiles {
-    factor: vec3f,
-    bump: vec3f,
-}
-
-// What a texel of `details` says. Ground varies between dark and light and between warm and cool, never between green and
-// purple: so green follows from red and blue, and colour and normal are one look at a texture instead of two.
-fn tiles_of(texel: vec4f) -> Tiles {
-    let tone = texel.rg * (255.0 / 128.0);
-    let bump = texel.ba * 2.0 - 1.0;
-    return Tiles(
-        vec3f(tone.x, dot(tone, vec2f(0.6, 0.4)), tone.y),
-        vec3f(bump, sqrt(saturate(1.0 - dot(bump, bump)))),
-    );
-}
-
 // What a pixel covers, its longer side made shorter, to the mean of both: tiling textures are to be sharp at low angles
 // also where the device filters them alike in all directions, and are smooth enough to bear it.
 fn less_stretched(dx: vec3f, dy: vec3f) -> vec2f {

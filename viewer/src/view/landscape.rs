@@ -69,6 +69,7 @@ impl LandscapeChoice {
         bound.clumps.write(gpu, &self.clumps);
         bound.plants.write(gpu, &self.plants.instances);
         bound.plant_draws.write(gpu, &self.plants.draws);
+        bound.plain_plants = self.plants.plain;
         bound.scene.land.ring.seen(&camera.frustum(size[0] / size[1]), &mut bound.ring);
         let drawn = sight(&detail, lod_camera, options);
         let mirrored =

@@ -43,6 +43,10 @@ const ON_LAND: [usize; 13] =
 /// Those that are as large as their trees make them.
 const OF_TREES: [usize; 3] = [SAPLING, LOG, STUMP];
 
+/// Those that are of rock, or as rough and cracked as it, as old wood is; and the number of rock among the ground's textures.
+const ROUGH: [usize; 4] = [STONE, BOULDER, LOG, STUMP];
+const ROCK_TEXTURE: u32 = 1;
+
 /// How a kind stands, see [`PlantKind`].
 struct Habit {
     name: &'static str,
@@ -329,7 +333,8 @@ fn kinds(params: &GroundParams, painter: &Painter) -> Vec<PlantKind> {
         if OF_TREES.contains(&(channel as usize)) {
             scale = scale.map(|factor| factor * young.map_or(1.0, |young| young.size));
         }
-        PlantKind { name: name.into(), channel, per_m2, scale, reach_m, sway, colors, shape }
+        let texture = ROUGH.contains(&(channel as usize)).then_some(ROCK_TEXTURE);
+        PlantKind { name: name.into(), channel, per_m2, scale, reach_m, sway, texture, colors, shape }
     };
     (0..).zip(habits.into_iter().zip(looks)).map(kind).collect()
 }

@@ -4,81 +4,72 @@ use std::f32::consts::{PI, TAU};
 
 use glam::Vec3;
 
-use super::shapes::{Drawing, across, corners, halves, heading};
+use super::shapes::{Drawing, heading};
+use crate::math::lerp;
 use crate::model::PlantShape;
 
-/// A stone of about a metre, a fifth of it in the ground: a sphere of few rings that was knocked about.
-pub(super) fn stone() -> PlantShape {
-    let mut d = Drawing::new(70);
-    let (rings, around) = (3, 6);
-    let point = |d: &mut Drawing, ring: u32, k: u32| {
-        let polar = ring as f32 / rings as f32 * 0.5 * TAU;
-        let turn = (k as f32 + 0.5 * ring as f32) / around as f32 * TAU;
-        let bulge = 0.9 + 0.2 * d.unit();
-        let round = heading(turn) * libm::sinf(polar) + Vec3::Y * libm::cosf(polar);
-        // Squared off a little: stones break along planes.
-        let corner = round.abs().max_element().max(0.62);
-        round * (0.5 * bulge / corner) * Vec3::new(1.0, 0.62, 0.84) + Vec3::Y * 0.16
-    };
-    let top = point(&mut d, 0, 0);
-    let bottom = point(&mut d, rings, 0);
-    let grid: Vec<Vec<Vec3>> =
-        (1..rings).map(|ring| (0..around).map(|k| point(&mut d, ring, k)).collect()).collect();
-    let mut facet = |corners: [Vec3; 3]| {
-        let (normal, from_middle) = (across(corners), corners.iter().sum::<Vec3>() - Vec3::Y * 0.48);
-        let outward = if normal.dot(from_middle) < 0.0 { -normal } else { normal };
-        let tint = d.unit();
-        // Smoothed a little towards a sphere's.
-        let triangle = corners.map(|p| {
-            let round = (p - Vec3::Y * 0.16).normalize_or(Vec3::Y);
-            d.vertex(p, outward + 1.1 * round, tint)
-        });
-        d.triangle(triangle, corners, outward);
-    };
-    let n = around as usize;
-    for k in 0..n {
-        facet([top, grid[0][(k + 1) % n], grid[0][k]]);
-        facet([bottom, grid[grid.len() - 1][k], grid[grid.len() - 1][(k + 1) % n]]);
-        for pair in grid.windows(2) {
-            halves(corners(pair, k)).into_iter().for_each(&mut facet);
-        }
+/// Breaks a ball along some planes, and gives how far its surface is towards a direction, a unit vector.
+fn broken(
+    d: &mut Drawing,
+    planes: usize,
+    [least, most]: [f32; 2],
+    ball: f32,
+) -> impl Fn(Vec3) -> Vec3 + use<> {
+    // Spread evenly over all directions (Fibonacci's lattice), and moved a little.
+    let planes: Vec<(Vec3, f32)> = (0..planes)
+        .map(|k| {
+            let up = 1.0 - 2.0 * (k as f32 + 0.5) / planes as f32;
+            let level = heading(2.4 * k as f32 + 0.9 * d.unit()) * (1.0 - up * up).sqrt();
+            let normal = (level + Vec3::Y * (up + 0.4 * d.unit() - 0.2)).normalize();
+            (normal, lerp(least, most, d.unit()))
+        })
+        .collect();
+    move |way: Vec3| {
+        let away = planes.iter().map(|(normal, away)| away / way.dot(*normal).max(0.05));
+        way * away.fold(ball, f32::min) * Vec3::new(1.0, 0.64, 0.86)
     }
-    d.done()
 }
 
-/// The middle of a boulder, which stands in the ground.
-const MIDDLE: Vec3 = Vec3::new(0.0, 0.12, 0.0);
+/// A stone of about a metre, a fifth of it in the ground.
+pub(super) fn stone() -> PlantShape {
+    let mut d = Drawing::new(70);
+    let surface = broken(&mut d, 8, [0.40, 0.56], 0.58);
+    let look = Look { middle: 0.16 * Vec3::Y, rough: 0.05, dark_below: 0.0 };
+    worn(&mut d, [3, 6], &look, |way| 0.9 * surface(way));
+    d.coarse();
+    worn(&mut d, [7, 11], &look, surface);
+    d.done()
+}
 
 /// A boulder, broken along a few planes and worn since: dark where it stands in the ground, pale on top.
 pub(super) fn boulder() -> PlantShape {
     let mut d = Drawing::new(76);
-    // Spread evenly over all directions (Fibonacci's lattice), and moved a little.
-    let planes: Vec<(Vec3, f32)> = (0..11)
-        .map(|k| {
-            let up = 1.0 - 2.0 * (k as f32 + 0.5) / 11.0;
-            let level = heading(2.4 * k as f32 + 0.9 * d.unit()) * (1.0 - up * up).sqrt();
-            ((level + Vec3::Y * (up + 0.4 * d.unit() - 0.2)).normalize(), 0.30 + 0.16 * d.unit())
-        })
-        .collect();
-    let surface = |way: Vec3| {
-        let away = planes.iter().map(|(normal, away)| away / way.dot(*normal).max(0.05));
-        way * away.fold(0.54, f32::min) * Vec3::new(1.0, 0.64, 0.86)
-    };
+    let surface = broken(&mut d, 11, [0.30, 0.46], 0.54);
+    let look = Look { middle: 0.12 * Vec3::Y, rough: 0.08, dark_below: 0.3 };
     // From afar a coarse one is enough, which the fine one hides.
-    worn(&mut d, 5, 8, |way| 0.88 * surface(way));
+    worn(&mut d, [5, 8], &look, |way| 0.91 * surface(way));
     d.coarse();
-    worn(&mut d, 9, 13, surface);
+    worn(&mut d, [9, 14], &look, surface);
     d.done()
 }
 
+/// How a stone is worn.
+struct Look {
+    middle: Vec3,
+    /// By how much its surface is rough, as a part of its size.
+    rough: f32,
+    /// Metres above the ground below which it is dark.
+    dark_below: f32,
+}
+
 /// Draws a closed surface around the middle, known by the direction from there, rough and mottled; from pole to pole in so many
-/// rings.
-fn worn(d: &mut Drawing, rings: usize, around: usize, surface: impl Fn(Vec3) -> Vec3) {
+/// rings of so many corners.
+fn worn(d: &mut Drawing, [rings, around]: [usize; 2], look: &Look, surface: impl Fn(Vec3) -> Vec3) {
     let mut point = |ring: usize, k: usize| {
         let polar = ring as f32 / rings as f32 * PI;
         let turn = (k as f32 + 0.5 * ring as f32) / around as f32 * TAU;
         let way = heading(turn) * libm::sinf(polar) + Vec3::Y * libm::cosf(polar);
-        surface(way) * (0.96 + 0.08 * d.unit())
+        surface(way) * (1.0 + look.rough * (d.unit() - 0.5))
     };
     let mut grid: Vec<Vec<Vec3>> =
         (0..=rings).map(|ring| (0..around).map(|k| point(ring, k)).collect()).collect();
@@ -103,17 +94,24 @@ fn worn(d: &mut Drawing, rings: usize, around: usize, surface: impl Fn(Vec3) -> 
     for corners in &triangles {
         corners.iter().for_each(|&(ring, k)| smooth[ring][k] += outward(corners));
     }
+    let pole = |ring: usize| smooth[ring].iter().sum::<Vec3>();
+    let poles = [0, rings].map(|ring| (ring, pole(ring)));
+    poles.into_iter().for_each(|(ring, normal)| smooth[ring] = vec![normal; around]);
+    // Lichen and stains lie here and there; edges are worn, so that corners are shared.
+    let vertices: Vec<Vec<u32>> = (0..=rings)
+        .map(|ring| {
+            let corner = |k: usize| {
+                let (at, normal) = (look.middle + grid[ring][k], smooth[ring][k].normalize_or(Vec3::Y));
+                let tint =
+                    0.3 + 0.4 * normal.y - (look.dark_below - 2.0 * at.y).max(0.0) + 0.4 * (d.unit() - 0.3);
+                d.vertex(at, normal, tint.clamp(0.0, 1.0))
+            };
+            (0..around).map(corner).collect()
+        })
+        .collect();
     for corners in &triangles {
-        let face = outward(corners).normalize_or(Vec3::Y);
-        // Lichen and stains are on some faces.
-        let stain = 0.3 + 0.5 * (d.unit() - 0.3);
-        let triangle = corners.map(|(ring, k)| {
-            let (at, smooth) = (MIDDLE + grid[ring][k], smooth[ring][k].normalize_or(face));
-            let tint = stain + 0.4 * smooth.y - (0.3 - 2.0 * at.y).max(0.0) + 0.2 * d.unit();
-            // Edges are worn, not gone.
-            d.vertex(at, face + 0.9 * smooth, tint.clamp(0.0, 1.0))
-        });
-        d.triangle(triangle, corners.map(place), face);
+        let vertices = corners.map(|(ring, k)| vertices[ring][k]);
+        d.triangle(vertices, corners.map(place), outward(corners));
     }
 }
 
@@ -136,7 +134,7 @@ mod tests {
     #[test]
     fn a_boulder_is_closed_and_hides_its_coarse_self() {
         let shape = boulder();
-        let at = |v: u32| Vec3::from_array(shape.positions_m[v as usize]) - MIDDLE;
+        let at = |v: u32| Vec3::from_array(shape.positions_m[v as usize]) - 0.12 * Vec3::Y;
         let (coarse, fine) = shape.triangles.split_at(shape.coarse as usize);
         assert!(coarse.len() < 80 && fine.len() > 2 * coarse.len());
         let away = |triangles: &[[u32; 3]], way: Vec3| {

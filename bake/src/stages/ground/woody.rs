@@ -20,39 +20,51 @@ pub(super) enum Foliage {
     Bare,
 }
 
-/// A bush of a metre: sprays in all directions, and leaves that stand out from their ends. Tint 0 is that of its inside.
+/// A bush of a metre: some stems, and sprays all over a crown of lobes, each with leaves around its end. Tint 0 is that of its inside.
 pub(super) fn bush() -> PlantShape {
-    const SPRAYS: u32 = 36;
+    const SPRAYS: u32 = 46;
     let mut d = Drawing::new(71);
+    for k in 0..3 {
+        let aim = heading(GOLDEN * k as f32) * 0.25 + Vec3::Y * 0.6;
+        d.stalk(Vec3::ZERO, aim, 0.02);
+    }
     let sprays: Vec<(Vec3, Vec3)> = (0..SPRAYS)
         .map(|k| {
-            let up = 1.0 - 1.6 * (k as f32 + 0.5) / SPRAYS as f32;
+            let up = 1.0 - 1.5 * (k as f32 + 0.5) / SPRAYS as f32;
             let out =
                 heading(GOLDEN * k as f32 + 0.9 * d.unit()) * (1.0 - up * up).max(0.0).sqrt() + Vec3::Y * up;
             // Not round: lobes of different heights.
             let lobe =
-                0.75 + 0.3 * libm::sinf(2.6 * out.x + 1.0) * libm::cosf(3.4 * out.z + 0.5) + 0.35 * d.unit();
-            (
-                Vec3::Y * 0.3 + Vec3::new(0.2, 0.12, 0.2) * out,
-                Vec3::Y * 0.38 + Vec3::new(0.66, 0.6, 0.66) * out * lobe,
-            )
+                0.75 + 0.3 * libm::sinf(2.6 * out.x + 1.0) * libm::cosf(3.4 * out.z + 0.5) + 0.3 * d.unit();
+            let middle =
+                Vec3::Y * 0.42 + Vec3::new(0.56, 0.5, 0.56) * out * lobe * lerp(0.55, 1.0, d.unit().sqrt());
+            let [aside, _] = tangents(out, d.unit() * TAU);
+            (middle, (0.8 * aside + 0.55 * out).normalize_or(out))
         })
         .collect();
-    for &(root, tip) in &sprays {
-        let out = (tip - root).normalize_or(Vec3::Y);
-        let [_, wide] = tangents(out, d.unit() * TAU);
-        let middle = root.lerp(tip, 0.6) + 0.15 * wide * d.unit();
-        let tint = 0.35 + 0.35 * d.unit();
-        d.diamond([root, middle, tip], 0.06 * wide, out + 0.4 * Vec3::Y, [0.0, tint, tint + 0.25]);
+    let outward = |at: Vec3| (at - 0.3 * Vec3::Y).normalize_or(Vec3::Y);
+    let depth = |at: Vec3| ((at - 0.42 * Vec3::Y).length() / 0.6).min(1.0);
+    // Within, in the shade of the leaves.
+    for &(middle, aim) in &sprays {
+        let inner = middle - 0.08 * outward(middle);
+        let [_, wide] = tangents(aim, d.unit() * TAU);
+        let (long, tint) = (0.13 + 0.05 * d.unit(), 0.12 + 0.3 * depth(inner) + 0.12 * d.unit());
+        let along = [inner - long * aim, inner + 0.02 * wide, inner + long * aim];
+        d.diamond(along, 0.07 * wide, outward(inner) + 0.4 * Vec3::Y, [0.6 * tint, tint, 1.3 * tint]);
     }
     d.coarse();
-    for &(root, tip) in &sprays {
-        for k in 0..6 {
-            let out = (tip - root).normalize_or(Vec3::Y);
-            let from = root.lerp(tip, 0.5 + 0.1 * k as f32);
-            let [aside, _] = tangents(out, d.unit() * TAU);
-            let aim = (aside + (0.3 + 0.5 * d.unit()) * out).normalize_or(out);
-            twig_leaf(&mut d, [from, aim, out + 0.5 * aim], [0.1, 0.05, 0.045], [0.45, 0.55], 0.7);
+    for &(middle, aim) in &sprays {
+        for k in 0..4 {
+            let from = middle + (0.08 * k as f32 - 0.12) * aim;
+            let [aside, _] = tangents(aim, d.unit() * TAU);
+            let leaf =
+                (aside + 0.5 * aim + 0.5 * outward(middle)).normalize_or(aim) * (0.12 + 0.05 * d.unit());
+            let [_, wide] = tangents(leaf.normalize_or(aim), d.unit() * TAU);
+            let face = leaf.cross(wide).normalize_or(Vec3::Y);
+            let front = if face.dot(outward(middle)) < 0.0 { -face } else { face };
+            let tint = 0.3 + 0.35 * depth(from) + 0.35 * d.unit();
+            let corners = [from, from + 0.5 * leaf + 0.05 * wide, from + leaf];
+            d.lit(corners, front + 0.6 * outward(middle), [0.7 * tint, tint, tint]);
         }
     }
     d.done()
