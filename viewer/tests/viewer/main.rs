@@ -18,6 +18,7 @@ mod manual;
 mod mistakes;
 mod parted;
 mod program;
+mod rough;
 mod shade;
 mod shaders;
 mod shadows;

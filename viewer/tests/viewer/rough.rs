@@ -1,0 +1,101 @@
+//! What is rough on the ground shows its texture from all sides, and is else as bright as what is plain.
+
+use std::f32::consts::FRAC_PI_4;
+
+use genescape_schema::scene::{GroundPlants, PlantKind, PlantShape};
+use genescape_viewer::camera::Camera;
+use genescape_viewer::headless::Headless;
+use genescape_viewer::options::{FrameInput, Options};
+use genescape_viewer::scene::{Image, Scene, Trees};
+use glam::Vec3;
+
+use crate::made_up;
+
+/// A cube of 0.8 m.
+fn cube() -> PlantShape {
+    let mut shape = PlantShape::default();
+    for (axis, side) in [0, 1, 2].into_iter().flat_map(|axis| [(axis, -1.0f32), (axis, 1.0)]) {
+        let first = shape.positions_m.len() as u32;
+        for [a, b] in [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0f32]] {
+            let (mut position, mut normal) = ([0.0; 3], [0.0; 3]);
+            (position[axis], normal[axis]) = (0.4 * side, side);
+            (position[(axis + 1) % 3], position[(axis + 2) % 3]) = (0.4 * a, 0.4 * b);
+            position[1] += 0.4;
+            shape.positions_m.push(position);
+            shape.normals.push(normal);
+            shape.tints.push(0.5);
+        }
+        shape.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+    }
+    shape.coarse = 12;
+    shape
+}
+
+/// Cubes on black land, with that texture if any.
+fn scene(texture: Option<u32>, tile: &Image) -> Scene {
+    let land = made_up::land(65, 1.0, |_, _| 0.0);
+    let mut scene = made_up::scene(land, [0, 0, 0, 255], [0.0; 3], Trees::default());
+    for (layer, detail) in scene.ground.surface.details.iter_mut().enumerate() {
+        let normals = |_, _| [128, 128, 255, 255];
+        let other = |_, _| [128; 4];
+        detail.normal = made_up::picture(&format!("normals {layer}"), 64, normals);
+        detail.detail =
+            if layer == 1 { tile.clone() } else { made_up::picture(&format!("tile {layer}"), 64, other) };
+    }
+    let kind = PlantKind {
+        name: "cube".into(),
+        per_m2: 0.15,
+        scale: [1.0; 2],
+        reach_m: 40.0,
+        colors: vec![[[0.3; 3]; 2]],
+        texture,
+        shape: cube(),
+        ..PlantKind::default()
+    };
+    let maps = vec![made_up::picture("everywhere", 1, |_, _| [255; 4])];
+    scene.ground.surface.plants = GroundPlants { maps, kinds: vec![kind] };
+    scene
+}
+
+/// The brightness of pixels that show a cube, from one corner of the sky and looking down at them.
+fn bright(studio: &Headless, scene: &Scene, yaw_rad: f32) -> Vec<f32> {
+    let mut view = studio.view(made_up::upload(studio, scene), [240, 160]);
+    let (sin, cos) = libm::sincosf(yaw_rad);
+    let camera =
+        Camera { position_m: Vec3::new(6.0 * sin, 6.0, 6.0 * cos), yaw_rad, pitch_rad: -0.8, fov_y_rad: 0.7 };
+    let frame = FrameInput { options: Options::default(), ..FrameInput::default() };
+    let drawn = studio.shoot(&mut view, &frame, &camera, &camera).expect("a picture");
+    drawn.pixels().map(|pixel| f32::from(pixel[1])).filter(|&value| value > 8.0).collect()
+}
+
+fn mean_and_spread(values: &[f32]) -> (f32, f32) {
+    let count = values.len() as f32;
+    let mean = values.iter().sum::<f32>() / count;
+    (mean, (values.iter().map(|value| (value - mean) * (value - mean)).sum::<f32>() / count).sqrt())
+}
+
+#[test]
+#[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
+fn what_is_rough_shows_its_texture_from_all_sides() {
+    let studio = made_up::studio();
+    let even = made_up::picture("even", 64, |_, _| [128; 4]);
+    let spots =
+        made_up::picture("spots", 64, |x, y| if (x / 8 + y / 8) % 2 == 0 { [70; 4] } else { [186; 4] });
+    for turn in 0..4u8 {
+        let of =
+            |texture, tile| bright(&studio, &scene(texture, tile), (f32::from(turn) + 0.5) * 2.0 * FRAC_PI_4);
+        let [plain, smooth, rough] = [of(None, &even), of(Some(1), &even), of(Some(1), &spots)];
+        assert!(
+            plain.len() > 2000 && rough.len().abs_diff(plain.len()) < plain.len() / 10,
+            "{}",
+            plain.len()
+        );
+        let [plain, smooth, rough] = [plain, smooth, rough].map(|values| mean_and_spread(&values));
+        for (what, seen) in [("smooth", smooth), ("rough", rough)] {
+            assert!((seen.0 / plain.0 - 1.0).abs() < 0.15, "{turn}: {what} {seen:?}, plain {plain:?}");
+        }
+        // What the texture adds to how sides differ.
+        let added = rough.1 * rough.1 - smooth.1 * smooth.1;
+        assert!(added > 100.0, "{turn}: no texture shows, {rough:?} beside {smooth:?}");
+    }
+}
