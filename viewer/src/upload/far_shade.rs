@@ -22,6 +22,8 @@ const ROWS: usize = 32;
 const COLUMNS: usize = 8;
 /// Shadows are not longer than those of a sun that is so steep above the land.
 const MIN_RISE: f32 = 0.1;
+/// Square metres of the largest shadow that is drawn, several times that of the tallest trees: a file may hold any sizes.
+const MAX_AREA_M2: f32 = 100_000.0;
 /// Metres of a cell in which the land is a plane.
 const CELL_M: f32 = 64.0;
 
@@ -110,7 +112,7 @@ struct Shadow<'a> {
 }
 
 impl<'a> Shadow<'a> {
-    /// On land with that slope, by which it rises along x and z. `None` if no sun falls on it.
+    /// On land with that slope, by which it rises along x and z. `None` if no sun falls on it, or if the shadow would be too large.
     fn of(tree: &Instance, pictures: &Impostor, outline: &'a Outline, sun: Sun, slope: Vec2) -> Option<Self> {
         let [x, y, z] = tree.world_from_tree.map(|row| Vec3::new(row[0], row[1], row[2]));
         let axis = Vec3::new(pictures.axis_m[0], 0.0, pictures.axis_m[1]);
@@ -121,13 +123,16 @@ impl<'a> Shadow<'a> {
             return None;
         }
         let rise = sun.rise + (MIN_RISE - steepness).max(0.0);
-        Some(Self {
+        let shadow = Self {
             outline,
             foot_m,
             aside: Vec2::new(-sun.towards.y, sun.towards.x),
             height: slope - rise * sun.towards,
             scale: Vec2::new((x.x * z.z - x.z * z.x).abs().sqrt(), y.y).max(Vec2::splat(1e-3)),
-        })
+        };
+        let (half_m, [low_m, high_m]) = shadow.reach_m();
+        let area_m2 = 2.0 * half_m * (high_m - low_m) / shadow.aside.perp_dot(shadow.height).abs();
+        (area_m2 <= MAX_AREA_M2).then_some(shadow)
     }
 
     /// Half its width, and the heights between which it lies.
