@@ -18,8 +18,6 @@ pub(super) const MAX_SKY_PX: usize = 4096;
 const MAX_PLANT_REACH_M: f32 = 400.0;
 const MAX_PLANTS: f32 = 100_000.0;
 const MAX_PLANT_TRIANGLES: usize = 1000;
-/// Tiling textures of the ground.
-const DETAILS: u32 = 5;
 
 /// Whether all are numbers, none of them beyond ±`max`.
 pub(super) fn within<'a>(values: impl IntoIterator<Item = &'a f32>, max: f32) -> bool {
@@ -37,14 +35,15 @@ pub(super) fn is_placed(tree: &Instance) -> bool {
         && within(&tree.trunk_cylinder_m, MAX_LAND_M)
 }
 
-/// Whether a kind of small plants is one: few and small enough to be drawn, of corners that are there.
-pub(super) fn is_plant(kind: &PlantKind, maps: usize) -> bool {
+/// Whether a kind of small plants is one, beside so many maps and tiling textures: few and small enough to be drawn, of corners
+/// that are there.
+pub(super) fn is_plant(kind: &PlantKind, maps: usize, details: usize) -> bool {
     let PlantKind { channel, per_m2, scale, reach_m, sway, texture, colors, shape, .. } = kind;
     let count = shape.positions_m.len();
     let corners = shape.triangles.as_flattened().iter().all(|&v| (v as usize) < count);
     let numbers = [reach_m, sway].into_iter().chain(scale).chain(colors.as_flattened().as_flattened());
     (*channel as usize) < 4 * maps
-        && texture.is_none_or(|number| number < DETAILS)
+        && texture.is_none_or(|number| (number as usize) < details)
         && *per_m2 > 0.0
         && *reach_m > 0.0
         && per_m2 * (reach_m + 12.0) * (reach_m + 12.0) < MAX_PLANTS
@@ -72,9 +71,10 @@ mod tests {
             coarse: 1,
         };
         let kind = PlantKind { per_m2: 3.0, reach_m: 20.0, channel: 3, shape, ..PlantKind::default() };
-        assert!(is_plant(&kind, 1) && !is_plant(&kind, 0));
-        let wrong: [fn(&mut PlantKind); 7] = [
+        assert!(is_plant(&kind, 1, 5) && !is_plant(&kind, 0, 5));
+        let wrong: [fn(&mut PlantKind); 8] = [
             |kind| kind.channel = 4,
+            |kind| kind.texture = Some(5),
             |kind| kind.per_m2 = f32::NAN,
             |kind| kind.per_m2 = 1e9,
             |kind| kind.reach_m = f32::INFINITY,
@@ -85,7 +85,7 @@ mod tests {
         for change in wrong {
             let mut kind = kind.clone();
             change(&mut kind);
-            assert!(!is_plant(&kind, 1), "{kind:?}");
+            assert!(!is_plant(&kind, 1, 5), "{kind:?}");
         }
     }
 

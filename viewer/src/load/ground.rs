@@ -27,8 +27,9 @@ pub(super) fn read(document: &Document) -> Result<Ground> {
     if !numbers.into_iter().all(|numbers| within(numbers, MAX_LAND_M)) || lod.field.spacing_m > MAX_LAND_M {
         return Err(document.wrong(format!("its heightfield {name} holds numbers beyond {MAX_LAND_M:e} m")));
     }
-    let plants = &extension.surface.plants;
-    if plants.kinds.len() > MAX_KINDS || !plants.kinds.iter().all(|kind| is_plant(kind, plants.maps.len())) {
+    let (plants, details) = (&extension.surface.plants, extension.surface.details.len());
+    let are_plants = plants.kinds.iter().all(|kind| is_plant(kind, plants.maps.len(), details));
+    if plants.kinds.len() > MAX_KINDS || !are_plants {
         return Err(document.wrong("its small plants are too many, too large, or no plants"));
     }
     Ok(Ground {

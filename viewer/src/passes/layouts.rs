@@ -18,7 +18,7 @@ pub struct Layouts {
     pub studio: BindGroupLayout,
     /// Group 2 of the same: a material.
     pub surface: BindGroupLayout,
-    /// Group 1 of the terrain and of grass: what covers the land.
+    /// Group 1 of the terrain, of grass and of plants with a texture: what covers the land.
     pub ground: BindGroupLayout,
     /// Group 1 of trees: where they stand.
     pub trees: BindGroupLayout,

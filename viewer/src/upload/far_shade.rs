@@ -198,7 +198,7 @@ impl Slopes {
 /// What trees leave of the sun, rows from north to south of a square of so many texels that reaches so far from the middle.
 fn sunlight(trees: &Trees, apron: &Apron, half_m: f32, side: usize, sun: Vec3) -> Vec<u8> {
     let mut left = vec![u8::MAX; side * side];
-    let Some(sun) = Sun::of(sun).filter(|_| !trees.far.is_empty()) else { return left };
+    let Some(sun) = Sun::of(sun) else { return left };
     let outlines: Vec<Option<(&Impostor, Outline)>> = trees
         .templates
         .iter()
@@ -212,6 +212,7 @@ fn sunlight(trees: &Trees, apron: &Apron, half_m: f32, side: usize, sun: Vec3) -
         let place_m = Vec2::new(tree.world_from_tree[0][3], tree.world_from_tree[2][3]);
         Shadow::of(tree, pictures, outline, sun, slopes.at(place_m))
     };
+    // Of the field's, those by its edge reach across it.
     let shadows: Vec<Shadow<'_>> = trees.all().filter_map(shadow).collect();
     let texel_m = 2.0 * half_m / side as f32;
     let bands = left.par_chunks_mut(BAND_ROWS * side).enumerate();
@@ -258,9 +259,9 @@ fn narrowed([from, to]: [f32; 2], slope: f32, offset: f32, [low, high]: [f32; 2]
     [from.max(ends[0].min(ends[1])), to.min(ends[0].max(ends[1]))]
 }
 
-/// A square of texels with its mip levels after it, means of four down to one.
-fn with_means(mut texels: Vec<u8>, side: usize) -> Vec<u8> {
-    let (mut start, mut wide) = (0, side);
+/// A square of texels, a power of two a side, with its mip levels after it, means of four down to one.
+fn with_means(mut texels: Vec<u8>) -> Vec<u8> {
+    let (mut start, mut wide) = (0, texels.len().isqrt());
     while wide > 1 {
         let (finer, half) = (&texels[start..], wide / 2);
         let mean = |n: usize| {
@@ -284,12 +285,16 @@ impl Uploader {
         field_half_m: f32,
         sun: Vec3,
     ) -> wgpu::Texture {
-        let side = if trees.far.is_empty() { 1 } else { SIDE };
-        let texels = with_means(sunlight(trees, apron, field_half_m + SHADED_M, side, sun), side);
+        let half_m = field_half_m + SHADED_M;
+        let finest = match trees.far.is_empty() {
+            true => vec![u8::MAX],
+            false => sunlight(trees, apron, half_m, SIDE, sun),
+        };
+        let side = finest.len().isqrt() as u32;
         let usage = wgpu::TextureUsages::TEXTURE_BINDING;
-        let mut texture = flat("shade of far trees", [side as u32; 2], wgpu::TextureFormat::R8Unorm, usage);
+        let mut texture = flat("shade of far trees", [side; 2], wgpu::TextureFormat::R8Unorm, usage);
         texture.mip_level_count = side.ilog2() + 1;
-        self.gpu.texture(&texture, &texels)
+        self.gpu.texture(&texture, &with_means(finest))
     }
 }
 

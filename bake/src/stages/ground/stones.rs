@@ -41,11 +41,14 @@ pub(super) fn stone() -> PlantShape {
     d.done()
 }
 
+/// The middle of a boulder, which stands in the ground.
+const BOULDER_MIDDLE: Vec3 = Vec3::new(0.0, 0.12, 0.0);
+
 /// A boulder, broken along a few planes and worn since: dark where it stands in the ground, pale on top.
 pub(super) fn boulder() -> PlantShape {
     let mut d = Drawing::new(76);
     let surface = broken(&mut d, 11, [0.30, 0.46], 0.54);
-    let look = Look { middle: 0.12 * Vec3::Y, rough: 0.08, dark_below: 0.3 };
+    let look = Look { middle: BOULDER_MIDDLE, rough: 0.08, dark_below: 0.3 };
     // From afar a coarse one is enough, which the fine one hides.
     worn(&mut d, [5, 8], &look, |way| 0.91 * surface(way));
     d.coarse();
@@ -94,9 +97,9 @@ fn worn(d: &mut Drawing, [rings, around]: [usize; 2], look: &Look, surface: impl
     for corners in &triangles {
         corners.iter().for_each(|&(ring, k)| smooth[ring][k] += outward(corners));
     }
-    let pole = |ring: usize| smooth[ring].iter().sum::<Vec3>();
-    let poles = [0, rings].map(|ring| (ring, pole(ring)));
-    poles.into_iter().for_each(|(ring, normal)| smooth[ring] = vec![normal; around]);
+    for pole in [0, rings] {
+        smooth[pole] = vec![smooth[pole].iter().sum(); around];
+    }
     // Lichen and stains lie here and there; edges are worn, so that corners are shared.
     let vertices: Vec<Vec<u32>> = (0..=rings)
         .map(|ring| {
@@ -134,7 +137,7 @@ mod tests {
     #[test]
     fn a_boulder_is_closed_and_hides_its_coarse_self() {
         let shape = boulder();
-        let at = |v: u32| Vec3::from_array(shape.positions_m[v as usize]) - 0.12 * Vec3::Y;
+        let at = |v: u32| Vec3::from_array(shape.positions_m[v as usize]) - BOULDER_MIDDLE;
         let (coarse, fine) = shape.triangles.split_at(shape.coarse as usize);
         assert!(coarse.len() < 80 && fine.len() > 2 * coarse.len());
         let away = |triangles: &[[u32; 3]], way: Vec3| {

@@ -57,14 +57,20 @@ pub(super) fn bush() -> PlantShape {
         for k in 0..4 {
             let from = middle + (0.08 * k as f32 - 0.12) * aim;
             let [aside, _] = tangents(aim, d.unit() * TAU);
-            let leaf =
-                (aside + 0.5 * aim + 0.5 * outward(middle)).normalize_or(aim) * (0.12 + 0.05 * d.unit());
-            let [_, wide] = tangents(leaf.normalize_or(aim), d.unit() * TAU);
-            let face = leaf.cross(wide).normalize_or(Vec3::Y);
-            let front = if face.dot(outward(middle)) < 0.0 { -face } else { face };
-            let tint = 0.3 + 0.35 * depth(from) + 0.35 * d.unit();
-            let corners = [from, from + 0.5 * leaf + 0.05 * wide, from + leaf];
-            d.lit(corners, front + 0.6 * outward(middle), [0.7 * tint, tint, tint]);
+            let along = (aside + 0.5 * aim + 0.5 * outward(middle)).normalize_or(aim);
+            // In the light of its own face, and of the bush's.
+            let normal = |face: Vec3| {
+                let front = if face.dot(outward(middle)) < 0.0 { -face } else { face };
+                front + 0.6 * outward(middle)
+            };
+            twig_leaf(
+                &mut d,
+                [from, along],
+                normal,
+                [0.12, 0.05, 0.05],
+                [0.3 + 0.35 * depth(from), 0.35],
+                0.7,
+            );
         }
     }
     d.done()
@@ -116,7 +122,7 @@ fn whip(d: &mut Drawing, has_leaves: bool) {
             let out = (tip - root).normalize_or(Vec3::Y);
             let from = root.lerp(tip, 0.2 + 0.1 * k as f32);
             let aim = (heading(d.unit() * TAU) + 0.35 * out + Vec3::Y * 0.15).normalize_or(out);
-            twig_leaf(d, [from, aim, out + Vec3::Y], [0.13, 0.05, 0.07], [0.85, 0.15], 0.8);
+            twig_leaf(d, [from, aim], |_| out + Vec3::Y, [0.13, 0.05, 0.07], [0.85, 0.15], 0.8);
         }
     }
 }
@@ -226,12 +232,13 @@ pub(super) fn stump() -> PlantShape {
     d.done()
 }
 
-/// A leaf that a twig bears: where, along which unit vector, and lit as if it faced along `normal`. Its length is at least
-/// the first of two numbers and at most their sum, and so is its tint, which `shade` lessens at its root; the third
-/// number is its width.
+/// A leaf that a twig bears: where, along which unit vector, and lit as if it faced along what `normal` gives of the direction in
+/// which it does. Its length is at least the first of two numbers and at most their sum, and so is its tint, which `shade` lessens at
+/// its root; the third number is its width.
 fn twig_leaf(
     d: &mut Drawing,
-    [from, aim, normal]: [Vec3; 3],
+    [from, aim]: [Vec3; 2],
+    normal: impl FnOnce(Vec3) -> Vec3,
     [long, longer, width]: [f32; 3],
     [tint, brighter]: [f32; 2],
     shade: f32,
@@ -239,6 +246,7 @@ fn twig_leaf(
     let leaf = aim * (long + longer * d.unit());
     let [_, wide] = tangents(aim, d.unit() * TAU);
     let tint = tint + brighter * d.unit();
+    let normal = normal(aim.cross(wide));
     d.lit([from, from + 0.45 * leaf + width * wide, from + leaf], normal, [shade * tint, tint, tint]);
 }
 
