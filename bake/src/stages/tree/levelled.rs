@@ -120,7 +120,7 @@ fn card_opacity(mesh: &Mesh, part: &Part, picture: &Image8, is_thin: bool) -> f3
     };
     let (mut sum, mut all) = (0.0, 0.0);
     // Odd, or all of them might be the same half of a card.
-    let step = part.triangles.len() / TRIANGLES | 1;
+    let step = (part.triangles.len() / TRIANGLES) | 1;
     for triangle in part.triangles.iter().step_by(step) {
         let uv = |v: u32| mesh.uvs.get(v as usize).copied().map_or(Vec2::ZERO, Vec2::from_array);
         let [a, b, c] = triangle.map(uv);
