@@ -4,6 +4,7 @@ mod backdrop;
 mod distance;
 mod docs;
 mod far_ground;
+mod levels;
 mod round;
 mod strips;
 mod wood;

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use genescape_viewer::camera::Camera;
+use genescape_viewer::lod::tree::allowance;
 use genescape_viewer::lod_mode::TreeLodMode;
 use genescape_viewer::options::{FrameInput, Options};
 use genescape_viewer::scene::{Instance, Scene, Template};
@@ -94,15 +95,22 @@ impl Look<'_> {
 
 /// From where most trees are shown by a middle level, by clusters where there are some, and by pictures.
 fn distances_m(templates: &[Arc<Template>]) -> Vec<(String, f32)> {
-    let metres_a_metre = FOCAL_PX / Options::default().tree_error_px;
+    let radius_m = mean(templates, |tree| tree.radius_m);
+    // The first distance, to a hundredth, at which so much error is allowed.
+    let allows = |error_m: f32| {
+        let wanted_m = error_m * FOCAL_PX / Options::default().tree_error_px;
+        std::iter::successors(Some(wanted_m), |away_m| Some(1.01 * away_m))
+            .find(|&away_m| away_m * allowance(FOCAL_PX, away_m + radius_m, radius_m) >= wanted_m)
+            .expect("they grow without end")
+    };
     let least = templates.iter().map(|tree| tree.levels.len()).min().unwrap_or(1);
     let clusters = templates.iter().filter_map(|tree| tree.clusters).max().map(|first| first as usize + 1);
     let levels = [Some(2), clusters].into_iter().flatten().filter(|level| *level < least);
     let of_level = |level: usize| {
-        (format!("D{level}"), 1.05 * metres_a_metre * mean(templates, |tree| tree.levels[level].error_m))
+        (format!("D{level}"), 1.05 * allows(mean(templates, |tree| tree.levels[level].error_m)))
     };
     let picture_m = mean(templates, |tree| tree.impostor.as_ref().expect("pictures").error_m);
-    levels.map(of_level).chain([("pictures".to_owned(), 2.3 * metres_a_metre * picture_m)]).collect()
+    levels.map(of_level).chain([("pictures".to_owned(), 2.3 * allows(picture_m))]).collect()
 }
 
 #[test]

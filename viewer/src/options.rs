@@ -29,7 +29,7 @@ pub struct Options {
     #[serde(rename = "terrain_scheme")]
     #[arg(long, value_enum, default_value_t)]
     pub terrain_lod: TerrainLodMode,
-    /// Error that trees may have on the screen, in pixels
+    /// Error that trees may have on the screen, in pixels; large ones may have less
     #[arg(long = "tree-error", value_name = "PIXELS", default_value_t = Self::default().tree_error_px, value_parser = pixels)]
     pub tree_error_px: f32,
     /// Error that a file that is no landscape may have on the screen, in pixels

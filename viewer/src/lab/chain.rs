@@ -8,6 +8,7 @@ use image::RgbaImage;
 
 use crate::camera::Camera;
 use crate::headless::Headless;
+use crate::lod::tree::allowance;
 use crate::lod_mode::TreeLodMode;
 use crate::measure::flip;
 use crate::options::{FrameInput, Options};
@@ -51,7 +52,10 @@ pub fn chain(headless: &Headless, scene: &Scene, tree: Instance, template: &Temp
     alone.trees.instances = Arc::new([Instance { template: 0, ..tree }]);
     let mut view = headless.view(headless.upload(&alone)?, [SIDE_PX, SIDE_PX]);
     let (camera, away_m) = before(scene, &tree, template);
-    let error_px_per_m = EXAGGERATED * camera.focal_px(SIDE_PX as f32) * tree.max_scale() / away_m;
+    let focal_px = camera.focal_px(SIDE_PX as f32);
+    let radius_m = template.radius_m * tree.max_scale();
+    let allowance = allowance(focal_px, away_m + radius_m, radius_m);
+    let error_px_per_m = EXAGGERATED * focal_px * tree.max_scale() / (away_m * allowance);
     let usual = Options {
         tree_lod: TreeLodMode::Discrete,
         draw_terrain: false,

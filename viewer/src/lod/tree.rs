@@ -4,6 +4,7 @@
 //! The error allowed at distance d is αd, α = error_px / pixels a radian. An instance scaled by `scale` shows q·scale,
 //! so λ is where q(λ) = αd/scale. By quality: log q is linear between the levels' errors. Simple: q(λ) = q̂·2^(λ/2),
 //! hence λ = 2·log₂ d + β with β = 2·log₂(α/(scale·q̂)).
+//! Of trees, error_px is what is usual times their [`allowance`].
 
 use crate::lod_mode::TreeLodMode;
 
@@ -42,6 +43,21 @@ pub fn pictured(control: &Control, error_m: f32, distance_m: f32, scale: f32, st
         TreeLodMode::Discrete => f32::from(u8::from(share >= 0.5)),
         _ => share,
     }
+}
+
+/// Pixels of the picture that a tree may fill before less than the usual error is allowed of it, and those from which on it is
+/// least.
+pub const SEEN_PX: [f32; 2] = [65.0, 150.0];
+
+/// Metres that a tree is taken to be large at least, for the leaves of shrubs are as large as those of trees.
+pub const SMALL_TREE_M: f32 = 15.0;
+
+/// The part of the allowed error that a tree may have which is so large in the picture, (0, 1]. A person looks closely at the few
+/// large ones; of the many small ones one is hardly looked at. Where the middle of its sphere is `center_distance_m` away.
+pub fn allowance(focal_px: f32, center_distance_m: f32, radius_m: f32) -> f32 {
+    let size_m = (2.0 * radius_m).max(SMALL_TREE_M);
+    let size_px = focal_px * size_m / center_distance_m.max(MIN_DISTANCE_M);
+    SEEN_PX[0] / size_px.clamp(SEEN_PX[0], SEEN_PX[1])
 }
 
 /// What one frame asks of all trees.

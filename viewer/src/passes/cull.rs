@@ -8,7 +8,7 @@ use strum::VariantArray;
 use super::shaders::ShaderError;
 use super::{BoundTrees, Compiler, Shader, ViewUniform};
 use crate::camera::Frustum;
-use crate::lod::tree::{MIN_DISTANCE_M, STEEP};
+use crate::lod::tree::{MIN_DISTANCE_M, SEEN_PX, SMALL_TREE_M, STEEP};
 use crate::lod_mode::TreeLodMode;
 use crate::options::Options;
 use crate::upload::{PICTURE_INDICES, TreeSet};
@@ -28,6 +28,9 @@ pub const SHADER: Shader = Shader {
         ("GROUP", GROUP as f64),
         ("MAX_GROUPS", MAX_GROUPS as f64),
         ("MIN_DISTANCE_M", MIN_DISTANCE_M as f64),
+        ("SMALL_PX", SEEN_PX[0] as f64),
+        ("LARGE_PX", SEEN_PX[1] as f64),
+        ("SMALL_TREE_M", SMALL_TREE_M as f64),
         ("STEEP", STEEP[0] as f64),
         ("TOO_STEEP", STEEP[1] as f64),
         ("QUALITY", TreeLodMode::Quality as u32 as f64),
@@ -63,7 +66,8 @@ pub struct CullUniform {
     pub planes_used: u32,
     pub first: u32,
     pub field: u32,
-    pub unused: [u32; 3],
+    pub focal_px: f32,
+    pub unused: [u32; 2],
 }
 
 impl CullUniform {
@@ -73,6 +77,7 @@ impl CullUniform {
             planes: frustum.planes.map(Into::into),
             eye: eye.into(),
             error_per_m: options.tree_error_px / focal_px,
+            focal_px,
             lod_mode: options.tree_lod as u32,
             planes_used: u32::from(options.cull),
             ..Self::sizes(set)

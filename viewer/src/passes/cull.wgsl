@@ -16,6 +16,11 @@ override PICTURES: u32;
 override MESHES: u32;
 // Indices of a picture.
 override PICTURE_INDICES: u32;
+// Pixels of the picture that a tree may fill before less than the usual error is allowed of it, those from which on it is least,
+// and the metres that it is taken to be large at least.
+override SMALL_PX: f32;
+override LARGE_PX: f32;
+override SMALL_TREE_M: f32;
 // Sines of the angles from which on pictures are too steep to be of use, and are not used.
 override STEEP: f32;
 override TOO_STEEP: f32;
@@ -40,7 +45,9 @@ struct Cull {
     first: u32,
     // Where the trees of the field end; those beyond follow.
     field: u32,
-    unused: array<u32, 3>,
+    // Pixels a radian; 0 if trees are not looked at.
+    focal_px: f32,
+    unused: array<u32, 2>,
 }
 
 struct Template {
@@ -99,13 +106,19 @@ struct Command {
 @group(1) @binding(4) var<storage, read_write> visible: array<Visible>;
 @group(1) @binding(5) var<storage, read_write> commands: array<Command>;
 
-// λ of a tree whose nearest part is `distance` away. The Rust twin is `lod::tree::lod_number`, and a test compares them.
-fn lod_number(mode: u32, template_index: u32, scale: f32, distance: f32) -> f32 {
+// The part of the allowed error that a tree may have whose middle is so far away. Its twin is `lod::tree::allowance`.
+fn allowance(center_distance: f32, radius: f32) -> f32 {
+    let size = cull.focal_px * max(2.0 * radius, SMALL_TREE_M) / max(center_distance, MIN_DISTANCE_M);
+    return SMALL_PX / clamp(size, SMALL_PX, LARGE_PX);
+}
+
+// λ of a tree whose nearest part is `distance` away, of which `error_per_m` is allowed. The Rust twin is `lod::tree::lod_number`, and a test compares them.
+fn lod_number(mode: u32, template_index: u32, scale: f32, distance: f32, error_per_m: f32) -> f32 {
     let last = f32(templates[template_index].levels - 1u);
     if (mode == OFF) {
         return 0.0;
     }
-    let allowed = (cull.error_per_m * distance + cull.fixed_error_m) / scale;
+    let allowed = (error_per_m * distance + cull.fixed_error_m) / scale;
     if (mode == SIMPLE) {
         let simple = templates[template_index].simple_error;
         if (!(allowed > simple)) {
@@ -133,8 +146,8 @@ fn lod_number(mode: u32, template_index: u32, scale: f32, distance: f32) -> f32 
 
 // The share of a tree that its picture shows, the rest being its mesh: none up to the error of the picture, all from twice
 // that on, and none from steeply above or below. Its twin is `lod::tree::pictured`.
-fn pictured(mode: u32, template_index: u32, scale: f32, distance: f32, steepness: f32) -> f32 {
-    let times = cull.error_per_m * distance / (scale * templates[template_index].picture_error);
+fn pictured(mode: u32, template_index: u32, scale: f32, distance: f32, error_per_m: f32, steepness: f32) -> f32 {
+    let times = error_per_m * distance / (scale * templates[template_index].picture_error);
     let share = clamp(log2(max(times, 1.0)), 0.0, 1.0) * (1.0 - smoothstep(STEEP, TOO_STEEP, steepness));
     if (mode == OFF || mode == MESHES) {
         return 0.0;
@@ -190,13 +203,14 @@ fn choose(@builtin(global_invocation_id) id: vec3u) {
 fn list_tree(index: u32, center: vec3f, radius: f32) {
     let template_index = trees[index].template_index;
     let scale = trees[index].scale;
-    let distance = max(length(center - cull.eye) - radius, MIN_DISTANCE_M);
+    let to_eye = cull.eye - center;
+    let distance = max(length(to_eye) - radius, MIN_DISTANCE_M);
+    let error_per_m = cull.error_per_m * allowance(length(to_eye), radius);
     // Beyond the field nobody looks at a tree so closely that its finest mesh would be worth what thousands of them cost.
     let mode = select(cull.lod_mode, QUALITY, cull.lod_mode == OFF && index >= cull.field);
-    let lambda = lod_number(mode, template_index, scale, distance);
-    let to_eye = cull.eye - center;
+    let lambda = lod_number(mode, template_index, scale, distance, error_per_m);
     let steepness = abs(to_eye.y) / max(length(to_eye), 1e-6);
-    let share = in_steps(pictured(mode, template_index, scale, distance, steepness));
+    let share = in_steps(pictured(mode, template_index, scale, distance, error_per_m, steepness));
     if (share < 1.0) {
         let level = u32(lambda);
         let next = level + 1u;

@@ -5,7 +5,9 @@ use genescape_viewer::camera::{Camera, Frustum};
 use genescape_viewer::gpu::Gpu;
 use genescape_viewer::headless::Headless;
 use genescape_viewer::image_file;
-use genescape_viewer::lod::tree::{Control, MAX_LEVELS, distance_m, lod_number, pictured, simple_error_m};
+use genescape_viewer::lod::tree::{
+    Control, MAX_LEVELS, SEEN_PX, allowance, distance_m, lod_number, pictured, simple_error_m,
+};
 use genescape_viewer::lod_mode::TreeLodMode;
 use genescape_viewer::options::Options;
 use genescape_viewer::passes::{BoundTrees, CullUniform};
@@ -242,9 +244,11 @@ fn compare(studio: &Headless, seed: u64) -> [usize; 4] {
             // Beyond the field, trees have levels in any mode.
             let is_far = tree >= forest.trees.instances.len();
             let mode = if is_far && mode == TreeLodMode::Off { TreeLodMode::Quality } else { mode };
-            let control = Control { mode, ..control };
+            let distance_to_center_m = center.distance(camera.position_m);
+            let allowance = allowance(control.focal_px, distance_to_center_m, radius_m);
+            let control = Control { mode, error_px: control.error_px * allowance, ..control };
             let errors_m = &forest.errors_m[instance.template as usize];
-            let away_m = distance_m(center.distance(camera.position_m), radius_m);
+            let away_m = distance_m(distance_to_center_m, radius_m);
             let number = |control: &Control, away_m: f32| {
                 lod_number(control, errors_m, simple_error_m(errors_m), away_m, scale)
             };
@@ -274,7 +278,7 @@ fn compare(studio: &Headless, seed: u64) -> [usize; 4] {
 fn the_device_chooses_as_the_reference_does() {
     let studio = made_up::studio();
     let mut seen = [0; 4];
-    for seed in 0..40 {
+    for seed in 0..60 {
         let more = compare(&studio, seed);
         seen = std::array::from_fn(|k| seen[k] + more[k]);
     }
@@ -342,6 +346,19 @@ proptest! {
         let fine = errors[i];
         let shown = fine * libm::powf(next / fine, alpha) * scale * control.focal_px / distance;
         prop_assert!(lambda == 0.0 || shown <= error_px * 1.001, "{lambda}: {shown} px");
+    }
+
+    #[test]
+    fn of_a_tree_that_is_larger_in_the_picture_no_more_error_is_allowed(
+        focal_px in 100f32..2000., distance in 0f32..2000., more in 0f32..500., radius in 0.1f32..60.
+    ) {
+        let allowed = |distance: f32, radius| allowance(focal_px, distance, radius);
+        let here = allowed(distance, radius);
+        prop_assert!((SEEN_PX[0] / SEEN_PX[1]..=1.0).contains(&here));
+        prop_assert!(allowed(distance + more, radius) >= here && allowed(distance, 1.1 * radius) <= here);
+        // Nor may the farther one have less in metres, or its level would be finer.
+        prop_assert!(allowed(distance + more, radius) * (distance + more) >= here * distance);
+        prop_assert_eq!(allowed(1e6, radius), 1.0);
     }
 
     #[test]

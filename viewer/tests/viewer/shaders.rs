@@ -125,6 +125,7 @@ fn uniforms_are_laid_out_alike() {
             planes_used,
             first,
             field,
+            focal_px,
             unused,
         }
     );
