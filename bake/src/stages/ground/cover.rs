@@ -77,7 +77,7 @@ impl Cover {
 
 const ROCK: usize = 0;
 const SCREE: usize = 1;
-const SNOW: usize = 2;
+pub(super) const SNOW: usize = 2;
 const EARTH: usize = 3;
 
 /// Part of the ground that is gravel where wind takes the snow away, and with it what shelters plants.

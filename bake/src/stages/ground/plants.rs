@@ -3,7 +3,7 @@
 use glam::Vec2;
 
 use super::GroundParams;
-use super::cover::{Cover, MOSS, Noise, Painter, RICE, in_patches};
+use super::cover::{Cover, MOSS, Noise, Painter, RICE, SNOW, in_patches};
 use super::grain::Grain;
 use super::palette::Palette;
 use super::palette::{Rgb, UMBELS, petals, spires, step};
@@ -98,6 +98,7 @@ pub(super) fn plants(
 ) -> GroundPlants<Image8> {
     let side = (weights.width / 2).max(1) as usize;
     let place = |k: usize| (k as f32 + 0.5) / side as f32;
+    let is_snowy = weights.data.chunks_exact(usize::from(weights.channels)).any(is_snow);
     let mut all = square_image::<CHANNELS, _>(side, |j| {
         let (row, place) = (traits.row(place(j)), &place);
         move |i| {
@@ -106,7 +107,8 @@ pub(super) fn plants(
             let cover = painter.cover(&here, &noise);
             let grass = cover.parts()[0].min(grass_around(weights, [2 * i as u32, 2 * j as u32]));
             let mut growth = painter.growth(&here, &cover, grass, &noise, &|| below_a_cliff(land, at));
-            if reaches_water(land, at, land.field.extent_m() / side as f32) {
+            let is_under_snow = is_snowy && reaches_snow(weights, [2 * i, 2 * j]);
+            if is_under_snow || reaches_water(land, at, land.field.extent_m() / side as f32) {
                 ON_LAND.into_iter().for_each(|kind| growth[kind] = 0.0);
             }
             growth.map(byte)
@@ -166,6 +168,18 @@ fn grass_around(weights: &Image8, [i, j]: [u32; 2]) -> f32 {
         pixel.iter().map(|&part| u32::from(part)).sum::<u32>()
     };
     1.0 - [[0, 0], [1, 0], [0, 1], [1, 1]].map(other).iter().sum::<u32>() as f32 / (4.0 * 255.0)
+}
+
+/// Whether snow is most of a texel of the weights.
+fn is_snow(weights: &[u8]) -> bool {
+    weights[SNOW] > 127
+}
+
+/// Whether there is snow on any texel that lies in a pixel of the maps, of twice as many texels a side, or beside it: density is
+/// read between pixels, and flowers stood in the snow.
+fn reaches_snow(weights: &Image8, [i, j]: [usize; 2]) -> bool {
+    let near = |at: usize| at.saturating_sub(2)..(at + 4).min(weights.width as usize);
+    near(j).any(|y| near(i).any(|x| is_snow(weights.pixel(x as u32, y as u32))))
 }
 
 /// Whether there is water within so many metres of a place: density is read between pixels.
@@ -246,7 +260,7 @@ impl Painter {
         let gravel = shore * step(-0.2, 0.4, -patch) * 0.7;
         let fallen = if t.slope > 0.08 && above_m > 0.2 { cliff() } else { 0.0 };
         // Snow covers what is low.
-        let free = 1.0 - step(0.1, 0.4, snow);
+        let free = 1.0 - step(0.0, 0.2, snow);
         growth[STONE] = free * (bare_stones + gravel + 0.6 * fallen * (1.0 - rock)).min(1.0);
         // What is large rolls down what is steep.
         growth[BOULDER] = (1.0 - 0.85 * snow)

@@ -35,6 +35,10 @@ pub fn snow_map(terrain_seed: u32, land: &Landform) -> Option<SnowMap> {
     Some(SnowMap { side: SIDE, extent_m, parts })
 }
 
+/// Where snow begins, and where it hides all that is under it, as parts of the height over which its line strays. A patch that
+/// melts is thin at its edge alone: on level land a wider one looked like fog on the grass.
+const EDGE: [f32; 2] = [0.02, 0.13];
+
 /// [`Traits::lee`] of usual land: drifts take as much snow from elsewhere as they add.
 const MEAN_LEE: f32 = 0.15;
 
@@ -62,13 +66,13 @@ impl Snow {
             - 1.0 * (t.slope - 0.6)
             - 0.9 * t.shade;
         let depth = (t.height_m - self.line_m) / self.spread_m + wander;
-        if depth <= -0.1 {
+        if depth <= EDGE[0] {
             return [0.0; 2];
         }
         let high = ((t.height_m - self.line_m) / (6.0 * self.spread_m)).clamp(0.0, 1.0);
         // Higher up, snow clings to steeper rock.
         let holds = 0.95 + 0.5 * high + 0.16 * broken + 0.15 * t.hollow + 0.2 * t.lee.max(0.0);
-        let fallen = step(-0.1, 0.25, depth)
+        let fallen = step(EDGE[0], EDGE[1], depth)
             * (1.0 - step(holds, holds + 0.16, t.slope))
             * step(0.0, 0.4, t.height_m - self.water_m);
         let blown = step(0.0, 0.18, self.blown(t) - 0.24 * broken);

@@ -25,7 +25,7 @@ pub struct PlacementFiles {
 
 impl Stage for PlacementStage {
     const NAME: &'static str = "placement";
-    const VERSION: u32 = 9;
+    const VERSION: u32 = 10;
     type Output = PlacementFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<PlacementFiles, StageError> {
@@ -52,7 +52,7 @@ pub struct FarTreesStage {
 
 impl Stage for FarTreesStage {
     const NAME: &'static str = "far trees";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
     type Output = File;
 
     fn run(&self, context: &Context<'_>) -> Result<File, StageError> {

@@ -84,6 +84,7 @@ fn nothing_stands_in_water_in_snow_or_on_cliffs() {
         });
         let slope = (steep[0] * steep[0] + steep[1] * steep[1]).sqrt();
         assert!(name != "boulder" || slope < 1.5, "a boulder on a slope of {slope}");
+        assert!(is_stone || snow < 0.5, "a {name} in the snow, which is {snow} of the ground around");
         hidden += usize::from(name != "boulder" && snow > 0.8);
         on_rock += usize::from(!is_stone && rock > 0.8);
     }
