@@ -52,8 +52,8 @@ pub const SEEN_PX: [f32; 2] = [65.0, 150.0];
 /// Metres that a tree is taken to be large at least, for the leaves of shrubs are as large as those of trees.
 pub const SMALL_TREE_M: f32 = 15.0;
 
-/// The part of the allowed error that a tree may have which is so large in the picture, (0, 1]. A person looks closely at the few
-/// large ones; of the many small ones one is hardly looked at. Where the middle of its sphere is `center_distance_m` away.
+/// The part of the usual error that is allowed of a tree whose sphere has its middle `center_distance_m` away, (0, 1]: less, the
+/// larger it is in the picture. A person looks closely at the few large trees, and hardly at any one of the many small ones.
 pub fn allowance(focal_px: f32, center_distance_m: f32, radius_m: f32) -> f32 {
     let size_m = (2.0 * radius_m).max(SMALL_TREE_M);
     let size_px = focal_px * size_m / center_distance_m.max(MIN_DISTANCE_M);

@@ -106,7 +106,7 @@ struct Command {
 @group(1) @binding(4) var<storage, read_write> visible: array<Visible>;
 @group(1) @binding(5) var<storage, read_write> commands: array<Command>;
 
-// The part of the allowed error that a tree may have whose middle is so far away. Its twin is `lod::tree::allowance`.
+// The part of the usual error that is allowed of a tree whose middle is so far away. Its twin is `lod::tree::allowance`.
 fn allowance(center_distance: f32, radius: f32) -> f32 {
     let size = cull.focal_px * max(2.0 * radius, SMALL_TREE_M) / max(center_distance, MIN_DISTANCE_M);
     return SMALL_PX / clamp(size, SMALL_PX, LARGE_PX);
