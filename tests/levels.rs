@@ -1,11 +1,11 @@
 //! Each of four landscapes in one window looks as it does without levels of detail, from where it is first seen.
 
-use genescape_viewer::camera::Camera;
 use genescape_viewer::headless::Headless;
 use genescape_viewer::lod_mode::{TerrainLodMode, TreeLodMode};
 use genescape_viewer::measure::flip;
 use genescape_viewer::options::{FrameInput, Options};
 use genescape_viewer::passes::Shaders;
+use genescape_viewer::walk::{Land, Rig, start_pose};
 
 use crate::round::starters;
 
@@ -18,13 +18,9 @@ fn one_of_four_views_looks_as_it_does_without_levels() {
     let studio = Headless::open(&Shaders::default(), 4).expect("a device");
     let mut all = Vec::new();
     for scene in starters(&studio) {
-        let [x, y, z] = scene.start.direction.to_array();
-        let camera = Camera {
-            position_m: scene.start.position_m,
-            yaw_rad: libm::atan2f(-x, -z),
-            pitch_rad: libm::asinf(y),
-            fov_y_rad: Options::default().fov_y_deg.to_radians(),
-        };
+        let land = Land::of(&scene).from_its_start();
+        let fov_y_rad = Options::default().fov_y_deg.to_radians();
+        let camera = Rig::new(start_pose(&[&land]), &[&land]).camera(&land, fov_y_rad);
         let mut view = studio.view(studio.upload(&scene).expect("uploaded"), SIZE_PX);
         let mut look = |options: Options| {
             let frame = FrameInput { options, ..FrameInput::default() };

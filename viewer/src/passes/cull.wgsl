@@ -112,7 +112,8 @@ fn allowance(center_distance: f32, radius: f32) -> f32 {
     return SMALL_PX / clamp(size, SMALL_PX, LARGE_PX);
 }
 
-// λ of a tree whose nearest part is `distance` away, of which `error_per_m` is allowed. The Rust twin is `lod::tree::lod_number`, and a test compares them.
+// λ of a tree whose nearest part is `distance` away, and which may be off by `error_per_m` for each metre of that. The Rust twin is
+// `lod::tree::lod_number`, and a test compares them.
 fn lod_number(mode: u32, template_index: u32, scale: f32, distance: f32, error_per_m: f32) -> f32 {
     let last = f32(templates[template_index].levels - 1u);
     if (mode == OFF) {
