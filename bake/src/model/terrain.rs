@@ -1,6 +1,7 @@
 //! The land.
 
 use genescape_schema::scene::{Heightfield, floats};
+use glam::Vec2;
 use serde::{Deserialize, Serialize};
 
 use super::Mesh;
@@ -40,6 +41,13 @@ impl Landform {
             field,
             apron,
         }
+    }
+
+    /// Height of the ground at a place (x, z) in metres, on the field or around it.
+    pub fn height_m(&self, place: Vec2) -> f32 {
+        let is_near = place.abs().max_element() <= 0.5 * self.field.extent_m();
+        let heights = if is_near { &self.field } else { &self.apron };
+        heights.height_m(place.x, place.y)
     }
 
     /// How much of a sample of the field is farmed, [0, 1].

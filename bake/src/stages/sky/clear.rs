@@ -21,7 +21,10 @@ const NOON_SUN: f32 = 7.5;
 const NOON_KEY: f32 = 0.115;
 /// Degree to which the eye takes the light's colour for white, as D in CIECAM02; 1 would make a sunset grey. Who sees a
 /// picture sits in another light, and adapts to it less than who stands in it.
-const WHITE_ADAPTED: f32 = 0.3;
+const WHITE_ADAPTED: f32 = 0.35;
+/// Parts of the sun's light at their height and of the clear sky's that clouds send to level ground: only its colour counts.
+const CLOUDS_OF_SUN: f32 = 0.5;
+const CLOUDS_OF_SKY: f32 = 0.5;
 
 /// The cloudless sky.
 pub struct ClearSky {
@@ -79,7 +82,7 @@ impl ClearSky {
         // Half of the light that haze takes from the beam goes on nearly straight.
         sky.sun_ground *= exp(-0.5 * haze_per_km * HAZE_SCALE_KM / (sun.y + 0.06));
         sky.fill_table();
-        sky.adapt(dimming);
+        sky.adapt(dimming, params.cloud_cover.clamp(0.0, 1.0), 0.001 * params.cloud_base_m);
         sky
     }
 
@@ -98,16 +101,18 @@ impl ClearSky {
     }
 
     /// Scales all light as an adapted eye sees it: a bright noon stays as it is, dusk and overcast are lifted most
-    /// of the way, and the colour of the light on level ground is partly taken for white (von Kries): grass at sunset
-    /// is golden, not brown.
-    fn adapt(&mut self, dimming: f32) {
+    /// of the way, and the colour of the light on level ground, the clouds' included, is partly taken for white (von
+    /// Kries): grass at sunset is golden, not brown.
+    fn adapt(&mut self, dimming: f32, cloud_cover: f32, cloud_base_km: f32) {
         self.fill_horizon();
         let sky = self.irradiance();
         let open = self.sun_ground * self.sun.y + sky;
         // The eye rests mostly on the sky itself.
         let key = luminance(sky).max(1e-6) + 0.03 * luminance(self.sun_ground) * self.sun.y;
         let bright = NOON_SUN * libm::powf(NOON_KEY / key, 0.85) * libm::powf(dimming, -0.45);
-        let white = Vec3A::splat(luminance(open)) / open.max(Vec3A::splat(1e-6));
+        let clouds = CLOUDS_OF_SUN * self.sun_at(cloud_base_km) + CLOUDS_OF_SKY * sky;
+        let all = open.lerp(clouds, cloud_cover);
+        let white = Vec3A::splat(luminance(all)) / all.max(Vec3A::splat(1e-6));
         let scale = bright * Vec3A::ONE.lerp(white, WHITE_ADAPTED);
         self.sun_above = scale;
         self.sun_ground *= scale;

@@ -17,7 +17,7 @@ pub struct SkyLightStage {
 
 impl Stage for SkyLightStage {
     const NAME: &'static str = "sky light";
-    const VERSION: u32 = 4;
+    const VERSION: u32 = 5;
     type Output = SkyLight;
 
     fn run(&self, _: &Context<'_>) -> Result<SkyLight, StageError> {

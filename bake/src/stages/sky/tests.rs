@@ -137,6 +137,24 @@ fn the_sun_reddens_towards_the_horizon_and_fades_behind_clouds() {
 }
 
 #[test]
+fn shade_is_not_brown_under_clouds_that_a_low_sun_lights() {
+    // Altocumulus at sunset: the clouds give more light than the sky between them.
+    let sunset = SkyParams {
+        sun_elevation_deg: 3.6,
+        cloud_cover: 0.44,
+        cloud_base_m: 3400.0,
+        cloud_thickness_m: 190.0,
+        cloud_scale_m: 580.0,
+        cirrus: 0.4,
+        ..noon()
+    };
+    let light = light(&sunset);
+    let warmth = |[red, _, blue]: [f32; 3]| red / blue;
+    let (sun, shade) = (warmth(light.sun_irradiance_linear), warmth(light.sky_irradiance_linear));
+    assert!(shade < 1.6 && sun > 6.0, "sun {sun}, shade {shade}");
+}
+
+#[test]
 fn the_sky_is_blue_above_and_paler_below() {
     let params = noon();
     let sky = ClearSky::new(&params, 1.0);

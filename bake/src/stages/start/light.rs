@@ -4,6 +4,7 @@
 use glam::{Vec2, Vec3};
 
 use super::panorama::{Surroundings, Tree};
+use super::sunlight::luminance;
 use crate::math::ramp;
 use crate::model::SkyLight;
 
@@ -77,8 +78,4 @@ impl Sun {
             scene.ground_m(Vec2::new(p.x, p.z)) < p.y
         })
     }
-}
-
-pub(super) fn luminance([r, g, b]: [f32; 3]) -> f32 {
-    0.2126 * r + 0.7152 * g + 0.0722 * b
 }

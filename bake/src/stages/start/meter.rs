@@ -4,9 +4,9 @@
 //! brighter than grass, and dusk darker than noon, but by less than they are. What lies before one's feet is never lost in the
 //! dark: a picture is lifted for it, within limits.
 
-use super::light::luminance;
 use super::panorama::{Kind, Seen};
 use super::picture::Picture;
+use super::sunlight::luminance;
 use crate::math::{interpolate, lerp};
 use crate::model::SkyLight;
 

@@ -2,7 +2,7 @@
 //! would show, found by rays over heightfield, water and crowns, and the best of them.
 //!
 //! 1. `panorama` looks around from each place: what is seen in which direction, how far away.
-//! 2. `light` says how the sun stands to a look.
+//! 2. `light` says how the sun stands to a look, `sunlight` how much of what is seen it reaches.
 //! 3. `appraise` turns the `picture` that a look shows, and its light, into terms from 0 to 1; their product is the score.
 //! 4. `meter` says how the best ones are to be exposed.
 //!
@@ -14,6 +14,7 @@ mod meter;
 mod panorama;
 mod picture;
 mod stage;
+mod sunlight;
 #[cfg(test)]
 mod tests;
 
@@ -155,8 +156,9 @@ fn at_place(scene: &Surroundings<'_>, sun: &Sun, lookouts: &[Lookout]) -> Vec<Ap
     let panorama = Panorama::new(scene, place);
     let trees = scene.trees_around(place, SHADES_M);
     let look = |&lookout: &Lookout| {
-        let light = sun.suits(scene, &trees, place, lookout.ahead());
-        appraise(&Picture::new(&panorama, lookout), scene, footing, light)
+        let picture = Picture::new(&panorama, lookout);
+        let light = sun.suits(scene, &trees, place, lookout.ahead()) * scene.sunlight.suits(picture.sun);
+        appraise(&picture, scene, footing, light)
     };
     lookouts.iter().map(look).collect()
 }

@@ -5,6 +5,7 @@ use core::f32::consts::TAU;
 
 use glam::{Vec2, Vec3};
 
+use super::sunlight::Sunlight;
 use crate::math::ramp;
 use crate::model::TreeFootprint;
 use crate::model::{Instance, Landform, SkyLight, StartView};
@@ -58,9 +59,11 @@ pub(super) struct Seen {
     pub kind: Kind,
     /// Metres along the ground; infinite for sky.
     pub depth_m: f32,
+    /// How much of its light is the sun's, as a part of [`Sunlight::most`]. Of land under trees as if they were not there.
+    pub sun: f32,
 }
 
-const SKY: Seen = Seen { kind: Kind::Sky, depth_m: f32::INFINITY };
+const SKY: Seen = Seen { kind: Kind::Sky, depth_m: f32::INFINITY, sun: 0.0 };
 
 /// The land with what stands on it.
 pub(super) struct Surroundings<'a> {
@@ -73,6 +76,7 @@ pub(super) struct Surroundings<'a> {
     /// How much of a land is missed where none of its slopes are in sight, 0 … 1: nothing of level land, or in fog.
     pub relief: f32,
     pub stature: Stature,
+    pub sunlight: Sunlight,
 }
 
 /// How the trees are shaped, on the mean.
@@ -141,7 +145,8 @@ impl<'a> Surroundings<'a> {
         let heights_m = [&land.field, &land.apron].map(|heights| heights.range_m()[1]);
         let highest_m = heights_m.into_iter().chain(land.water_level_m).fold(f32::MIN, f32::max);
         let (wet, relief) = (around.wet(), around.relief() * clear(light));
-        Self { land, trees, highest_m, wet, relief, stature: Stature::of(footprints) }
+        let (stature, sunlight) = (Stature::of(footprints), Sunlight::of(land, light));
+        Self { land, trees, highest_m, wet, relief, stature, sunlight }
     }
 
     /// The trees whose feet are no farther from a place.
@@ -156,9 +161,7 @@ impl<'a> Surroundings<'a> {
 
     /// Height of the land.
     pub fn ground_m(&self, p: Vec2) -> f32 {
-        let near = p.abs().max_element() <= 0.5 * self.land.field.extent_m();
-        let field = if near { &self.land.field } else { &self.land.apron };
-        field.height_m(p.x, p.y)
+        self.land.height_m(p)
     }
 
     /// Level of the lake, far below if there is none.
@@ -257,7 +260,7 @@ impl Panorama {
             panorama.add_column(scene, place, column_towards(column));
         }
         for tree in &scene.trees {
-            panorama.add_tree(tree, place);
+            panorama.add_tree(tree, place, &scene.sunlight);
         }
         panorama.log_far = panorama.seen.iter().map(|seen| libm::logf(farthest_m(seen))).collect();
         panorama
@@ -271,7 +274,8 @@ impl Panorama {
             let surface_m = scene.surface_m(p);
             let slope = (surface_m - self.eye_m) / depth_m;
             while row < ROWS && slope_of(row) <= slope {
-                seen[row] = Seen { kind: scene.kind(p, surface_m), depth_m };
+                seen[row] =
+                    Seen { kind: scene.kind(p, surface_m), depth_m, sun: scene.sunlight.on_ground(p) };
                 row += 1;
             }
             skyline = slope.max(skyline);
@@ -286,7 +290,7 @@ impl Panorama {
         self.skyline.push(skyline);
     }
 
-    fn add_tree(&mut self, tree: &Tree, place: Vec2) {
+    fn add_tree(&mut self, tree: &Tree, place: Vec2, sunlight: &Sunlight) {
         let way = tree.foot - place;
         let depth_m = way.length();
         if !(0.5..=FAR_TREE_M).contains(&depth_m) {
@@ -300,6 +304,8 @@ impl Panorama {
             let width = 2.0 * libm::atanf(tree.stem_radius_m / depth_m) / step;
             self.stems.push(Stem { column: middle, width, crown_from: low });
         }
+        let sun = sunlight.on_crown(tree.foot, 0.5 * (tree.bottom_m + tree.top_m));
+        let seen = Seen { kind: Kind::Tree, depth_m, sun };
         let reach = half.max(0.5) as i32 + 1;
         for offset in -reach..=reach {
             let column = libm::roundf(middle) as i32 + offset;
@@ -311,17 +317,17 @@ impl Panorama {
             }
             let part = (1.0 - aside * aside).sqrt();
             let (centre, span) = (0.5 * (low + high), 0.5 * (high - low) * part);
-            self.fill(column.rem_euclid(COLUMNS as i32) as usize, [centre - span, centre + span], depth_m);
+            self.fill(column.rem_euclid(COLUMNS as i32) as usize, [centre - span, centre + span], seen);
         }
     }
 
     /// A tree before a column's rows, unless land hides it.
-    fn fill(&mut self, column: usize, [low, high]: [f32; 2], depth_m: f32) {
+    fn fill(&mut self, column: usize, [low, high]: [f32; 2], tree: Seen) {
         // How many rows begin below a slope.
         let rows = |slope: f32| ((slope + REACH) / ROW_STEP + 1.0).clamp(0.0, ROWS as f32) as usize;
         for seen in &mut self.seen[column][rows(low).saturating_sub(1)..rows(high)] {
-            if depth_m < seen.depth_m {
-                *seen = Seen { kind: Kind::Tree, depth_m };
+            if tree.depth_m < seen.depth_m {
+                *seen = tree;
             }
         }
     }

@@ -33,6 +33,8 @@ pub(super) struct Picture<'a> {
     counts: Counts,
     /// The same of the picture's middle half.
     in_middle: Counts,
+    /// How much of the light on land and trees is the sun's, on the mean: see [`Seen::sun`].
+    pub sun: f32,
 }
 
 type Counts = [[u32; BANDS_M.len() + 1]; Kind::ALL.len()];
@@ -48,11 +50,13 @@ impl<'a> Picture<'a> {
             cut_stems: 0.0,
             counts: Counts::default(),
             in_middle: Counts::default(),
+            sun: 0.0,
         };
         picture.skyline = picture.mean(|column| column.skyline);
         let pitch = picture.skyline - 2.0 * HALF_HEIGHT * (0.5 - SKYLINE_AT);
         picture.pitch = pitch.clamp(-MAX_PITCH, MAX_PITCH);
         picture.cut_stems = cut_stems(panorama, middle, picture.pitch);
+        picture.sun = picture.mean_sun();
         let [mut counts, mut in_middle] = [Counts::default(); 2];
         for (k, (_, seen)) in picture.rays().enumerate() {
             let is_in_middle = (k % picture.columns.len()).abs_diff(HALF_COLUMNS) <= HALF_COLUMNS / 2;
@@ -61,6 +65,13 @@ impl<'a> Picture<'a> {
             in_middle[kind][band] += u32::from(is_in_middle);
         }
         Self { counts, in_middle, ..picture }
+    }
+
+    fn mean_sun(&self) -> f32 {
+        let is_solid = |kind: Kind| !matches!(kind, Kind::Sky | Kind::Water);
+        let solid = self.rays().filter(|(_, seen)| is_solid(seen.kind));
+        let (sum, count) = solid.fold((0.0, 0), |(sum, count), (_, seen)| (sum + seen.sun, count + 1));
+        sum / count.max(1) as f32
     }
 
     /// Of all columns.

@@ -295,14 +295,31 @@ fn a_look_into_shade_is_worth_little_where_the_sun_shines() {
     let term = |wall_m: f32| {
         // A wall east of the middle, along which one looks north.
         let land = land(|x, _| if (60.0..200.0).contains(&x) { wall_m } else { 0.0 }, None);
-        let extent_m = land.field.extent_m();
-        let from_m = |one: &Lookout| one.place_m(extent_m).distance(Vec2::new(20.0, 0.0));
-        let norths = Lookout::all().enumerate().filter(|(_, one)| one.heading() == 0);
-        let nearest = norths.min_by(|(_, a), (_, b)| from_m(a).total_cmp(&from_m(b)));
-        let (number, _) = nearest.expect("one of all");
-        looks(&land, &[], &[TREE], &light, 1)[number].term(Want::Light)
+        light_of_look(&land, &light, Vec2::new(20.0, 0.0), 0)
     };
     assert!(term(0.0) > 0.95 && term(60.0) < 0.5, "{} {}", term(0.0), term(60.0));
+}
+
+#[test]
+fn a_hill_is_worth_more_from_where_a_low_sun_lights_it() {
+    // The sun is in the north. One looks east at a hill that falls off northwards, or southwards.
+    let light = light(4.0, 0.0);
+    let term = |to_north: f32| {
+        let hill =
+            |x: f32, z: f32| 0.35 * (x - 120.0).max(0.0) * (1.0 + to_north * (z / 150.0).clamp(-1.0, 1.0));
+        light_of_look(&land(hill, None), &light, Vec2::ZERO, Lookout::HEADINGS / 4)
+    };
+    let (lit, dark) = (term(1.0), term(-1.0));
+    assert!(lit > 1.15 * dark, "{lit} {dark}");
+}
+
+/// How good the light is of the look in a direction from the lookout that is nearest to a place.
+fn light_of_look(land: &Landform, light: &SkyLight, place: Vec2, heading: usize) -> f32 {
+    let away_m = |one: &Lookout| one.place_m(land.field.extent_m()).distance(place);
+    let there = Lookout::all().enumerate().filter(|(_, one)| one.heading() == heading);
+    let nearest = there.min_by(|(_, a), (_, b)| away_m(a).total_cmp(&away_m(b)));
+    let (number, _) = nearest.expect("one of all");
+    looks(land, &[], &[TREE], light, 1)[number].term(Want::Light)
 }
 
 #[test]
