@@ -59,7 +59,8 @@ pub(super) struct Seen {
     pub kind: Kind,
     /// Metres along the ground; infinite for sky.
     pub depth_m: f32,
-    /// How much of its light is the sun's, as a part of [`Sunlight::most`]. Of land under trees as if they were not there.
+    /// How much of its light is the sun's, as a part of what a slope that is well lit has. Of land under trees as if they
+    /// were not there.
     pub sun: f32,
 }
 
@@ -145,7 +146,7 @@ impl<'a> Surroundings<'a> {
         let heights_m = [&land.field, &land.apron].map(|heights| heights.range_m()[1]);
         let highest_m = heights_m.into_iter().chain(land.water_level_m).fold(f32::MIN, f32::max);
         let (wet, relief) = (around.wet(), around.relief() * clear(light));
-        let (stature, sunlight) = (Stature::of(footprints), Sunlight::of(land, light));
+        let (stature, sunlight) = (Stature::of(footprints), Sunlight::of(land, highest_m, light));
         Self { land, trees, highest_m, wet, relief, stature, sunlight }
     }
 

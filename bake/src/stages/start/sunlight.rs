@@ -29,7 +29,7 @@ pub(super) struct Sunlight {
     /// The sun's part of the light on crowns that it reaches.
     crown: f32,
     /// The sun's part of the light on a slope that is well lit, 0 … 1.
-    pub most: f32,
+    most: f32,
 }
 
 /// A square around the middle.
@@ -48,24 +48,19 @@ struct Point {
 }
 
 impl Sunlight {
-    pub fn of(land: &Landform, light: &SkyLight) -> Self {
+    /// That of a land on which nothing is higher than `highest_m`.
+    pub fn of(land: &Landform, highest_m: f32, light: &SkyLight) -> Self {
         let [sun, sky] = [light.sun_irradiance_linear, light.sky_irradiance_linear].map(luminance);
         let part = |cosine: f32| sun * cosine / (sun * cosine + sky).max(1e-6);
         let most = part(WELL);
         let of_most = |cosine: f32| (part(cosine.max(0.0)) / most.max(1e-6)).min(1.0);
-        let highest_m = [&land.field, &land.apron]
-            .map(|heights| heights.range_m()[1])
-            .into_iter()
-            .fold(f32::MIN, f32::max);
-        let shade_m =
-            |place: Vec2, ground_m: f32| shade_m(land, light.sun_direction, place, highest_m - ground_m);
         let grid = |side: usize, heights: &Heightfield| {
             let spacing_m = heights.extent_m() / (side - 1) as f32;
             let place_m = |line: usize| spacing_m * line as f32 - 0.5 * heights.extent_m();
             let point = |i: usize, j: usize| {
                 let place = Vec2::new(place_m(i), place_m(j));
                 let ground_m = land.height_m(place);
-                let shade_m = shade_m(place, ground_m);
+                let shade_m = shade_m(land, light.sun_direction, place, highest_m - ground_m);
                 let is_lit = ground_m + TOLERANCE_M >= shade_m;
                 let cosine = normal(land, place, spacing_m).dot(light.sun_direction);
                 Point { shade_m, ground: if is_lit { of_most(cosine) } else { 0.0 } }
