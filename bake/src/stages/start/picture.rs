@@ -56,22 +56,18 @@ impl<'a> Picture<'a> {
         let pitch = picture.skyline - 2.0 * HALF_HEIGHT * (0.5 - SKYLINE_AT);
         picture.pitch = pitch.clamp(-MAX_PITCH, MAX_PITCH);
         picture.cut_stems = cut_stems(panorama, middle, picture.pitch);
-        picture.sun = picture.mean_sun();
         let [mut counts, mut in_middle] = [Counts::default(); 2];
+        let (mut sun, mut solid) = (0.0, 0_u32);
         for (k, (_, seen)) in picture.rays().enumerate() {
             let is_in_middle = (k % picture.columns.len()).abs_diff(HALF_COLUMNS) <= HALF_COLUMNS / 2;
             let (kind, band) = (seen.kind as usize, band(seen.depth_m));
             counts[kind][band] += 1;
             in_middle[kind][band] += u32::from(is_in_middle);
+            if !matches!(seen.kind, Kind::Sky | Kind::Water) {
+                (sun, solid) = (sun + seen.sun, solid + 1);
+            }
         }
-        Self { counts, in_middle, ..picture }
-    }
-
-    fn mean_sun(&self) -> f32 {
-        let is_solid = |kind: Kind| !matches!(kind, Kind::Sky | Kind::Water);
-        let solid = self.rays().filter(|(_, seen)| is_solid(seen.kind));
-        let (sum, count) = solid.fold((0.0, 0), |(sum, count), (_, seen)| (sum + seen.sun, count + 1));
-        sum / count.max(1) as f32
+        Self { counts, in_middle, sun: sun / solid.max(1) as f32, ..picture }
     }
 
     /// Of all columns.
