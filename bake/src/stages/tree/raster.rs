@@ -42,6 +42,11 @@ impl Look {
         Self { foot_m, eye, right, up: Vec3::Y, samples_per_m, size }
     }
 
+    /// From above, or from below where it is negative, by that tangent of the elevation; heights stay what they are.
+    pub fn tilted(self, tangent: f32) -> Self {
+        Self { up: self.up - tangent * self.eye, eye: self.eye + tangent * self.up, ..self }
+    }
+
     /// Straight before a rectangle with that middle, those directions to the right and up, and half of that width and
     /// height.
     pub fn before(middle_m: Vec3, [right, up]: [Vec3; 2], half_m: Vec2, size: usize) -> Self {

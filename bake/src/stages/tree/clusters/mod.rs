@@ -10,6 +10,7 @@ mod atlas;
 mod card;
 mod groups;
 
+use std::cell::LazyCell;
 use std::ops::Range;
 
 use glam::Vec3;
@@ -36,10 +37,17 @@ const CLUSTER: usize = 2 * CARD;
 /// So many leaves at least are drawn of a cluster that has more: every nth, as much larger as makes up for the others.
 const DRAWN_LEAVES: usize = 64;
 
-/// Sides of the impostor from which it is counted how much a level covers, and samples a side. Two would not do: how much crossed
-/// cards cover depends on how they are turned to the eye.
-const SIDES: [usize; 4] = [0, 1, 2, 3];
+/// Views in which it is counted how much a level covers, and samples a side: sides of the impostor, and how far each looks from
+/// below or above, as the tangent of its elevation. Two would not do: how much crossed cards cover depends on how they are turned
+/// to the eye.
+const VIEWS: [(usize, f32); 8] =
+    [(0, -0.2), (1, 0.2), (2, 0.2), (3, -0.2), (0, 0.2), (1, -0.2), (2, -0.2), (3, 0.2)];
 const COVERAGE_PX: usize = 88;
+/// The first views are enough where the full tree covers so many samples of them and a level has so many cards. Of slender and
+/// sparse trees, and of few cards, chance would decide.
+const FIRST_VIEWS: usize = 4;
+const MIN_SAMPLES: u32 = 6_000;
+const MIN_CARDS: usize = 32;
 /// How much smaller or larger cards may become.
 const SCALES: Range<f32> = 0.7..1.5;
 
@@ -61,15 +69,20 @@ pub fn first_level(full: &Mesh) -> Option<usize> {
 pub fn substitute(full: &Mesh, levels: &mut [Level], surfaces: Surfaces) -> (Surfaces, Option<Clusters>) {
     let foliage: Vec<Foliage<'_>> =
         (0..full.parts.len()).filter_map(|part| Foliage::of(full, part)).collect();
-    let pays = |level: &Level| foliage.iter().all(|leaves| leaves.pays_in(level));
+    let shares = shares(full, &surfaces, &foliage);
+    let cards_of = |level: &Level| shared_out(level, &foliage, &shares);
+    let pays =
+        |level: &Level| foliage.iter().zip(cards_of(level)).all(|(leaves, cards)| leaves.pay_on(cards));
     let first = levels.iter().skip(FIRST).position(pays).filter(|_| !foliage.is_empty());
     let Some(first) = first.map(|after| FIRST + after) else { return (surfaces, None) };
 
     let mut subjects = Vec::new();
     // Of each level its parts, and which of the subjects are theirs.
     let mut owned = vec![Vec::new(); levels.len() - first];
-    for leaves in &foliage {
-        for (owned, of_level) in owned.iter_mut().zip(leaves.subjects(&levels[first..])) {
+    let cards: Vec<Vec<usize>> = levels[first..].iter().map(cards_of).collect();
+    for (n, leaves) in foliage.iter().enumerate() {
+        let cards: Vec<usize> = cards.iter().map(|of_level| of_level[n]).collect();
+        for (owned, of_level) in owned.iter_mut().zip(leaves.subjects(&cards)) {
             let before = subjects.len();
             subjects.extend(of_level);
             owned.push((leaves.part, before..subjects.len()));
@@ -78,10 +91,14 @@ pub fn substitute(full: &Mesh, levels: &mut [Level], surfaces: Surfaces) -> (Sur
     let (pictures, atlas) = atlas::draw(&subjects, &surfaces);
     let surfaces = surfaces.with_clusters(atlas);
     let wardrobe = Wardrobe::new(&subjects);
-    let canvas = Canvas::new(full, &surfaces);
+    let first_views = Canvas::new(full, &surfaces, &VIEWS[..FIRST_VIEWS]);
+    let all_views = LazyCell::new(|| Canvas::new(full, &surfaces, &VIEWS));
     let mut scale = 1.0;
     let dress = |(level, owned): (&Level, &Vec<Owned>)| {
-        let mut rest = Canvas::empty();
+        let cards: usize = owned.iter().map(|(_, subjects)| wardrobe.run(subjects).len()).sum();
+        let are_enough = first_views.full >= MIN_SAMPLES && cards >= MIN_CARDS;
+        let canvas = if are_enough { &first_views } else { &*all_views };
+        let mut rest = canvas.empty();
         canvas.draw(&level.mesh, |index| owned.iter().all(|(part, _)| *part != index), &mut rest);
         let covered = |scale: f32| {
             let mut covered = rest.clone();
@@ -96,6 +113,29 @@ pub fn substitute(full: &Mesh, levels: &mut [Level], surfaces: Surfaces) -> (Sur
     levels[first..].iter_mut().zip(dressed).for_each(|(level, dressed)| *level = dressed);
     parts.into_iter().for_each(|part| hold_still(&mut levels[first - 1], part));
     (surfaces, Some(pictures))
+}
+
+/// The share of the cards that each part of the foliage has, by how much it would cover alone. The simplifier keeps few large
+/// leaves rather than many small ones, so that of trees in blossom it leaves little but flowers.
+fn shares(full: &Mesh, surfaces: &Surfaces, foliage: &[Foliage<'_>]) -> Vec<f32> {
+    if foliage.len() < 2 {
+        return vec![1.0; foliage.len()];
+    }
+    let canvas = Canvas::new(full, surfaces, &VIEWS[..FIRST_VIEWS]);
+    let covered = |leaves: &Foliage<'_>| {
+        let mut alone = canvas.empty();
+        canvas.draw(full, |index| index == leaves.part, &mut alone);
+        count(&alone).max(1) as f32
+    };
+    let covered: Vec<f32> = foliage.iter().map(covered).collect();
+    let sum: f32 = covered.iter().sum();
+    covered.into_iter().map(|covered| covered / sum).collect()
+}
+
+/// How many cards each part of the foliage has in a level: all for which there are vertices, and one at least.
+fn shared_out(level: &Level, foliage: &[Foliage<'_>], shares: &[f32]) -> Vec<usize> {
+    let vertices: usize = foliage.iter().map(|leaves| run(&level.mesh.parts[leaves.part]).len()).sum();
+    shares.iter().map(|share| ((vertices / CARD) as f32 * share).round().max(1.0) as usize).collect()
 }
 
 /// A part of a level, and the run of subjects that it shows.
@@ -127,17 +167,15 @@ impl<'a> Foliage<'a> {
     }
 
     /// Whether each cluster would have enough leaves.
-    fn pays_in(&self, level: &Level) -> bool {
-        let vertices = run(&level.mesh.parts[self.part]).len();
-        vertices >= CLUSTER && vertices / CLUSTER * MIN_LEAVES <= self.places.len()
+    fn pay_on(&self, cards: usize) -> bool {
+        cards >= 2 && cards / 2 * MIN_LEAVES <= self.places.len()
     }
 
-    /// What each of some levels shows, one coarser than the other: as many cards as it has vertices for.
-    fn subjects(&self, levels: &[Level]) -> Vec<Vec<Subject>> {
+    /// What each of some levels shows, one coarser than the other, each on so many cards.
+    fn subjects(&self, cards: &[usize]) -> Vec<Vec<Subject>> {
         let mut places = self.places.clone();
         let mut place_of: Vec<u32> = (0..places.len() as u32).collect();
-        let of_level = |level: &Level| {
-            let cards = (run(&level.mesh.parts[self.part]).len() / CARD).max(1);
+        let of_level = |&cards: &usize| {
             let count = cards.div_ceil(2);
             let group = groups::groups(&places, count);
             place_of.iter_mut().for_each(|place| *place = group[*place as usize]);
@@ -147,7 +185,7 @@ impl<'a> Foliage<'a> {
             let subject = |(n, leaves): (usize, Vec<usize>)| self.subject(&leaves, (cards - 2 * n).min(2));
             leaves.into_iter().enumerate().filter(|(_, leaves)| !leaves.is_empty()).map(subject).collect()
         };
-        levels.iter().map(of_level).collect()
+        cards.iter().map(of_level).collect()
     }
 
     /// Some leaves, on one card or two.
@@ -296,41 +334,41 @@ fn hold_still(level: &mut Level, part: usize) {
     }
 }
 
-/// Sides from which it is counted how much of them meshes cover.
+/// Views in which it is counted how much of them meshes cover.
 struct Canvas<'a> {
-    looks: [Look; SIDES.len()],
+    looks: Vec<Look>,
     surfaces: &'a Surfaces,
     /// What the full tree covers.
     full: u32,
 }
 
-/// What is covered, seen from each of the sides.
-type Covered = [Silhouette; SIDES.len()];
+/// What is covered in each of the views.
+type Covered = Vec<Silhouette>;
 
 impl<'a> Canvas<'a> {
-    fn new(full: &Mesh, surfaces: &'a Surfaces) -> Self {
+    fn new(full: &Mesh, surfaces: &'a Surfaces, views: &[(usize, f32)]) -> Self {
         let (foot_m, side_m) = frame(full);
-        let looks = SIDES.map(|k| Look::new(k, foot_m, [side_m; 2], COVERAGE_PX));
-        let mut canvas = Self { looks, surfaces, full: 0 };
-        let mut covered = Self::empty();
+        let look = |&(k, tilt): &(usize, f32)| Look::new(k, foot_m, [side_m; 2], COVERAGE_PX).tilted(tilt);
+        let mut canvas = Self { looks: views.iter().map(look).collect(), surfaces, full: 0 };
+        let mut covered = canvas.empty();
         canvas.draw(full, |_| true, &mut covered);
         canvas.full = count(&covered);
         canvas
     }
 
-    fn empty() -> Covered {
-        SIDES.map(|_| Silhouette::empty(COVERAGE_PX))
+    fn empty(&self) -> Covered {
+        vec![Silhouette::empty(COVERAGE_PX); self.looks.len()]
     }
 
     /// Draws those of a mesh's parts whose index is asked for.
-    fn draw(&self, mesh: &Mesh, is_drawn: impl Fn(usize) -> bool, covered: &mut Covered) {
+    fn draw(&self, mesh: &Mesh, is_drawn: impl Fn(usize) -> bool, covered: &mut [Silhouette]) {
         for (look, silhouette) in self.looks.iter().zip(covered) {
             cover(mesh, &is_drawn, self.surfaces, look, silhouette);
         }
     }
 }
 
-fn count(covered: &Covered) -> u32 {
+fn count(covered: &[Silhouette]) -> u32 {
     covered.iter().map(Silhouette::covered).sum()
 }
 
@@ -339,6 +377,35 @@ mod tests {
     use super::*;
     use crate::stages::tree::tests::{presets, read};
     use crate::stages::tree::{levelled, template, textures};
+
+    #[test]
+    fn flowers_leave_cards_to_the_leaves() {
+        let mut in_blossom = 0;
+        for (name, genome) in presets() {
+            let (tree, textures) = (template(&read(&genome), 0), textures(&read(&genome)));
+            let made = levelled(&tree.mesh, &textures, &mut |_| ());
+            let foliage: Vec<Foliage<'_>> =
+                (0..tree.mesh.parts.len()).filter_map(|part| Foliage::of(&tree.mesh, part)).collect();
+            if foliage.len() < 2 {
+                continue;
+            }
+            in_blossom += 1;
+            let shares = shares(&tree.mesh, &Surfaces::of(&textures), &foliage);
+            let is_cluster = |part: &&Part| part.material == Material::Cluster;
+            for level in &made.mesh.levels {
+                let clusters = level.mesh.parts.iter().filter(is_cluster);
+                let all = clusters.map(|part| part.triangles.len()).sum::<usize>() as f32;
+                for (leaves, share) in foliage.iter().zip(&shares).filter(|_| all > 0.0) {
+                    let own = level.mesh.parts[leaves.part].triangles.len() as f32;
+                    assert!(
+                        (own / all - share).abs() <= 0.02 + 2.0 / all,
+                        "{name}: {own} of {all}, not {share}"
+                    );
+                }
+            }
+        }
+        assert!(in_blossom > 0, "no tree is in blossom");
+    }
 
     #[test]
     fn levels_with_clusters_halve_as_before_and_are_whole() {
