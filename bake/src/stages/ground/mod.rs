@@ -18,6 +18,7 @@ mod plants;
 mod season;
 mod shapes;
 mod snow;
+mod solids;
 mod stage;
 mod standing;
 mod stones;
@@ -95,7 +96,8 @@ pub fn maps(params: &GroundParams, woods: &Woods, land: &Landform, side_px: u32)
             weights[4 * i..][..4].copy_from_slice(&cover.bytes());
         }
     });
-    let plants = plants::plants(params, &painter, &traits, &grain, land, &weights);
+    let mut plants = plants::plants(params, &painter, &traits, &grain, land, &weights);
+    solids::set_apart(&mut plants, &plants::SOLID, &woods.stems_m, land.field.extent_m());
     GroundMaps { color: color_srgb, weights, plants }
 }
 

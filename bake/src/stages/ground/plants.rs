@@ -40,6 +40,9 @@ const IN_MAP: usize = 4;
 const ON_LAND: [usize; 13] =
     [FLOWER, FERN, SHRUB, TUSSOCK, LITTER, BUSH, SAPLING, LOG, STUMP, SPIRE, UMBEL, HAY, HERB];
 
+/// Those that cannot stand in each other; the first of them stay where they are.
+pub(super) const SOLID: [usize; 3] = [BOULDER, STUMP, LOG];
+
 /// Those that are as large as their trees make them.
 const OF_TREES: [usize; 3] = [SAPLING, LOG, STUMP];
 

@@ -356,29 +356,30 @@ pub(super) fn spire() -> PlantShape {
     let spikes = [([0.0, 0.82, 0.03], 1.0), ([0.09, 0.61, -0.05], 0.8), ([-0.07, 0.50, -0.06], 0.7)]
         .map(|(top, wide)| (Vec3::from_array(top), wide));
     let foot = |top: Vec3| top.with_y(0.0) * 0.3;
-    for (top, wide) in spikes {
-        let low = foot(top).lerp(top, 0.42);
-        for side in [Vec3::X, Vec3::Z] {
-            let half = 0.016 * wide * side;
-            d.leaf([low - half, low + half, top], [0.6, 0.6, 0.35]);
+    // All flowers of a spike that stand for those of a size, from the lowest to the topmost.
+    let flowers = |d: &mut Drawing, (top, wide): (Vec3, f32), count: usize, reach_m: f32| {
+        for k in 0..count {
+            let part = (k as f32 + 0.2 + 0.6 * d.unit()) / count as f32;
+            let from = foot(top).lerp(top, 0.38 + 0.61 * part);
+            let out = heading(2.4 * k as f32 + 0.5 * d.unit());
+            let reach = wide * reach_m * (1.0 - 0.8 * part) * (0.75 + 0.5 * d.unit());
+            let side = aside(out) * (0.42 * reach) + Vec3::Y * (0.4 * reach * (d.unit() - 0.5));
+            let tip = from + (out - Vec3::Y * (0.7 * (1.0 - part) - 0.15)) * reach;
+            // Buds at the top are green, and within a flower is shade.
+            let (open, tint) = ((1.25 - part).min(1.0), 0.6 + 0.4 * d.unit());
+            let tints = [0.15, tint, 0.85 * tint].map(|tint| tint * open);
+            // No two are lit alike.
+            let normal = out + 0.6 * Vec3::Y + 1.2 * (d.unit() - 0.5) * aside(out);
+            d.lit([from + 0.35 * reach * Vec3::Y, tip + side, tip - side], normal, tints);
         }
+    };
+    for (top, wide) in spikes {
         d.stem(foot(top), top, 0.005);
+        flowers(&mut d, (top, wide), 10, 0.062);
     }
     d.coarse();
     for (top, wide) in spikes {
-        let flowers = (44.0 * wide) as usize;
-        for k in 0..flowers {
-            let part = (k as f32 + 0.5) / flowers as f32;
-            let from = foot(top).lerp(top, 0.38 + 0.61 * part);
-            let out = heading(2.4 * k as f32 + 0.5 * d.unit());
-            let reach = wide * (0.034 - 0.027 * part) * (0.85 + 0.3 * d.unit());
-            let side = aside(out) * (0.44 * reach);
-            let tip = from + (out - Vec3::Y * (0.7 * (1.0 - part) - 0.15)) * reach;
-            // Buds at the top are green, and within a flower is shade.
-            let (open, tint) = ((1.25 - part).min(1.0), 0.72 + 0.28 * d.unit());
-            let tints = [0.3 * open, tint * open, tint * open];
-            d.lit([from + 0.4 * reach * Vec3::Y, tip + side, tip - side], out + 0.7 * Vec3::Y, tints);
-        }
+        flowers(&mut d, (top, wide), (42.0 * wide) as usize, 0.042);
     }
     for k in 0..7 {
         let (high, lean) = (0.12 + 0.1 * d.unit(), 0.14 + 0.08 * d.unit());

@@ -46,7 +46,7 @@ pub struct GroundMapsFiles {
 
 impl Stage for GroundMapsStage {
     const NAME: &'static str = "ground maps";
-    const VERSION: u32 = 29;
+    const VERSION: u32 = 30;
     type Output = GroundMapsFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<GroundMapsFiles, StageError> {

@@ -123,6 +123,8 @@ pub struct Woods {
     /// None without trees.
     pub(super) offspring: Option<Offspring>,
     pub(super) season: Season,
+    /// Of each tree x, z and the radius of its trunk, in metres.
+    pub(super) stems_m: Vec<[f32; 3]>,
     /// Samples a side; 0 if there are no trees.
     side: usize,
     /// How much lies under crowns, 0 to 1, row by row.
@@ -132,7 +134,14 @@ pub struct Woods {
 impl Woods {
     /// Land without trees.
     pub fn none(season: Season) -> Self {
-        Self { litter: Litter::default(), offspring: None, season, side: 0, shade: Vec::new() }
+        Self {
+            litter: Litter::default(),
+            offspring: None,
+            season,
+            stems_m: Vec::new(),
+            side: 0,
+            shade: Vec::new(),
+        }
     }
 
     /// The woods of a land; `crowns_m` gives the radius of each template's crown at scale 1.
@@ -154,7 +163,8 @@ impl Woods {
             );
         }
         let (litter, offspring) = (Litter::new(params), Some(Offspring::new(params)));
-        Self { litter, offspring, season: Season::of(params), side, shade }
+        let stems_m = trees.iter().map(|tree| tree.trunk_cylinder_m).collect();
+        Self { litter, offspring, season: Season::of(params), stems_m, side, shade }
     }
 
     /// Shade at a sample of the traits' grid.

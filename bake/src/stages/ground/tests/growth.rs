@@ -230,6 +230,42 @@ fn young_trees_and_dead_ones_stand_by_trees_alone() {
 }
 
 #[test]
+fn nothing_solid_lies_in_a_tree_or_in_another() {
+    let lines = || (-60..60).map(|k| 8.0 * k as f32);
+    let trees: Vec<_> = lines().flat_map(|x| lines().map(move |z| tree(x, z))).collect();
+    let made = maps(&PARAMS, &Woods::new(&MAPLE, &LAND, &trees, &[6.0]), &LAND, 1024);
+    // Along a fallen trunk, and the middle of what is round.
+    let points = |kind: &PlantKind, plant: &crate::model::Plant| -> Vec<glam::Vec2> {
+        let half_m = if kind.name == "log" { 2.2 * plant.scale } else { 0.0 };
+        let axis = glam::Vec2::from_angle(plant.turn_rad);
+        let middle = glam::Vec2::new(plant.x_m, plant.z_m);
+        (-8..=8).map(|k| middle + k as f32 / 8.0 * half_m * axis).collect()
+    };
+    let solid: Vec<_> = standing(&made)
+        .into_iter()
+        .filter(|(kind, ..)| ["boulder", "stump", "log"].contains(&kind.name.as_str()))
+        .map(|(kind, plant, _)| (kind.name.as_str(), points(kind, &plant)))
+        .collect();
+    let logs = solid.iter().filter(|(name, _)| *name == "log").count();
+    assert!(logs > 100, "{logs} fallen trunks");
+    for (n, (name, points)) in solid.iter().enumerate() {
+        for point in points {
+            let from_stem = trees.iter().map(|tree| {
+                let [x, z, radius_m] = tree.trunk_cylinder_m;
+                point.distance(glam::Vec2::new(x, z)) - radius_m
+            });
+            let nearest_m = from_stem.fold(f32::MAX, f32::min);
+            assert!(nearest_m > 0.0, "a {name} at {point}, {nearest_m} m from a trunk");
+        }
+        for (other, theirs) in solid[..n].iter().filter(|(_, theirs)| theirs[8].distance(points[8]) < 9.0) {
+            let apart_m =
+                points.iter().flat_map(|p| theirs.iter().map(|q| p.distance(*q))).fold(f32::MAX, f32::min);
+            assert!(apart_m > 0.2, "a {name} and a {other} at {}, {apart_m} m apart", points[8]);
+        }
+    }
+}
+
+#[test]
 fn nothing_high_stands_before_a_lookout() {
     let half_m = 0.5 * LAND.field.extent_m();
     for kind in FINE.plants.kinds.iter().filter(|kind| ["boulder", "bush"].contains(&kind.name.as_str())) {
