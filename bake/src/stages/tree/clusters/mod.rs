@@ -10,7 +10,6 @@ mod atlas;
 mod card;
 mod groups;
 
-use std::cell::LazyCell;
 use std::ops::Range;
 
 use glam::Vec3;
@@ -38,16 +37,11 @@ const CLUSTER: usize = 2 * CARD;
 const DRAWN_LEAVES: usize = 64;
 
 /// Views in which it is counted how much a level covers, and samples a side: sides of the impostor, and how far each looks from
-/// below or above, as the tangent of its elevation. Two would not do: how much crossed cards cover depends on how they are turned
-/// to the eye.
+/// below or above, as the tangent of its elevation. Four from one height would not do: how much few crossed cards cover depends
+/// on how they are turned to the eye.
 const VIEWS: [(usize, f32); 8] =
     [(0, -0.2), (1, 0.2), (2, 0.2), (3, -0.2), (0, 0.2), (1, -0.2), (2, -0.2), (3, 0.2)];
 const COVERAGE_PX: usize = 88;
-/// The first views are enough where the full tree covers so many samples of them and a level has so many cards. Of slender and
-/// sparse trees, and of few cards, chance would decide.
-const FIRST_VIEWS: usize = 4;
-const MIN_SAMPLES: u32 = 6_000;
-const MIN_CARDS: usize = 32;
 /// How much smaller or larger cards may become.
 const SCALES: Range<f32> = 0.7..1.5;
 
@@ -91,14 +85,10 @@ pub fn substitute(full: &Mesh, levels: &mut [Level], surfaces: Surfaces) -> (Sur
     let (pictures, atlas) = atlas::draw(&subjects, &surfaces);
     let surfaces = surfaces.with_clusters(atlas);
     let wardrobe = Wardrobe::new(&subjects);
-    let first_views = Canvas::new(full, &surfaces, &VIEWS[..FIRST_VIEWS]);
-    let all_views = LazyCell::new(|| Canvas::new(full, &surfaces, &VIEWS));
+    let canvas = Canvas::new(full, &surfaces);
     let mut scale = 1.0;
     let dress = |(level, owned): (&Level, &Vec<Owned>)| {
-        let cards: usize = owned.iter().map(|(_, subjects)| wardrobe.run(subjects).len()).sum();
-        let are_enough = first_views.full >= MIN_SAMPLES && cards >= MIN_CARDS;
-        let canvas = if are_enough { &first_views } else { &*all_views };
-        let mut rest = canvas.empty();
+        let mut rest = Canvas::empty();
         canvas.draw(&level.mesh, |index| owned.iter().all(|(part, _)| *part != index), &mut rest);
         let covered = |scale: f32| {
             let mut covered = rest.clone();
@@ -121,9 +111,9 @@ fn shares(full: &Mesh, surfaces: &Surfaces, foliage: &[Foliage<'_>]) -> Vec<f32>
     if foliage.len() < 2 {
         return vec![1.0; foliage.len()];
     }
-    let canvas = Canvas::new(full, surfaces, &VIEWS[..FIRST_VIEWS]);
+    let canvas = Canvas::new(full, surfaces);
     let covered = |leaves: &Foliage<'_>| {
-        let mut alone = canvas.empty();
+        let mut alone = Canvas::empty();
         canvas.draw(full, |index| index == leaves.part, &mut alone);
         count(&alone).max(1) as f32
     };
@@ -336,39 +326,39 @@ fn hold_still(level: &mut Level, part: usize) {
 
 /// Views in which it is counted how much of them meshes cover.
 struct Canvas<'a> {
-    looks: Vec<Look>,
+    looks: [Look; VIEWS.len()],
     surfaces: &'a Surfaces,
     /// What the full tree covers.
     full: u32,
 }
 
 /// What is covered in each of the views.
-type Covered = Vec<Silhouette>;
+type Covered = [Silhouette; VIEWS.len()];
 
 impl<'a> Canvas<'a> {
-    fn new(full: &Mesh, surfaces: &'a Surfaces, views: &[(usize, f32)]) -> Self {
+    fn new(full: &Mesh, surfaces: &'a Surfaces) -> Self {
         let (foot_m, side_m) = frame(full);
-        let look = |&(k, tilt): &(usize, f32)| Look::new(k, foot_m, [side_m; 2], COVERAGE_PX).tilted(tilt);
-        let mut canvas = Self { looks: views.iter().map(look).collect(), surfaces, full: 0 };
-        let mut covered = canvas.empty();
+        let looks = VIEWS.map(|(k, tilt)| Look::new(k, foot_m, [side_m; 2], COVERAGE_PX).tilted(tilt));
+        let mut canvas = Self { looks, surfaces, full: 0 };
+        let mut covered = Self::empty();
         canvas.draw(full, |_| true, &mut covered);
         canvas.full = count(&covered);
         canvas
     }
 
-    fn empty(&self) -> Covered {
-        vec![Silhouette::empty(COVERAGE_PX); self.looks.len()]
+    fn empty() -> Covered {
+        VIEWS.map(|_| Silhouette::empty(COVERAGE_PX))
     }
 
     /// Draws those of a mesh's parts whose index is asked for.
-    fn draw(&self, mesh: &Mesh, is_drawn: impl Fn(usize) -> bool, covered: &mut [Silhouette]) {
+    fn draw(&self, mesh: &Mesh, is_drawn: impl Fn(usize) -> bool, covered: &mut Covered) {
         for (look, silhouette) in self.looks.iter().zip(covered) {
             cover(mesh, &is_drawn, self.surfaces, look, silhouette);
         }
     }
 }
 
-fn count(covered: &[Silhouette]) -> u32 {
+fn count(covered: &Covered) -> u32 {
     covered.iter().map(Silhouette::covered).sum()
 }
 
