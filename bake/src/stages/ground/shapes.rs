@@ -373,12 +373,10 @@ pub(super) fn spire() -> PlantShape {
             d.lit([from + 0.35 * reach * Vec3::Y, tip + side, tip - side], normal, tints);
         }
     };
-    for (top, wide) in spikes {
-        d.stem(foot(top), top, 0.005);
-        flowers(&mut d, (top, wide), 10, 0.062);
-    }
+    spikes.into_iter().for_each(|spike| flowers(&mut d, spike, 5, 0.078));
     d.coarse();
     for (top, wide) in spikes {
+        d.stem(foot(top), top, 0.005);
         flowers(&mut d, (top, wide), (42.0 * wide) as usize, 0.042);
     }
     for k in 0..7 {

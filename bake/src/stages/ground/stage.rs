@@ -46,7 +46,7 @@ pub struct GroundMapsFiles {
 
 impl Stage for GroundMapsStage {
     const NAME: &'static str = "ground maps";
-    const VERSION: u32 = 30;
+    const VERSION: u32 = 31;
     type Output = GroundMapsFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<GroundMapsFiles, StageError> {
