@@ -129,14 +129,18 @@ pub struct DensityMap<'a> {
 }
 
 impl DensityMap<'_> {
+    /// Between which two of `size` columns, or rows, a place in 0..1 over the field is read, and how far on the way to the second.
+    pub fn between(part: f32, size: u32) -> ([u32; 2], f32) {
+        let last = size.saturating_sub(1);
+        let place = (part * size as f32 - 0.5).clamp(0.0, last as f32);
+        let first = place as u32;
+        ([first, (first + 1).min(last)], place - first as f32)
+    }
+
     /// A channel at a place in 0..1 over the field, linear between the middles of pixels; 0 where there are none.
     pub fn at(&self, channel: u32, u: f32, v: f32) -> f32 {
-        let cell = |part: f32, size: u32| {
-            let place = (part * size as f32 - 0.5).clamp(0.0, size.saturating_sub(1) as f32);
-            let first = place as u32;
-            ([first, (first + 1).min(size.saturating_sub(1))], place - first as f32)
-        };
-        let ((columns, right), (rows, down)) = (cell(u, self.width_px), cell(v, self.height_px));
+        let ((columns, right), (rows, down)) =
+            (Self::between(u, self.width_px), Self::between(v, self.height_px));
         let pixel = |column: u32, row: u32| {
             let at = (row as usize * self.width_px as usize + column as usize) * 4 + channel as usize % 4;
             f32::from(self.rgba.get(at).copied().unwrap_or(0)) / 255.0

@@ -9,7 +9,7 @@ use crate::model::{DensityMap, GroundPlants, Image8, Plant, PlantShape};
 /// Metres a side of the cells in which what is near is looked for.
 const CELL_M: f32 = 8.0;
 /// Part of a shape's width that it takes up: its sides are round, and may touch.
-const SOLID: f32 = 0.85;
+const FILLED: f32 = 0.85;
 
 /// What nothing else may reach into: all within a distance of a line.
 #[derive(Clone, Copy)]
@@ -26,7 +26,7 @@ impl Solid {
 
     /// A plant of that length and width from its middle; it lies along +x where it is longer than wide.
     fn of_plant(plant: &Plant, reach: Vec2) -> Self {
-        let radius_m = SOLID * reach.y * plant.scale;
+        let radius_m = FILLED * reach.y * plant.scale;
         let (sin, cos) = libm::sincosf(plant.turn_rad);
         let along = (reach.x * plant.scale - radius_m).max(0.0) * Vec2::new(cos, sin);
         let middle = Vec2::new(plant.x_m, plant.z_m);
@@ -126,12 +126,8 @@ pub(super) fn set_apart(
 
 /// Makes a channel 0 in the four pixels between which it is read at a place in 0..1.
 fn clear(map: &mut Image8, channel: u32, [u, v]: [f32; 2]) {
-    let pixels = |part: f32, size: u32| {
-        let first = (part * size as f32 - 0.5).clamp(0.0, size.saturating_sub(1) as f32) as u32;
-        [first, (first + 1).min(size.saturating_sub(1))]
-    };
-    for row in pixels(v, map.height) {
-        for column in pixels(u, map.width) {
+    for row in DensityMap::between(v, map.height).0 {
+        for column in DensityMap::between(u, map.width).0 {
             map.data[4 * (row * map.width + column) as usize + channel as usize % 4] = 0;
         }
     }

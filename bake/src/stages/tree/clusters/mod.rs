@@ -73,9 +73,8 @@ pub fn substitute(full: &Mesh, levels: &mut [Level], surfaces: Surfaces) -> (Sur
     let mut subjects = Vec::new();
     // Of each level its parts, and which of the subjects are theirs.
     let mut owned = vec![Vec::new(); levels.len() - first];
-    let cards: Vec<Vec<usize>> = levels[first..].iter().map(cards_of).collect();
     for (n, leaves) in foliage.iter().enumerate() {
-        let cards: Vec<usize> = cards.iter().map(|of_level| of_level[n]).collect();
+        let cards: Vec<usize> = levels[first..].iter().map(|level| cards_of(level)[n]).collect();
         for (owned, of_level) in owned.iter_mut().zip(leaves.subjects(&cards)) {
             let before = subjects.len();
             subjects.extend(of_level);
@@ -86,6 +85,7 @@ pub fn substitute(full: &Mesh, levels: &mut [Level], surfaces: Surfaces) -> (Sur
     let surfaces = surfaces.with_clusters(atlas);
     let wardrobe = Wardrobe::new(&subjects);
     let canvas = Canvas::new(full, &surfaces);
+    let target = canvas.covered(full, |_| true);
     let mut scale = 1.0;
     let dress = |(level, owned): (&Level, &Vec<Owned>)| {
         let mut rest = Canvas::empty();
@@ -95,7 +95,7 @@ pub fn substitute(full: &Mesh, levels: &mut [Level], surfaces: Surfaces) -> (Sur
             canvas.draw(&wardrobe.cards_of(owned, scale), |_| true, &mut covered);
             count(&covered)
         };
-        scale = matching(canvas.full, SCALES, scale, covered);
+        scale = matching(target, SCALES, scale, covered);
         wardrobe.dressed(level, owned, scale)
     };
     let dressed: Vec<Level> = levels[first..].iter().zip(&owned).map(dress).collect();
@@ -112,12 +112,8 @@ fn shares(full: &Mesh, surfaces: &Surfaces, foliage: &[Foliage<'_>]) -> Vec<f32>
         return vec![1.0; foliage.len()];
     }
     let canvas = Canvas::new(full, surfaces);
-    let covered = |leaves: &Foliage<'_>| {
-        let mut alone = Canvas::empty();
-        canvas.draw(full, |index| index == leaves.part, &mut alone);
-        count(&alone).max(1) as f32
-    };
-    let covered: Vec<f32> = foliage.iter().map(covered).collect();
+    let alone = |leaves: &Foliage<'_>| canvas.covered(full, |index| index == leaves.part).max(1) as f32;
+    let covered: Vec<f32> = foliage.iter().map(alone).collect();
     let sum: f32 = covered.iter().sum();
     covered.into_iter().map(|covered| covered / sum).collect()
 }
@@ -328,26 +324,28 @@ fn hold_still(level: &mut Level, part: usize) {
 struct Canvas<'a> {
     looks: [Look; VIEWS.len()],
     surfaces: &'a Surfaces,
-    /// What the full tree covers.
-    full: u32,
 }
 
 /// What is covered in each of the views.
 type Covered = [Silhouette; VIEWS.len()];
 
 impl<'a> Canvas<'a> {
+    /// Views of what is as large as the full tree.
     fn new(full: &Mesh, surfaces: &'a Surfaces) -> Self {
         let (foot_m, side_m) = frame(full);
         let looks = VIEWS.map(|(k, tilt)| Look::new(k, foot_m, [side_m; 2], COVERAGE_PX).tilted(tilt));
-        let mut canvas = Self { looks, surfaces, full: 0 };
-        let mut covered = Self::empty();
-        canvas.draw(full, |_| true, &mut covered);
-        canvas.full = count(&covered);
-        canvas
+        Self { looks, surfaces }
     }
 
     fn empty() -> Covered {
         VIEWS.map(|_| Silhouette::empty(COVERAGE_PX))
+    }
+
+    /// How much those of a mesh's parts cover whose index is asked for.
+    fn covered(&self, mesh: &Mesh, is_counted: impl Fn(usize) -> bool) -> u32 {
+        let mut covered = Self::empty();
+        self.draw(mesh, is_counted, &mut covered);
+        count(&covered)
     }
 
     /// Draws those of a mesh's parts whose index is asked for.
