@@ -39,7 +39,8 @@ pub fn error_weight(coverage: Option<f32>) -> f32 {
 pub struct ProgressiveLevel {
     /// Its index in `meshes`.
     pub mesh: usize,
-    /// How far it is from the original in metres; `error` in JSON.
+    /// How far it is from the original in metres; `error` in JSON. It may be less than that of a finer level: clusters are
+    /// often nearer to a tree than the leaves before them.
     #[serde(rename = "error")]
     pub error_m: f32,
     /// Its vertices, all primitives together.

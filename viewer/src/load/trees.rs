@@ -15,6 +15,7 @@ use super::bounds::{is_placed, is_tree_sized};
 use super::document::Document;
 use super::octahedral::{direction, octahedral};
 use super::{Result, images};
+use crate::lod::tree::rising;
 use crate::scene::{
     Crown, Image, Impostor, LEAVES, LeafSide, Level, Material, Range, Template, TreeVertex, Trees, middles_m,
     sort_by_place,
@@ -136,15 +137,17 @@ fn build(
             }
         }
         let ranges = lists.into_iter().map(|list| add(&mut template.indices, list.into_iter())).collect();
-        let error_m = error_weight * level.error_m;
-        template.levels.push(Level { error_m, base_vertex, ranges, strips });
+        template.levels.push(Level { error_m: level.error_m, base_vertex, ranges, strips });
     }
+    check_levels(document, &template)?;
+    let errors_m: Vec<f32> =
+        rising(template.levels.iter().map(|level| error_weight * level.error_m)).collect();
+    template.levels.iter_mut().zip(errors_m).for_each(|(level, error_m)| level.error_m = error_m);
     let parts = materials.len();
     for level in &mut template.levels {
         level.ranges.resize(parts, Range::default());
         level.strips.resize(parts, Range::default());
     }
-    check(document, &template)?;
     (template.center_m, template.radius_m) = sphere(&template.vertices);
     Ok(template)
 }
@@ -228,16 +231,14 @@ fn some_leaves(template: &Template) -> ([LeafSide; LEAVES], f32) {
 /// Smaller leaves are not told apart.
 const MIN_LEAF_M: f32 = 0.02;
 
-fn check(document: &Document, template: &Template) -> Result<()> {
-    let errors = || template.levels.iter().map(|level| level.error_m);
-    let what = if template.levels.is_empty() || !errors().all(|error| error.is_finite() && error > 0.0) {
-        "no levels of detail, or levels without error"
-    } else if !errors().is_sorted() {
-        "levels of detail that are not in order of their errors"
-    } else {
-        return Ok(());
-    };
-    Err(document.wrong(format!("{} has {what}", template.name)))
+fn check_levels(document: &Document, template: &Template) -> Result<()> {
+    let is_sound = |level: &Level| level.error_m.is_finite() && level.error_m > 0.0;
+    if template.levels.is_empty() || !template.levels.iter().all(is_sound) {
+        return Err(
+            document.wrong(format!("{} has no levels of detail, or levels without error", template.name))
+        );
+    }
+    Ok(())
 }
 
 /// One primitive's vertices with where they go at the end of the morph.

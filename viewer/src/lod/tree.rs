@@ -17,6 +17,20 @@ pub const MAX_LEVELS: usize = 12;
 /// In metres: what is nearer than this, or around the eye, is drawn as from here.
 pub const MIN_DISTANCE_M: f32 = 0.01;
 
+/// The least factor from the error of a level to that of the next.
+const MIN_GROWTH: f32 = 1.05;
+
+/// Errors of levels → those by which they are chosen, for levels are passed in their order: each is more than the one before.
+/// In a file, clusters may have less than the leaves before them. Shown from there on, a field of oaks took as long to draw,
+/// and FLIP from full trees was .0147 instead of .0135.
+pub fn rising(errors_m: impl IntoIterator<Item = f32>) -> impl Iterator<Item = f32> {
+    errors_m.into_iter().scan(0.0, |least_m, error_m| {
+        let error_m = error_m.max(*least_m);
+        *least_m = MIN_GROWTH * error_m;
+        Some(error_m)
+    })
+}
+
 /// q̂ in metres of the simple mode: such that q̂·2^(i/2) is, on geometric average over the levels, their error. Then
 /// one `error_px` asks as much of both modes. The error of D_0, which is extrapolated, counts only if it is alone.
 pub fn simple_error_m(errors_m: &[f32]) -> f32 {

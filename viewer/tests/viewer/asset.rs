@@ -292,7 +292,12 @@ fn levels_of_ours_morph_and_damaged_ones_are_told() {
     assert_eq!(asset.vertices[0].position_delta_m, [0.0, 0.0, 0.5]);
     assert_eq!(asset.vertices[0].uv_delta, [0.25, 0.0]);
     assert_eq!(asset.vertices[4].position_delta_m, [0.0; 3], "the last level has nowhere to go");
-    for levels in [json!([]), json!([level(9, 0.1)]), json!([level(0, 0.2), level(1, 0.1)]), json!("x")] {
+    // Of clusters that are nearer than the leaves before them.
+    file.json["meshes"][0]["extensions"]["GSC_progressive_mesh"]["levels"] =
+        json!([level(0, 0.2), level(1, 0.1)]);
+    let levels = &file.read().expect("a square").shapes[0].levels;
+    assert!(levels.len() == 2 && levels[0].error_m < levels[1].error_m, "passed in their order all the same");
+    for levels in [json!([]), json!([level(9, 0.1)]), json!([level(0, 0.2), level(1, -0.1)]), json!("x")] {
         file.json["meshes"][0]["extensions"]["GSC_progressive_mesh"]["levels"] = levels;
         let asset = file.read().expect("a square");
         assert!(

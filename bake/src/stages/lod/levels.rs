@@ -16,8 +16,9 @@ use super::{Finish, LodOptions, Step, strip};
 
 /// A level may miss its number of vertices by one in this many; otherwise there is no such level.
 const TOLERANCE: usize = 50;
-/// An error may not be less than this part of the mesh's diagonal, and must grow by `MIN_GROWTH` a level.
+/// An error may not be less than this part of the mesh's diagonal.
 const MIN_ERROR: f32 = 1e-7;
+/// D_0's error is less than D_1's by this at least, and each that comes from collapses than the next.
 const MIN_GROWTH: f32 = 1.05;
 
 /// How far an element that goes grows in length as it loses its width: with that, a half-way crown covers as much.
@@ -89,10 +90,12 @@ fn set_errors(marks: &mut [Mark], found: Option<Vec<f32>>, half_way_m: f32, diag
         _ => 0.0,
     };
     marks[0].error_m = first.min(errors_m.first().map_or(0.0, |next| next / MIN_GROWTH));
-    let mut floor = (diagonal_m * MIN_ERROR).clamp(f32::MIN_POSITIVE, f32::MAX);
+    let least = (diagonal_m * MIN_ERROR).clamp(f32::MIN_POSITIVE, f32::MAX);
+    let mut floor = least;
     for mark in marks {
         mark.error_m = mark.error_m.max(floor);
-        floor = mark.error_m * MIN_GROWTH;
+        // A coarser level may look more like the original, as clusters often do than the leaves before them.
+        floor = if is_found { least } else { mark.error_m * MIN_GROWTH };
     }
 }
 
@@ -171,14 +174,13 @@ mod tests {
     use crate::stages::lod::{LodOptions, levels_finished};
 
     #[test]
-    fn what_finishes_levels_says_how_far_they_are_and_errors_grow_all_the_same() {
+    fn what_finishes_levels_says_how_far_they_are_even_if_a_coarser_one_is_nearer() {
         let mesh = sphere(32, 30);
         let mut finish =
             |levels: &mut Vec<Level>| (1..levels.len()).map(|i| [0.5, 1.0, 0.2][i.min(3) - 1]).collect();
         let made = levels_finished(&mesh, &LodOptions::default(), &mut finish, &mut |_| ());
         let errors: Vec<f32> = made.levels.iter().map(|level| level.error_m).collect();
-        assert_eq!(errors[..3], [0.25, 0.5, 1.0], "D_0 goes on in a straight line");
-        assert!(errors.len() > 3 && errors.is_sorted_by(|a, b| a < b), "{errors:?}");
+        assert_eq!(errors[..4], [0.25, 0.5, 1.0, 0.2], "D_0 goes on in a straight line");
         let payload = reader::decode(&made.progressive).unwrap();
         assert!(payload.marks().iter().zip(errors).all(|(mark, error_m)| mark.error_m == error_m));
     }

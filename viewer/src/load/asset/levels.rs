@@ -69,7 +69,6 @@ pub(super) fn progressive(file: &AssetFile, mesh: &Mesh, notes: &mut Notes) -> O
         !levels.is_empty()
             && levels.iter().all(|level| level.mesh < file.root.meshes.len())
             && levels.iter().all(|level| level.error_m.is_finite() && level.error_m > 0.0)
-            && levels.is_sorted_by_key(|level| level.error_m)
     };
     let Some(levels) = levels.filter(is_sound) else {
         notes.add("Levels of detail by GSC_progressive_mesh are damaged, and are not drawn");

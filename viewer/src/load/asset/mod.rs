@@ -19,7 +19,7 @@ use genescape_schema::scene::{GSC_HEIGHTFIELD, GSC_SKY};
 use glam::{Affine3A, DVec3, Vec3};
 
 use super::Result;
-use crate::lod::tree::COVERED_PX;
+use crate::lod::tree::{COVERED_PX, rising};
 use crate::options::MESH_ERROR_PX;
 use crate::scene::{Asset, Facts, Shape, ShapeLevel};
 use file::{AssetFile, MAX_ROWS};
@@ -143,19 +143,15 @@ fn corners<'a>(asset: &'a Asset, level: &'a ShapeLevel) -> impl Iterator<Item = 
 
 /// Levels with their errors in metres, which rise.
 fn with_errors(levels: Vec<(ShapeLevel, Change)>, radius_m: f32) -> Vec<ShapeLevel> {
-    let mut min_m = f32::MIN_POSITIVE;
-    let rising = |(level, change): (ShapeLevel, Change)| {
-        let error_m = match change {
-            Change::Error(error_m) => error_m,
-            // That which the usual error allows where the shape covers that much of the picture: so all levels obey the
-            // same controls.
-            Change::Coverage(share) => MESH_ERROR_PX * 2.0 * radius_m / (share * COVERED_PX),
-        };
-        let error_m = error_m.max(min_m);
-        min_m = error_m * 1.001;
-        ShapeLevel { error_m, ..level }
+    let error_m = |(_, change): &(ShapeLevel, Change)| match change {
+        Change::Error(error_m) => *error_m,
+        // That which the usual error allows where the shape covers that much of the picture: so all levels obey the
+        // same controls.
+        Change::Coverage(share) => MESH_ERROR_PX * 2.0 * radius_m / (share * COVERED_PX),
     };
-    levels.into_iter().map(rising).collect()
+    let errors_m: Vec<f32> =
+        rising(levels.iter().map(|level| error_m(level).max(f32::MIN_POSITIVE))).collect();
+    levels.into_iter().zip(errors_m).map(|((level, _), error_m)| ShapeLevel { error_m, ..level }).collect()
 }
 
 /// A box around the boxes of all copies.
