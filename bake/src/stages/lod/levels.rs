@@ -66,8 +66,9 @@ pub fn build(
         marks.push(mark);
     }
     ended(Step::ProgressiveMesh);
-    let mut levels = with_morphs(snapshots, &sequence.state, ended);
-    let found = finish.map(|finish| finish(&mut levels));
+    let mut levels = with_morphs(&snapshots, &sequence.state, ended);
+    let between = |from: usize, to: usize| morph(&snapshots[from], &snapshots[to], &sequence.state);
+    let found = finish.map(|finish| finish(&mut levels, &between));
     marks.truncate(levels.len());
     levels.iter_mut().skip(marks.len() - 1).for_each(|last| last.morph = None);
     set_errors(&mut marks, found, error_half_way_m as f32, (bounds.max - bounds.min).length());
@@ -100,16 +101,16 @@ fn set_errors(marks: &mut [Mark], found: Option<Vec<f32>>, half_way_m: f32, diag
 }
 
 /// The levels, without errors yet.
-fn with_morphs(snapshots: Vec<Snapshot>, state: &State, ended: &mut dyn FnMut(Step)) -> Vec<Level> {
+fn with_morphs(snapshots: &[Snapshot], state: &State, ended: &mut dyn FnMut(Step)) -> Vec<Level> {
     let morph_to_next = |index: usize| Some(morph(&snapshots[index], snapshots.get(index + 1)?, state));
     let morphs: Vec<_> = (0..snapshots.len()).map(morph_to_next).collect();
     ended(Step::Morphs);
-    let level = |(snapshot, morph): (Snapshot, Option<Morph>)| {
+    let level = |(snapshot, morph): (&Snapshot, Option<Morph>)| {
         let vertices = snapshot.mesh.positions.len();
         let strips = snapshot.mesh.parts.iter().map(|part| strip::strip(&part.triangles, vertices)).collect();
-        Level { mesh: snapshot.mesh, morph, error_m: 0.0, strips }
+        Level { mesh: snapshot.mesh.clone(), morph, error_m: 0.0, strips }
     };
-    let levels = snapshots.into_iter().zip(morphs).map(level).collect();
+    let levels = snapshots.iter().zip(morphs).map(level).collect();
     ended(Step::Strips);
     levels
 }
@@ -171,13 +172,14 @@ mod tests {
     use super::progressive::reader;
     use crate::model::Level;
     use crate::stages::lod::shapes::sphere;
-    use crate::stages::lod::{LodOptions, levels_finished};
+    use crate::stages::lod::{Between, LodOptions, levels_finished};
 
     #[test]
     fn what_finishes_levels_says_how_far_they_are_even_if_a_coarser_one_is_nearer() {
         let mesh = sphere(32, 30);
-        let mut finish =
-            |levels: &mut Vec<Level>| (1..levels.len()).map(|i| [0.5, 1.0, 0.2][i.min(3) - 1]).collect();
+        let mut finish = |levels: &mut Vec<Level>, _: &Between<'_>| {
+            (1..levels.len()).map(|i| [0.5, 1.0, 0.2][i.min(3) - 1]).collect()
+        };
         let made = levels_finished(&mesh, &LodOptions::default(), &mut finish, &mut |_| ());
         let errors: Vec<f32> = made.levels.iter().map(|level| level.error_m).collect();
         assert_eq!(errors[..4], [0.25, 0.5, 1.0, 0.2], "D_0 goes on in a straight line");

@@ -34,7 +34,7 @@ mod shapes;
 #[cfg(test)]
 mod tests;
 
-use crate::model::{AlphaMask, Level, LevelledMesh, Mesh};
+use crate::model::{AlphaMask, Level, LevelledMesh, Mesh, Morph};
 pub use flattening::fitted;
 
 /// Where the new vertex of a collapsed edge goes.
@@ -107,7 +107,10 @@ pub fn levels(mesh: &Mesh, options: &LodOptions) -> LevelledMesh {
 /// Finishes levels that have no errors yet: gives the errors of all but the first, in metres. Before, it may put something
 /// else in the place of any part of any level but the first, of which the payload knows nothing, and take the last levels
 /// away.
-pub type Finish<'a> = dyn FnMut(&mut Vec<Level>) -> Vec<f32> + 'a;
+pub type Finish<'a> = dyn FnMut(&mut Vec<Level>, &Between<'_>) -> Vec<f32> + 'a;
+
+/// Where the vertices of one level, by its number, go until it is another that is not finer, both as they were simplified.
+pub type Between<'a> = dyn Fn(usize, usize) -> Morph + 'a;
 
 /// The same with the errors that `finish` finds, as far as they grow from level to level; tells when each part of the work
 /// has ended.

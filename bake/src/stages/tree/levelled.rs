@@ -11,7 +11,7 @@ use super::surfaces::Surfaces;
 use crate::model::{
     AlphaMask, Caster, Clusters, Image8, Level, LevelledMesh, Material, Mesh, Part, TreeTextures,
 };
-use crate::stages::lod::{self, LodOptions, Step};
+use crate::stages::lod::{self, Between, LodOptions, Step};
 
 /// Triangles that are enough to cast a shadow onto a texel of a metre.
 const CASTER_TRIANGLES: usize = 2_000;
@@ -47,13 +47,13 @@ pub fn levelled<P>(mesh: &Mesh, textures: &TreeTextures<P>, ended: &mut dyn FnMu
     let (mut caster, mut pictures, mut coverage) = (Caster::default(), None, None);
     let options = options(mesh, textures);
     let full = lod::fitted(mesh, &options.masks);
-    let mut finish = |levels: &mut Vec<Level>| {
+    let mut finish = |levels: &mut Vec<Level>, between: &Between<'_>| {
         // What a shadow is cast by lets light through between its leaves, which a map of such coarse texels does not draw.
         caster = caster_of(smallest_enough(levels), textures);
         let (surfaces, found) = match textures.is_thin {
             // A picture of sixteen pixels has room for leaves, not for twigs.
             true => (Surfaces::of(textures), None),
-            false => clusters::substitute(&full, levels, Surfaces::of(textures)),
+            false => clusters::substitute(&full, levels, between, Surfaces::of(textures)),
         };
         pictures = found;
         let coarser = levels.iter().skip(1).map(|level| &level.mesh);

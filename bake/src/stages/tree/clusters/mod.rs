@@ -21,6 +21,7 @@ use super::surfaces::Surfaces;
 use crate::math::matching;
 use crate::model::{Clusters, Level, Material, Mesh, Morph, Part, PartKind};
 use crate::silhouette::Silhouette;
+use crate::stages::lod::Between;
 use atlas::Subject;
 use card::Card;
 use groups::Place;
@@ -60,21 +61,38 @@ pub fn first_level(full: &Mesh) -> Option<usize> {
 
 /// Puts clusters of the full tree's leaves in the place of leaves and gives their pictures; `None` where all levels stay as
 /// they are. Of the full tree it is drawn what shows the same, with as many leaves in as many parts.
-pub fn substitute(full: &Mesh, levels: &mut [Level], surfaces: Surfaces) -> (Surfaces, Option<Clusters>) {
+pub fn substitute(
+    full: &Mesh,
+    levels: &mut [Level],
+    between: &Between<'_>,
+    surfaces: Surfaces,
+) -> (Surfaces, Option<Clusters>) {
     let foliage: Vec<Foliage<'_>> =
         (0..full.parts.len()).filter_map(|part| Foliage::of(full, part)).collect();
-    let shares = shares(full, &surfaces, &foliage);
-    let cards_of = |level: &Level| shared_out(level, &foliage, &shares);
+    if foliage.is_empty() {
+        return (surfaces, None);
+    }
+    let is_wood = |part: usize| foliage.iter().all(|leaves| leaves.part != part);
+    let (canvas, mut covered) = (Canvas::new(full), Canvas::empty());
+    canvas.draw(full, &surfaces, is_wood, &mut covered);
+    let of_wood = count(&covered);
+    canvas.draw(full, &surfaces, |part| !is_wood(part), &mut covered);
+    let target = count(&covered);
+    let woods = woods(levels, is_wood, of_wood as f32 / target.max(1) as f32);
+    let shares = shares(&canvas, full, &surfaces, &foliage);
+    let cards_of = |level: usize| {
+        let vertices = levels[level].mesh.positions.len();
+        shared_out(vertices.saturating_sub(vertices_of(&levels[woods[level]], is_wood)), &shares)
+    };
     let pays =
-        |level: &Level| foliage.iter().zip(cards_of(level)).all(|(leaves, cards)| leaves.pay_on(cards));
-    let first = levels.iter().skip(FIRST).position(pays).filter(|_| !foliage.is_empty());
-    let Some(first) = first.map(|after| FIRST + after) else { return (surfaces, None) };
+        |level: &usize| foliage.iter().zip(cards_of(*level)).all(|(leaves, cards)| leaves.pay_on(cards));
+    let Some(first) = (FIRST..levels.len()).find(pays) else { return (surfaces, None) };
 
     let mut subjects = Vec::new();
     // Of each level its parts, and which of the subjects are theirs.
     let mut owned = vec![Vec::new(); levels.len() - first];
     for (n, leaves) in foliage.iter().enumerate() {
-        let cards: Vec<usize> = levels[first..].iter().map(|level| cards_of(level)[n]).collect();
+        let cards: Vec<usize> = (first..levels.len()).map(|level| cards_of(level)[n]).collect();
         for (owned, of_level) in owned.iter_mut().zip(leaves.subjects(&cards)) {
             let before = subjects.len();
             subjects.extend(of_level);
@@ -84,43 +102,61 @@ pub fn substitute(full: &Mesh, levels: &mut [Level], surfaces: Surfaces) -> (Sur
     let (pictures, atlas) = atlas::draw(&subjects, &surfaces);
     let surfaces = surfaces.with_clusters(atlas);
     let wardrobe = Wardrobe::new(&subjects);
-    let canvas = Canvas::new(full, &surfaces);
-    let target = canvas.covered(full, |_| true);
     let mut scale = 1.0;
-    let dress = |(level, owned): (&Level, &Vec<Owned>)| {
+    let dress = |(level, owned): (usize, &Vec<Owned>)| {
+        let wood = &levels[woods[level]];
         let mut rest = Canvas::empty();
-        canvas.draw(&level.mesh, |index| owned.iter().all(|(part, _)| *part != index), &mut rest);
+        canvas.draw(&wood.mesh, &surfaces, is_wood, &mut rest);
         let covered = |scale: f32| {
             let mut covered = rest.clone();
-            canvas.draw(&wardrobe.cards_of(owned, scale), |_| true, &mut covered);
+            canvas.draw(&wardrobe.cards_of(owned, scale), &surfaces, |_| true, &mut covered);
             count(&covered)
         };
         scale = matching(target, SCALES, scale, covered);
-        wardrobe.dressed(level, owned, scale)
+        let morph = woods.get(level + 1).map(|&next| between(woods[level], next));
+        wardrobe.dressed(wood, morph, owned, scale)
     };
-    let dressed: Vec<Level> = levels[first..].iter().zip(&owned).map(dress).collect();
-    let parts: Vec<usize> = foliage.iter().map(|leaves| leaves.part).collect();
+    let dressed: Vec<Level> = (first..levels.len()).zip(&owned).map(dress).collect();
+    let last_leaves = &mut levels[first - 1];
+    last_leaves.morph = Some(between(first - 1, woods[first]));
+    foliage.iter().for_each(|leaves| hold_still(last_leaves, leaves.part));
     levels[first..].iter_mut().zip(dressed).for_each(|(level, dressed)| *level = dressed);
-    parts.into_iter().for_each(|part| hold_still(&mut levels[first - 1], part));
     (surfaces, Some(pictures))
+}
+
+/// For each level that whose wood it has: its own, or of a coarser one where its own takes a larger share of the vertices than
+/// of what the tree covers. As the simplifier weighs bends of boughs against leaves, those go last, and a few clusters would
+/// stand for a whole crown.
+fn woods(levels: &[Level], is_wood: impl Fn(usize) -> bool, share: f32) -> Vec<usize> {
+    let sizes: Vec<usize> = levels.iter().map(|level| vertices_of(level, &is_wood)).collect();
+    let wood_of = |level: usize| {
+        let most = share * levels[level].mesh.positions.len() as f32;
+        (level..levels.len()).find(|&coarser| sizes[coarser] as f32 <= most).unwrap_or(levels.len() - 1)
+    };
+    (0..levels.len()).map(wood_of).collect()
+}
+
+/// Vertices of those of a level's parts whose index is asked for.
+fn vertices_of(level: &Level, is_counted: impl Fn(usize) -> bool) -> usize {
+    let counted = level.mesh.parts.iter().enumerate().filter(|(index, _)| is_counted(*index));
+    counted.map(|(_, part)| run(part).len()).sum()
 }
 
 /// The share of the cards that each part of the foliage has, by how much it would cover alone. The simplifier keeps few large
 /// leaves rather than many small ones, so that of trees in blossom it leaves little but flowers.
-fn shares(full: &Mesh, surfaces: &Surfaces, foliage: &[Foliage<'_>]) -> Vec<f32> {
+fn shares(canvas: &Canvas, full: &Mesh, surfaces: &Surfaces, foliage: &[Foliage<'_>]) -> Vec<f32> {
     if foliage.len() < 2 {
         return vec![1.0; foliage.len()];
     }
-    let canvas = Canvas::new(full, surfaces);
-    let alone = |leaves: &Foliage<'_>| canvas.covered(full, |index| index == leaves.part).max(1) as f32;
+    let alone =
+        |leaves: &Foliage<'_>| canvas.covered(full, surfaces, |part| part == leaves.part).max(1) as f32;
     let covered: Vec<f32> = foliage.iter().map(alone).collect();
     let sum: f32 = covered.iter().sum();
     covered.into_iter().map(|covered| covered / sum).collect()
 }
 
-/// How many cards each part of the foliage has in a level: all for which there are vertices, and one at least.
-fn shared_out(level: &Level, foliage: &[Foliage<'_>], shares: &[f32]) -> Vec<usize> {
-    let vertices: usize = foliage.iter().map(|leaves| run(&level.mesh.parts[leaves.part]).len()).sum();
+/// How many cards each part of the foliage has: all for which there are vertices, and one at least.
+fn shared_out(vertices: usize, shares: &[f32]) -> Vec<usize> {
     shares.iter().map(|share| ((vertices / CARD) as f32 * share).round().max(1.0) as usize).collect()
 }
 
@@ -243,11 +279,11 @@ impl Wardrobe {
         self.first_card[subjects.start]..self.first_card[subjects.end]
     }
 
-    /// A level with subjects in the place of some of its parts, on cards larger by `scale`.
-    fn dressed(&self, level: &Level, owned: &[Owned], scale: f32) -> Level {
+    /// A level with subjects in the place of some of its parts, on cards larger by `scale`, and with that morph of the others.
+    fn dressed(&self, level: &Level, old_morph: Option<Morph>, owned: &[Owned], scale: f32) -> Level {
         let old = &level.mesh;
         let mut mesh = Mesh::default();
-        let mut morph = level.morph.as_ref().map(|_| Morph::default());
+        let mut morph = old_morph.as_ref().map(|_| Morph::default());
         let mut strips = Vec::new();
         for (index, part) in old.parts.iter().enumerate() {
             let first = mesh.positions.len();
@@ -266,7 +302,7 @@ impl Wardrobe {
                 strips.push(level.strips.get(index).into_iter().flatten().map(moved).collect());
                 let triangles = part.triangles.iter().map(|t| t.each_ref().map(moved)).collect();
                 mesh.parts.push(Part { material: part.material, kind: part.kind, triangles });
-                if let Some((morph, old)) = morph.as_mut().zip(level.morph.as_ref()) {
+                if let Some((morph, old)) = morph.as_mut().zip(old_morph.as_ref()) {
                     morph.positions.extend_from_slice(&old.positions[run.clone()]);
                     morph.normals.extend_from_slice(old.normals.get(run.clone()).unwrap_or_default());
                     morph.uvs.extend_from_slice(old.uvs.get(run).unwrap_or_default());
@@ -321,20 +357,19 @@ fn hold_still(level: &mut Level, part: usize) {
 }
 
 /// Views in which it is counted how much of them meshes cover.
-struct Canvas<'a> {
+struct Canvas {
     looks: [Look; VIEWS.len()],
-    surfaces: &'a Surfaces,
 }
 
 /// What is covered in each of the views.
 type Covered = [Silhouette; VIEWS.len()];
 
-impl<'a> Canvas<'a> {
+impl Canvas {
     /// Views of what is as large as the full tree.
-    fn new(full: &Mesh, surfaces: &'a Surfaces) -> Self {
+    fn new(full: &Mesh) -> Self {
         let (foot_m, side_m) = frame(full);
         let looks = VIEWS.map(|(k, tilt)| Look::new(k, foot_m, [side_m; 2], COVERAGE_PX).tilted(tilt));
-        Self { looks, surfaces }
+        Self { looks }
     }
 
     fn empty() -> Covered {
@@ -342,16 +377,22 @@ impl<'a> Canvas<'a> {
     }
 
     /// How much those of a mesh's parts cover whose index is asked for.
-    fn covered(&self, mesh: &Mesh, is_counted: impl Fn(usize) -> bool) -> u32 {
+    fn covered(&self, mesh: &Mesh, surfaces: &Surfaces, is_counted: impl Fn(usize) -> bool) -> u32 {
         let mut covered = Self::empty();
-        self.draw(mesh, is_counted, &mut covered);
+        self.draw(mesh, surfaces, is_counted, &mut covered);
         count(&covered)
     }
 
     /// Draws those of a mesh's parts whose index is asked for.
-    fn draw(&self, mesh: &Mesh, is_drawn: impl Fn(usize) -> bool, covered: &mut Covered) {
+    fn draw(
+        &self,
+        mesh: &Mesh,
+        surfaces: &Surfaces,
+        is_drawn: impl Fn(usize) -> bool,
+        covered: &mut Covered,
+    ) {
         for (look, silhouette) in self.looks.iter().zip(covered) {
-            cover(mesh, &is_drawn, self.surfaces, look, silhouette);
+            cover(mesh, &is_drawn, surfaces, look, silhouette);
         }
     }
 }
@@ -362,7 +403,10 @@ fn count(covered: &Covered) -> u32 {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use super::*;
+    use crate::model::{Image8, TreeTextures};
     use crate::stages::tree::tests::{presets, read};
     use crate::stages::tree::{levelled, template, textures};
 
@@ -378,7 +422,8 @@ mod tests {
                 continue;
             }
             in_blossom += 1;
-            let shares = shares(&tree.mesh, &Surfaces::of(&textures), &foliage);
+            let canvas = Canvas::new(&tree.mesh);
+            let shares = shares(&canvas, &tree.mesh, &Surfaces::of(&textures), &foliage);
             let is_cluster = |part: &&Part| part.material == Material::Cluster;
             for level in &made.mesh.levels {
                 let clusters = level.mesh.parts.iter().filter(is_cluster);
@@ -393,6 +438,13 @@ mod tests {
             }
         }
         assert!(in_blossom > 0, "no tree is in blossom");
+    }
+
+    /// The part of what a tree covers that its wood alone covers.
+    fn wood_share(tree: &Mesh, textures: &TreeTextures<Image8>) -> f32 {
+        let (canvas, surfaces) = (Canvas::new(tree), Surfaces::of(textures));
+        let of_wood = canvas.covered(tree, &surfaces, |part| !tree.parts[part].material.is_card());
+        of_wood as f32 / canvas.covered(tree, &surfaces, |_| true) as f32
     }
 
     #[test]
@@ -424,6 +476,32 @@ mod tests {
                 for part in mesh.parts.iter().filter(|part| is_cluster(part)) {
                     assert!(run(part).all(|v| mesh.uvs[v].iter().all(|t| (0.0..=1.0).contains(t))));
                 }
+            }
+            // Wood never takes more of the vertices than of what is covered, unless there is no coarser wood.
+            let is_wood = |part: usize| !tree.mesh.parts[part].material.is_card();
+            let most = wood_share(&tree.mesh, &textures) + 0.01;
+            let last = vertices_of(&levels[levels.len() - 1], is_wood);
+            for (k, level) in levels.iter().enumerate().skip(first) {
+                let wood = vertices_of(level, is_wood);
+                let share = wood as f32 / level.mesh.positions.len() as f32;
+                assert!(share <= most || wood == last, "{name} D{k}: {share} is wood");
+            }
+            // It ends its morph where the next level has it, even if that skips some of the simplifier's.
+            for pair in levels[first - 1..].windows(2) {
+                let morph = pair[0].morph.as_ref().expect("a morph");
+                let ends = |level: &Level, morph: Option<&Morph>| -> BTreeSet<[i32; 3]> {
+                    let wood = level.mesh.parts.iter().enumerate().filter(|(part, _)| is_wood(*part));
+                    let moved = |v: usize| {
+                        let by_m = morph.map_or([0.0; 3], |morph| morph.positions[v]);
+                        let end_m = Vec3::from_array(level.mesh.positions[v]) + Vec3::from_array(by_m);
+                        (1000.0 * end_m).round().to_array().map(|mm| mm as i32)
+                    };
+                    wood.flat_map(|(_, part)| run(part)).map(moved).collect()
+                };
+                let missed = ends(&pair[1], None).difference(&ends(&pair[0], Some(morph))).count();
+                let all = vertices_of(&pair[1], is_wood);
+                // Where rounding is in doubt, an end is a millimetre beside.
+                assert!(100 * missed <= all, "{name}: {missed} of {all} vertices come from nowhere");
             }
             let held = levels[first - 1].morph.as_ref().expect("a morph");
             let leaves = levels[first - 1].mesh.parts.iter().filter(|part| part.material.is_card());
