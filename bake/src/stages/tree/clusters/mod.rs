@@ -21,7 +21,6 @@ use super::surfaces::Surfaces;
 use crate::math::matching;
 use crate::model::{Clusters, Level, Material, Mesh, Morph, Part, PartKind};
 use crate::silhouette::Silhouette;
-use crate::stages::lod::Between;
 use atlas::Subject;
 use card::Card;
 use groups::Place;
@@ -60,11 +59,12 @@ pub fn first_level(full: &Mesh) -> Option<usize> {
 }
 
 /// Puts clusters of the full tree's leaves in the place of leaves and gives their pictures; `None` where all levels stay as
-/// they are. Of the full tree it is drawn what shows the same, with as many leaves in as many parts.
+/// they are. Of the full tree it is drawn what shows the same, with as many leaves in as many parts. `between` says where the
+/// vertices of one level go until it is another, by their numbers.
 pub fn substitute(
     full: &Mesh,
     levels: &mut [Level],
-    between: &Between<'_>,
+    between: impl Fn(usize, usize) -> Morph,
     surfaces: Surfaces,
 ) -> (Surfaces, Option<Clusters>) {
     let foliage: Vec<Foliage<'_>> =
