@@ -144,9 +144,9 @@ pub struct Level {
     pub mesh: Mesh,
     /// At weight 1, the mesh coincides with D_{i+1}; `None` for the last level.
     pub morph: Option<Morph>,
-    /// How far this level is from the original, in metres: of trees, the size of the pixels at which it looks different
-    /// (`tree::errors`); of solid meshes, from the collapses made. For D_0 extrapolated so that log q is a number (thesis
-    /// 4.3.3 left that open). Increases from level to level.
+    /// How far this level is from the original, in metres: of trees, by how far pictures of the two differ (`tree::seen`), so
+    /// that a coarser level may have less; of solid meshes, from the collapses made, more from level to level. For D_0
+    /// extrapolated so that log q is a number (thesis 4.3.3 left that open).
     pub error_m: f32,
     /// For each part, one generalised triangle strip (with degenerate triangles) over the same vertices.
     pub strips: Vec<Vec<u32>>,

@@ -77,7 +77,7 @@ pub struct Template {
 /// A distinguished mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Level {
-    /// Its error in metres, q(i); increasing from level to level.
+    /// Its error in metres, q(i), as [`crate::lod::tree::rising`] gives it: increasing from level to level.
     pub error_m: f32,
     /// Number of its first vertex in `Template::vertices`.
     pub base_vertex: u32,

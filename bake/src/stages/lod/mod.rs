@@ -112,8 +112,7 @@ pub type Finish<'a> = dyn FnMut(&mut Vec<Level>, &Between<'_>) -> Vec<f32> + 'a;
 /// Where the vertices of one level, by its number, go until it is another that is not finer, both as they were simplified.
 pub type Between<'a> = dyn Fn(usize, usize) -> Morph + 'a;
 
-/// The same with the errors that `finish` finds, as far as they grow from level to level; tells when each part of the work
-/// has ended.
+/// The same with the errors that `finish` finds; tells when each part of the work has ended.
 pub fn levels_finished(
     mesh: &Mesh,
     options: &LodOptions,
