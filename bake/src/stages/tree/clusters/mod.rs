@@ -41,7 +41,7 @@ const DRAWN_LEAVES: usize = 64;
 /// on how they are turned to the eye.
 const VIEWS: [(usize, f32); 8] =
     [(0, -0.2), (1, 0.2), (2, 0.2), (3, -0.2), (0, 0.2), (1, -0.2), (2, -0.2), (3, 0.2)];
-const COVERAGE_PX: usize = 88;
+const COVERAGE_PX: usize = 128;
 /// How much smaller or larger cards may become.
 const SCALES: Range<f32> = 0.7..1.5;
 
