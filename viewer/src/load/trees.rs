@@ -137,11 +137,11 @@ fn build(
             }
         }
         let ranges = lists.into_iter().map(|list| add(&mut template.indices, list.into_iter())).collect();
-        template.levels.push(Level { error_m: level.error_m, base_vertex, ranges, strips });
+        let error_m = error_weight * level.error_m;
+        template.levels.push(Level { error_m, base_vertex, ranges, strips });
     }
     check_levels(document, &template)?;
-    let errors_m: Vec<f32> =
-        rising(template.levels.iter().map(|level| error_weight * level.error_m)).collect();
+    let errors_m: Vec<f32> = rising(template.levels.iter().map(|level| level.error_m)).collect();
     template.levels.iter_mut().zip(errors_m).for_each(|(level, error_m)| level.error_m = error_m);
     let parts = materials.len();
     for level in &mut template.levels {

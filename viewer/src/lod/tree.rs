@@ -26,7 +26,7 @@ const MIN_GROWTH: f32 = 1.05;
 pub fn rising(errors_m: impl IntoIterator<Item = f32>) -> impl Iterator<Item = f32> {
     errors_m.into_iter().scan(0.0, |least_m, error_m| {
         let error_m = error_m.max(*least_m);
-        *least_m = MIN_GROWTH * error_m;
+        *least_m = (MIN_GROWTH * error_m).min(f32::MAX);
         Some(error_m)
     })
 }
