@@ -14,9 +14,10 @@ struct View {
     exposure: f32,
     sky_irradiance: vec3f,
     haze_extinction: f32,
-    haze: vec3f,
     // Surface of the lake; far below everything if there is none.
     water_level: f32,
+    // How much of a sea it is, 0 to 1.
+    sea: f32,
     // Pixels that one radian covers in the middle of the picture.
     focal_px: f32,
     // 1 if colours say the level of detail. For `select`: no `if` or loop may depend on a uniform buffer alone, or Mesa's
@@ -26,6 +27,10 @@ struct View {
     other_clouds: f32,
     // Pixels a radian for each pixel by which the land may be off.
     lod_pixels: f32,
+    // Moves numbers by chance, [0, 1): another in each of the pictures of which a still one is the mean.
+    noise: f32,
+    // Added to the mip levels of textures that cover much of the picture: less than 0 in those pictures, whose mean is as smooth.
+    mip_bias: f32,
     // Altitude and extent in metres of the cumulus layer, then of the cirrus layer; extent 0 if there is none.
     clouds: vec4f,
     // How far clouds have drifted, x and z in metres: those that are seen more of, and those into or out of which they fade.
@@ -49,10 +54,6 @@ struct View {
     lod_unit: f32,
     // Of the field, on average, linear.
     ground_albedo: vec3f,
-    // Moves numbers by chance, [0, 1): another in each of the pictures of which a still one is the mean.
-    noise: f32,
-    // Added to the mip levels of textures that cover much of the picture: less than 0 in those pictures, whose mean is as smooth.
-    mip_bias: f32,
 }
 
 @group(0) @binding(0) var<uniform> view: View;
@@ -461,12 +462,12 @@ fn frayed(direction: vec3f) -> vec3f {
 }
 
 // What clouds that stand still add to the clear sky, or take from it.
-fn painted_clouds(direction: vec3f, are_frayed: bool) -> vec3f {
+fn painted_clouds(direction: vec3f, are_frayed: bool, mip: f32) -> vec3f {
     var there = direction;
     if (are_frayed) {
         there = frayed(direction);
     }
-    return textureSampleLevel(sky_cube, clamped, there, 0.0).rgb - clear_sky(there);
+    return textureSampleLevel(sky_cube, clamped, there, mip).rgb - clear_sky(there);
 }
 
 // How much of the way that clouds drift is seen in a direction: at the horizon they stand still.
@@ -475,7 +476,7 @@ fn drifting(direction: vec3f) -> f32 {
 }
 
 // What all clouds that are seen add to the clear sky, or take from it. A loop, because Mesa's software driver leaves a loop early but takes both ways of an `if`.
-fn clouds_towards(direction: vec3f, are_frayed: bool) -> vec3f {
+fn clouds_towards(direction: vec3f, are_frayed: bool, mip: f32) -> vec3f {
     let lift = drifting(direction);
     let other = select(view.other_clouds, 0.0, lift <= 0.0);
     let copies = select(1, 2, other > 0.0);
@@ -483,7 +484,7 @@ fn clouds_towards(direction: vec3f, are_frayed: bool) -> vec3f {
     for (var copy = 0; copy < copies; copy++) {
         let share = select(other, 1.0 - other, copy == 0);
         let moved = select(view.drift.zw, view.drift.xy, copy == 0) * lift;
-        radiance += share * painted_clouds(before_drift(direction, moved), are_frayed);
+        radiance += share * painted_clouds(before_drift(direction, moved), are_frayed, mip);
     }
     return radiance;
 }

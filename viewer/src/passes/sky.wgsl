@@ -29,7 +29,7 @@ fn above_horizon(direction: vec3f) -> vec3f {
 fn fragment(corner: Corner) -> @location(0) vec4f {
     let direction = direction_of(corner);
     let above = above_horizon(direction);
-    let clouds = painted_clouds(before_drift(above, view.drift.xy * drifting(above)), true);
+    let clouds = painted_clouds(before_drift(above, view.drift.xy * drifting(above)), true, 0.0);
     return radiance_of(corner, direction, clouds);
 }
 
@@ -37,7 +37,7 @@ fn fragment(corner: Corner) -> @location(0) vec4f {
 @fragment
 fn fading(corner: Corner) -> @location(0) vec4f {
     let direction = direction_of(corner);
-    return radiance_of(corner, direction, clouds_towards(above_horizon(direction), true));
+    return radiance_of(corner, direction, clouds_towards(above_horizon(direction), true, 0.0));
 }
 
 fn radiance_of(corner: Corner, direction: vec3f, clouds: vec3f) -> vec4f {

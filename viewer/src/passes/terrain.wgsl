@@ -342,7 +342,7 @@ fn flooded(under: vec3f, world: vec3f, open: f32) -> vec3f {
     let up = max(look.y, 0.0);
     let ripple = 0.012 * noise_pair(world.xz * 1.7 + vec2f(0.35, 0.2) * view.time_s);
     let mirrored = normalize(vec3f(-look.x + ripple.x, max(up, 0.015) + abs(ripple.y), -look.z));
-    let sky = max(clear_sky(mirrored) + clouds_towards(mirrored, false), vec3f(0.0)) * open;
+    let sky = max(clear_sky(mirrored) + clouds_towards(mirrored, false, 0.0), vec3f(0.0)) * open;
     // Banks and trees around, about which nothing is known here, stand in the way of level rays.
     let seen = mix(under, sky, mix(0.5, 1.0, smoothstep(0.0, 0.12, mirrored.y)));
     return mix(under * 0.8, seen, mirrored_by_water(up));

@@ -24,12 +24,14 @@ pub struct ViewUniform {
     pub exposure: f32,
     pub sky_irradiance: [f32; 3],
     pub haze_extinction: f32,
-    pub haze: [f32; 3],
     pub water_level: f32,
+    pub sea: f32,
     pub focal_px: f32,
     pub tint_levels: u32,
     pub other_clouds: f32,
     pub lod_pixels: f32,
+    pub noise: f32,
+    pub mip_bias: f32,
     pub clouds: [f32; 4],
     pub drift: [f32; 4],
     pub lod_eye: [f32; 3],
@@ -42,10 +44,8 @@ pub struct ViewUniform {
     pub part: f32,
     pub lod_unit: f32,
     pub ground_albedo: [f32; 3],
-    pub noise: f32,
-    pub mip_bias: f32,
     /// WGSL rounds the size up.
-    pub unused: [f32; 3],
+    pub unused: f32,
 }
 
 /// What stands for "no lake".
@@ -99,8 +99,8 @@ impl ViewUniform {
             sun_irradiance: sky.sun_irradiance_linear,
             sky_irradiance: sky.sky_irradiance_linear,
             haze_extinction: sky.haze_extinction_per_m,
-            haze: sky.haze_linear,
             water_level: scene.ground.water_level_m.unwrap_or(NO_WATER_M),
+            sea: scene.land.lake.as_ref().map_or(0.0, |lake| lake.sea),
             other_clouds: drift.other_share,
             lod_pixels: detail.pixels,
             clouds: scene.sky_textures.sheets_m,

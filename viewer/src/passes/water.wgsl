@@ -36,7 +36,10 @@ fn vertex(@builtin(vertex_index) index: u32) -> Out {
 }
 
 const WAVES: u32 = 6u;
+// Slope and length in metres of the longest: on a lake, and how many times as much at sea.
 const STEEPNESS: f32 = 0.014;
+const LENGTH_M: f32 = 5.3;
+const AT_SEA = vec2f(3.2, 2.5);
 
 // The surface's slope, and the variance of what of it is too fine to be seen.
 struct Slope {
@@ -44,19 +47,26 @@ struct Slope {
     variance: f32,
 }
 
+// How much of a sea's waves there are: they are lower over shallows and within bays. Beyond the field depths are not known.
+fn swell(place: vec2f, depth: f32) -> f32 {
+    let beyond = max(abs(place) - view.field.z, vec2f(0.0));
+    return view.sea * max(smoothstep(2.0, 14.0, depth), smoothstep(0.0, 400.0, max(beyond.x, beyond.y)));
+}
+
 // Waves of six directions and lengths.
-fn slope(place: vec2f, pixel_m: f32) -> Slope {
+fn slope(place: vec2f, pixel_m: f32, swell: f32) -> Slope {
     var sum = Slope(vec2f(0.0), 0.0);
+    let steepness = STEEPNESS * mix(1.0, AT_SEA.x, swell);
+    var length_m = LENGTH_M * mix(1.0, AT_SEA.y, view.sea);
     var turn = 0.4;
-    var length_m = 5.3;
     for (var wave = 0u; wave < WAVES; wave++) {
         let direction = vec2f(cos(turn), sin(turn));
         let k = 2.0 * PI / length_m;
         // Deep water: the square of the frequency is g·k.
         let phase = dot(direction, place) * k - sqrt(9.81 * k) * view.time_s;
         let seen = smoothstep(0.5, 0.12, pixel_m / length_m);
-        sum.seen += direction * cos(phase + 1.7 * sin(dot(place.yx, direction) * k * 0.23)) * STEEPNESS * seen;
-        sum.variance += 0.5 * STEEPNESS * STEEPNESS * (1.0 - seen * seen);
+        sum.seen += direction * cos(phase + 1.7 * sin(dot(place.yx, direction) * k * 0.23)) * steepness * seen;
+        sum.variance += 0.5 * steepness * steepness * (1.0 - seen * seen);
         turn += 2.1;
         length_m *= 0.61;
     }
@@ -109,23 +119,27 @@ fn fragment(in: Out) -> @location(0) vec4f {
     let away = length(to_eye);
     let look = to_eye / away;
     let inside = all(abs(in.world.xz) < vec2f(view.field.z));
-    var depth = 8.0;
-    if (inside) {
-        depth = view.water_level - height_m(in.world.xz);
-    }
+    // Beyond the field as at its edge: waves may not end there.
+    let edge_depth = view.water_level - height_m(clamp(in.world.xz, vec2f(-view.field.z), vec2f(view.field.z)));
+    let depth = select(max(edge_depth, 8.0), edge_depth, inside);
     let pixel_m = away / view.focal_px / max(look.y, 0.02);
-    let waves = slope(in.world.xz, pixel_m);
+    let waves = slope(in.world.xz, pixel_m, swell(in.world.xz, edge_depth));
     // At low angles the backs of waves are hidden.
     let shown = smoothstep(0.0, 0.6, depth) * clamp(look.y / 0.12, 0.2, 1.0);
-    let tilt = waves.seen * shown;
+    // Of waves too fine to be seen, what faces the eye hides the rest: at low angles water mirrors the sky higher up, and less
+    // of it, so that a sea ends in a line at the horizon (Bruneton et al., "Real-time Realistic Ocean Lighting", 2010).
+    let level = look.xz / max(length(look.xz), 1e-3);
+    let leaning = waves.variance / (look.y / max(length(look.xz), 1e-3) + 1.25 * sqrt(waves.variance) + 1e-4);
+    let tilt = waves.seen * shown - level * leaning * smoothstep(0.0, 0.6, depth);
     let normal = normalize(vec3f(-tilt.x, 1.0, -tilt.y));
     var mirrored = reflect(-look, normal);
     mirrored.y = max(mirrored.y, 0.01);
     mirrored = normalize(mirrored);
     let spread = 4.0 * sqrt(waves.variance) * shown;
     let land = mirrored_land(in.world, mirrored, spread);
-    // Waves blur the edges of clouds.
-    let sky = max(clear_sky(mirrored) + clouds_towards(mirrored, false), vec3f(0.0));
+    // Waves blur clouds, half as wide as all that they send there; a face of the sky spans a quarter of a turn.
+    let mip = log2(max(spread * f32(textureDimensions(sky_cube).x) / PI, 1.0));
+    let sky = max(clear_sky(mirrored) + clouds_towards(mirrored, false, mip), vec3f(0.0));
     let facing = clamp(dot(normal, look), 0.0, 1.0);
     let reflectance = mirrored_by_water(facing);
     let half_way = normalize(look + view.sun_direction);
@@ -133,7 +147,9 @@ fn fragment(in: Out) -> @location(0) vec4f {
     if (inside) {
         light = light_on(in.world.xz);
     }
-    let glint = pow(max(dot(normal, half_way), 0.0), 900.0) * 60.0 * light.b * (1.0 - land.a);
+    // What is too fine to be seen spreads the sun's image.
+    let sharpness = 1.0 / (1.0 / 900.0 + waves.variance);
+    let glint = pow(max(dot(normal, half_way), 0.0), sharpness) * (sharpness / 15.0) * light.b * (1.0 - land.a);
     let body = vec3f(0.012, 0.035, 0.032) * (view.sky_irradiance * light.r + 0.5 * view.sun_irradiance * light.b);
     let clearness = exp(-max(depth, 0.0) * vec3f(0.9, 0.55, 0.6));
     let opaque = 1.0 - (clearness.x + clearness.y + clearness.z) / 3.0;

@@ -44,3 +44,36 @@ pub struct Apron {
     /// Triangles, counter-clockwise.
     pub triangles: Vec<[u32; 3]>,
 }
+
+impl Apron {
+    /// Share of the horizon where no land rises above a level: 0 where a lake has a shore all around, 1 around an island.
+    pub fn open_share(&self, level_m: f32) -> f32 {
+        let away_m = |[x, _, z]: &[f32; 3]| x.abs().max(z.abs());
+        let farthest_m = self.positions_m.iter().map(away_m).fold(0.0, f32::max);
+        let outer = || self.positions_m.iter().filter(|place_m| away_m(place_m) > 0.97 * farthest_m);
+        let open = outer().filter(|[_, y, _]| *y < level_m).count();
+        open as f32 / outer().count().max(1) as f32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_horizon_is_open_where_the_outermost_land_is_under_water() {
+        let place = |x: f32, y: f32, z: f32| [x, y, z];
+        // A shore at 100 m; at 1000 m there is land in the east alone.
+        let shore = [place(100.0, 5.0, 0.0), place(-100.0, 5.0, 0.0)];
+        let outer = [
+            place(1000.0, 9.0, 20.0),
+            place(-1000.0, -3.0, 0.0),
+            place(50.0, -3.0, 990.0),
+            place(0.0, -3.0, -1000.0),
+        ];
+        let apron = Apron { positions_m: [&shore[..], &outer].concat(), ..Default::default() };
+        assert_eq!(apron.open_share(0.0), 0.75);
+        assert_eq!([apron.open_share(-4.0), apron.open_share(10.0)], [0.0, 1.0]);
+        assert_eq!(Apron::default().open_share(0.0), 0.0);
+    }
+}

@@ -19,6 +19,8 @@ const NEAR_M: f32 = 0.1;
 pub struct Lake {
     /// Height of the surface in metres.
     pub level_m: f32,
+    /// How much of a sea it is: 0 with a shore all around, 1 where a third of the horizon or more is open.
+    pub sea: f32,
     /// Tile (i, k) is [`TILE_M`] wide from (i, k) · [`TILE_M`].
     tiles: BTreeSet<[i32; 2]>,
     /// The land around it, which may hide it.
@@ -49,7 +51,8 @@ impl Lake {
         for [low_m, high_m] in wet_triangles(apron, level_m) {
             insert(&mut tiles, low_m, high_m);
         }
-        Self { level_m, tiles, field: field.clone() }
+        let sea = (3.0 * apron.open_share(level_m)).min(1.0);
+        Self { level_m, sea, tiles, field: field.clone() }
     }
 
     /// The part of a picture that may show the lake to an eye, where the land is drawn for that sight. `None` if there is none.
@@ -204,7 +207,8 @@ mod tests {
     #[test]
     fn a_lake_behind_a_ridge_is_seen_from_its_top_alone() {
         let ridge = |_: f32, z: f32| if (-40.0..40.0).contains(&z) { 30.0 } else { z.signum() * 2.0 };
-        let lake = Lake { level_m: 0.0, tiles: [[-1, -3], [0, -3], [0, -4]].into(), field: land(ridge) };
+        let lake =
+            Lake { level_m: 0.0, sea: 0.0, tiles: [[-1, -3], [0, -3], [0, -4]].into(), field: land(ridge) };
         let look = |y: f32, z: f32| {
             let position_m = Vec3::new(0.0, y, z);
             let camera = Camera { position_m, yaw_rad: 0.0, pitch_rad: -0.1, fov_y_rad: 1.2 };
@@ -233,7 +237,7 @@ mod tests {
             let yaw = Vec2::new(-way.z, -way.x).to_angle() + aside;
             let level_m = Vec2::new(way.x, way.z).length();
             let pitch = (Vec2::new(level_m, way.y).to_angle() + up).clamp(-1.5, 1.0);
-            let lake = Lake { level_m: 0.0, tiles: [[0, -1], [0, 0], [1, -1], [1, 0]].into(), field: land(|_, _| -1.0) };
+            let lake = Lake { level_m: 0.0, sea: 0.0, tiles: [[0, -1], [0, 0], [1, -1], [1, 0]].into(), field: land(|_, _| -1.0) };
             let camera = Camera { position_m: Vec3::new(x, y, z), yaw_rad: yaw, pitch_rad: pitch, fov_y_rad: 1.0 };
             let clip_from_world = camera.clip_from_world(1.5);
             let clip = clip_from_world * Vec4::new(place_x, 0.0, place_z, 1.0);
@@ -253,7 +257,7 @@ mod tests {
 
     #[test]
     fn a_lake_behind_the_eye_or_below_the_picture_is_not_seen() {
-        let lake = Lake { level_m: 0.0, tiles: [[0, 0]].into(), field: land(|_, _| -1.0) };
+        let lake = Lake { level_m: 0.0, sea: 0.0, tiles: [[0, 0]].into(), field: land(|_, _| -1.0) };
         let look = |yaw_rad, pitch_rad| {
             let camera =
                 Camera { position_m: Vec3::new(32.0, 20.0, 200.0), yaw_rad, pitch_rad, fov_y_rad: 1.0 };

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use genescape_schema::scene::Alpha;
-use glam::Vec3;
+use glam::{Vec3, Vec4};
+use half::f16;
 use rayon::prelude::*;
 
 use super::Uploader;
@@ -70,14 +71,16 @@ impl Uploader {
         self.gpu.texture(&texture, &texels)
     }
 
-    /// Six faces of half floats, all squares of one size, as a cube.
+    /// Six faces of half floats, all squares of one size, as a cube with mip levels.
     pub(super) fn cube(&self, faces: &[HdrImage]) -> Arc<wgpu::Texture> {
         let names: Vec<&str> = faces.iter().map(|face| face.name.as_str()).collect();
         self.shared(names.join(" "), || {
             let (format, usage) = (wgpu::TextureFormat::Rgba16Float, wgpu::TextureUsages::TEXTURE_BINDING);
             let mut texture = flat("sky", [faces[0].width_px, faces[0].height_px], format, usage);
             texture.size.depth_or_array_layers = faces.len() as u32;
-            let texels: Vec<&[u8]> = faces.iter().map(|face| &*face.pixels).collect();
+            texture.mip_level_count = CUBE_LEVELS.min(faces[0].width_px.ilog2() + 1);
+            let levels = |face: &HdrImage| radiance_levels(face, texture.mip_level_count);
+            let texels: Vec<Vec<u8>> = faces.par_iter().map(levels).collect();
             self.gpu.texture(&texture, &texels.concat())
         })
     }
@@ -95,6 +98,28 @@ impl Uploader {
             self.gpu.texture(&texture, texels)
         })
     }
+}
+
+/// Mip levels of the sky: waves mirror it blurred, never by more than so many.
+const CUBE_LEVELS: u32 = 6;
+
+/// A face and its mip levels, four half floats a texel.
+fn radiance_levels(face: &HdrImage, levels: u32) -> Vec<u8> {
+    let (mut all, mut side) = (face.pixels.to_vec(), face.width_px as usize);
+    let texel = |bytes: &[[u8; 2]; 4]| Vec4::from_array(bytes.map(|part| f16::from_le_bytes(part).to_f32()));
+    let mut finer: Vec<Vec4> = face.pixels.as_chunks().0.as_chunks().0.iter().map(texel).collect();
+    for _ in 1..levels {
+        let half = side / 2;
+        let mean = |number: usize| {
+            let first = 2 * (number / half * side + number % half);
+            0.25 * (finer[first] + finer[first + 1] + finer[first + side] + finer[first + side + 1])
+        };
+        let coarser: Vec<Vec4> = (0..half * half).map(mean).collect();
+        let parts = coarser.iter().flat_map(|texel| texel.to_array().map(f16::from_f32));
+        all.extend(parts.flat_map(f16::to_le_bytes));
+        (finer, side) = (coarser, half);
+    }
+    all
 }
 
 /// The least alpha that is drawn of a cutout.
@@ -214,6 +239,23 @@ mod tests {
     fn checkered(a: u8, b: u8) -> Image {
         let pixels: Vec<u8> = (0..16).flat_map(|p| [if (p + p / 4) % 2 == 0 { a } else { b }; 4]).collect();
         Image { name: "checkers".into(), width_px: 4, height_px: 4, levels: vec![pixels.into()] }
+    }
+
+    #[test]
+    fn coarser_faces_of_the_sky_keep_its_light() {
+        let light = |texel: usize| [texel as f32, 0.5, 60.0 - texel as f32, 1.0];
+        let pixels: Vec<u8> = (0..64).flat_map(light).map(f16::from_f32).flat_map(f16::to_le_bytes).collect();
+        let face = HdrImage { name: "face".into(), width_px: 8, height_px: 8, pixels: pixels.clone().into() };
+        let all = radiance_levels(&face, 3);
+        assert_eq!(all[..512], pixels);
+        let values = |bytes: &[u8]| -> Vec<f32> {
+            bytes.as_chunks().0.iter().map(|&bytes| f16::from_le_bytes(bytes).to_f32()).collect()
+        };
+        let (second, third) = (values(&all[512..640]), values(&all[640..]));
+        assert_eq!([second.len(), third.len()], [64, 16]);
+        assert_eq!(second[..4], [4.5, 0.5, 55.5, 1.0], "of texels 0, 1, 8 and 9");
+        let mean = |values: &[f32]| values.iter().step_by(4).sum::<f32>() / (values.len() / 4) as f32;
+        assert_eq!([mean(&second), mean(&third)], [31.5, 31.5]);
     }
 
     #[test]

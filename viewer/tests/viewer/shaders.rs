@@ -87,12 +87,14 @@ fn uniforms_are_laid_out_alike() {
             exposure,
             sky_irradiance,
             haze_extinction,
-            haze,
             water_level,
+            sea,
             focal_px,
             tint_levels,
             other_clouds,
             lod_pixels,
+            noise,
+            mip_bias,
             clouds,
             drift,
             lod_eye,
@@ -105,8 +107,6 @@ fn uniforms_are_laid_out_alike() {
             part,
             lod_unit,
             ground_albedo,
-            noise,
-            mip_bias,
         }
     );
     same!(
