@@ -161,52 +161,76 @@ fn along(axis: u32, place: vec3f) -> vec2f {
     return select(select(place.xy, place.zy, axis == 1u), place.xz, axis == 0u);
 }
 
-// Some 35°.
-const TURN = mat2x2f(0.82, 0.57, -0.57, 0.82);
+// Scales of the tiling textures: each is larger than the one before and turned by some 35°, and takes over with distance, so
+// that no pattern of tiles shows and a hillside has as much on it as the ground at one's feet.
+const WIDER: f32 = 4.3;
 
-// One look at a tiling texture: which texture, seen along which axis, at which of two scales. The wide scale is larger and
-// turned, and takes over with distance (`far`, 0 to 1), so that no pattern of tiles shows.
-fn look(k: u32, at: Surface, parts: array<f32, 5>, far: f32) -> Tiles {
+// How a scale is turned.
+fn turn_of(scale: u32) -> mat2x2f {
+    let axis = select(select(vec2f(1.0, 0.0), vec2f(0.82, 0.57), scale == 1u), vec2f(0.347, 0.938), scale == 2u);
+    return mat2x2f(axis.x, axis.y, -axis.y, axis.x);
+}
+
+// How vivid one is: from afar a texture stands for patches, not for giant blades and pebbles. Rock, the second layer, is as
+// rough from afar as from near by.
+fn vividness_of(scale: u32, layer: u32) -> f32 {
+    let soft = select(select(1.0, 0.8, scale == 1u), 0.5, scale == 2u);
+    return select(soft, min(1.0, 0.4 * soft + 0.58), layer == 1u);
+}
+
+// The finer of the two scales that a distance mixes, and the share of the other.
+struct Scales {
+    finer: u32,
+    far: f32,
+}
+
+fn scales_at(away: f32) -> Scales {
+    if (away < 60.0) {
+        return Scales(0u, smoothstep(7.0, 22.0, away));
+    }
+    return Scales(1u, smoothstep(110.0, 240.0, away));
+}
+
+// Where no texture is seen any more.
+const SMOOTH_M: f32 = 1200.0;
+
+// One look at a tiling texture: which texture, seen along which axis, at which of the two scales.
+fn look(k: u32, at: Surface, parts: array<f32, 5>, scales: Scales) -> Tiles {
     let layer = min(k / 6u, 4u);
     let axis = (k / 2u) % 3u;
-    let wide = (k & 1u) == 1u;
+    let is_coarser = (k & 1u) == 1u;
+    let scale = scales.finer + (k & 1u);
     let tiles_m = array<f32, 5>(view.tiles.x, view.tiles.y, view.tiles.z, view.tiles.w, view.last_tile);
-    let tile_m = entry(tiles_m, layer);
-    var p = along(axis, at.world) / tile_m;
-    var dx = along(axis, at.dx) / tile_m;
-    var dy = along(axis, at.dy) / tile_m;
-    if (wide) {
-        p = TURN * p / 4.3;
-        dx = TURN * dx / 4.3;
-        dy = TURN * dy / 4.3;
-    }
-    var tiles = tiles_of(textureSampleGrad(details, repeating, p, layer, dx, dy));
-    if (wide) {
-        // v runs against the bitangent: normals turn back the other way.
-        // And fainter: from afar it stands for patches, not for giant blades and pebbles.
-        let rough = select(0.8, 0.9, layer == 1u);
-        tiles.bump = vec3f(TURN * tiles.bump.xy * rough, tiles.bump.z);
-        tiles.factor = mix(vec3f(1.0), tiles.factor, rough);
-    }
+    let tile_m = entry(tiles_m, layer) * select(select(1.0, WIDER, scale == 1u), WIDER * WIDER, scale == 2u);
+    let turn = turn_of(scale);
+    let to_tile = turn * (1.0 / tile_m);
+    let p = to_tile * along(axis, at.world);
+    let dx = to_tile * along(axis, at.dx);
+    let dy = to_tile * along(axis, at.dy);
+    let tiles = tiles_of(textureSampleGrad(details, repeating, p, layer, dx, dy));
+    let vividness = vividness_of(scale, layer);
     let seen = select(select(at.sides.z, at.sides.x, axis == 1u), at.sides.y, axis == 0u);
-    let share = entry(parts, layer) * seen * select(1.0 - far, far, wide);
-    return Tiles(share * tiles.factor, share * tiles.bump);
+    let share = entry(parts, layer) * seen * select(1.0 - scales.far, scales.far, is_coarser);
+    // v runs against the bitangent: normals turn back the other way.
+    let bump = vec3f(turn * tiles.bump.xy * vividness, tiles.bump.z);
+    return Tiles(share * mix(vec3f(1.0), tiles.factor, vividness), share * bump);
 }
 
 // All looks that count. Mesa's software driver takes both ways of every `if`, but ends a loop when no pixel needs it any
 // more: so a loop over the looks, of which there are one or two nearly everywhere, and not thirty conditions.
-fn looks(at: Surface, parts: array<f32, 5>, far: f32) -> Tiles {
-    let scales = select(0u, 1u, far < 1.0) | select(0u, 2u, far > 0.0);
+fn looks(at: Surface, parts: array<f32, 5>, scales: Scales) -> Tiles {
+    let far = scales.far;
+    let both = select(0u, 1u, far < 1.0) | select(0u, 2u, far > 0.0);
     // From above, and on steep ground from the sides, too: else the texture is stretched.
-    let seen = select(0u, scales, at.sides.y > 0.02) | select(0u, scales << 2u, at.sides.x > 0.02)
-        | select(0u, scales << 4u, at.sides.z > 0.02);
+    let seen = select(0u, both, at.sides.y > 0.02) | select(0u, both << 2u, at.sides.x > 0.02)
+        | select(0u, both << 4u, at.sides.z > 0.02);
     var left = 0u;
     for (var layer = 0u; layer < 5u; layer++) {
         left |= select(0u, seen << (6u * layer), entry(parts, layer) > 0.0);
     }
     var sum = Tiles(vec3f(0.0), vec3f(0.0));
     loop {
-        let one = look(countTrailingZeros(left), at, parts, far);
+        let one = look(countTrailingZeros(left), at, parts, scales);
         sum = Tiles(sum.factor + one.factor, sum.bump + one.bump);
         left &= left - 1u;
         if (left == 0u) {
@@ -297,14 +321,14 @@ fn ground_at(in: Out) -> Ground {
     let dy = finer * dpdy(in.world);
     var normal = normal_at(place);
     var relief = 1.0;
-    if (away < 240.0) {
+    if (away < SMOOTH_M) {
         let shorter = less_stretched(dx, dy);
         let at = Surface(in.world, dx * shorter.x, dy * shorter.y, sides_of(normal));
         let parts = parts_of(weights);
-        var tiles = looks(at, parts, smoothstep(7.0, 22.0, away));
+        var tiles = looks(at, parts, scales_at(away));
         let close = close_up(at, parts, smoothstep(5.0, 1.5, away));
         tiles = Tiles(tiles.factor * close.factor, tiles.bump + close.bump);
-        let fade = 1.0 - smoothstep(110.0, 240.0, away);
+        let fade = 1.0 - smoothstep(0.4 * SMOOTH_M, SMOOTH_M, away);
         albedo *= mix(vec3f(1.0), tiles.factor, fade);
         let bump = mix(vec3f(0.0, 0.0, 1.0), tiles.bump, fade);
         // Tangent along x, bitangent along −z: as texture coordinates run, v down being south.
@@ -410,9 +434,10 @@ const PATCHES: f32 = 4.0;
 
 // Crags at two scales: their bumps and a factor on the colour.
 fn crags(place: vec2f) -> Tiles {
+    let turn = turn_of(1u);
     let wide = tiles_of(textureSampleBias(details, repeating, place / CRAGS_M, 1, view.mip_bias));
-    let fine = tiles_of(textureSampleBias(details, repeating, TURN * place / (0.23 * CRAGS_M), 1, view.mip_bias));
-    return Tiles(0.5 * (wide.factor + fine.factor), vec3f(wide.bump.xy + TURN * fine.bump.xy, 1.0));
+    let fine = tiles_of(textureSampleBias(details, repeating, turn * place / (0.23 * CRAGS_M), 1, view.mip_bias));
+    return Tiles(0.5 * (wide.factor + fine.factor), vec3f(wide.bump.xy + turn * fine.bump.xy, 1.0));
 }
 
 // What grows on gentle land is dry here and lush there, as crags are light and dark, where it is not snow: a factor on its colour.
