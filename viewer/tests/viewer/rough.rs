@@ -99,3 +99,29 @@ fn what_is_rough_shows_its_texture_from_all_sides() {
         assert!(added > 100.0, "{turn}: no texture shows, {rough:?} beside {smooth:?}");
     }
 }
+
+/// A slope of 45 degrees of one kind of ground, 150 to 1000 m away.
+#[test]
+#[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
+fn hillsides_are_rough_from_near_by_and_from_afar() {
+    let studio = made_up::studio();
+    let no_trees = Trees { templates: Vec::new(), instances: [].into(), ..Trees::default() };
+    let land = made_up::land(129, 16.0, |_, j| 12.0 * (64.0 - j as f32).max(0.0));
+    let mut scene = made_up::scene(land, [110, 110, 110, 255], [0.4; 3], no_trees);
+    for (layer, detail) in scene.ground.surface.details.iter_mut().enumerate() {
+        let spots = |x: u32, y: u32| if (x / 8 + y / 8) % 2 == 0 { [70; 4] } else { [186; 4] };
+        detail.detail = made_up::picture(&format!("spots {layer}"), 64, spots);
+        detail.normal = made_up::picture(&format!("even {layer}"), 64, |_, _| [128, 128, 255, 255]);
+    }
+    for away_m in [30.0, 90.0, 180.0, 350.0] {
+        let position_m = Vec3::new(3.0, 150.0, away_m - 190.0);
+        let camera = Camera { position_m, yaw_rad: 0.0, pitch_rad: 0.0, fov_y_rad: 0.06 };
+        let options = Options { grass: false, ..Options::default() };
+        let frame = FrameInput { options, ..FrameInput::default() };
+        let mut view = studio.view(made_up::upload(&studio, &scene), [240, 160]);
+        let drawn = studio.shoot(&mut view, &frame, &camera, &camera).expect("a picture");
+        let values: Vec<f32> = drawn.pixels().map(|pixel| f32::from(pixel[1])).collect();
+        let (mean, spread) = mean_and_spread(&values);
+        assert!(spread > 0.05 * mean, "{away_m} m away land is smooth: {spread} around {mean}");
+    }
+}

@@ -122,6 +122,33 @@ fn a_far_flat_shore_is_where_the_ring_comes_out_of_the_lake() {
     }
 }
 
+/// An even sky, of which calm water mirrors nearly all at so low an angle.
+#[test]
+#[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
+fn a_sea_is_darker_than_the_sky_where_it_ends_and_a_lake_is_not() {
+    let studio = made_up::studio();
+    // Far behind the eye's back there is land around a lake, and none around a sea.
+    let below_horizon = |shore_m: f32| {
+        let no_trees = Trees { templates: Vec::new(), instances: [].into(), ..Trees::default() };
+        let bed = made_up::land(129, 8.0, |_, _| -30.0);
+        let mut scene = made_up::scene(bed, GREEN, [0.5, 0.7, 1.0], no_trees);
+        scene.ground.water_level_m = Some(0.0);
+        let corners = [[-4e3, 4e3], [4e3, 4e3], [0.0, 4.1e3]];
+        scene.ground.apron = Arc::new(Apron {
+            positions_m: corners.map(|[x, z]| [x, shore_m, z]).to_vec(),
+            normals: vec![[0.0, 1.0, 0.0]; 3],
+            colors: vec![[100; 4]; 3],
+            triangles: vec![[0, 1, 2]],
+        });
+        let eye = Camera { position_m: Vec3::new(0.0, 25.0, 0.0), ..camera() };
+        let picture = shoot_from(&studio, &scene, &eye);
+        let row = |y: u32| (0..SIZE_PX[0]).map(|x| f32::from(picture.get_pixel(x, y)[2])).sum::<f32>();
+        row(SIZE_PX[1] / 2 + 3) / row(SIZE_PX[1] / 2 - 3)
+    };
+    let [sea, lake] = [-5.0, 5.0].map(below_horizon);
+    assert!(sea < 0.93 && lake > sea + 0.04, "the sea {sea} as bright as the sky, a lake {lake}");
+}
+
 #[test]
 #[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
 fn flooded_ground_mirrors_the_sky() {
