@@ -7,6 +7,7 @@ use glam::{Vec2, Vec3};
 use super::canvas::{Canvas, Paint};
 use super::leaf_outline::Outline;
 use super::mips::{self, Chain};
+use super::needle_texture::TUFTED_ASPECT;
 use super::params::{Habit, TreeTextureParams, autumn, card_length_m};
 use crate::math::{cell, lerp};
 use crate::model::Image8;
@@ -44,7 +45,8 @@ pub(super) fn paint_leaves(params: &TreeTextureParams) -> Chain {
     let leaf = (params.leaf_size_m / card_m).clamp(0.16, 0.36);
     match habit {
         Habit::Frond => brush.frond(params),
-        Habit::Needle => brush.needles(leaf),
+        Habit::Needle if params.leaf_aspect < TUFTED_ASPECT => brush.tufts(params.leaf_size_m / card_m),
+        Habit::Needle => brush.sprays(leaf),
         Habit::Willow => brush.willow(leaf.clamp(0.2, 0.3)),
         Habit::Broad => brush.broad(leaf),
         Habit::Twigs => brush.bare_twigs(),
@@ -52,27 +54,28 @@ pub(super) fn paint_leaves(params: &TreeTextureParams) -> Chain {
     brush.finished(if habit == Habit::Frond { SMALL_LEVEL_OF_FRONDS } else { SMALL_LEVEL })
 }
 
-struct Brush {
-    canvas: Canvas,
+/// What paints one card.
+pub(super) struct Brush {
+    pub canvas: Canvas,
     outline: Outline,
-    dice: Dice,
-    hue_deg: f32,
+    pub dice: Dice,
+    pub hue_deg: f32,
     /// Pairs of side veins of a leaf.
     pairs: f32,
     twig: Vec3,
 }
 
 /// The side of the kth leaf of a twig: 1 or −1.
-fn alternating(k: usize) -> f32 {
+pub(super) fn alternating(k: usize) -> f32 {
     if k.is_multiple_of(2) { 1.0 } else { -1.0 }
 }
 
-fn length(twig: &[(Vec2, f32)]) -> f32 {
+pub(super) fn length(twig: &[(Vec2, f32)]) -> f32 {
     twig.windows(2).map(|p| (p[1].0 - p[0].0).length()).sum()
 }
 
 /// The unit vector at an angle from straight up, positive to the right.
-fn towards(angle: f32) -> Vec2 {
+pub(super) fn towards(angle: f32) -> Vec2 {
     let (sin, cos) = libm::sincosf(angle);
     Vec2::new(sin, cos)
 }
@@ -112,7 +115,7 @@ impl Brush {
     }
 
     /// A curved twig; returns points with their angles from base to tip.
-    fn twig(&mut self, base: Vec2, angle: f32, length: f32, bend: f32, radius: f32) -> Vec<(Vec2, f32)> {
+    pub fn twig(&mut self, base: Vec2, angle: f32, length: f32, bend: f32, radius: f32) -> Vec<(Vec2, f32)> {
         const STEPS: usize = 8;
         let mut points = vec![(base, angle)];
         let (mut at, mut angle) = (base, angle);
@@ -227,51 +230,6 @@ impl Brush {
         self.leaves(&spots, leaf, (0.9, 0.2));
     }
 
-    /// A flat spray of conifer twigs that branch once more, needles all along: no side twig is as long as the next, or the whole
-    /// looks like a feather.
-    fn needles(&mut self, leaf: f32) {
-        const SIDE_TWIGS: usize = 12;
-        let needle = (0.15 * leaf).clamp(0.027, 0.036);
-        let bend = 0.22 * self.dice.signed();
-        let main = self.twig(Vec2::ZERO, -0.4 * bend, 0.93, bend, 0.007);
-        let mut twigs = Vec::new();
-        for (k, sign) in (0..SIDE_TWIGS).flat_map(|k| [(k, -1.0), (k, 1.0)]) {
-            let t = (0.05 + (k as f32 + 0.6 * self.dice.signed()) / 13.5).max(0.02);
-            let (at, angle) = point(&main, t);
-            let length = (0.47 - 0.32 * t) * (0.95 + 0.35 * self.dice.signed());
-            let turn = angle + sign * (0.98 - 0.15 * t + 0.12 * self.dice.signed());
-            let side = self.twig(at, turn, length, -0.3 * sign, 0.005);
-            // Short ones bear none.
-            let finer = match (length / 0.075) as usize {
-                ..3 => 0,
-                many => many,
-            };
-            for k in 0..finer {
-                let t = 0.18 + 0.7 * (k as f32 + 0.5 * self.dice.unit()) / finer as f32;
-                let ((at, angle), way) = (point(&side, t), alternating(k));
-                let length = length * (0.42 - 0.3 * t) * (1.0 + 0.3 * self.dice.signed());
-                let turn = angle + way * (0.75 + 0.15 * self.dice.signed());
-                twigs.push(self.twig(at, turn, length, -0.2 * way, 0.003));
-            }
-            twigs.push(side);
-        }
-        twigs.push(main);
-        for twig in &twigs {
-            let count = (length(twig) / 0.0095) as usize;
-            for k in 0..count {
-                let t = k as f32 / count as f32;
-                let (base, angle) = point(twig, t);
-                for sign in [-1.0, 1.0] {
-                    let lean = angle + sign * (0.75 - 0.3 * t + 0.22 * self.dice.signed());
-                    let size = needle * (1.0 - 0.3 * t) * (0.9 + 0.2 * self.dice.signed());
-                    let color = leaf_color(self.hue_deg + 8.0 * self.dice.signed());
-                    let light = (0.8 + 0.35 * t) * (1.0 + 0.22 * self.dice.signed());
-                    self.canvas.stroke(base, base + towards(lean) * size, (0.0044, 0.0022), color * light);
-                }
-            }
-        }
-    }
-
     /// Leaflets along a rib; leaflets of the leaf's own shape on a trunk without branches.
     fn frond(&mut self, params: &TreeTextureParams) {
         let feather = params.leaf_shape >= 6;
@@ -352,7 +310,7 @@ impl Brush {
 }
 
 /// Place and angle at `t` in 0..1 of a twig.
-fn point(twig: &[(Vec2, f32)], t: f32) -> (Vec2, f32) {
+pub(super) fn point(twig: &[(Vec2, f32)], t: f32) -> (Vec2, f32) {
     let (i, f) = cell(t.clamp(0.0, 1.0) * (twig.len() - 1) as f32, twig.len());
     let (a, b) = (twig[i], twig[i + 1]);
     (a.0.lerp(b.0, f), lerp(a.1, b.1, f))

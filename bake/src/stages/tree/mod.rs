@@ -20,6 +20,7 @@ mod leaf_texture;
 mod levelled;
 mod measure;
 mod mips;
+mod needle_texture;
 mod outline;
 mod params;
 mod picture;

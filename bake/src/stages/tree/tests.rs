@@ -302,6 +302,22 @@ fn a_tree_in_winter_bears_twigs_and_dead_wood_nothing() {
 }
 
 #[test]
+fn slender_needles_stand_in_tufts_with_bare_wood_between_them() {
+    let base: TreeTextureParams = read(&oak());
+    let card = |leaf_aspect| {
+        let params = TreeTextureParams { leaf_shape: 6, leaf_hue_deg: 115.0, leaf_aspect, ..base.clone() };
+        textures(&params).leaf.swap_remove(0)
+    };
+    let bare = |image: &Image8| {
+        let opaque = || image.data.chunks_exact(4).filter(|p| p[3] > 200);
+        opaque().filter(|p| p[0] > p[1]).count() as f32 / opaque().count() as f32
+    };
+    let [tufts, sprays] = [0.25, 0.5].map(card);
+    assert!(bare(&tufts) > 4.0 * bare(&sprays), "{} of tufts, {} of sprays", bare(&tufts), bare(&sprays));
+    assert!((0.15..0.5).contains(&coverage(&tufts)), "{}", coverage(&tufts));
+}
+
+#[test]
 fn mips_keep_their_coverage() {
     for (name, genome) in presets() {
         let made = textures(&read(&genome));
