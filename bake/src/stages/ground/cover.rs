@@ -223,7 +223,9 @@ impl Painter {
         let broken = 0.55 * n.broad + 0.35 * n.fine;
         // Grass holds on to about 37°, less on crests and outcrops, more where soil has gathered.
         let bare = t.slope + 0.10 * broken + 0.09 * t.outcrop - 0.10 * t.hollow - 0.06 * t.deposit;
-        let rock = step(self.bare_slope, self.bare_slope + 0.18, bare);
+        // Turf ends at an edge, and a ragged one: where both were mixed over many metres, rock was like fog on the grass.
+        let rock =
+            step(self.bare_slope + 0.06, self.bare_slope + 0.12, bare + 0.04 * n.fine + 0.06 * n.grain);
         let loose = t.deposit + 0.22 * broken + 0.1 * t.outcrop;
         let scree = if loose < 0.46 {
             0.0

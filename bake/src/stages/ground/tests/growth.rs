@@ -207,7 +207,7 @@ fn young_trees_and_dead_ones_stand_by_trees_alone() {
     let lines = || (-22..22).map(|k| 20.0 * k as f32);
     let places: Vec<[f32; 2]> =
         lines().flat_map(|x| lines().map(move |z| [x, z])).filter(|&at| is_green(at)).collect();
-    let trees: Vec<_> = places.iter().step_by(3).map(|&[x, z]| tree(x, z)).collect();
+    let trees: Vec<_> = places.iter().step_by(2).map(|&[x, z]| tree(x, z)).collect();
     let made = maps(&PARAMS, &Woods::new(&MAPLE, &LAND, &trees, &[6.0]), &LAND, 256);
     let near = |k: usize| {
         let [x, z] = [k as u32 % 128, k as u32 / 128].map(|k| ((k as f32 + 0.5) / 64.0 - 1.0) * half_m);
