@@ -109,7 +109,7 @@ fn hillsides_are_rough_from_near_by_and_from_afar() {
     let land = made_up::land(129, 16.0, |_, j| 12.0 * (64.0 - j as f32).max(0.0));
     let mut scene = made_up::scene(land, [110, 110, 110, 255], [0.4; 3], no_trees);
     for (layer, detail) in scene.ground.surface.details.iter_mut().enumerate() {
-        let spots = |x: u32, y: u32| if (x / 8 + y / 8) % 2 == 0 { [70; 4] } else { [186; 4] };
+        let spots = |x: u32, y: u32| if (x / 8 + y / 8).is_multiple_of(2) { [70; 4] } else { [186; 4] };
         detail.detail = made_up::picture(&format!("spots {layer}"), 64, spots);
         detail.normal = made_up::picture(&format!("even {layer}"), 64, |_, _| [128, 128, 255, 255]);
     }

@@ -4,27 +4,20 @@
 
 use glam::{Vec2, Vec3};
 
-use super::canvas::{Canvas, Paint};
+use super::brush::{Brush, TWIG, alternating, length, point, towards};
+use super::canvas::Paint;
 use super::leaf_outline::Outline;
-use super::mips::{self, Chain};
+use super::mips::Chain;
 use super::needle_texture::TUFTED_ASPECT;
 use super::params::{Habit, TreeTextureParams, autumn, card_length_m};
-use crate::math::{cell, lerp};
 use crate::model::Image8;
 use crate::model::leaf_color;
-use crate::seed::Dice;
 
-/// Texels a side.
-const SIZE: usize = 256;
 /// The mip level from which trees are simplified: 32 × 32 texels.
 const SMALL_LEVEL: usize = 3;
 /// The same of fronds. In 32 × 32 they lose the gaps between their leaflets: D_3, where few of them overlap, then covered .95 of
 /// what it should.
 const SMALL_LEVEL_OF_FRONDS: usize = 2;
-/// Albedo of young wood, linear.
-const TWIG: Vec3 = Vec3::new(0.10, 0.062, 0.033);
-/// The same in winter, when nothing green is among it.
-pub(super) const WINTER_TWIG: Vec3 = Vec3::new(0.078, 0.053, 0.038);
 
 /// The blossom card; one transparent texel if the template does not blossom.
 pub(super) fn paint_blossom(params: &TreeTextureParams) -> Chain {
@@ -54,50 +47,7 @@ pub(super) fn paint_leaves(params: &TreeTextureParams) -> Chain {
     brush.finished(if habit == Habit::Frond { SMALL_LEVEL_OF_FRONDS } else { SMALL_LEVEL })
 }
 
-/// What paints one card.
-pub(super) struct Brush {
-    pub canvas: Canvas,
-    outline: Outline,
-    pub dice: Dice,
-    pub hue_deg: f32,
-    /// Pairs of side veins of a leaf.
-    pairs: f32,
-    twig: Vec3,
-}
-
-/// The side of the kth leaf of a twig: 1 or −1.
-pub(super) fn alternating(k: usize) -> f32 {
-    if k.is_multiple_of(2) { 1.0 } else { -1.0 }
-}
-
-pub(super) fn length(twig: &[(Vec2, f32)]) -> f32 {
-    twig.windows(2).map(|p| (p[1].0 - p[0].0).length()).sum()
-}
-
-/// The unit vector at an angle from straight up, positive to the right.
-pub(super) fn towards(angle: f32) -> Vec2 {
-    let (sin, cos) = libm::sincosf(angle);
-    Vec2::new(sin, cos)
-}
-
 impl Brush {
-    fn new(params: &TreeTextureParams, habit: Habit, outline: Outline, card: u64) -> Self {
-        Self {
-            canvas: Canvas::new(SIZE, habit.card_aspect()),
-            outline,
-            dice: Dice::new(params.tree_seed, "tree texture", card),
-            hue_deg: params.leaf_hue_deg,
-            twig: if habit == Habit::Twigs { WINTER_TWIG } else { TWIG },
-            pairs: [7.0, 8.0, 9.0, 8.0, 6.0, 6.0, 0.0, 0.0][params.leaf_shape.min(7) as usize],
-        }
-    }
-
-    /// With a transparent rim: beyond a card's picture nothing is shown.
-    fn finished(mut self, small: usize) -> Chain {
-        self.canvas.clear_rim();
-        mips::chain(&self.canvas, small)
-    }
-
     /// One leaf's paint: no two are quite alike; those laid on later are lighter.
     fn paint(&mut self, light: f32) -> Paint {
         let hue = self.hue_deg + (8.0 + 8.0 * autumn(self.hue_deg)) * self.dice.signed();
@@ -112,23 +62,6 @@ impl Brush {
         let stalk = base + axis * (0.12 * length);
         self.canvas.stroke(base, stalk, (0.005, 0.004), paint.color * 0.8);
         self.canvas.leaf(&self.outline, stalk, axis, 0.94 * length, &paint);
-    }
-
-    /// A curved twig; returns points with their angles from base to tip.
-    pub fn twig(&mut self, base: Vec2, angle: f32, length: f32, bend: f32, radius: f32) -> Vec<(Vec2, f32)> {
-        const STEPS: usize = 8;
-        let mut points = vec![(base, angle)];
-        let (mut at, mut angle) = (base, angle);
-        for step in 0..STEPS {
-            let t = step as f32 / STEPS as f32;
-            let next = at + towards(angle) * (length / STEPS as f32);
-            let radii = (radius * (1.0 - 0.7 * t), radius * (1.0 - 0.7 * (t + 1.0 / STEPS as f32)));
-            self.canvas.stroke(at, next, radii, self.twig * (0.9 + 0.2 * t));
-            angle += bend / STEPS as f32;
-            at = next;
-            points.push((at, angle));
-        }
-        points
     }
 
     /// Broad leaves: a main twig with side twigs, leaves alternating along each.
@@ -307,11 +240,4 @@ impl Brush {
         }
         self.canvas.stroke(at, at, (0.009, 0.009), Vec3::new(0.55, 0.45, 0.12) * light);
     }
-}
-
-/// Place and angle at `t` in 0..1 of a twig.
-pub(super) fn point(twig: &[(Vec2, f32)], t: f32) -> (Vec2, f32) {
-    let (i, f) = cell(t.clamp(0.0, 1.0) * (twig.len() - 1) as f32, twig.len());
-    let (a, b) = (twig[i], twig[i + 1]);
-    (a.0.lerp(b.0, f), lerp(a.1, b.1, f))
 }

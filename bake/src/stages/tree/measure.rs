@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 
+use super::brush::WINTER_TWIG;
 use super::budget::Budget;
 use super::cards::{self, Card};
-use super::leaf_texture::WINTER_TWIG;
 use super::params::{Habit, TreeParams};
 use super::skeleton;
 use crate::model::leaf_color;

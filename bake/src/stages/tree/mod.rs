@@ -7,6 +7,7 @@
 
 mod bark;
 mod bark_texture;
+mod brush;
 mod budget;
 mod canvas;
 mod cards;

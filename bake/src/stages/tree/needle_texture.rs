@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use super::leaf_texture::{Brush, alternating, length, point, towards};
+use super::brush::{Brush, alternating, length, point, towards};
 use crate::math::lerp;
 use crate::model::leaf_color;
 
