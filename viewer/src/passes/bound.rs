@@ -34,6 +34,8 @@ pub struct BoundScene {
     pub plant_draws: Elements,
     /// How many of these draws are of plants without a texture: the first ones.
     pub plain_plants: u32,
+    /// Of the ground around their feet.
+    pub feet_draws: Elements,
 }
 
 /// A buffer of vertices, instances, indices or draws that is written anew for each frame and grows as needed.
@@ -111,6 +113,7 @@ impl BoundScene {
             plants: Elements::new(gpu, "small plants"),
             plant_draws: Elements::new(gpu, "draws of small plants"),
             plain_plants: 0,
+            feet_draws: Elements::new(gpu, "draws of feet"),
             scene,
         }
     }

@@ -12,6 +12,7 @@ mod bound_mirror;
 mod bound_shade;
 mod cull;
 mod drift;
+mod feet;
 pub mod grass;
 pub mod impostors;
 mod layouts;
@@ -105,7 +106,7 @@ pub struct Passes {
     /// What a lake mirrors, before the picture.
     pub mirror: Mirror,
     /// By name, in the order in which they draw.
-    pub picture: [(&'static str, Box<dyn DrawPass>); 7],
+    pub picture: [(&'static str, Box<dyn DrawPass>); 8],
     /// Of files that are no landscapes.
     pub asset: AssetPass,
     pub studio: Studio,
@@ -131,7 +132,8 @@ impl Passes {
                 (grass::SHADER.name, Box::new(grass::Grass::new(&compiler)?)),
                 (plants::SHADER.name, Box::new(plants::Plants::new(&compiler)?)),
                 (terrain::SHADER.name, Box::new(terrain::Terrain::new(&compiler)?)),
-                // After it: many far trees are behind hills.
+                (feet::NAME, Box::new(feet::Feet::new(&compiler)?)),
+                // After the terrain: many far trees are behind hills.
                 (impostors::SHADER.name, Box::new(impostors::Impostors::new(&compiler)?)),
                 (sky::SHADER.name, Box::new(sky::Sky::new(&compiler)?)),
                 (water::SHADER.name, Box::new(water::Water::new(&compiler)?)),

@@ -56,6 +56,8 @@ pub struct PlantChoice {
     pub draws: Vec<DrawCommand>,
     /// How many of the draws are of those.
     pub plain: u32,
+    /// Of the ground around the feet of what is rough and near.
+    pub feet: Vec<DrawCommand>,
     coarse: Vec<PlantInstance>,
     /// The plants of blocks that are or were within reach, by number of their kind and block.
     known: HashMap<(usize, [i32; 2]), Box<[Standing]>>,
@@ -74,6 +76,14 @@ struct Standing {
 /// Blocks that come to be known before those out of reach are forgotten, at least.
 const FORGETFUL: usize = 512;
 
+/// How a shape and its places are read.
+pub(super) fn buffers() -> [Option<wgpu::VertexBufferLayout<'static>>; 2] {
+    [
+        buffer_layout::<PlantInstance>(wgpu::VertexStepMode::Instance, &INSTANCE),
+        buffer_layout::<PlantVertex>(wgpu::VertexStepMode::Vertex, &VERTEX),
+    ]
+}
+
 #[derive(Debug)]
 pub struct Plants {
     plain: wgpu::RenderPipeline,
@@ -84,10 +94,7 @@ impl Plants {
     pub(super) fn new(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
         let module = compiler.module(&SHADER)?;
         let groups = [&compiler.layouts.view, &compiler.layouts.ground];
-        let buffers = [
-            buffer_layout::<PlantInstance>(wgpu::VertexStepMode::Instance, &INSTANCE),
-            buffer_layout::<PlantVertex>(wgpu::VertexStepMode::Vertex, &VERTEX),
-        ];
+        let buffers = buffers();
         let plain = PipelineDesc { buffers: &buffers, ..PipelineDesc::new(&module, &groups[..1]) };
         let textured = PipelineDesc {
             vertex: "textured_vertex",
@@ -129,6 +136,7 @@ impl PlantChoice {
     pub fn clear(&mut self) {
         self.instances.clear();
         self.draws.clear();
+        self.feet.clear();
         self.plain = 0;
     }
 
@@ -174,8 +182,11 @@ impl PlantChoice {
             let fine = self.instances.len() as u32;
             self.instances.append(&mut self.coarse);
             let all = self.instances.len() as u32;
+            let some =
+                |(indices, plants): &(&Range<u32>, Range<u32>)| !indices.is_empty() && !plants.is_empty();
             let draws = [(&shape.fine, first..fine), (&shape.coarse, fine..all)];
-            self.draws.extend(draws.into_iter().filter(|(_, plants)| !plants.is_empty()).map(command));
+            self.draws.extend(draws.into_iter().filter(some).map(command));
+            self.feet.extend([(&shape.foot, first..fine)].into_iter().filter(some).map(command));
             if kind.texture.is_none() {
                 self.plain = self.draws.len() as u32;
             }

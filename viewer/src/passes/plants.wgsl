@@ -138,3 +138,28 @@ fn textured(in: Textured) -> @location(0) vec4f {
     let irradiance = view.sun_irradiance * (in.light.x * max(dot(normal, view.sun_direction), 0.0)) + around;
     return vec4f(hazed(in.air, albedo / PI * irradiance), 1.0);
 }
+
+struct Foot {
+    @builtin(position) clip: vec4f,
+    // 1 under what stands there, 0 where nothing is shaded any more.
+    @location(0) near: f32,
+}
+
+// So much nearer than the ground: both are drawn from the same heights, but with other triangles.
+const FOOT_NEARER: f32 = 1.01;
+
+@vertex
+fn foot_vertex(plant: Plant, corner: Corner) -> Foot {
+    var clip = view.clip_from_world * vec4f(placed(plant, corner).world, 1.0);
+    clip.z *= FOOT_NEARER;
+    return Foot(clip, corner.tint);
+}
+
+// Share of the light that is missing right beside what stands there.
+const FOOT_SHADE: f32 = 0.75;
+
+// A factor on what is there.
+@fragment
+fn foot(in: Foot) -> @location(0) vec4f {
+    return vec4f(vec3f(1.0 - FOOT_SHADE * smoothstep(0.0, 0.7, in.near)), 1.0);
+}

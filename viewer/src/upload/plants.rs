@@ -1,8 +1,10 @@
 //! Shapes of small plants and stones → two buffers, and where each kind grows at all.
 
+use std::f32::consts::TAU;
 use std::ops::Range;
 
-use genescape_schema::scene::PlantKind;
+use genescape_schema::scene::{PlantKind, PlantShape};
+use glam::{Vec2, Vec3, Vec3Swizzles};
 
 use super::Uploader;
 use crate::scene::Ground;
@@ -28,6 +30,8 @@ pub struct PlantBuffersOfKind {
     pub fine: Range<u32>,
     /// Those that are enough from afar.
     pub coarse: Range<u32>,
+    /// Those of the ground around its foot, see [`foot`]; empty of what is no rock or old wood.
+    pub foot: Range<u32>,
     /// Blocks a side of the field.
     side: i32,
     /// Whether it grows in a block, row by row from the north-west.
@@ -51,7 +55,8 @@ impl PlantBuffersOfKind {
     pub fn new(ground: &Ground, kind: &PlantKind, indices: Range<u32>) -> Self {
         let side = 2 * (0.5 * ground.field.extent_m() / PLANT_BLOCK_M).ceil() as i32;
         let coarse = indices.start..(indices.start + 3 * kind.shape.coarse).min(indices.end);
-        Self { fine: indices, coarse, side, grows: grows(ground, kind, side) }
+        let foot = indices.end..indices.end;
+        Self { fine: indices, coarse, foot, side, grows: grows(ground, kind, side) }
     }
 
     /// Whether the kind grows in a block, which is numbered from the middle of the field.
@@ -75,7 +80,14 @@ impl Uploader {
                 tint,
             }));
             indices.extend(shape.triangles.as_flattened().iter().map(|v| v + base));
-            kinds.push(PlantBuffersOfKind::new(ground, kind, first..indices.len() as u32));
+            let mut buffers = PlantBuffersOfKind::new(ground, kind, first..indices.len() as u32);
+            if kind.texture.is_some() {
+                let base = vertices.len() as u32;
+                vertices.extend(foot(shape));
+                indices.extend(ring().map(|v| v + base));
+                buffers.foot.end = indices.len() as u32;
+            }
+            kinds.push(buffers);
         }
         PlantBuffers {
             vertices: self.gpu.buffer("plants", &vertices, wgpu::BufferUsages::VERTEX),
@@ -83,6 +95,37 @@ impl Uploader {
             kinds,
         }
     }
+}
+
+/// Corners of the edge of a foot.
+const FOOT_CORNERS: u32 = 8;
+/// How far the ring around a foot reaches under what stands there, as a part of its width, and beyond, as a part of its height.
+const UNDER: f32 = 0.4;
+const BEYOND: f32 = 0.9;
+
+/// The ground around the foot of a shape, which it shades: a ring of which the inner corners, with a tint of 1, and the outer
+/// ones, with 0, take turns.
+fn foot(shape: &PlantShape) -> Vec<PlantVertex> {
+    let places = || shape.positions_m.iter().copied().map(Vec3::from);
+    let height_m = places().fold(0.0, |highest: f32, place| highest.max(place.y));
+    let low = || places().filter(|place| place.y < 0.5 * height_m).map(Vec3::xz);
+    let corners = |number: u32| {
+        let way = Vec2::from_angle(number as f32 / FOOT_CORNERS as f32 * TAU);
+        let reach_m = low().fold(0.0, |farthest: f32, place| farthest.max(place.dot(way)));
+        [(reach_m * (1.0 - UNDER), 1.0), (reach_m + BEYOND * height_m, 0.0)].map(|(away_m, tint)| {
+            PlantVertex { position: [way.x * away_m, 0.0, way.y * away_m], normal: [0.0, 1.0, 0.0], tint }
+        })
+    };
+    (0..FOOT_CORNERS).flat_map(corners).collect()
+}
+
+/// The triangles of a ring whose corners lie so.
+fn ring() -> impl Iterator<Item = u32> {
+    (0..FOOT_CORNERS).flat_map(|k| {
+        let [inner, outer] = [2 * k, 2 * k + 1];
+        let [next, next_outer] = [inner, outer].map(|corner| (corner + 2) % (2 * FOOT_CORNERS));
+        [inner, outer, next, next, outer, next_outer]
+    })
 }
 
 /// Whether a kind grows in each of the blocks or right beside it, for a cell may reach beyond its block.
@@ -106,4 +149,24 @@ fn grows(ground: &Ground, kind: &PlantKind, side: i32) -> Vec<bool> {
         }
     }
     grows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ground_around_a_foot_begins_under_it() {
+        // A trunk along x, 3 m long, half a metre high, that leans over its end at the top.
+        let positions_m = [[-1.5, 0.0, 0.2], [1.5, 0.1, -0.2], [1.5, 0.0, 0.2], [9.0, 0.5, 0.0]];
+        let foot = foot(&PlantShape { positions_m: positions_m.to_vec(), ..PlantShape::default() });
+        let away_m = |k: usize| libm::hypotf(foot[k].position[0], foot[k].position[2]);
+        for (first, reach_m) in [(0, 1.5), (4, 0.2), (8, 1.5), (12, 0.2)] {
+            assert!((away_m(first) - 0.6 * reach_m).abs() < 1e-5, "{} of {reach_m}", away_m(first));
+            assert!((away_m(first + 1) - reach_m - 0.45).abs() < 1e-5, "{}", away_m(first + 1));
+            assert_eq!([foot[first].tint, foot[first + 1].tint], [1.0, 0.0]);
+        }
+        let used: std::collections::BTreeSet<u32> = ring().collect();
+        assert_eq!((used.len(), ring().count()), (foot.len(), 3 * foot.len()));
+    }
 }

@@ -70,6 +70,7 @@ impl LandscapeChoice {
         bound.plants.write(gpu, &self.plants.instances);
         bound.plant_draws.write(gpu, &self.plants.draws);
         bound.plain_plants = self.plants.plain;
+        bound.feet_draws.write(gpu, &self.plants.feet);
         bound.scene.land.ring.seen(&camera.frustum(size[0] / size[1]), &mut bound.ring);
         let drawn = sight(&detail, lod_camera, options);
         let mirrored =

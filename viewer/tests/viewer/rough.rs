@@ -125,3 +125,33 @@ fn hillsides_are_rough_from_near_by_and_from_afar() {
         assert!(spread > 0.05 * mean, "{away_m} m away land is smooth: {spread} around {mean}");
     }
 }
+
+/// A cube on bright land under an even sky.
+#[test]
+#[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
+fn the_ground_is_darker_around_the_foot_of_what_is_rough() {
+    let studio = made_up::studio();
+    let even = made_up::picture("even", 64, |_, _| [128; 4]);
+    let ground = |texture| {
+        let mut scene = scene(texture, &even);
+        scene.ground.surface.color = made_up::picture("bright", 1, |_, _| [180, 180, 180, 255]);
+        // On rock no grass grows.
+        scene.ground.surface.weights = made_up::picture("rock", 1, |_, _| [255, 0, 0, 0]);
+        scene.sky.light.sun_irradiance_linear = [0.0; 3];
+        let mut view = studio.view(made_up::upload(&studio, &scene), [240, 160]);
+        let camera =
+            Camera { position_m: Vec3::new(0.0, 7.0, 5.0), yaw_rad: 0.0, pitch_rad: -1.0, fov_y_rad: 0.8 };
+        let frame = FrameInput { options: Options::default(), ..FrameInput::default() };
+        studio.shoot(&mut view, &frame, &camera, &camera).expect("a picture")
+    };
+    let ([with, without], mut shaded) = ([Some(1), None].map(ground), 0);
+    let open = without.pixels().map(|pixel| pixel[1]).max().unwrap_or(0);
+    for (with, without) in with.pixels().zip(without.pixels()) {
+        // Where no cube is, with or without texture.
+        if without[1].abs_diff(open) <= 2 {
+            assert!(with[1] <= without[1] + 2, "{with:?} for {without:?}");
+            shaded += u32::from(with[1] + 12 < without[1]);
+        }
+    }
+    assert!(shaded > 300, "{shaded} pixels of ground are darker");
+}
