@@ -380,12 +380,10 @@ fn wetness(height: f32) -> f32 {
     return mix(0.55, 1.0, smoothstep(0.3 * WET_M, WET_M, height - view.water_level));
 }
 
-// Pixels by which the land that a lake mirrors may differ from what it is, and so leave a gap to the shore: as far below the
-// surface it is mirrored, too.
-const MIRRORED_ERROR_PX: f32 = 3.0;
-
+// Whether a place of land as it is drawn is under water. Drawn coarsely, land may be lower there than it is, and would leave a gap
+// to the shore, or higher, and bars under water be mirrored as if they stood in it: the samples tell.
 fn is_sunk(world: vec3f) -> bool {
-    return world.y < view.water_level - distance(world, view.eye) * MIRRORED_ERROR_PX / view.focal_px;
+    return height_m(world.xz) < view.water_level;
 }
 
 // As a lake mirrors it: what is above the water, with no detail.

@@ -123,14 +123,16 @@ fn fragment(in: Out) -> @location(0) vec4f {
     let edge_depth = view.water_level - height_m(clamp(in.world.xz, vec2f(-view.field.z), vec2f(view.field.z)));
     let depth = select(max(edge_depth, 8.0), edge_depth, inside);
     let pixel_m = away / view.focal_px / max(look.y, 0.02);
-    let waves = slope(in.world.xz, pixel_m, swell(in.world.xz, edge_depth));
+    let sea = swell(in.world.xz, edge_depth);
+    let waves = slope(in.world.xz, pixel_m, sea);
     // At low angles the backs of waves are hidden.
     let shown = smoothstep(0.0, 0.6, depth) * clamp(look.y / 0.12, 0.2, 1.0);
-    // Of waves too fine to be seen, what faces the eye hides the rest: at low angles water mirrors the sky higher up, and less
-    // of it, so that a sea ends in a line at the horizon (Bruneton et al., "Real-time Realistic Ocean Lighting", 2010).
+    // Of a sea's waves that are too fine to be seen, what faces the eye hides the rest: at low angles it mirrors the sky higher up,
+    // and less of it, so that it ends in a line at the horizon (Bruneton et al., "Real-time Realistic Ocean Lighting", 2010). Not
+    // so a lake, whose far shore would not be mirrored.
     let level = look.xz / max(length(look.xz), 1e-3);
-    let leaning = waves.variance / (look.y / max(length(look.xz), 1e-3) + 1.25 * sqrt(waves.variance) + 1e-4);
-    let tilt = waves.seen * shown - level * leaning * smoothstep(0.0, 0.6, depth);
+    let leaning = sea * waves.variance / (look.y / max(length(look.xz), 1e-3) + 1.25 * sqrt(waves.variance) + 1e-4);
+    let tilt = waves.seen * shown - level * leaning;
     let normal = normalize(vec3f(-tilt.x, 1.0, -tilt.y));
     var mirrored = reflect(-look, normal);
     mirrored.y = max(mirrored.y, 0.01);

@@ -122,6 +122,25 @@ fn a_far_flat_shore_is_where_the_ring_comes_out_of_the_lake() {
     }
 }
 
+/// A bar of red land 15 cm under the surface: in the lake behind it its mirror image would stand.
+#[test]
+#[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
+fn what_is_under_water_is_not_mirrored() {
+    let studio = made_up::studio();
+    let behind = |bar_m: f32| {
+        let no_trees = Trees { templates: Vec::new(), instances: [].into(), ..Trees::default() };
+        let height_m = |_: u32, j: u32| if (86..=92).contains(&j) { bar_m } else { -3.0 };
+        let bed = made_up::land(257, 0.5, height_m);
+        let mut scene = made_up::scene(bed, [200, 20, 20, 255], [0.5, 0.7, 1.0], no_trees);
+        scene.ground.water_level_m = Some(0.0);
+        let picture = shoot(&studio, &scene);
+        let [x, y] = pixel_of(&camera(), Vec3::new(0.0, 0.0, -23.5));
+        picture.get_pixel(x, y).0.map(f32::from)
+    };
+    let [none, sunk] = [-3.0, -0.15].map(behind);
+    assert!((0..3).all(|n| (sunk[n] - none[n]).abs() < 6.0), "{sunk:?} behind a bar, {none:?} without it");
+}
+
 /// An even sky, of which calm water mirrors nearly all at so low an angle.
 #[test]
 #[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
