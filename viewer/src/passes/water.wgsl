@@ -130,9 +130,9 @@ fn fragment(in: Out) -> @location(0) vec4f {
     // Of a sea's waves that are too fine to be seen, what faces the eye hides the rest: at low angles it mirrors the sky higher up,
     // and less of it, so that it ends in a line at the horizon (Bruneton et al., "Real-time Realistic Ocean Lighting", 2010). Not
     // so a lake, whose far shore would not be mirrored.
-    let level = look.xz / max(length(look.xz), 1e-3);
-    let leaning = sea * waves.variance / (look.y / max(length(look.xz), 1e-3) + 1.25 * sqrt(waves.variance) + 1e-4);
-    let tilt = waves.seen * shown - level * leaning;
+    let level = max(length(look.xz), 1e-3);
+    let leaning = sea * waves.variance / (look.y / level + 1.25 * sqrt(waves.variance) + 1e-4);
+    let tilt = waves.seen * shown - look.xz / level * leaning;
     let normal = normalize(vec3f(-tilt.x, 1.0, -tilt.y));
     var mirrored = reflect(-look, normal);
     mirrored.y = max(mirrored.y, 0.01);

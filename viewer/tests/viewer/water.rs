@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use genescape_schema::scene::TerrainLod;
 use genescape_viewer::camera::Camera;
 use genescape_viewer::headless::Headless;
 use genescape_viewer::options::{FrameInput, Options};
@@ -36,6 +37,13 @@ fn lakeside(has_tree: bool, has_hill: bool, color: [u8; 4]) -> Scene {
     let trees =
         Trees { templates: vec![Arc::new(template)], instances: instances.into(), ..Trees::default() };
     let mut scene = made_up::scene(made_up::land(side, spacing_m, height_m), color, [0.5, 0.7, 1.0], trees);
+    scene.ground.water_level_m = Some(0.0);
+    scene
+}
+
+/// Land of that colour without trees, and water at height 0.
+fn flooded(bed: TerrainLod, color: [u8; 4]) -> Scene {
+    let mut scene = made_up::scene(bed, color, [0.5, 0.7, 1.0], Trees::default());
     scene.ground.water_level_m = Some(0.0);
     scene
 }
@@ -96,10 +104,8 @@ fn a_lake_mirrors_land_in_its_colour() {
 #[test]
 #[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
 fn a_far_flat_shore_is_where_the_ring_comes_out_of_the_lake() {
-    let no_trees = Trees { templates: Vec::new(), instances: [].into(), ..Trees::default() };
     let bed = made_up::land(129, 1.0, |_, _| -3.0);
-    let mut scene = made_up::scene(bed, GREEN, [0.5, 0.7, 1.0], no_trees);
-    scene.ground.water_level_m = Some(0.0);
+    let mut scene = flooded(bed, GREEN);
     let height_m = |z: f32| -0.5 - 0.005 * (z + 64.0);
     let corner = |x: f32, z: f32| [x, height_m(z), z];
     scene.ground.apron = Arc::new(Apron {
@@ -128,12 +134,9 @@ fn a_far_flat_shore_is_where_the_ring_comes_out_of_the_lake() {
 fn what_is_under_water_is_not_mirrored() {
     let studio = made_up::studio();
     let behind = |bar_m: f32| {
-        let no_trees = Trees { templates: Vec::new(), instances: [].into(), ..Trees::default() };
         let height_m = |_: u32, j: u32| if (86..=92).contains(&j) { bar_m } else { -3.0 };
         let bed = made_up::land(257, 0.5, height_m);
-        let mut scene = made_up::scene(bed, [200, 20, 20, 255], [0.5, 0.7, 1.0], no_trees);
-        scene.ground.water_level_m = Some(0.0);
-        let picture = shoot(&studio, &scene);
+        let picture = shoot(&studio, &flooded(bed, [200, 20, 20, 255]));
         let [x, y] = pixel_of(&camera(), Vec3::new(0.0, 0.0, -23.5));
         picture.get_pixel(x, y).0.map(f32::from)
     };
@@ -148,10 +151,8 @@ fn a_sea_is_darker_than_the_sky_where_it_ends_and_a_lake_is_not() {
     let studio = made_up::studio();
     // Far behind the eye's back there is land around a lake, and none around a sea.
     let below_horizon = |shore_m: f32| {
-        let no_trees = Trees { templates: Vec::new(), instances: [].into(), ..Trees::default() };
         let bed = made_up::land(129, 8.0, |_, _| -30.0);
-        let mut scene = made_up::scene(bed, GREEN, [0.5, 0.7, 1.0], no_trees);
-        scene.ground.water_level_m = Some(0.0);
+        let mut scene = flooded(bed, GREEN);
         let corners = [[-4e3, 4e3], [4e3, 4e3], [0.0, 4.1e3]];
         scene.ground.apron = Arc::new(Apron {
             positions_m: corners.map(|[x, z]| [x, shore_m, z]).to_vec(),
