@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::{Binding, BoundMirror, BoundShade, CullUniform, Layouts, bind};
 use crate::gpu::Gpu;
-use crate::upload::{SceneBuffers, TreeSet};
+use crate::upload::{PICTURE_LISTS, SceneBuffers, TreeSet};
 
 /// What the passes draw for one view.
 #[derive(Debug)]
@@ -20,12 +20,12 @@ pub struct BoundScene {
     pub mirror: Option<BoundMirror>,
     /// Blocks, or sample numbers of a strip, as the LOD mode has it.
     pub terrain: Elements,
-    /// Sides of the picture as a part of full resolution.
-    pub part: f32,
     /// Whether one copy of the clouds fades into the other.
     pub clouds_fade: bool,
     /// Clumps of grass.
     pub clumps: Elements,
+    /// Which of them are drawn with fine blades, and which with coarse ones: [`crate::upload::DrawCommand`].
+    pub clump_draws: Elements,
     /// What is drawn of the ring's indices.
     pub ring: Vec<Range<u32>>,
     /// Small plants and stones.
@@ -106,9 +106,9 @@ impl BoundScene {
             mirror: BoundMirror::new(gpu, layouts, &scene, view),
             shade,
             terrain: Elements::new(gpu, "terrain"),
-            part: 1.0,
             clouds_fade: false,
             clumps: Elements::new(gpu, "clumps of grass"),
+            clump_draws: Elements::new(gpu, "draws of grass"),
             ring: Vec::new(),
             plants: Elements::new(gpu, "small plants"),
             plant_draws: Elements::new(gpu, "draws of small plants"),
@@ -155,7 +155,7 @@ impl BoundTrees {
         let buckets = set.template_count * set.level_count;
         let uniform = gpu.buffer("culling", &[CullUniform::default()], Usage::STORAGE | Usage::COPY_DST);
         let written = Usage::STORAGE | Usage::COPY_SRC;
-        let counts = gpu.empty_buffer("counts", 4 * u64::from(buckets + 1), written);
+        let counts = gpu.empty_buffer("counts", 4 * u64::from(buckets + PICTURE_LISTS), written);
         let room = 12 * u64::from(set.list_capacity);
         let visible = gpu.empty_buffer("visible trees", room, written | Usage::VERTEX);
         let commands = gpu.buffer("commands", &set.commands, written | Usage::INDIRECT);

@@ -11,7 +11,7 @@ use crate::camera::Frustum;
 use crate::lod::tree::{MIN_DISTANCE_M, SEEN_PX, SMALL_TREE_M, STEEP};
 use crate::lod_mode::TreeLodMode;
 use crate::options::Options;
-use crate::upload::{PICTURE_INDICES, TreeSet};
+use crate::upload::{PICTURE_INDICES, PICTURE_LISTS, TreeSet};
 
 /// Threads of a workgroup.
 const GROUP: u32 = 64;
@@ -40,6 +40,7 @@ pub const SHADER: Shader = Shader {
         ("PICTURES", PICTURES as f64),
         ("MESHES", MESHES as f64),
         ("PICTURE_INDICES", PICTURE_INDICES.len() as f64),
+        ("PICTURE_LISTS", PICTURE_LISTS as f64),
     ],
 };
 
@@ -143,7 +144,7 @@ impl Cull {
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, trees: &BoundTrees) {
         pass.set_bind_group(1, &trees.cull_group, &[]);
         pass.set_pipeline(&self.clear);
-        dispatch_each(pass, trees.buckets + 1);
+        dispatch_each(pass, trees.buckets + PICTURE_LISTS);
         pass.set_pipeline(&self.choose);
         dispatch_each(pass, trees.instances);
         pass.set_pipeline(&self.write_commands);

@@ -167,14 +167,17 @@ fn bucket(template_index: u32, level: u32) -> u32 {
     return level * cull.templates + template_index;
 }
 
-// Pictures of all templates are one list, the first: one draw shows them.
-fn pictures_bucket() -> u32 {
-    return cull.templates * cull.levels;
+// Pictures of all templates are two lists: one of the trees of the field, which is the first of all, and one of those beyond,
+// which the shadow map doesn't know. A draw shows each.
+override PICTURE_LISTS: u32;
+
+fn pictures_bucket(is_beyond: bool) -> u32 {
+    return cull.templates * cull.levels + select(0u, 1u, is_beyond);
 }
 
 @compute @workgroup_size(GROUP)
 fn clear(@builtin(global_invocation_id) id: vec3u) {
-    if (id.x <= pictures_bucket()) {
+    if (id.x < pictures_bucket(false) + PICTURE_LISTS) {
         atomicStore(&counts[id.x], 0u);
     }
 }
@@ -226,7 +229,8 @@ fn list_tree(index: u32, center: vec3f, radius: f32) {
         }
     }
     if (share > 0.0) {
-        let slot = atomicAdd(&counts[pictures_bucket()], 1u);
+        let is_beyond = index >= cull.field;
+        let slot = atomicAdd(&counts[pictures_bucket(is_beyond)], 1u) + select(0u, cull.field, is_beyond);
         visible[slot] = Visible(index, lambda, pack(vec3f(0.0, share, share)));
     }
 }
@@ -236,8 +240,9 @@ fn write_commands(@builtin(global_invocation_id) id: vec3u) {
     let buckets = cull.templates * cull.levels;
     if (id.x < buckets * cull.mesh_draws) {
         commands[id.x].instances = atomicLoad(&counts[id.x % buckets]);
-    } else if (id.x == buckets * cull.mesh_draws) {
+    } else if (id.x < buckets * cull.mesh_draws + PICTURE_LISTS) {
         // Corners of one instance: devices begin each with new groups of threads, or with new preparations.
-        commands[id.x].indices = PICTURE_INDICES * atomicLoad(&counts[pictures_bucket()]);
+        let is_beyond = id.x > buckets * cull.mesh_draws;
+        commands[id.x].indices = PICTURE_INDICES * atomicLoad(&counts[pictures_bucket(is_beyond)]);
     }
 }

@@ -9,6 +9,7 @@ use super::{BoundScene, Compiler, DrawPass, PipelineDesc, Shader, buffer_layout}
 use crate::camera::Frustum;
 use crate::options::Options;
 use crate::scene::{Ground, Image};
+use crate::upload::DrawCommand;
 
 pub const SHADER: Shader = Shader {
     name: "grass",
@@ -20,6 +21,7 @@ pub const SHADER: Shader = Shader {
         ("BLADE_VERTICES", BLADE_VERTICES as f64),
         ("DENSE_M", DENSE_M as f64),
         ("REACH_M", REACH_M as f64),
+        ("FINE_M", FINE_M as f64),
     ],
 };
 
@@ -34,7 +36,9 @@ const BLADE_VERTICES: u16 = 5;
 const BLADE_TRIANGLES: [u16; 9] = [0, 1, 2, 2, 1, 3, 2, 3, 4];
 /// A blade as one triangle, straight from its root to its tip.
 const COARSE_BLADE: [u16; 3] = [0, 1, 4];
-/// In pictures at a smaller part of full resolution than this blades are that coarse.
+/// From this distance in metres on blades are that coarse: nobody sees that they are straight, and most of them stand there.
+const FINE_M: f32 = 9.0;
+/// In pictures at a smaller part of full resolution than this all of them are.
 const FINE_PART: f32 = 0.6;
 /// Up to this distance in metres all clumps stand.
 const DENSE_M: f32 = 3.0;
@@ -83,18 +87,16 @@ impl Grass {
 
 impl DrawPass for Grass {
     fn is_needed(&self, bound: &BoundScene, options: &Options) -> bool {
-        options.draw_terrain && bound.clumps.count > 0
+        options.draw_terrain && bound.clump_draws.count > 0
     }
 
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, bound: &BoundScene, _: &Options) -> u32 {
+        let draws = &bound.clump_draws;
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(1, &bound.ground_group, &[]);
         pass.set_vertex_buffer(0, bound.clumps.buffer.slice(..));
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint16);
-        let fine = u32::from(BLADES) * BLADE_TRIANGLES.len() as u32;
-        let coarse = u32::from(BLADES) * COARSE_BLADE.len() as u32;
-        let indices = if bound.part < FINE_PART { fine..fine + coarse } else { 0..fine };
-        pass.draw_indexed(indices, 0, 0..bound.clumps.count);
+        pass.multi_draw_indexed_indirect(&draws.buffer, 0, draws.count);
         1
     }
 }
@@ -107,9 +109,51 @@ fn density(away_m: f32, part: f32) -> f32 {
     (DENSE_M / away_m.max(0.01)).min(1.0) * (1.0 - far * far * (3.0 - 2.0 * far))
 }
 
-/// The clumps that an eye may see in a picture drawn at `part` of full resolution, into `out`, which is emptied first.
-pub fn clumps(ground: &Ground, eye_m: Vec3, frustum: &Frustum, part: f32, out: &mut Vec<Clump>) {
-    out.clear();
+/// What grass is drawn in a frame.
+#[derive(Clone, Debug, Default)]
+pub struct GrassChoice {
+    /// Those with fine blades, then those with coarse ones.
+    pub clumps: Vec<Clump>,
+    /// How either are drawn.
+    pub draws: Vec<DrawCommand>,
+    /// Room for those with coarse blades.
+    coarse: Vec<Clump>,
+}
+
+impl GrassChoice {
+    /// Nothing is drawn.
+    pub fn clear(&mut self) {
+        self.clumps.clear();
+        self.draws.clear();
+    }
+
+    /// Replaces them by those that an eye may see in a picture drawn at `part` of full resolution.
+    pub fn choose(&mut self, ground: &Ground, eye_m: Vec3, frustum: &Frustum, part: f32) {
+        self.clear();
+        let fine_m = if part < FINE_PART { 0.0 } else { FINE_M * part };
+        each_clump(ground, eye_m, frustum, part, |nearest_m, clump| {
+            let list = if nearest_m < fine_m { &mut self.clumps } else { &mut self.coarse };
+            list.push(clump);
+        });
+        let (near, far) = (self.clumps.len() as u32, self.coarse.len() as u32);
+        self.clumps.append(&mut self.coarse);
+        let [fine, coarse] =
+            [BLADE_TRIANGLES.len(), COARSE_BLADE.len()].map(|n| u32::from(BLADES) * n as u32);
+        let draw = |indices, first_index, instances, first_instance| DrawCommand {
+            indices,
+            instances,
+            first_index,
+            first_instance,
+            ..DrawCommand::default()
+        };
+        let draws = [draw(fine, 0, near, 0), draw(coarse, fine, far, near)];
+        self.draws.extend(draws.into_iter().filter(|draw| draw.instances > 0));
+    }
+}
+
+/// Calls `found` for each clump that an eye may see in a picture drawn at `part` of full resolution, with the distance in metres
+/// of its nearest blade at least.
+fn each_clump(ground: &Ground, eye_m: Vec3, frustum: &Frustum, part: f32, mut found: impl FnMut(f32, Clump)) {
     let field = &ground.field;
     let half_m = 0.5 * field.extent_m();
     let water_m = ground.water_level_m.unwrap_or(f32::MIN);
@@ -126,8 +170,8 @@ pub fn clumps(ground: &Ground, eye_m: Vec3, frustum: &Frustum, part: f32, out: &
             }
             let height_m = field.height_m(middle.x, middle.y);
             let place = Vec3::new(middle.x, height_m, middle.y);
-            // Of the nearest blade.
-            let share = density((place.distance(eye_m) - AROUND_M).max(0.0), part);
+            let nearest_m = (place.distance(eye_m) - AROUND_M).max(0.0);
+            let share = density(nearest_m, part);
             if share == 0.0 {
                 continue;
             }
@@ -136,7 +180,7 @@ pub fn clumps(ground: &Ground, eye_m: Vec3, frustum: &Frustum, part: f32, out: &
                 continue;
             }
             let count = ((share * CLUMPS as f32).ceil() as u32).min(CLUMPS);
-            out.extend((0..count).map(|number| Clump { cell: [x, z], number }));
+            (0..count).for_each(|number| found(nearest_m, Clump { cell: [x, z], number }));
         }
     }
 }
@@ -211,13 +255,15 @@ mod tests {
             };
             let frustum = camera.frustum(1.5);
             prop_assume!(frustum.sees_sphere(root, 0.0) && density(look.length(), part) > 0.0);
-            let mut drawn = Vec::new();
-            clumps(&ground, eye, &frustum, part, &mut drawn);
+            let mut grass = GrassChoice::default();
+            grass.choose(&ground, eye, &frustum, part);
+            let drawn = &grass.clumps;
             let rank = share * density(look.length(), part);
             let cell = [root.x, root.z].map(|m| (m / CELL_M).floor() as i32);
             let number = (rank * CLUMPS as f32) as u32;
             let wanted = Clump { cell, number };
             prop_assert!(drawn.contains(&wanted));
+            prop_assert_eq!(grass.draws.iter().map(|draw| draw.instances).sum::<u32>(), drawn.len() as u32);
             prop_assert!(drawn.iter().all(|clump| clump.cell[1] >= -1 && clump.number < CLUMPS));
         }
     }

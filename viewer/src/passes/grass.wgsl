@@ -9,6 +9,8 @@ override BLADE_VERTICES: u32;
 // Distances in metres up to which all of them stand, and beyond which there are none.
 override DENSE_M: f32;
 override REACH_M: f32;
+// From this distance on blades are drawn as one triangle each; before it they straighten.
+override FINE_M: f32;
 // Blades of one tuft.
 const TUFT: u32 = 8u;
 
@@ -63,6 +65,9 @@ fn density(away: f32) -> f32 {
     return min(DENSE_M / max(away, 0.01), 1.0) * (1.0 - smoothstep(0.6 * REACH_M, REACH_M, away));
 }
 
+// A triangle covers less than a blade that is wide up to its middle: by so much wider it covers as much.
+const SLENDER: f32 = 1.22;
+
 const NOWHERE = Out(vec4f(0.0, 0.0, -1.0, 1.0), vec3f(0.0));
 
 @vertex
@@ -110,12 +115,14 @@ fn vertex(clump: Clump, @builtin(vertex_index) index: u32) -> Out {
     // Never much thinner than a pixel, and wider where there are fewer.
     let half_m = max((0.0028 + 0.0026 * more.y) * (1.0 + 0.09 * seeming), 0.42 * pixel_m) * min(present * 3.0, 1.0);
     let bend = outward * (0.2 + 0.65 * more.z) + wind(root, dice.y);
-    let lean = bend * (height * up * up);
-    let width = half_m * (1.0 - 0.28 * up * 2.0 * (1.0 - step(0.9, up)));
+    let straight = smoothstep(0.6 * FINE_M, FINE_M, seeming);
+    let bow = mix(up * up, up, straight);
+    let lean = bend * (height * bow);
+    let width = half_m * mix(1.0, SLENDER, straight) * (1.0 - mix(0.56, 1.0, straight) * up);
     let world = vec3f(
         root.x + lean.x + facing.x * side * width,
         // A bent blade reaches less high; its root is in the ground.
-        ground_m - 0.015 + height * (up - 0.22 * up * up * dot(bend, bend)),
+        ground_m - 0.015 + height * (up - 0.22 * bow * dot(bend, bend)),
         root.y + lean.y + facing.y * side * width,
     );
 

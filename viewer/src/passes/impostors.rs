@@ -1,11 +1,11 @@
-//! Draws the pictures of trees that are far away: one draw for all of them, and one instance, for four vertices would be little for
-//! each of thousands of instances.
+//! Draws the pictures of trees that are far away: a draw for all of the field's and one for all beyond it, each of one instance, for
+//! four vertices would be little for each of thousands of instances.
 
 use super::shaders::ShaderError;
-use super::{BoundScene, BoundTrees, Compiler, DrawPass, FilledOrWire, PipelineDesc, Shader};
+use super::{BoundScene, BoundTrees, Compiler, DrawPass, FilledOrWire, PipelineDesc, Shader, Target};
 use crate::options::Options;
 use crate::scene::IMPOSTOR_ROWS;
-use crate::upload::{DrawCommand, MAX_LEVELS, TreeSet};
+use crate::upload::{DrawCommand, MAX_LEVELS, PICTURE_LISTS, TreeSet};
 
 pub const SHADER: Shader = Shader {
     name: "impostors",
@@ -15,15 +15,22 @@ pub const SHADER: Shader = Shader {
 
 #[derive(Debug)]
 pub struct Impostors {
-    pipelines: FilledOrWire<wgpu::RenderPipeline>,
+    pipelines: FilledOrWire<PicturePipelines>,
 }
+
+/// One for the trees of the field and one for those beyond.
+#[derive(Debug)]
+pub(super) struct PicturePipelines([wgpu::RenderPipeline; PICTURE_LISTS as usize]);
 
 impl Impostors {
     pub(super) fn new(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
         let (shader, layouts) = (compiler.module(&SHADER)?, compiler.layouts);
         let groups = [&layouts.view, &layouts.impostors];
         let pipelines = |wireframe: bool| {
-            compiler.pipeline(&PipelineDesc { wireframe, ..PipelineDesc::new(&shader, &groups) })
+            PicturePipelines(["field", "beyond"].map(|fragment| {
+                let usual = PipelineDesc::new(&shader, &groups);
+                compiler.pipeline(&PipelineDesc { fragment: Some(fragment), wireframe, ..usual })
+            }))
         };
         Ok(Self { pipelines: FilledOrWire::new(compiler.gpu, pipelines) })
     }
@@ -35,17 +42,36 @@ impl DrawPass for Impostors {
     }
 
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, bound: &BoundScene, options: &Options) -> u32 {
-        pass.set_pipeline(self.pipelines.get(options.wireframe));
-        bound.trees().map_or(0, |(set, trees)| draw(pass, set, trees))
+        let pipelines = self.pipelines.get(options.wireframe);
+        bound.trees().map_or(0, |(set, trees)| pipelines.draw(pass, set, trees))
     }
 }
 
-/// Draws the pictures that culling left and tells how many draws that takes.
-pub(super) fn draw(pass: &mut wgpu::RenderPass<'_>, set: &TreeSet, trees: &BoundTrees) -> u32 {
-    let (Some(pictures), Some(group)) = (&set.impostors, &trees.impostors_group) else { return 0 };
-    pass.set_bind_group(1, group, &[]);
-    pass.set_index_buffer(pictures.indices.slice(..), wgpu::IndexFormat::Uint32);
-    let meshes = u64::from(set.mesh_draws) * u64::from(trees.buckets);
-    pass.draw_indexed_indirect(&trees.commands, meshes * size_of::<DrawCommand>() as u64);
-    1
+impl PicturePipelines {
+    /// Those of a lake's mirror.
+    pub fn mirrored(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
+        let shader = compiler.module(&SHADER)?;
+        let groups = [&compiler.layouts.view, &compiler.layouts.impostors];
+        Ok(Self(["mirrored_field", "mirrored_beyond"].map(|fragment| {
+            let usual = PipelineDesc::new(&shader, &groups);
+            compiler.pipeline(&PipelineDesc { fragment: Some(fragment), target: Target::Mirror, ..usual })
+        })))
+    }
+
+    /// Draws the pictures that culling left and tells how many draws that takes.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, set: &TreeSet, trees: &BoundTrees) -> u32 {
+        let (Some(pictures), Some(group)) = (&set.impostors, &trees.impostors_group) else { return 0 };
+        pass.set_bind_group(1, group, &[]);
+        pass.set_index_buffer(pictures.indices.slice(..), wgpu::IndexFormat::Uint32);
+        let meshes = set.mesh_draws * trees.buckets;
+        let has_trees = [set.field_count > 0, set.count > set.field_count];
+        let needed = (meshes..).zip(&self.0).zip(has_trees).filter(|(_, has_trees)| *has_trees);
+        let mut draws = 0;
+        for ((command, pipeline), _) in needed {
+            pass.set_pipeline(pipeline);
+            pass.draw_indexed_indirect(&trees.commands, u64::from(command) * size_of::<DrawCommand>() as u64);
+            draws += 1;
+        }
+        draws
+    }
 }

@@ -52,8 +52,8 @@ struct Out {
     // For either side, what to take of `middles` for how far to the right they are, as parts of the picture's width.
     @location(8) @interpolate(flat) aside: vec4f,
     @location(9) @interpolate(flat) template_index: u32,
-    // Which of its pixels are drawn; a number by chance, [0, 1), another for each tree; 1 beyond the field.
-    @location(10) @interpolate(flat) shown: vec4f,
+    // Which of its pixels are drawn; a number by chance, [0, 1), another for each tree.
+    @location(10) @interpolate(flat) shown: vec3f,
     // See `leaf_lights`.
     @location(11) @interpolate(flat) leaf: vec4f,
     // How many leaves the picture is wide and high; how many pixels a leaf is wide, at most 1.
@@ -114,7 +114,7 @@ fn vertex(@builtin(vertex_index) vertex: u32) -> Out {
     out.template_index = template_index;
     let chance = scattered(vec2f(f32(tree), 5.3));
     let edges = vec2f(vec2u(shown, shown >> 10u) & vec2u(1023u)) / 1023.0;
-    out.shown = vec4f(edges, chance, select(0.0, 1.0, is_beyond_field(rows)));
+    out.shown = vec3f(edges, chance);
     let from_sun = dot(ahead, normalize(to_sun.xz + vec2f(0.0, 1e-6)));
     let at = 0.5 + 0.5 * vec2f(from_sun, to_eye.y);
     out.leaf = textureSampleLevel(leaf_lights, clamped, at, template_index, 0.0);
@@ -153,7 +153,17 @@ fn shift(template_index: u32, v: f32, aside: vec2f) -> f32 {
     return dot(mix(above, below, row - f32(first)), aside);
 }
 
-fn pixel(in: Out, is_kept: bool) -> Pixel {
+// The sun that is left at a place of a tree of the field: the shadow map tells. Beyond the field what is between the place and the sun
+// does, if it is leaves. Either is much of what a pixel takes, so each kind of tree has a draw that leaves the other out.
+fn sun_left(in: Out, world: vec3f, in_crown: vec3f, leafy: f32, is_beyond: bool) -> f32 {
+    if (is_beyond) {
+        return mix(1.0, sun_through_crown(in_crown, in.sun_in_crown), leafy);
+    }
+    return sun_visibility(world, SHADOW_BIAS_M);
+}
+
+// `is_beyond` is a constant of its entry point.
+fn pixel(in: Out, is_kept: bool, is_beyond: bool) -> Pixel {
     let is_next = scattered(floor(in.uv * 32.0)) < in.next;
     let side = in.side + select(0u, 1u, is_next);
     let beside = in.uv.x - shift(in.template_index, in.uv.y, select(in.aside.xy, in.aside.zw, is_next));
@@ -180,10 +190,7 @@ fn pixel(in: Out, is_kept: bool) -> Pixel {
     let through = albedo * vec3f(0.75, 0.9, 0.3);
     let leaf = one_leaf(in.leaf, in.uv * in.leaves.xy, in.leaves.z);
     let leaf_sun = (albedo * 0.8 * leaf.x + through * (0.6 * leaf.y + in.sun.y)) * smoothstep(0.0, 0.7, open);
-    // Where no shadow map tells, by what is between the place and the sun if it is leaves.
-    let left = sun_through_crown(in_crown, in.sun_in_crown);
-    let shade = sun_visibility(world, SHADOW_BIAS_M) * mix(1.0, left, in.shown.w * relief.g);
-    let sun = mix(albedo * in.sun.x, leaf_sun, relief.g) * shade;
+    let sun = mix(albedo * in.sun.x, leaf_sun, relief.g) * sun_left(in, world, in_crown, relief.g, is_beyond);
     let up = mix(0.5, in.leaf.w, relief.g);
     let ambient = ambient_light(up) * mix(0.8, 0.15 + 0.75 * open * open, relief.g);
     let radiance = (albedo * ambient + view.sun_irradiance * sun) / PI;
@@ -191,12 +198,22 @@ fn pixel(in: Out, is_kept: bool) -> Pixel {
 }
 
 @fragment
-fn fragment(in: Out) -> Pixel {
-    return pixel(in, is_shown(in.clip.xy, in.shown.xy));
+fn field(in: Out) -> Pixel {
+    return pixel(in, is_shown(in.clip.xy, in.shown.xy), false);
+}
+
+@fragment
+fn beyond(in: Out) -> Pixel {
+    return pixel(in, is_shown(in.clip.xy, in.shown.xy), true);
 }
 
 // As a lake mirrors it: what is above the water.
 @fragment
-fn mirrored(in: Out) -> Pixel {
-    return pixel(in, in.world.y > view.water_level);
+fn mirrored_field(in: Out) -> Pixel {
+    return pixel(in, in.world.y > view.water_level, false);
+}
+
+@fragment
+fn mirrored_beyond(in: Out) -> Pixel {
+    return pixel(in, in.world.y > view.water_level, true);
 }

@@ -2,9 +2,10 @@
 //! surface as the picture's is above. `water.wgsl` reads it.
 
 use super::bound_mirror::{BoundMirror, Reflection};
+use super::impostors::PicturePipelines;
 use super::shaders::ShaderError;
 use super::terrain::{self, RING};
-use super::{BoundScene, Compiler, PipelineDesc, Target, buffer_layout, impostors};
+use super::{BoundScene, Compiler, PipelineDesc, Target, buffer_layout};
 use crate::options::Options;
 use crate::upload::RingVertex;
 
@@ -12,17 +13,16 @@ use crate::upload::RingVertex;
 pub struct Mirror {
     land: wgpu::RenderPipeline,
     ring: wgpu::RenderPipeline,
-    trees: wgpu::RenderPipeline,
+    trees: PicturePipelines,
 }
 
 impl Mirror {
     pub const NAME: &str = "mirror";
 
     pub(super) fn new(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
-        let (ground, trees) = (compiler.module(&terrain::SHADER)?, compiler.module(&impostors::SHADER)?);
+        let ground = compiler.module(&terrain::SHADER)?;
         let layouts = compiler.layouts;
         let on_land = [&layouts.view, &layouts.ground];
-        let pictures = [&layouts.view, &layouts.impostors];
         let pipeline = |vertex: &str, fragment: &str, cull, buffers: &[_]| {
             let usual = PipelineDesc::new(&ground, &on_land);
             let (fragment, target) = (Some(fragment), Target::Mirror);
@@ -34,11 +34,7 @@ impl Mirror {
         Ok(Self {
             land: pipeline("risen_vertex", "mirrored_ground", outside, &[]),
             ring: pipeline("ring_vertex", "mirrored_ring", outside, &ring),
-            trees: compiler.pipeline(&PipelineDesc {
-                fragment: Some("mirrored"),
-                target: Target::Mirror,
-                ..PipelineDesc::new(&trees, &pictures)
-            }),
+            trees: PicturePipelines::mirrored(compiler)?,
         })
     }
 
@@ -64,7 +60,6 @@ impl Mirror {
 
     fn draw_trees(&self, pass: &mut wgpu::RenderPass<'_>, bound: &BoundScene, mirror: &BoundMirror) -> u32 {
         let Some((set, trees)) = bound.scene.trees.as_ref().zip(mirror.trees.as_ref()) else { return 0 };
-        pass.set_pipeline(&self.trees);
-        impostors::draw(pass, set, trees)
+        self.trees.draw(pass, set, trees)
     }
 }

@@ -186,9 +186,9 @@ struct Scales {
 
 fn scales_at(away: f32) -> Scales {
     if (away < 60.0) {
-        return Scales(0u, smoothstep(7.0, 22.0, away));
+        return Scales(0u, smoothstep(9.0, 16.0, away));
     }
-    return Scales(1u, smoothstep(110.0, 240.0, away));
+    return Scales(1u, smoothstep(130.0, 200.0, away));
 }
 
 // Where no texture is seen any more.
@@ -268,7 +268,7 @@ fn close_up(at: Surface, parts: array<f32, 5>, near: f32) -> Tiles {
 const FINER: f32 = 5.3;
 
 // What covers less of the ground is not worth a look.
-const LEAST_PART: f32 = 0.06;
+const LEAST_PART: f32 = 0.14;
 
 // How much each tiling texture counts, from the weights of all but the first: nothing, or their sum is 1.
 fn parts_of(weights: vec4f) -> array<f32, 5> {

@@ -56,8 +56,12 @@ impl ImpostorSet {
     }
 }
 
-/// The two triangles of a picture.
+/// Corners of a picture.
+pub const PICTURE_VERTICES: u32 = 4;
+/// Its two triangles.
 pub const PICTURE_INDICES: [u32; 6] = [0, 1, 2, 2, 1, 3];
+/// Lists of trees that are seen as pictures: those of the field and those beyond.
+pub const PICTURE_LISTS: u32 = 2;
 
 impl Uploader {
     /// For so many trees of these templates, with the sun in that direction.
@@ -77,8 +81,9 @@ impl Uploader {
         let [colors, reliefs]: [Vec<_>; 2] =
             [all.iter().map(|one| &one.color).collect(), all.iter().map(|one| &one.relief).collect()];
         let leaves: Vec<&[LeafSide]> = all.iter().map(|one| &one.leaves[..]).collect();
-        let indices: Vec<u32> =
-            (0..trees as u32).flat_map(|tree| PICTURE_INDICES.map(|corner| 4 * tree + corner)).collect();
+        let indices: Vec<u32> = (0..trees as u32)
+            .flat_map(|tree| PICTURE_INDICES.map(|corner| PICTURE_VERTICES * tree + corner))
+            .collect();
         Some(ImpostorSet {
             frames: self.gpu.buffer("frames of pictures", &frames, Usage::STORAGE),
             colors: self.strips(&colors, ImageUse::Cutout, MIN_PX),

@@ -27,7 +27,7 @@ pub use asset::{
 pub use exhibit::{Exhibit, WeakExhibit};
 pub use far_shade::SHADED_M;
 pub use ground::{DRY_ALPHA, GroundBuffers};
-pub use impostors::{ImpostorData, ImpostorSet, PICTURE_INDICES};
+pub use impostors::{ImpostorData, ImpostorSet, PICTURE_INDICES, PICTURE_LISTS, PICTURE_VERTICES};
 pub use lake::{Lake, Window};
 pub use plants::{PLANT_BLOCK_M, PlantBuffers, PlantBuffersOfKind, PlantVertex};
 pub use ring::{Ring, RingVertex};

@@ -8,7 +8,7 @@ use glam::Vec3;
 use half::f16;
 
 use super::clusters::{self, ClusterSheet};
-use super::{ImageUse, ImpostorSet, Uploader};
+use super::{ImageUse, ImpostorSet, PICTURE_VERTICES, Uploader};
 use crate::scene::{Crown, Image, Instance, Material, Range, Template, TreeVertex, Trees};
 
 pub use crate::lod::tree::MAX_LEVELS;
@@ -105,19 +105,20 @@ pub struct TreeSet {
     /// Levels of the template that has most.
     pub level_count: u32,
     /// One for each of [`Self::mesh_draws`], level and template, in this order of significance, nearest levels first, with no
-    /// trees yet; then one for all pictures.
+    /// trees yet; then one for the pictures of the field's trees and one for those of the others.
     pub commands: Vec<DrawCommand>,
     /// Draws of meshes that there are commands for: lists of each material; then, if all trees have some, strips of each closed
     /// material, in the same order.
     pub mesh_draws: u32,
     /// Triangles of one tree for each level and template, all materials together: index level · templates + template.
-    /// Then those of a picture.
+    /// Then those of a picture, twice.
     pub triangles: Vec<u32>,
     /// What the trees are made of.
     pub materials: Vec<TreeMaterial>,
     /// Pictures of the templates, if all have some.
     pub impostors: Option<ImpostorSet>,
-    /// Entries of all lists of visible trees together. The first list is that of pictures, as long as there are trees.
+    /// Entries of all lists of visible trees together. The first two lists are those of pictures, together as long as there are
+    /// trees.
     pub list_capacity: u32,
 }
 
@@ -228,8 +229,11 @@ fn arrange(trees: &Trees, materials: &[Material]) -> Lists {
         triangles: vec![0; buckets],
         capacity: trees.all().count() as u32,
     };
-    lists.commands.push(DrawCommand { instances: 1, ..DrawCommand::default() });
-    lists.triangles.push(2);
+    for first in [0, trees.instances.len()] {
+        let base_vertex = (PICTURE_VERTICES as usize * first) as i32;
+        lists.commands.push(DrawCommand { instances: 1, base_vertex, ..DrawCommand::default() });
+        lists.triangles.push(2);
+    }
     let (mut base_vertex, mut base_index) = (0, 0);
     for (index, template) in trees.templates.iter().enumerate() {
         let capacity = trees.all().filter(|tree| tree.template as usize == index).count() as u32;

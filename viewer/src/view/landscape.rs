@@ -7,7 +7,7 @@ use super::terrain::{TerrainChoice, sight};
 use crate::camera::Camera;
 use crate::gpu::Gpu;
 use crate::options::{FrameInput, Options};
-use crate::passes::grass::{self, Clump};
+use crate::passes::grass::GrassChoice;
 use crate::passes::plants::PlantChoice;
 use crate::passes::{BoundScene, Cull, CullUniform, Passes, ViewUniform};
 
@@ -16,8 +16,7 @@ use crate::passes::{BoundScene, Cull, CullUniform, Passes, ViewUniform};
 pub(super) struct LandscapeChoice {
     terrain: TerrainChoice,
     mirror: MirrorChoice,
-    /// Clumps of grass.
-    clumps: Vec<Clump>,
+    grass: GrassChoice,
     /// Small plants and stones.
     plants: PlantChoice,
 }
@@ -56,17 +55,17 @@ impl LandscapeChoice {
             trees.set(&gpu.queue, &culling);
             passes.cull.dispatch(&mut scope.scoped_compute_pass(Cull::NAME), trees);
         }
-        self.clumps.clear();
+        self.grass.clear();
         self.plants.clear();
         // In pictures that explain levels of detail it would only hide them.
         if options.grass && !options.wireframe && !options.tint_levels && !options.overhead {
             let (ground, eye_m) = (&bound.scene.ground, lod_camera.position_m);
-            grass::clumps(ground, eye_m, &frustum, frame.part, &mut self.clumps);
+            self.grass.choose(ground, eye_m, &frustum, frame.part);
             self.plants.choose(ground, &bound.scene.land.plants.kinds, eye_m, &frustum, frame.part);
         }
-        bound.part = frame.part;
         bound.clouds_fade = numbers.other_clouds > 0.0;
-        bound.clumps.write(gpu, &self.clumps);
+        bound.clumps.write(gpu, &self.grass.clumps);
+        bound.clump_draws.write(gpu, &self.grass.draws);
         bound.plants.write(gpu, &self.plants.instances);
         bound.plant_draws.write(gpu, &self.plants.draws);
         bound.plain_plants = self.plants.plain;

@@ -141,19 +141,28 @@ fn chosen(
         if index < meshes {
             assert_eq!(*command, DrawCommand { instances: counts[index % buckets], ..*before });
         } else {
-            assert_eq!(*command, DrawCommand { indices: 6 * counts[buckets], ..*before });
+            assert_eq!(*command, DrawCommand { indices: 6 * counts[buckets + index - meshes], ..*before });
         }
     }
-    for list in 0..=buckets {
-        let is_picture = list == buckets;
+    for list in 0..buckets + 2 {
+        let is_picture = list >= buckets;
         let (level, kind) = (list / kinds, list % kinds);
-        let first = if is_picture { 0 } else { commands[list].first_instance as usize };
+        let field = set.field_count as usize;
+        let first = match list.checked_sub(buckets) {
+            Some(lists) => lists * field,
+            None => commands[list].first_instance as usize,
+        };
         for &[tree, lambda, part] in &visible[first..first + counts[list] as usize] {
             let lambda = f32::from_bits(lambda);
             let [from, to, picture] = [0, 10, 20].map(|bit| (part >> bit & 1023) as f32 / 1023.0);
             assert!(is_picture || lambda as usize == level, "a tree is listed at its level");
             let is_kind = all[tree as usize].template as usize == kind;
             assert!(is_picture || is_kind, "and under its kind");
+            let is_beyond = tree as usize >= field;
+            assert!(
+                !is_picture || is_beyond == (list > buckets),
+                "pictures beyond the field are drawn apart"
+            );
             let one = shown[tree as usize].get_or_insert(Shown {
                 lambda,
                 mesh: 0.0,
