@@ -174,6 +174,13 @@ impl Default for Options {
     }
 }
 
+impl Options {
+    /// Whether blades of grass and small plants are drawn: in pictures that explain levels of detail they would only hide them.
+    pub fn draws_grass(&self) -> bool {
+        self.grass && !self.wireframe && !self.tint_levels && !self.overhead
+    }
+}
+
 /// What one frame is drawn from; the same for all views.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameInput {

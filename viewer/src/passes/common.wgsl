@@ -54,6 +54,8 @@ struct View {
     lod_unit: f32,
     // Of the field, on average, linear.
     ground_albedo: vec3f,
+    // Up to so many metres away turf lies in the shade of blades of grass; 0 where none are drawn.
+    turf_m: f32,
 }
 
 @group(0) @binding(0) var<uniform> view: View;

@@ -44,6 +44,8 @@ const FINE_PART: f32 = 0.6;
 const DENSE_M: f32 = 3.0;
 /// Beyond this distance in metres there are none.
 const REACH_M: f32 = 30.0;
+/// Up to this distance in metres turf is seen to lie in the shade of blades.
+pub(super) const SHADED_TURF_M: f32 = 14.0;
 /// Metres from a cell's middle to the farthest of its blades: half a diagonal on steep land, and a blade.
 const AROUND_M: f32 = 1.2 * CELL_M;
 /// Bytes of rock, scree, snow and earth together beyond which no grass grows.

@@ -133,7 +133,7 @@ fn vertex(clump: Clump, @builtin(vertex_index) index: u32) -> Out {
     albedo *= 0.8 + 0.5 * dice.z;
     let far = smoothstep(4.0, REACH_M * 0.7, seeming);
     // Roots stand in each other's shade, tips in the open.
-    let open = mix(mix(0.5, 1.5, up), 1.05, far);
+    let open = mix(mix(0.5, 2.1, up), 1.05, far);
     let side_lit = abs(dot(normalize(vec2f(-facing.y, facing.x)), view.sun_direction.xz));
     let sun_on = mix(light.g, 0.35 * light.b * (0.5 + side_lit), 0.4);
     var radiance = albedo / PI * open * (view.sun_irradiance * sun_on + view.sky_irradiance * light.r);

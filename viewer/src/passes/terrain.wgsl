@@ -295,6 +295,17 @@ fn sides_of(normal: vec3f) -> vec3f {
     return vec3f(shares.x * steep, 1.0 - steep, shares.y * steep);
 }
 
+// Share of the light that blades of grass keep from the turf between them.
+const BETWEEN_BLADES: f32 = 0.35;
+
+// What is left of it, as a factor: without, blades near by are hardly seen before ground of their own colour. From afar that colour is
+// the mean of them and of what is between them.
+fn between_blades(weights: vec4f, away: f32) -> f32 {
+    let turf = smoothstep(0.3, 0.8, 1.0 - dot(weights, vec4f(1.0)) - weights.b);
+    let near = 1.0 - smoothstep(0.2 * view.turf_m, max(view.turf_m, 1e-3), away);
+    return 1.0 - BETWEEN_BLADES * turf * near;
+}
+
 // Light of the ground before that of the air, and how much of it is under still water.
 struct Ground {
     radiance: vec3f,
@@ -337,7 +348,7 @@ fn ground_at(in: Out) -> Ground {
         relief = clamp(dot(bumped, view.sun_direction) / max(dot(normal, view.sun_direction), 0.2), 0.0, 2.0);
         normal = bumped;
     }
-    albedo = select(albedo * wetness(in.world.y), level_tint(in.level) * 0.5, view.tint_levels != 0u);
+    albedo = select(albedo * wetness(in.world.y) * between_blades(weights, away), level_tint(in.level) * 0.5, view.tint_levels != 0u);
     let irradiance = view.sun_irradiance * (light.g * shade * relief) + view.sky_irradiance * light.r * (0.6 + 0.4 * normal.y);
     return Ground(albedo / PI * irradiance, smoothstep(DRY_ALPHA, 0.3, color.a), light.r);
 }

@@ -3,6 +3,7 @@
 use glam::{Mat4, Vec3};
 
 use super::drift::Drift;
+use super::grass::SHADED_TURF_M;
 use super::{Shift, SunView};
 use crate::camera::Camera;
 use crate::lod::morph::Detail;
@@ -44,8 +45,7 @@ pub struct ViewUniform {
     pub part: f32,
     pub lod_unit: f32,
     pub ground_albedo: [f32; 3],
-    /// WGSL rounds the size up.
-    pub unused: f32,
+    pub turf_m: f32,
 }
 
 /// What stands for "no lake".
@@ -112,6 +112,7 @@ impl ViewUniform {
             lod_top: detail.top,
             lod_unit: detail.unit_m,
             ground_albedo: scene.land.albedo_linear.to_array(),
+            turf_m: if options.draws_grass() { SHADED_TURF_M * frame.part } else { 0.0 },
             shadow_from_world: SunView::of_field(scene).clip_from_world().to_cols_array_2d(),
             shade,
             field: Self::field(scene),

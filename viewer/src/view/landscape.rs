@@ -57,8 +57,7 @@ impl LandscapeChoice {
         }
         self.grass.clear();
         self.plants.clear();
-        // In pictures that explain levels of detail it would only hide them.
-        if options.grass && !options.wireframe && !options.tint_levels && !options.overhead {
+        if options.draws_grass() {
             let (ground, eye_m) = (&bound.scene.ground, lod_camera.position_m);
             self.grass.choose(ground, eye_m, &frustum, frame.part);
             self.plants.choose(ground, &bound.scene.land.plants.kinds, eye_m, &frustum, frame.part);

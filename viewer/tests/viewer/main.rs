@@ -15,6 +15,7 @@ mod lab;
 mod lod_twin;
 mod made_up;
 mod manual;
+mod meadow;
 mod mistakes;
 mod parted;
 mod program;

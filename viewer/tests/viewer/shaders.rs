@@ -107,6 +107,7 @@ fn uniforms_are_laid_out_alike() {
             part,
             lod_unit,
             ground_albedo,
+            turf_m,
         }
     );
     same!(
