@@ -186,9 +186,9 @@ struct Scales {
 
 fn scales_at(away: f32) -> Scales {
     if (away < 60.0) {
-        return Scales(0u, smoothstep(9.0, 16.0, away));
+        return Scales(0u, smoothstep(10.0, 14.0, away));
     }
-    return Scales(1u, smoothstep(130.0, 200.0, away));
+    return Scales(1u, smoothstep(140.0, 185.0, away));
 }
 
 // Where no texture is seen any more.
@@ -268,7 +268,7 @@ fn close_up(at: Surface, parts: array<f32, 5>, near: f32) -> Tiles {
 const FINER: f32 = 5.3;
 
 // What covers less of the ground is not worth a look.
-const LEAST_PART: f32 = 0.14;
+const LEAST_PART: f32 = 0.2;
 
 // How much each tiling texture counts, from the weights of all but the first: nothing, or their sum is 1.
 fn parts_of(weights: vec4f) -> array<f32, 5> {
@@ -337,7 +337,7 @@ fn ground_at(in: Out) -> Ground {
         let at = Surface(in.world, dx * shorter.x, dy * shorter.y, sides_of(normal));
         let parts = parts_of(weights);
         var tiles = looks(at, parts, scales_at(away));
-        let close = close_up(at, parts, smoothstep(5.0, 1.5, away));
+        let close = close_up(at, parts, smoothstep(3.5, 1.5, away));
         tiles = Tiles(tiles.factor * close.factor, tiles.bump + close.bump);
         let fade = 1.0 - smoothstep(0.4 * SMOOTH_M, SMOOTH_M, away);
         albedo *= mix(vec3f(1.0), tiles.factor, fade);
