@@ -14,8 +14,9 @@ override OFF: u32;
 // No modes: all trees are pictures, or all are meshes at one level.
 override PICTURES: u32;
 override MESHES: u32;
-// Indices of a picture.
+// Indices of a picture, and lists of trees that are seen as such.
 override PICTURE_INDICES: u32;
+override PICTURE_LISTS: u32;
 // Pixels of the picture that a tree may fill before less than the usual error is allowed of it, those from which on it is least,
 // and the metres that it is taken to be large at least.
 override SMALL_PX: f32;
@@ -169,8 +170,6 @@ fn bucket(template_index: u32, level: u32) -> u32 {
 
 // Pictures of all templates are two lists: one of the trees of the field, which is the first of all, and one of those beyond,
 // which the shadow map doesn't know. A draw shows each.
-override PICTURE_LISTS: u32;
-
 fn pictures_bucket(is_beyond: bool) -> u32 {
     return cull.templates * cull.levels + select(0u, 1u, is_beyond);
 }
