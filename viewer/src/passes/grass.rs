@@ -137,19 +137,14 @@ impl GrassChoice {
             let list = if nearest_m < fine_m { &mut self.clumps } else { &mut self.coarse };
             list.push(clump);
         });
-        let (near, far) = (self.clumps.len() as u32, self.coarse.len() as u32);
+        let near = self.clumps.len() as u32;
         self.clumps.append(&mut self.coarse);
+        let all = self.clumps.len() as u32;
         let [fine, coarse] =
             [BLADE_TRIANGLES.len(), COARSE_BLADE.len()].map(|n| u32::from(BLADES) * n as u32);
-        let draw = |indices, first_index, instances, first_instance| DrawCommand {
-            indices,
-            instances,
-            first_index,
-            first_instance,
-            ..DrawCommand::default()
-        };
-        let draws = [draw(fine, 0, near, 0), draw(coarse, fine, far, near)];
-        self.draws.extend(draws.into_iter().filter(|draw| draw.instances > 0));
+        let draws =
+            [DrawCommand::of(&(0..fine), 0..near), DrawCommand::of(&(fine..fine + coarse), near..all)];
+        self.draws.extend(draws.into_iter().flatten());
     }
 }
 

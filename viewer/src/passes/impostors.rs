@@ -1,6 +1,7 @@
 //! Draws the pictures of trees that are far away: a draw for all of the field's and one for all beyond it, each of one instance, for
 //! four vertices would be little for each of thousands of instances.
 
+use super::pipeline::Module;
 use super::shaders::ShaderError;
 use super::{BoundScene, BoundTrees, Compiler, DrawPass, FilledOrWire, PipelineDesc, Shader, Target};
 use crate::options::Options;
@@ -24,13 +25,9 @@ pub(super) struct PicturePipelines([wgpu::RenderPipeline; PICTURE_LISTS as usize
 
 impl Impostors {
     pub(super) fn new(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
-        let (shader, layouts) = (compiler.module(&SHADER)?, compiler.layouts);
-        let groups = [&layouts.view, &layouts.impostors];
+        let shader = compiler.module(&SHADER)?;
         let pipelines = |wireframe: bool| {
-            PicturePipelines(["field", "beyond"].map(|fragment| {
-                let usual = PipelineDesc::new(&shader, &groups);
-                compiler.pipeline(&PipelineDesc { fragment: Some(fragment), wireframe, ..usual })
-            }))
+            PicturePipelines::new(compiler, &shader, ["field", "beyond"], Target::Radiance, wireframe)
         };
         Ok(Self { pipelines: FilledOrWire::new(compiler.gpu, pipelines) })
     }
@@ -50,12 +47,22 @@ impl DrawPass for Impostors {
 impl PicturePipelines {
     /// Those of a lake's mirror.
     pub fn mirrored(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
-        let shader = compiler.module(&SHADER)?;
+        let (shader, fragments) = (compiler.module(&SHADER)?, ["mirrored_field", "mirrored_beyond"]);
+        Ok(Self::new(compiler, &shader, fragments, Target::Mirror, false))
+    }
+
+    fn new(
+        compiler: &Compiler<'_>,
+        shader: &Module,
+        fragments: [&str; PICTURE_LISTS as usize],
+        target: Target,
+        wireframe: bool,
+    ) -> Self {
         let groups = [&compiler.layouts.view, &compiler.layouts.impostors];
-        Ok(Self(["mirrored_field", "mirrored_beyond"].map(|fragment| {
-            let usual = PipelineDesc::new(&shader, &groups);
-            compiler.pipeline(&PipelineDesc { fragment: Some(fragment), target: Target::Mirror, ..usual })
-        })))
+        Self(fragments.map(|fragment| {
+            let usual = PipelineDesc::new(shader, &groups);
+            compiler.pipeline(&PipelineDesc { fragment: Some(fragment), target, wireframe, ..usual })
+        }))
     }
 
     /// Draws the pictures that culling left and tells how many draws that takes.

@@ -4,7 +4,6 @@
 //! reach and kept while it is.
 
 use std::collections::HashMap;
-use std::ops::Range;
 
 use genescape_schema::scene::{DensityMap, Plant, PlantKind};
 use glam::{Vec2, Vec3, Vec3Swizzles};
@@ -182,11 +181,10 @@ impl PlantChoice {
             let fine = self.instances.len() as u32;
             self.instances.append(&mut self.coarse);
             let all = self.instances.len() as u32;
-            let some =
-                |(indices, plants): &(&Range<u32>, Range<u32>)| !indices.is_empty() && !plants.is_empty();
-            let draws = [(&shape.fine, first..fine), (&shape.coarse, fine..all)];
-            self.draws.extend(draws.into_iter().filter(some).map(command));
-            self.feet.extend([(&shape.foot, first..fine)].into_iter().filter(some).map(command));
+            let draws =
+                [DrawCommand::of(&shape.fine, first..fine), DrawCommand::of(&shape.coarse, fine..all)];
+            self.draws.extend(draws.into_iter().flatten());
+            self.feet.extend(DrawCommand::of(&shape.foot, first..fine));
             if kind.texture.is_none() {
                 self.plain = self.draws.len() as u32;
             }
@@ -203,17 +201,6 @@ impl PlantChoice {
             kinds.get(number).is_some_and(|kind| is_near(block, 2.0 * kind.reach_m, eye_m))
         });
         self.kept = self.known.len();
-    }
-}
-
-/// What draws some plants with these of the shapes' indices.
-fn command((indices, plants): (&Range<u32>, Range<u32>)) -> DrawCommand {
-    DrawCommand {
-        indices: indices.end - indices.start,
-        instances: plants.end - plants.start,
-        first_index: indices.start,
-        first_instance: plants.start,
-        ..DrawCommand::default()
     }
 }
 

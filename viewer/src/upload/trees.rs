@@ -71,6 +71,20 @@ pub struct DrawCommand {
     pub first_instance: u32,
 }
 
+impl DrawCommand {
+    /// Draws some instances with these indices, if either are any.
+    pub fn of(indices: &std::ops::Range<u32>, instances: std::ops::Range<u32>) -> Option<Self> {
+        let command = Self {
+            indices: indices.end - indices.start,
+            instances: instances.end - instances.start,
+            first_index: indices.start,
+            first_instance: instances.start,
+            ..Self::default()
+        };
+        (command.indices > 0 && command.instances > 0).then_some(command)
+    }
+}
+
 /// What a material looks like, as the shaders read it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]

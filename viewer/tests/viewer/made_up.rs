@@ -34,6 +34,13 @@ pub fn hash(i: u32, j: u32, seed: u32) -> f32 {
     ((mixed ^ mixed >> 13).wrapping_mul(0x27d4_eb2f) >> 8) as f32 / (1 << 24) as f32
 }
 
+/// Mean and standard deviation.
+pub fn mean_and_spread(values: &[f32]) -> (f32, f32) {
+    let count = values.len() as f32;
+    let mean = values.iter().sum::<f32>() / count;
+    (mean, (values.iter().map(|value| (value - mean) * (value - mean)).sum::<f32>() / count).sqrt())
+}
+
 /// The land whose sample (i, j) is `height_m(i, j)` high.
 pub fn land(side: u32, spacing_m: f32, height_m: impl Fn(u32, u32) -> f32) -> TerrainLod {
     let heights_m = (0..side * side).map(|n| height_m(n % side, n / side)).collect();

@@ -68,12 +68,6 @@ fn bright(studio: &Headless, scene: &Scene, yaw_rad: f32) -> Vec<f32> {
     drawn.pixels().map(|pixel| f32::from(pixel[1])).filter(|&value| value > 8.0).collect()
 }
 
-fn mean_and_spread(values: &[f32]) -> (f32, f32) {
-    let count = values.len() as f32;
-    let mean = values.iter().sum::<f32>() / count;
-    (mean, (values.iter().map(|value| (value - mean) * (value - mean)).sum::<f32>() / count).sqrt())
-}
-
 #[test]
 #[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
 fn what_is_rough_shows_its_texture_from_all_sides() {
@@ -90,7 +84,7 @@ fn what_is_rough_shows_its_texture_from_all_sides() {
             "{}",
             plain.len()
         );
-        let [plain, smooth, rough] = [plain, smooth, rough].map(|values| mean_and_spread(&values));
+        let [plain, smooth, rough] = [plain, smooth, rough].map(|values| made_up::mean_and_spread(&values));
         for (what, seen) in [("smooth", smooth), ("rough", rough)] {
             assert!((seen.0 / plain.0 - 1.0).abs() < 0.15, "{turn}: {what} {seen:?}, plain {plain:?}");
         }
@@ -121,7 +115,7 @@ fn hillsides_are_rough_from_near_by_and_from_afar() {
         let mut view = studio.view(made_up::upload(&studio, &scene), [240, 160]);
         let drawn = studio.shoot(&mut view, &frame, &camera, &camera).expect("a picture");
         let values: Vec<f32> = drawn.pixels().map(|pixel| f32::from(pixel[1])).collect();
-        let (mean, spread) = mean_and_spread(&values);
+        let (mean, spread) = made_up::mean_and_spread(&values);
         assert!(spread > 0.05 * mean, "{away_m} m away land is smooth: {spread} around {mean}");
     }
 }
