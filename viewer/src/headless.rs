@@ -12,9 +12,9 @@ use crate::gpu::Gpu;
 use crate::image_file;
 use crate::options::FrameInput;
 use crate::passes::{Passes, Shaders, pictures};
-use crate::scene::Scene;
+use crate::scene::{Asset, Scene};
 use crate::scene_loader::{Loaded, SceneLoader};
-use crate::upload::{Exhibit, SceneBuffers};
+use crate::upload::{AssetBuffers, Exhibit, SceneBuffers};
 use crate::view::{Drawn, View};
 
 /// A device with everything that draws.
@@ -44,6 +44,11 @@ impl Headless {
     /// Brings a landscape to the device, shadows included.
     pub fn upload(&self, scene: &Scene) -> Result<Arc<SceneBuffers>> {
         self.loader.upload(scene, &self.passes).with_context(|| format!("cannot show {}", scene.name))
+    }
+
+    /// Brings anyone's file to the device.
+    pub fn upload_asset(&self, asset: &Asset) -> Result<Arc<AssetBuffers>> {
+        self.loader.upload_asset(asset, &self.passes)
     }
 
     /// Reads a landscape or anyone's file and brings it to the device.

@@ -10,8 +10,8 @@ use glam::Vec2;
 use crate::gpu::Gpu;
 use crate::load::{self, Content, Store};
 use crate::passes::Passes;
-use crate::scene::Scene;
-use crate::upload::{Exhibit, SceneBuffers, Uploader};
+use crate::scene::{Asset, Scene};
+use crate::upload::{AssetBuffers, Exhibit, SceneBuffers, Uploader};
 use crate::walk::{Anchor, Land};
 
 /// A landscape, or anyone's file, that can be drawn and walked in.
@@ -52,9 +52,16 @@ impl SceneLoader {
         Ok(Arc::new(buffers))
     }
 
+    /// Brings anyone's file to the device, with what its lamps see.
+    pub fn upload_asset(&self, asset: &Asset, passes: &Passes) -> Result<Arc<AssetBuffers>> {
+        let buffers = self.uploader.asset(asset).map_err(Error::msg)?;
+        passes.lamps.draw(&self.gpu, &passes.layouts, &buffers);
+        Ok(Arc::new(buffers))
+    }
+
     /// Reads whatever there is and brings it to the device.
     pub fn load(&self, path: &Path, passes: &Passes) -> Result<Loaded> {
-        self.load_by(path, |scene| {
+        self.load_by(path, passes, |scene| {
             let exhibit = self.upload(scene, passes)?.into();
             let land = Arc::new(Land::of(scene).from_its_start());
             Ok(Loaded { exhibit, land, lacks_shadows: false, files: Vec::new() })
@@ -70,7 +77,7 @@ impl SceneLoader {
         eye_m: Vec2,
         anchor: Option<Anchor>,
     ) -> Result<Loaded> {
-        self.load_by(path, |scene| {
+        self.load_by(path, passes, |scene| {
             let buffers = self.uploader.upload(scene).map_err(Error::msg)?;
             let bake = passes.shadow.begin(&self.gpu, passes, &buffers);
             bake.land();
@@ -83,13 +90,17 @@ impl SceneLoader {
     }
 
     /// Brings a landscape to the device by `landscape`, and any other file as it is.
-    fn load_by(&self, path: &Path, landscape: impl FnOnce(&Scene) -> Result<Loaded>) -> Result<Loaded> {
+    fn load_by(
+        &self,
+        path: &Path,
+        passes: &Passes,
+        landscape: impl FnOnce(&Scene) -> Result<Loaded>,
+    ) -> Result<Loaded> {
         match load::load(path, &self.store)? {
             Content::Landscape(scene) => landscape(&scene),
             Content::Asset(asset, files) => {
-                let buffers = self.uploader.asset(&asset).map_err(Error::msg)?;
-                self.gpu.wait();
-                let (exhibit, land) = (Arc::new(buffers).into(), Arc::new(Land::under(&asset)));
+                let exhibit = self.upload_asset(&asset, passes)?.into();
+                let land = Arc::new(Land::under(&asset));
                 Ok(Loaded { exhibit, land, lacks_shadows: false, files })
             }
         }

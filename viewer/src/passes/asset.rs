@@ -1,7 +1,7 @@
 //! Draws anyone's meshes: what was chosen of each shape, solid and cut-out parts first, then, behind the backdrop's pass,
 //! transparent ones from far to near.
 
-use super::bound_asset::{AssetDraw, BoundAsset};
+use super::bound_asset::{AssetDraw, BoundAsset, VisibleCopy};
 use super::shaders::ShaderError;
 use super::{Compiler, FilledOrWire, PipelineDesc, Shader, buffer_layout};
 use crate::scene::{Alpha, AssetVertex};
@@ -13,8 +13,17 @@ pub const VERTEX: [wgpu::VertexAttribute; 9] = wgpu::vertex_attr_array![
     0 => Float32x3, 1 => Unorm8x4, 2 => Float32x3, 3 => Snorm16x2, 4 => Float32x2, 5 => Float32x2,
     6 => Float32x2, 7 => Snorm16x2, 8 => Snorm16x4,
 ];
-/// Attributes of a visible copy: its number and λ.
-pub const VISIBLE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![9 => Uint32, 10 => Float32];
+/// Attributes of a [`VisibleCopy`].
+pub const VISIBLE: [wgpu::VertexAttribute; 3] =
+    wgpu::vertex_attr_array![9 => Uint32, 10 => Float32, 11 => Float32];
+
+/// The two vertex buffers of every draw of a file.
+pub(super) fn buffers() -> [Option<wgpu::VertexBufferLayout<'static>>; 2] {
+    [
+        buffer_layout::<AssetVertex>(wgpu::VertexStepMode::Vertex, &VERTEX),
+        buffer_layout::<VisibleCopy>(wgpu::VertexStepMode::Instance, &VISIBLE),
+    ]
+}
 
 #[derive(Debug)]
 pub struct AssetPass {
@@ -34,10 +43,7 @@ impl AssetPass {
 
     pub(super) fn new(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
         let (shader, layouts) = (compiler.module(&SHADER)?, compiler.layouts);
-        let buffers = [
-            buffer_layout::<AssetVertex>(wgpu::VertexStepMode::Vertex, &VERTEX),
-            buffer_layout::<[u32; 2]>(wgpu::VertexStepMode::Instance, &VISIBLE),
-        ];
+        let buffers = buffers();
         let groups = [&layouts.camera, &layouts.studio, &layouts.surface];
         let pipelines = |wireframe: bool| {
             let build = |entry: &str, blend: Option<wgpu::BlendState>| {

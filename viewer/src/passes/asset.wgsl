@@ -1,6 +1,35 @@
 // Anyone's meshes: the geomorph between levels of detail, where a file has it, then glTF's metallic-roughness model, lit by
 // the file's suns and by a room of soft lights. The room is a sum of spherical Gaussians, for what they look like in a
-// mirror of any roughness, and how they light a wall, follows without a picture (Wang et al. 2009).
+// mirror of any roughness, and how they light a wall, follows without a picture (Wang et al. 2009). How much of it arrives is told by
+// depths as the key light and sixteen lamps of a sky see them. Then what is around the file: a backdrop and the ground.
+
+// A sun of the file.
+struct Light {
+    // Unit vector towards it.
+    direction: vec4f,
+    // On a surface that faces it; 0 for none.
+    irradiance: vec4f,
+}
+
+// Unit vectors: towards a lamp of the room, and to the right of what it sees.
+struct Lamp {
+    towards: vec4f,
+    right: vec4f,
+}
+
+// What the file is lit by, and how large it is.
+struct Studio {
+    lights: array<Light, 2>,
+    // Factor on the room's light.
+    room: f32,
+    // Of a sphere around what is shown, and side of a square of the grid: for the ground.
+    radius: f32,
+    cell: f32,
+    // How high the sphere's middle is.
+    middle: f32,
+    // The key light, then the sky's lamps by quarters of the compass.
+    lamps: array<Lamp, 17>,
+}
 
 // How texture coordinates are looked up: 2 × 2 by rows, what is added, and which set.
 struct UvMap {
@@ -33,6 +62,8 @@ struct Surface {
 
 @group(1) @binding(0) var<uniform> studio: Studio;
 @group(1) @binding(1) var<storage, read> places: array<Tree>;
+@group(1) @binding(2) var lamp_maps: texture_depth_2d_array;
+@group(1) @binding(3) var nearest_depth: sampler;
 @group(2) @binding(0) var<uniform> surface: Surface;
 @group(2) @binding(1) var color_map: texture_2d<f32>;
 @group(2) @binding(2) var metal_map: texture_2d<f32>;
@@ -59,6 +90,8 @@ struct In {
     @location(9) place: u32,
     // λ, as of trees.
     @location(10) lambda: f32,
+    // Metres by which it is off at that λ.
+    @location(11) error: f32,
 }
 
 struct Out {
@@ -68,8 +101,8 @@ struct Out {
     @location(2) tangent: vec4f,
     @location(3) uvs: vec4f,
     @location(4) color: vec4f,
-    // 1 with a normal; λ.
-    @location(5) normal_lambda: vec2f,
+    // 1 with a normal; λ; metres by which it is off.
+    @location(5) normal_lambda_error: vec3f,
 }
 
 @vertex
@@ -89,7 +122,7 @@ fn vertex(in: In) -> Out {
     out.tangent = vec4f(unit(tangent), select(in.tangent.z, -in.tangent.z, mirrored));
     out.uvs = vec4f(in.uv0 + alpha * in.uv_delta, in.uv1);
     out.color = in.color;
-    out.normal_lambda = vec2f(in.tangent.w, in.lambda);
+    out.normal_lambda_error = vec3f(in.tangent.w, in.lambda, in.error);
     return out;
 }
 
@@ -97,6 +130,27 @@ fn vertex(in: In) -> Out {
 fn unit(v: vec3f) -> vec3f {
     let largest = max(max(abs(v.x), abs(v.y)), max(abs(v.z), 1e-30));
     return normalize(v / largest);
+}
+
+// As a lamp sees it, at the level that was chosen.
+struct Seen {
+    @builtin(position) clip: vec4f,
+    @location(0) uvs: vec4f,
+    @location(1) alpha: f32,
+}
+
+@vertex
+fn seen_by_lamp(in: In) -> Seen {
+    let world = from_template(places[in.place].rows, in.position);
+    return Seen(view.shadow_from_world * vec4f(world, 1.0), vec4f(in.uv0, in.uv1), in.color.a);
+}
+
+@fragment
+fn hole(in: Seen) {
+    let texel = textureSample(color_map, color_sampler, uv_of(surface.uv_maps[0], in.uvs));
+    if (surface.color.a * in.alpha * texel.a < surface.alpha_cutoff) {
+        discard;
+    }
 }
 
 fn uv_of(map: UvMap, uvs: vec4f) -> vec2f {
@@ -114,18 +168,59 @@ fn lobe(direction: vec3f, towards: vec3f, own: f32, amount: f32, blur: f32) -> f
 const WALL: f32 = 2.1;
 
 // The room: brighter above than below, a key light at the right of whoever looks at the front, a fill at the left, a rim
-// behind.
-fn room(direction: vec3f, blur: f32) -> vec3f {
+// behind; and how much of the key and of all else arrives.
+fn room(direction: vec3f, blur: f32, key_reached: f32, sky_reached: f32) -> vec3f {
     let steep = 0.6 + 5.0 * blur / (blur + 60.0);
     let up = clamp(0.5 + 0.5 * steep * direction.y, 0.0, 1.0);
-    let ground = vec3f(0.13, 0.125, 0.12);
-    let sky = vec3f(0.40, 0.41, 0.43);
-    let key = lobe(direction, vec3f(0.48, 0.64, 0.6), 14.0, 4.6, blur);
-    let fill = lobe(direction, vec3f(-0.8, 0.28, 0.53), 7.0, 1.0, blur);
-    let rim = lobe(direction, vec3f(-0.36, 0.48, -0.8), 16.0, 3.0, blur);
-    let top = lobe(direction, vec3f(0.0, 1.0, 0.0), 6.0, 0.8, blur);
+    let ground = vec3f(0.30, 0.29, 0.27);
+    let sky = vec3f(0.52, 0.56, 0.62);
+    let key = lobe(direction, vec3f(0.48, 0.64, 0.6), 14.0, 11.0, blur);
+    let fill = lobe(direction, vec3f(-0.8, 0.28, 0.53), 7.0, 1.3, blur);
+    let rim = lobe(direction, vec3f(-0.36, 0.48, -0.8), 16.0, 4.0, blur);
+    let top = lobe(direction, vec3f(0.0, 1.0, 0.0), 6.0, 1.0, blur);
     let warm = vec3f(1.0, 0.98, 0.95);
-    return mix(ground, sky, up) + key * warm + (fill + rim) * vec3f(0.95, 0.98, 1.0) + top;
+    let around = mix(ground, sky, up) + (fill + rim) * vec3f(0.95, 0.98, 1.0) + top;
+    return key * key_reached * warm + around * sky_reached;
+}
+
+// What reaches a place in the room: of the key light, and of the sky on a wall that faces one way and on one that faces the other.
+struct Reached {
+    key: f32,
+    sky: vec2f,
+}
+
+// Lamps of the sky in a quarter of the compass, one to a ring: `Reached` asks one of each quarter, each in another ring, and which they
+// are is by chance.
+const RINGS: u32 = 4u;
+// Whether light of a lamp reaches a place, by what the lamp sees; between four texels. What shades it lies so far before it. `place` and
+// `before` are in units of the sphere.
+fn lamp_reaches(number: u32, place: vec3f, before: f32) -> f32 {
+    let lamp = studio.lamps[number];
+    let up = cross(lamp.towards.xyz, lamp.right.xyz);
+    let uv = 0.5 + 0.5 * vec2f(dot(lamp.right.xyz, place), -dot(up, place));
+    let depth = 0.5 - 0.49 * dot(lamp.towards.xyz, place);
+    let four = textureGather(lamp_maps, nearest_depth, uv, number);
+    // Where nothing is, it is as far as can be told; and outside all is lit.
+    let lit = select(saturate(1.5 - (depth - four) / (0.49 * before)), vec4f(1.0), four > vec4f(0.999));
+    return select(1.0, between(lit, uv, textureDimensions(lamp_maps)), all(uv == saturate(uv)));
+}
+
+// `error`: metres by which the wall may be elsewhere in what lamps see.
+fn reached(world: vec3f, flat_normal: vec3f, normal: vec3f, error: f32, chance: f32) -> Reached {
+    let beside = 3.0 / f32(textureDimensions(lamp_maps).x) + 2.0 * error / studio.radius;
+    let place = (world - vec3f(0.0, studio.middle, 0.0)) / studio.radius + flat_normal * beside;
+    var light = vec2f(0.0);
+    var most = vec2f(0.0);
+    for (var quarter = 0u; quarter < RINGS; quarter++) {
+        let ring = u32(fract(chance + 0.25 * f32(quarter)) * f32(RINGS));
+        let number = 1u + quarter * RINGS + min(ring, RINGS - 1u);
+        let facing = dot(normal, studio.lamps[number].towards.xyz);
+        // Light from the ground, too, arrives where the sky's does.
+        let share = 0.1 + max(vec2f(facing, -facing), vec2f(0.0));
+        light += share * lamp_reaches(number, place, beside);
+        most += share;
+    }
+    return Reached(lamp_reaches(0u, place, beside), light / most);
 }
 
 // What a rough mirror reflects of light from everywhere (Karis 2014): factor on the reflectance, and what is added.
@@ -182,8 +277,10 @@ fn bumped(in: Out, normal: vec3f, uv: vec2f) -> vec3f {
     return normalize(aside + normal * bump.z);
 }
 
-// Part of the room's light that arrives at the back of a leaf among others.
-const THROUGH_OTHERS: f32 = 0.35;
+// What is left of the key light and of all else where nothing of it reaches a place straight: what other walls give back, and among
+// leaves, which are cut out, what comes through them.
+const FROM_OTHERS: f32 = 0.12;
+const THROUGH_LEAVES = vec2f(0.05, 0.22);
 
 fn shade(in: Out, front: bool) -> vec4f {
     let to_eye = normalize(view.eye - in.world);
@@ -191,7 +288,7 @@ fn shade(in: Out, front: bool) -> vec4f {
     let faced = select(-flat_normal, flat_normal, dot(flat_normal, to_eye) > 0.0);
     let given = unit(in.normal);
     let smooth_normal = select(-given, given, front);
-    var normal = select(faced, smooth_normal, in.normal_lambda.x > 0.5);
+    var normal = select(faced, smooth_normal, in.normal_lambda_error.x > 0.5);
     let bumps = bumped(in, normal, uv_of(surface.uv_maps[2], in.uvs));
     normal = select(normal, bumps, surface.has_normal > 0.5);
 
@@ -201,7 +298,7 @@ fn shade(in: Out, front: bool) -> vec4f {
     let occluded = textureSampleBias(occlusion_map, occlusion_sampler, uv_of(surface.uv_maps[3], in.uvs), view.mip_bias).r;
     let glow = textureSampleBias(emissive_map, emissive_sampler, uv_of(surface.uv_maps[4], in.uvs), view.mip_bias).rgb;
     let tinted = view.tint_levels != 0u;
-    base = vec4f(select(base.rgb, level_tint(in.normal_lambda.y), tinted), base.a);
+    base = vec4f(select(base.rgb, level_tint(in.normal_lambda_error.y), tinted), base.a);
     let metallic = select(clamp(surface.metallic * metal.b, 0.0, 1.0), 0.0, tinted);
     let open = mix(1.0, occluded, surface.occlusion_strength);
 
@@ -222,13 +319,17 @@ fn shade(in: Out, front: bool) -> vec4f {
     let again = 1.0 + point.mirror * (1.0 / max(mirror.x + mirror.y, 0.05) - 1.0);
     let mirrored = (point.mirror * mirror.x + point.grazing * mirror.y) * again;
     // Rough mirrors hardly see what is far from their normal: no lobe is wider than that of a wall.
-    let seen = room(reflect(-to_eye, normal), 0.5 / (a * a) + 1.6);
-    // What is cut out is one of many leaves, and light from behind has come through others: with all of it they would be lit alike from
-    // all sides, and a crown would be flat.
-    let behind = select(1.0, THROUGH_OTHERS, surface.alpha_cutoff > 0.0);
-    let diffuse = point.albedo * room(normal, WALL) + point.through * (behind * room(-normal, WALL));
+    // Leaves shade each other whether or not they are where others were.
+    let is_leaf = surface.alpha_cutoff > 0.0;
+    let error = select(in.normal_lambda_error.z, 0.0, is_leaf);
+    var light = reached(in.world, faced, normal, error, dither(in.clip.xy));
+    let left = select(vec2f(0.0, FROM_OTHERS), THROUGH_LEAVES, is_leaf);
+    light = Reached(mix(left.x, 1.0, light.key), mix(vec2f(left.y), vec2f(1.0), light.sky));
+    // A smooth mirror sees beside what shades it.
+    let seen = room(reflect(-to_eye, normal), 0.5 / (a * a) + 1.6, light.key, mix(1.0, light.sky.x, a));
+    let diffuse = point.albedo * room(normal, WALL, light.key, light.sky.x) + point.through * room(-normal, WALL, light.key, light.sky.y);
     var radiance = (diffuse * (1.0 - mirrored) + mirrored * seen) * open * studio.room;
-    radiance += sunlight(point, studio.lights[0]) + sunlight(point, studio.lights[1]);
+    radiance += sunlight(point, studio.lights[0]) * light.key + sunlight(point, studio.lights[1]);
     radiance += surface.emissive * select(glow, vec3f(0.0), tinted);
     return vec4f(select(radiance, unlit(base.rgb), surface.unlit > 0.5), base.a);
 }
@@ -258,4 +359,69 @@ fn masked(in: Out, @builtin(front_facing) front: bool) -> Pixel {
 @fragment
 fn blended(in: Out, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     return shade(in, front);
+}
+
+struct Corner {
+    @builtin(position) clip: vec4f,
+    @location(0) ndc: vec2f,
+}
+
+@vertex
+fn corner(@builtin(vertex_index) index: u32) -> Corner {
+    // At depth 0: infinitely far.
+    let ndc = corner_of_picture(index);
+    return Corner(vec4f(ndc, 0.0, 1.0), ndc);
+}
+
+fn ray(in: Corner) -> vec3f {
+    return normalize((view.ray_from_clip * vec4f(in.ndc, 1.0, 1.0)).xyz);
+}
+
+// Like a room's wall that goes over into its floor: light at the horizon, darker above and at one's feet.
+@fragment
+fn backdrop(in: Corner) -> @location(0) vec4f {
+    let up = ray(in).y;
+    let horizon = vec3f(0.46, 0.472, 0.485);
+    let above = mix(horizon, vec3f(0.17, 0.205, 0.26), smoothstep(0.0, 0.9, up));
+    let below = mix(horizon, vec3f(0.28, 0.276, 0.268), smoothstep(0.0, 0.6, -up));
+    return vec4f(select(below, above, up > 0.0) / view.exposure, 1.0);
+}
+
+// How much of a pixel the lines of a grid cover; nothing where they would run into each other.
+fn lines(place: vec2f, cell: f32) -> f32 {
+    let at = place / cell;
+    let width = max(fwidth(at), vec2f(1e-6));
+    let beside = abs(fract(at - 0.5) - 0.5) / width;
+    let line = (1.0 - clamp(beside, vec2f(0.0), vec2f(1.0))) * (1.0 - smoothstep(vec2f(0.1), vec2f(0.4), width));
+    return max(line.x, line.y);
+}
+
+// Part of the light on the ground that is the key light's.
+const KEY_ON_GROUND: f32 = 0.48;
+
+struct Ground {
+    @location(0) color: vec4f,
+    @builtin(frag_depth) depth: f32,
+}
+
+@fragment
+fn grid(in: Corner) -> Ground {
+    let direction = ray(in);
+    let away = -view.eye.y / direction.y;
+    let place = view.eye + away * direction;
+    let near = 1.0 - smoothstep(1.5 * studio.radius, 7.0 * studio.radius, length(place.xz));
+    let light = reached(place, vec3f(0.0, 1.0, 0.0), vec3f(0.0, 1.0, 0.0), 0.0, dither(in.clip.xy));
+    // What is left of the light when both are whole.
+    let shade = near * (1.0 - mix(light.sky.x, light.key, KEY_ON_GROUND));
+    let fine = lines(place.xz, studio.cell * 0.1);
+    let coarse = lines(place.xz, studio.cell);
+    let clip = view.clip_from_world * vec4f(place, 1.0);
+    let line = near * max(0.14 * fine, 0.35 * coarse);
+    // Lines, too, lie in the shade, which is black before what is behind.
+    let amount = 1.0 - (1.0 - line) * (1.0 - shade);
+    if (!(away > 0.0) || amount < 0.002) {
+        discard;
+    }
+    let color = vec3f(0.8) * (line * (1.0 - shade) / amount);
+    return Ground(vec4f(color / view.exposure, amount), clip.z / clip.w);
 }

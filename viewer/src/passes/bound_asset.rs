@@ -14,8 +14,19 @@ pub struct BoundAsset {
     pub asset: Arc<AssetBuffers>,
     pub(super) studio_group: wgpu::BindGroup,
     pub(super) surface_groups: Vec<wgpu::BindGroup>,
-    /// Number and λ of each copy that is drawn.
+    /// A [`VisibleCopy`] for each that is drawn.
     pub visible: Elements,
+}
+
+/// A copy as it is drawn.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct VisibleCopy {
+    pub number: u32,
+    /// Number of its level, and how far it has gone to the next.
+    pub lambda: f32,
+    /// Of its surface, about.
+    pub error_m: f32,
 }
 
 /// Some copies of one part of a level.
@@ -29,18 +40,28 @@ pub struct AssetDraw {
 
 impl BoundAsset {
     pub fn new(gpu: &Gpu, layouts: &Layouts, asset: Arc<AssetBuffers>) -> Self {
-        let studio = [Binding::Buffer(&asset.studio), Binding::Buffer(&asset.places)];
-        let surface = |surface: &SurfaceData| {
-            let buffer = std::iter::once(Binding::Buffer(&surface.uniform));
-            let textures = surface.textures.iter().map(|texture| Binding::texture(texture));
-            let samplers = surface.samplers.iter().map(Binding::Sampler);
-            bind(gpu, &surface.name, &layouts.surface, (0..).zip(buffer.chain(textures).chain(samplers)))
-        };
+        let studio = [
+            Binding::Buffer(&asset.studio),
+            Binding::Buffer(&asset.places),
+            Binding::layers(&asset.lamp_maps),
+            Binding::Sampler(&layouts.nearest),
+        ];
         Self {
             studio_group: bind(gpu, "studio", &layouts.studio, (0..).zip(studio)),
-            surface_groups: asset.surfaces.iter().map(surface).collect(),
+            surface_groups: surface_groups(gpu, layouts, &asset),
             visible: Elements::new(gpu, "visible copies"),
             asset,
         }
     }
+}
+
+/// Materials, by their numbers.
+pub(super) fn surface_groups(gpu: &Gpu, layouts: &Layouts, asset: &AssetBuffers) -> Vec<wgpu::BindGroup> {
+    let group = |surface: &SurfaceData| {
+        let buffer = std::iter::once(Binding::Buffer(&surface.uniform));
+        let textures = surface.textures.iter().map(|texture| Binding::texture(texture));
+        let samplers = surface.samplers.iter().map(Binding::Sampler);
+        bind(gpu, &surface.name, &layouts.surface, (0..).zip(buffer.chain(textures).chain(samplers)))
+    };
+    asset.surfaces.iter().map(group).collect()
 }

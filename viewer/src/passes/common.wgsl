@@ -113,25 +113,6 @@ fn normal_from_template(rows: array<vec4f, 3>, normal: vec3f) -> vec3f {
     );
 }
 
-// A sun of a file that is no landscape.
-struct Light {
-    // Unit vector towards it.
-    direction: vec4f,
-    // On a surface that faces it; 0 for none.
-    irradiance: vec4f,
-}
-
-// What such a file is lit by, and how large it is.
-struct Studio {
-    lights: array<Light, 2>,
-    // Factor on the room's light.
-    room: f32,
-    // Of a sphere around what is shown, and side of a square of the grid: for the ground.
-    radius: f32,
-    cell: f32,
-    unused: f32,
-}
-
 const PI: f32 = 3.14159265;
 
 // How much light comes through leaves, as a part of the sun's, to an eye that looks against it: by the cosine of the angle between eye

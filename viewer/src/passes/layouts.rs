@@ -14,8 +14,10 @@ pub struct Layouts {
     pub sun_view: BindGroupLayout,
     /// Group 0 of what needs the camera alone: a file that is no landscape, tone mapping.
     pub camera: BindGroupLayout,
-    /// Group 1 of a file that is no landscape: the room, and where copies stand.
+    /// Group 1 of a file that is no landscape: the room, where copies stand, what lamps see.
     pub studio: BindGroupLayout,
+    /// Group 1 of what draws that: a part of `studio`.
+    pub places: BindGroupLayout,
     /// Group 2 of the same: a material.
     pub surface: BindGroupLayout,
     /// Group 1 of the terrain, of grass and of plants with a texture: what covers the land.
@@ -59,6 +61,7 @@ const CUBE: BindingType = texture(FILTERED, TextureViewDimension::Cube);
 const UNFILTERED: TextureSampleType = TextureSampleType::Float { filterable: false };
 const DATA: BindingType = texture(UNFILTERED, TextureViewDimension::D2);
 const DEPTH_MAP: BindingType = texture(TextureSampleType::Depth, TextureViewDimension::D2);
+const DEPTH_MAPS: BindingType = texture(TextureSampleType::Depth, TextureViewDimension::D2Array);
 
 const fn buffer(ty: BufferBindingType) -> BindingType {
     BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None }
@@ -97,7 +100,8 @@ impl Layouts {
             view: all("view", both, &view),
             sun_view: layout(gpu, "view of the sun", both, sun_view),
             camera: all("camera", both, &[UNIFORM]),
-            studio: all("studio", both, &[UNIFORM, READ]),
+            studio: all("studio", both, &[UNIFORM, READ, DEPTH_MAPS, UNFILTERING]),
+            places: layout(gpu, "places", ShaderStages::VERTEX, [(1, READ)]),
             surface: all("surface", fragment, &[&[UNIFORM][..], &[IMAGE; 5], &[FILTERING; 5]].concat()),
             ground: all("ground", both, &[IMAGE, IMAGE, LAYERS, IMAGE, IMAGE]),
             trees: all("trees", ShaderStages::VERTEX, &[READ]),

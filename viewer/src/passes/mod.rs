@@ -15,6 +15,7 @@ mod drift;
 mod feet;
 pub mod grass;
 pub mod impostors;
+mod lamps;
 mod layouts;
 mod mean;
 mod mirror;
@@ -34,10 +35,11 @@ mod water;
 
 pub use asset::AssetPass;
 pub use bound::{BoundScene, BoundTrees, Elements};
-pub use bound_asset::{AssetDraw, BoundAsset};
+pub use bound_asset::{AssetDraw, BoundAsset, VisibleCopy};
 pub use bound_mirror::{BoundMirror, Reflection};
 pub use bound_shade::BoundShade;
 pub use cull::{Cull, CullUniform};
+pub use lamps::Lamps;
 pub use layouts::{Binding, Layouts, bind};
 pub use mean::{Mean, Shift, pictures};
 pub use mirror::Mirror;
@@ -67,7 +69,7 @@ pub const SHADOW: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
 pub const SHADE: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
 /// The shaders of all passes.
-pub static SHADERS: [&Shader; 14] = [
+pub static SHADERS: [&Shader; 13] = [
     &cull::SHADER,
     &trees::SHADER,
     &impostors::SHADER,
@@ -81,7 +83,6 @@ pub static SHADERS: [&Shader; 14] = [
     &shadow::SHADER,
     &shade::SHADER,
     &asset::SHADER,
-    &studio::SHADER,
 ];
 
 /// A pass that draws a part of the picture.
@@ -110,6 +111,8 @@ pub struct Passes {
     /// Of files that are no landscapes.
     pub asset: AssetPass,
     pub studio: Studio,
+    /// What throws shadows in them, before the first picture.
+    pub lamps: Lamps,
     pub mean: Mean,
     pub tone: Tone,
     /// Samples a pixel that they draw.
@@ -140,6 +143,7 @@ impl Passes {
             ],
             asset: AssetPass::new(&compiler)?,
             studio: Studio::new(&compiler)?,
+            lamps: Lamps::new(&compiler)?,
             mean: Mean::new(&compiler)?,
             tone: Tone::new(&compiler)?,
             layouts,

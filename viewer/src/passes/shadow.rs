@@ -131,7 +131,12 @@ impl ShadowBake<'_> {
     }
 }
 
-fn begin<'a>(encoder: &'a mut CommandEncoder, map: &TextureView, load: LoadOp<f32>) -> RenderPass<'a> {
+/// Begins a pass that draws what the sun or a lamp sees.
+pub(super) fn begin<'a>(
+    encoder: &'a mut CommandEncoder,
+    map: &TextureView,
+    load: LoadOp<f32>,
+) -> RenderPass<'a> {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("shadows"),
         depth_stencil_attachment: Some(attached(map, load)),

@@ -1,10 +1,9 @@
-//! Draws what is around a file that is shown alone: a backdrop, and a grid on the ground.
+//! Draws what is around a file that is shown alone: a backdrop, and the ground with its shade and a grid.
 
+use super::asset::SHADER;
 use super::bound_asset::BoundAsset;
 use super::shaders::ShaderError;
-use super::{Compiler, PipelineDesc, Shader};
-
-pub const SHADER: Shader = Shader { name: "studio", source: include_str!("studio.wgsl"), constants: &[] };
+use super::{Compiler, PipelineDesc};
 
 #[derive(Debug)]
 pub struct Studio {
@@ -13,14 +12,21 @@ pub struct Studio {
 }
 
 impl Studio {
-    pub const NAME: &str = SHADER.name;
+    pub const NAME: &str = "studio";
 
     pub(super) fn new(compiler: &Compiler<'_>) -> Result<Self, ShaderError> {
         let (module, layouts) = (compiler.module(&SHADER)?, compiler.layouts);
         let groups = [&layouts.camera, &layouts.studio];
         let pipeline = |entry: &str, blend: Option<wgpu::BlendState>| {
             let usual = PipelineDesc::new(&module, &groups);
-            compiler.pipeline(&PipelineDesc { fragment: Some(entry), depth_write: false, blend, ..usual })
+            let vertex = "corner";
+            compiler.pipeline(&PipelineDesc {
+                vertex,
+                fragment: Some(entry),
+                depth_write: false,
+                blend,
+                ..usual
+            })
         };
         Ok(Self {
             backdrop: pipeline("backdrop", None),

@@ -6,17 +6,14 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3, Vec3};
 
-use super::{ImageUse, TreeData, Uploader};
+use super::studio::{exposure, studio};
+use super::{ImageUse, LAMPS, Lamp, TreeData, Uploader};
+use crate::gpu::flat;
 use crate::lod::tree::simple_error_m;
 use crate::scene::{Alpha, Asset, Facts, Image, Part, Sampling, Shape, Slot, Staging, Surface, Wrap};
 
-/// The most suns that are drawn, as in `asset.wgsl`.
-pub const MAX_LIGHTS: usize = 2;
-/// What the strongest sun of a file gives a white surface that faces it, as radiance. What unit a file's numbers are in
-/// cannot be told: exporters differ by a factor of 683 and more.
-const SUN_RADIANCE: f32 = 1.1;
-/// How bright the room is beside a sun of the file.
-const ROOM_BESIDE_SUN: f32 = 0.45;
+/// Texels a side of what a lamp sees.
+const LAMP_MAP_SIDE: u32 = 1024;
 
 /// A file on the device.
 #[derive(Debug)]
@@ -34,8 +31,13 @@ pub struct AssetBuffers {
     pub indices: wgpu::Buffer,
     /// [`TreeData`] of each copy.
     pub places: wgpu::Buffer,
-    /// [`StudioUniform`].
+    /// [`super::StudioUniform`].
     pub studio: wgpu::Buffer,
+    /// So that it is neither dark nor washed out.
+    pub exposure: f32,
+    pub lamps: [Lamp; LAMPS],
+    /// Depths that they see, a layer each; drawn into once.
+    pub lamp_maps: wgpu::Texture,
     pub surfaces: Vec<SurfaceData>,
 }
 
@@ -105,17 +107,6 @@ pub struct UvMap {
     pub unused: f32,
 }
 
-/// `Studio` of `asset.wgsl` and `studio.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct StudioUniform {
-    pub lights: [[[f32; 4]; 2]; MAX_LIGHTS],
-    pub room: f32,
-    pub radius: f32,
-    pub cell: f32,
-    pub unused: f32,
-}
-
 impl Uploader {
     /// Uploads a file. May run on any thread.
     ///
@@ -145,6 +136,7 @@ impl Uploader {
         }
         let mut samplers = HashMap::new();
         let surfaces = asset.surfaces.iter().map(|surface| self.surface(surface, &mut samplers));
+        let studio = studio(asset, &staging);
         Ok(AssetBuffers {
             name: asset.name.clone(),
             facts: asset.facts.clone(),
@@ -154,10 +146,20 @@ impl Uploader {
             vertices: self.gpu.buffer("vertices", &asset.vertices, Usage::VERTEX),
             indices: self.gpu.buffer("triangles", &asset.indices, Usage::INDEX),
             places: self.gpu.buffer("places", &places, Usage::STORAGE),
-            studio: self.gpu.buffer("studio", &[studio(asset, &staging)], Usage::UNIFORM),
+            studio: self.gpu.buffer("studio", &[studio], Usage::UNIFORM),
+            exposure: exposure(asset),
+            lamps: studio.lamps,
+            lamp_maps: self.lamp_maps(),
             surfaces: surfaces.collect(),
             staging,
         })
+    }
+
+    fn lamp_maps(&self) -> wgpu::Texture {
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+        let one = flat("what lamps see", [LAMP_MAP_SIDE; 2], wgpu::TextureFormat::Depth16Unorm, usage);
+        let size = wgpu::Extent3d { depth_or_array_layers: LAMPS as u32, ..one.size };
+        self.gpu.device.create_texture(&wgpu::TextureDescriptor { size, ..one })
     }
 
     fn surface(&self, surface: &Surface, samplers: &mut HashMap<Sampling, wgpu::Sampler>) -> SurfaceData {
@@ -243,22 +245,6 @@ fn place_data(world_from_shape: &DAffine3) -> TreeData {
         rows: [row(linear.x_axis, shift.x), row(linear.y_axis, shift.y), row(linear.z_axis, shift.z)],
         scale: max_scale(world_from_shape),
         ..TreeData::default()
-    }
-}
-
-fn studio(asset: &Asset, staging: &Staging) -> StudioUniform {
-    let strongest = asset.lights.iter().map(|light| light.irradiance.max_element()).fold(0.0, f32::max);
-    let mut lights = [[[0.0; 4]; 2]; MAX_LIGHTS];
-    for (slot, light) in lights.iter_mut().zip(&asset.lights) {
-        let irradiance = light.irradiance * (SUN_RADIANCE * std::f32::consts::PI / strongest);
-        *slot = [light.direction.extend(0.0).to_array(), irradiance.extend(0.0).to_array()];
-    }
-    StudioUniform {
-        lights,
-        room: if asset.lights.is_empty() { 1.0 } else { ROOM_BESIDE_SUN },
-        radius: staging.radius_m,
-        cell: staging.cell_m,
-        unused: 0.0,
     }
 }
 

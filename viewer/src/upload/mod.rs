@@ -9,10 +9,12 @@ mod ground;
 mod horizon;
 mod impostors;
 mod lake;
+mod lamps;
 mod leaf_light;
 mod plants;
 mod ring;
 mod sky;
+mod studio;
 mod texture;
 mod trees;
 
@@ -21,17 +23,17 @@ use std::sync::{Arc, Mutex, Weak};
 
 use genescape_schema::scene::SkyLight;
 
-pub use asset::{
-    AssetBuffers, CopyData, MAX_LIGHTS, ShapeData, StudioUniform, SurfaceData, SurfaceUniform, UvMap,
-};
+pub use asset::{AssetBuffers, CopyData, ShapeData, SurfaceData, SurfaceUniform, UvMap};
 pub use exhibit::{Exhibit, WeakExhibit};
 pub use far_shade::SHADED_M;
 pub use ground::{DRY_ALPHA, GroundBuffers};
 pub use impostors::{ImpostorData, ImpostorSet, PICTURE_INDICES, PICTURE_LISTS, PICTURE_VERTICES};
 pub use lake::{Lake, Window};
+pub use lamps::{LAMPS, Lamp};
 pub use plants::{PLANT_BLOCK_M, PlantBuffers, PlantBuffersOfKind, PlantVertex};
 pub use ring::{Ring, RingVertex};
 pub use sky::SkyTextures;
+pub use studio::StudioUniform;
 pub use texture::ImageUse;
 pub use trees::{
     DrawCommand, MATERIALS_PER_TREE_SET, MAX_LEVELS, MaterialUniform, TemplateData, TreeData, TreeMaterial,

@@ -9,7 +9,7 @@ use crate::gpu::Gpu;
 use crate::lod::tree::{COVERED_PX, Control, distance_m, lod_number};
 use crate::lod_mode::TreeLodMode;
 use crate::options::Options;
-use crate::passes::{AssetDraw, AssetPass, BoundAsset, Passes, Studio};
+use crate::passes::{AssetDraw, AssetPass, BoundAsset, Passes, Studio, VisibleCopy};
 use crate::scene::Alpha;
 use crate::upload::{AssetBuffers, ShapeData};
 
@@ -19,10 +19,10 @@ const MAX_BLENDED: usize = 1 << 14;
 /// Lists that are kept from frame to frame.
 #[derive(Debug, Default)]
 pub(super) struct AssetChoice {
-    /// Number and λ of copies, those that are drawn together one after the other.
-    visible: Vec<(u32, f32)>,
+    /// Those that are drawn together one after the other.
+    visible: Vec<VisibleCopy>,
     /// Copies of one shape, before they are put in order by level.
-    found: Vec<(u32, f32)>,
+    found: Vec<VisibleCopy>,
     solid: Vec<AssetDraw>,
     /// With the distance of each.
     blended: Vec<(f32, AssetDraw)>,
@@ -60,9 +60,7 @@ impl AssetChoice {
         self.solid.sort_by_key(|draw| draw.surface);
         self.blended.sort_by(|(near, _), (far, _)| far.total_cmp(near));
         self.blended.drain(..self.blended.len().saturating_sub(MAX_BLENDED));
-        let visible: Vec<[u32; 2]> =
-            self.visible.iter().map(|(copy, lambda)| [*copy, lambda.to_bits()]).collect();
-        bound.visible.write(gpu, &visible);
+        bound.visible.write(gpu, &self.visible);
     }
 
     /// The copies of a shape that are seen, in the order of their levels.
@@ -81,16 +79,17 @@ impl AssetChoice {
             if frustum.sees_sphere(copy.center_m, copy.radius_m) {
                 let away_m = distance_m(copy.center_m.distance(camera.position_m), copy.radius_m);
                 let lambda = lod_number(&control, &shape.errors_m, shape.simple_error_m, away_m, copy.scale);
-                self.found.push((number, lambda));
+                let error_m = copy.scale * shape.error_m_at(lambda);
+                self.found.push(VisibleCopy { number, lambda, error_m });
             }
         }
-        self.found.sort_by_key(|(_, lambda)| *lambda as u32);
+        self.found.sort_by_key(|copy| copy.lambda as u32);
     }
 
     fn draw(&mut self, asset: &AssetBuffers, shape: &ShapeData, camera: &Camera) {
         let found = std::mem::take(&mut self.found);
-        for same in found.chunk_by(|a, b| a.1 as u32 == b.1 as u32) {
-            let level = (same[0].1 as usize).min(shape.parts.len() - 1);
+        for same in found.chunk_by(|a, b| a.lambda as u32 == b.lambda as u32) {
+            let level = (same[0].lambda as usize).min(shape.parts.len() - 1);
             let first = self.visible.len() as u32;
             self.visible.extend_from_slice(same);
             self.levels.resize(self.levels.len().max(level + 1), 0);
@@ -108,8 +107,8 @@ impl AssetChoice {
                     self.solid.push(draw(first..first + same.len() as u32));
                     continue;
                 }
-                for (at, (copy, _)) in (first..).zip(same) {
-                    let away_m = asset.copies[*copy as usize].center_m.distance(camera.position_m);
+                for (at, copy) in (first..).zip(same) {
+                    let away_m = asset.copies[copy.number as usize].center_m.distance(camera.position_m);
                     self.blended.push((away_m, draw(at..at + 1)));
                 }
             }
@@ -119,6 +118,13 @@ impl AssetChoice {
 }
 
 impl ShapeData {
+    /// Between those of the levels that it is between.
+    fn error_m_at(&self, lambda: f32) -> f32 {
+        let of = |level: usize| self.errors_m[level.min(self.errors_m.len() - 1)];
+        let (level, part) = (lambda as usize, lambda.fract());
+        of(level) + part * (of(level + 1) - of(level))
+    }
+
     /// Levels that do not morph change where their file says, whatever the mode (but for none) and the picture's size.
     fn control(&self, control: &Control, camera: &Camera) -> Control {
         match control.mode {

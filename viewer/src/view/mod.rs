@@ -159,7 +159,7 @@ impl View {
                 choice.record(bound, gpu, &self.uniform, &mut scope, passes, targets, frame, cameras)
             }
             Bound::Asset(bound, choice) => {
-                let numbers = ViewUniform::of_camera(camera, targets.size_px, frame, 1.0);
+                let numbers = ViewUniform::of_camera(camera, targets.size_px, frame, bound.asset.exposure);
                 gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&numbers));
                 let size = targets.size_px.map(|side| side as f32);
                 choice.choose(bound, gpu, lod_camera, size, &frame.options);

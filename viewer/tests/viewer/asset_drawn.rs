@@ -1,13 +1,11 @@
 //! Anyone's file as it is drawn: colours, sides, holes, what shines through, levels of detail.
 
 use std::process::Command;
-use std::sync::Arc;
 
 use genescape_viewer::camera::Camera;
 use genescape_viewer::headless::Headless;
 use genescape_viewer::lod_mode::TreeLodMode;
 use genescape_viewer::options::{FrameInput, Options};
-use genescape_viewer::upload::Uploader;
 use genescape_viewer::view::View;
 use glam::Vec3;
 use image::RgbaImage;
@@ -21,8 +19,7 @@ const SIZE_PX: [u32; 2] = [96, 96];
 /// A view of a file.
 fn view(studio: &Headless, file: &File) -> View {
     let asset = file.read().expect("a file that can be drawn");
-    let buffers = Uploader::new(&studio.gpu).asset(&asset).expect("small enough");
-    studio.view(Arc::new(buffers), SIZE_PX)
+    studio.view(studio.upload_asset(&asset).expect("small enough"), SIZE_PX)
 }
 
 /// From that far in front of the middle of a square, or behind it.
@@ -220,4 +217,57 @@ fn a_picture_of_anyones_file_is_made_without_a_window_or_it_is_told_why_not() {
     let output = draw("words.glb");
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.code() == Some(2) && said.contains("words.glb cannot be shown"), "{said}");
+}
+
+#[test]
+#[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
+fn what_is_between_a_floor_and_the_light_shades_it_and_what_is_cut_out_does_not() {
+    // As `upload::lamps` has it.
+    const TOWARDS_KEY: Vec3 = Vec3::new(0.48, 0.64, 0.6);
+    let studio = made_up::studio();
+    let camera = Camera {
+        position_m: Vec3::new(0.0, 14.0, 0.2),
+        yaw_rad: 0.0,
+        pitch_rad: 0.01 - std::f32::consts::FRAC_PI_2,
+        fov_y_rad: 1.0,
+    };
+    // How bright the ground is in the shadow of a square 2 m above it, and as far on the other side. It is the file's own floor, or
+    // what a file stands on.
+    let ground = |alpha: f32, mode: &str, own_floor: bool| {
+        let colored = |alpha: f32, mode: &str| {
+            json!({
+                "alphaMode": mode, "doubleSided": true,
+                "pbrMetallicRoughness": { "metallicFactor": 0.0, "baseColorFactor": [0.5, 0.5, 0.5, alpha] },
+            })
+        };
+        let (mut file, half) = (square(colored(1.0, "OPAQUE")), 0.5_f32.sqrt());
+        let mut mesh = file.json["meshes"][0].clone();
+        mesh["primitives"][0]["material"] = json!(file.add("materials", colored(alpha, mode)));
+        let (mesh, size) = (file.add("meshes", mesh), if own_floor { 6.0 } else { 0.1 });
+        let upwards = json!([-half, 0.0, 0.0, half]);
+        file.json["nodes"] = json!([
+            { "mesh": 0, "rotation": upwards, "scale": [size, size, size] },
+            { "mesh": mesh, "rotation": upwards, "translation": [0.0, 2.0, 0.0] },
+        ]);
+        file.json["scenes"][0]["nodes"] = json!([0, 1]);
+        let options = Options { draw_terrain: !own_floor, ..Options::default() };
+        let frame = FrameInput { options, ..FrameInput::default() };
+        let drawn = studio.shoot(&mut view(&studio, &file), &frame, &camera, &camera).expect("a picture");
+        [-1.0, 1.0].map(|side| {
+            let place = side * 2.0 / TOWARDS_KEY.y * TOWARDS_KEY * Vec3::new(1.0, 0.0, 1.0);
+            let ndc = camera.clip_from_world(1.0).project_point3(place);
+            let [x, y] = [ndc.x, -ndc.y].map(|at| ((0.5 + 0.5 * at) * SIZE_PX[0] as f32) as u32);
+            // Lines of the grid are narrower.
+            let green = (0..25).map(|n| drawn.get_pixel(x + n % 5 - 2, y + n / 5 - 2).0[1]);
+            green.map(|byte| libm::powf(f32::from(byte) / 255.0, 2.2)).sum::<f32>() / 25.0
+        })
+    };
+    for own_floor in [true, false] {
+        let [shaded, lit] = ground(1.0, "OPAQUE", own_floor);
+        assert!(lit > 0.1 && shaded < 0.65 * lit && shaded > 0.3 * lit, "{shaded} {lit}, {own_floor}");
+        for (alpha, mode) in [(0.2, "MASK"), (0.5, "BLEND")] {
+            let [shaded, lit] = ground(alpha, mode, own_floor);
+            assert!((shaded - lit).abs() < 0.06 * lit, "{shaded} {lit}, {mode}, {own_floor}");
+        }
+    }
 }

@@ -8,7 +8,8 @@ use genescape_viewer::passes::Shaders;
 use genescape_viewer::passes::{CullUniform, SHADERS, ViewUniform, grass, plants, terrain, trees};
 use genescape_viewer::scene::TreeVertex;
 use genescape_viewer::upload::{
-    DrawCommand, ImpostorData, MaterialUniform, PlantVertex, RingVertex, TemplateData, TreeData,
+    DrawCommand, ImpostorData, Lamp, MaterialUniform, PlantVertex, RingVertex, StudioUniform, TemplateData,
+    TreeData,
 };
 use naga::{ScalarKind, TypeInner};
 
@@ -130,6 +131,8 @@ fn uniforms_are_laid_out_alike() {
             unused,
         }
     );
+    same!(["asset"], "Studio", StudioUniform { lights, room, radius, cell, middle, lamps });
+    same!(["asset"], "Lamp", Lamp { towards, right });
     same!(["trees", "shadow"], "Material", MaterialUniform { factor, alpha_cutoff, has_normal, unused });
 }
 
