@@ -21,6 +21,8 @@ pub const SHADER: Shader = Shader { name: "plants", source: include_str!("plants
 /// Part of its reach up to which a kind is drawn finely, and beyond which plants get fewer and smaller.
 const FINE: f32 = 0.3;
 const FULL: f32 = 0.45;
+/// Metres up to which leaves are several in the place of one.
+const LEAFY_M: f32 = 10.0;
 /// Part of them that stands at the end of the reach.
 const FEWEST: f32 = 0.35;
 /// More metres than any plant is high or a block is uneven.
@@ -58,6 +60,7 @@ pub struct PlantChoice {
     /// Of the ground around the feet of what is rough and near.
     pub feet: Vec<DrawCommand>,
     coarse: Vec<PlantInstance>,
+    leafy: Vec<PlantInstance>,
     /// The plants of blocks that are or were within reach, by number of their kind and block.
     known: HashMap<(usize, [i32; 2]), Box<[Standing]>>,
     /// How many blocks were left when those out of reach were last forgotten.
@@ -159,6 +162,7 @@ impl PlantChoice {
             let reach_m = kind.reach_m * part;
             let first = self.instances.len() as u32;
             self.coarse.clear();
+            let leafy = if shape.leafy.is_empty() { 0.0 } else { LEAFY_M / kind.reach_m };
             for block in blocks(reach_m, ground, eye_m).filter(|&block| shape.grows_in(block)) {
                 let middle = block_middle_m(block);
                 let middle = Vec3::new(middle.x, ground.field.height_m(middle.x, middle.y), middle.y);
@@ -172,7 +176,11 @@ impl PlantChoice {
                     let away = Vec3::from(plant.instance.place).xzy().distance(eye_m) / reach_m;
                     let size = presence(plant.rank, away);
                     if size > 0.0 {
-                        let list = if away < FINE { &mut self.instances } else { &mut self.coarse };
+                        let list = match away {
+                            _ if away < leafy => &mut self.leafy,
+                            _ if away < FINE => &mut self.instances,
+                            _ => &mut self.coarse,
+                        };
                         let turn = plant.instance.turn.map(|along| along * size);
                         list.push(PlantInstance { turn, ..plant.instance });
                     }
@@ -180,9 +188,14 @@ impl PlantChoice {
             }
             let fine = self.instances.len() as u32;
             self.instances.append(&mut self.coarse);
+            let coarse = self.instances.len() as u32;
+            self.instances.append(&mut self.leafy);
             let all = self.instances.len() as u32;
-            let draws =
-                [DrawCommand::of(&shape.fine, first..fine), DrawCommand::of(&shape.coarse, fine..all)];
+            let draws = [
+                DrawCommand::of(&shape.fine, first..fine),
+                DrawCommand::of(&shape.coarse, fine..coarse),
+                DrawCommand::of(&shape.leafy, coarse..all),
+            ];
             self.draws.extend(draws.into_iter().flatten());
             self.feet.extend(DrawCommand::of(&shape.foot, first..fine));
             if kind.texture.is_none() {

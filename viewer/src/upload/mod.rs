@@ -11,6 +11,7 @@ mod impostors;
 mod lake;
 mod lamps;
 mod leaf_light;
+mod leaves;
 mod plants;
 mod ring;
 mod sky;

@@ -6,7 +6,7 @@ use std::ops::Range;
 use genescape_schema::scene::{PlantKind, PlantShape};
 use glam::{Vec2, Vec3, Vec3Swizzles};
 
-use super::Uploader;
+use super::{Uploader, leaves};
 use crate::scene::Ground;
 
 /// Metres a side of the blocks in which plants are looked for.
@@ -30,6 +30,8 @@ pub struct PlantBuffersOfKind {
     pub fine: Range<u32>,
     /// Those that are enough from afar.
     pub coarse: Range<u32>,
+    /// Those of its leaves, several in the place of each; empty where none of them is a triangle by itself.
+    pub leafy: Range<u32>,
     /// Those of the ground around its foot, see [`foot`]; empty of what is no rock or old wood.
     pub foot: Range<u32>,
     /// Blocks a side of the field.
@@ -55,8 +57,9 @@ impl PlantBuffersOfKind {
     pub fn new(ground: &Ground, kind: &PlantKind, indices: Range<u32>) -> Self {
         let side = 2 * (0.5 * ground.field.extent_m() / PLANT_BLOCK_M).ceil() as i32;
         let coarse = indices.start..(indices.start + 3 * kind.shape.coarse).min(indices.end);
-        let foot = indices.end..indices.end;
-        Self { fine: indices, coarse, foot, side, grows: grows(ground, kind, side) }
+        let none = indices.end..indices.end;
+        let (leafy, foot) = (none.clone(), none);
+        Self { fine: indices, coarse, leafy, foot, side, grows: grows(ground, kind, side) }
     }
 
     /// Whether the kind grows in a block, which is numbered from the middle of the field.
@@ -86,6 +89,11 @@ impl Uploader {
                 vertices.extend(foot(shape));
                 indices.extend(ring().map(|v| v + base));
                 buffers.foot.end = indices.len() as u32;
+            } else if let Some(leafy) = leaves::several_for_each(&vertices[base as usize..], shape) {
+                let start = indices.len() as u32;
+                indices.extend(vertices.len() as u32..(vertices.len() + leafy.len()) as u32);
+                vertices.extend(leafy);
+                buffers.leafy = start..indices.len() as u32;
             }
             kinds.push(buffers);
         }

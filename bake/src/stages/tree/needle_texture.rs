@@ -11,7 +11,8 @@ pub(super) const TUFTED_ASPECT: f32 = 0.4;
 
 impl Brush {
     /// A flat spray of conifer twigs that branch once more, needles all along: no side twig is as long as the next, or the whole
-    /// looks like a feather.
+    /// looks like a feather. Twigs lie in the shade of others, and their tips are out of it: a spray of one colour looks painted with one
+    /// stroke of a brush, and a crown of them like a heap of such strokes.
     pub fn sprays(&mut self, leaf: f32) {
         const SIDE_TWIGS: usize = 12;
         let needle = (0.15 * leaf).clamp(0.027, 0.036);
@@ -39,7 +40,11 @@ impl Brush {
             twigs.push(side);
         }
         twigs.push(main);
-        for twig in &twigs {
+        // One before the other by chance.
+        let mut twigs: Vec<(f32, _)> = twigs.into_iter().map(|twig| (self.dice.unit(), twig)).collect();
+        twigs.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        for (before, twig) in &twigs {
+            let before = lerp(0.52, 1.33, *before);
             let count = (length(twig) / 0.0095) as usize;
             for k in 0..count {
                 let t = k as f32 / count as f32;
@@ -48,7 +53,7 @@ impl Brush {
                     let lean = angle + sign * (0.75 - 0.3 * t + 0.22 * self.dice.signed());
                     let size = needle * (1.0 - 0.3 * t) * (0.9 + 0.2 * self.dice.signed());
                     let color = leaf_color(self.hue_deg + 8.0 * self.dice.signed());
-                    let light = (0.8 + 0.35 * t) * (1.0 + 0.22 * self.dice.signed());
+                    let light = before * (0.66 + 0.7 * t) * (1.0 + 0.22 * self.dice.signed());
                     self.canvas.stroke(base, base + towards(lean) * size, (0.0044, 0.0022), color * light);
                 }
             }
