@@ -319,9 +319,10 @@ fn shade(in: Out, front: bool) -> vec4f {
     let again = 1.0 + point.mirror * (1.0 / max(mirror.x + mirror.y, 0.05) - 1.0);
     let mirrored = (point.mirror * mirror.x + point.grazing * mirror.y) * again;
     // Rough mirrors hardly see what is far from their normal: no lobe is wider than that of a wall.
-    // Leaves shade each other whether or not they are where others were.
+    // Leaves shade each other whether or not they are where others were; less so the large ones of coarse levels, which reach into the
+    // shade of a crown with what stands for its outside.
     let is_leaf = surface.alpha_cutoff > 0.0;
-    let error = select(in.normal_lambda_error.z, 0.0, is_leaf);
+    let error = in.normal_lambda_error.z * select(1.0, 0.5, is_leaf);
     var light = reached(in.world, faced, normal, error, dither(in.clip.xy));
     let left = select(vec2f(0.0, FROM_OTHERS), THROUGH_LEAVES, is_leaf);
     light = Reached(mix(left.x, 1.0, light.key), mix(vec2f(left.y), vec2f(1.0), light.sky));
