@@ -317,6 +317,21 @@ struct Ground {
 // From this alpha of the colour on no water stands there.
 override DRY_ALPHA: f32;
 
+// Part of the land that a slope sees which is not in the shade itself.
+const LAND_IN_LIGHT: f32 = 0.8;
+
+// Irradiance from the land around on a slope, which sees the more of it the steeper it is. Without it, slopes in the shade are as blue
+// as the sky alone.
+fn from_land(up: f32) -> vec3f {
+    let on_land = view.sun_irradiance * max(view.sun_direction.y, 0.0) + view.sky_irradiance;
+    return view.ground_albedo * on_land * (LAND_IN_LIGHT * (0.5 - 0.5 * up));
+}
+
+// Irradiance from sky and land on the land, where that share of the sky arrives.
+fn ambient_on_land(up: f32, open: f32) -> vec3f {
+    return view.sky_irradiance * (open * (0.6 + 0.4 * up)) + from_land(up);
+}
+
 fn ground_at(in: Out) -> Ground {
     let place = in.world.xz;
     let uv = field_uv(place);
@@ -349,7 +364,7 @@ fn ground_at(in: Out) -> Ground {
         normal = bumped;
     }
     albedo = select(albedo * wetness(in.world.y) * between_blades(weights, away), level_tint(in.level) * 0.5, view.tint_levels != 0u);
-    let irradiance = view.sun_irradiance * (light.g * shade * relief) + view.sky_irradiance * light.r * (0.6 + 0.4 * normal.y);
+    let irradiance = view.sun_irradiance * (light.g * shade * relief) + ambient_on_land(normal.y, light.r);
     return Ground(albedo / PI * irradiance, smoothstep(DRY_ALPHA, 0.3, color.a), light.r);
 }
 
@@ -406,8 +421,7 @@ fn mirrored_ground(in: Out) -> @location(0) vec4f {
     if (is_sunk(in.world)) {
         discard;
     }
-    let up = 0.6 + 0.4 * normal_at(in.world.xz).y;
-    let irradiance = view.sun_irradiance * (light.g * light.a) + view.sky_irradiance * light.r * up;
+    let irradiance = view.sun_irradiance * (light.g * light.a) + ambient_on_land(normal_at(in.world.xz).y, light.r);
     return vec4f(hazed(air_before(in.world), albedo * wetness(in.world.y) / PI * irradiance), 1.0);
 }
 
@@ -467,7 +481,7 @@ fn ring_radiance(in: RingOut) -> vec3f {
     let left = textureSample(far_shade, clamped, shaded).r;
     let sun = view.sun_irradiance * (max(dot(normal, view.sun_direction), 0.0) * left);
     let sky = view.sky_irradiance * (0.5 + 0.5 * normal.y);
-    return hazed(air_before(in.world), albedo / PI * (sun + sky));
+    return hazed(air_before(in.world), albedo / PI * (sun + sky + from_land(normal.y)));
 }
 
 @fragment

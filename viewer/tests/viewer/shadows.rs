@@ -104,3 +104,35 @@ fn shade_sets_in_without_an_edge_across_a_leaf() {
     let step = green.windows(2).map(|rows| (rows[0] - rows[1]).abs()).fold(0.0, f32::max);
     assert!(step < 0.15 * (lit - shaded), "{step} from row to row, {lit} to {shaded}: {green:?}");
 }
+
+#[test]
+#[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
+fn a_slope_in_the_shade_is_lit_by_the_land_around_as_level_land_is_not() {
+    let studio = made_up::studio();
+    // Red and blue of grey land that rises so steeply, in its own shade under a blue sky.
+    let seen = |rise: f32| {
+        let lod = made_up::land(65, 4.0, |i, _| rise * 4.0 * (i as f32 - 32.0));
+        let mut scene = made_up::scene(lod, [128; 4], [0.0, 0.0, 0.4], Trees::default());
+        scene.ground.surface.light = made_up::picture("shade", 1, |_, _| [255, 0, 0, 255]);
+        scene.sky.light.sky_irradiance_linear = [0.0, 0.0, 1.2];
+        scene.sky.light.exposure = 6.0;
+        let camera = Camera {
+            position_m: Vec3::new(0.0, 30.0, 0.1),
+            yaw_rad: 0.0,
+            pitch_rad: 0.01 - std::f32::consts::FRAC_PI_2,
+            fov_y_rad: 0.3,
+        };
+        let frame = FrameInput::default();
+        let buffers = made_up::upload(&studio, &scene);
+        let picture =
+            studio.shoot(&mut studio.view(buffers, [32, 32]), &frame, &camera, &camera).expect("a picture");
+        let [red, _, blue, _] = picture.get_pixel(16, 16).0;
+        [red, blue]
+    };
+    let [[level_red, level_blue], [red, blue]] = [0.0, 1.2].map(seen);
+    assert!(
+        level_blue > level_red + 40 && blue > 40,
+        "the sky reaches both: {level_red} {level_blue} {blue}"
+    );
+    assert!(red > level_red + 10, "{red} on a slope, {level_red} on level land");
+}
