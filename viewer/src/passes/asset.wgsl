@@ -183,32 +183,31 @@ fn room(direction: vec3f, blur: f32, key_reached: f32, sky_reached: f32) -> vec3
     return key * key_reached * warm + around * sky_reached;
 }
 
-// What reaches a place in the room: of the key light, and of the sky on a wall that faces one way and on one that faces the other.
-struct Reached {
-    key: f32,
-    sky: vec2f,
-}
-
-// Lamps of the sky in a quarter of the compass, one to a ring: `Reached` asks one of each quarter, each in another ring, and which they
+// Lamps of the sky in a quarter of the compass, one to a ring: a place asks one of each quarter, each in another ring, and which they
 // are is by chance.
 const RINGS: u32 = 4u;
-// Whether light of a lamp reaches a place, by what the lamp sees; between four texels. What shades it lies so far before it. `place` and
-// `before` are in units of the sphere.
-fn lamp_reaches(number: u32, place: vec3f, before: f32) -> f32 {
+// Whether light of a lamp reaches a place, by what the lamp sees; between four texels. What shades it lies so far before it as
+// the place is off its wall.
+fn lamp_reaches(number: u32, off_wall: vec4f) -> f32 {
+    let place = off_wall.xyz;
     let lamp = studio.lamps[number];
     let up = cross(lamp.towards.xyz, lamp.right.xyz);
     let uv = 0.5 + 0.5 * vec2f(dot(lamp.right.xyz, place), -dot(up, place));
     let depth = 0.5 - 0.49 * dot(lamp.towards.xyz, place);
     let four = textureGather(lamp_maps, nearest_depth, uv, number);
     // Where nothing is, it is as far as can be told; and outside all is lit.
-    let lit = select(saturate(1.5 - (depth - four) / (0.49 * before)), vec4f(1.0), four > vec4f(0.999));
+    let lit = select(saturate(1.5 - (depth - four) / (0.49 * off_wall.w)), vec4f(1.0), four > vec4f(0.999));
     return select(1.0, between(lit, uv, textureDimensions(lamp_maps)), all(uv == saturate(uv)));
 }
 
-// `error`: metres by which the wall may be elsewhere in what lamps see.
-fn reached(world: vec3f, flat_normal: vec3f, normal: vec3f, error: f32, chance: f32) -> Reached {
+// A place off its wall in units of the sphere, and by how much: for `error`, metres by which the wall may be elsewhere in what lamps see.
+fn beside_wall(world: vec3f, flat_normal: vec3f, error: f32) -> vec4f {
     let beside = 3.0 / f32(textureDimensions(lamp_maps).x) + 2.0 * error / studio.radius;
-    let place = (world - vec3f(0.0, studio.middle, 0.0)) / studio.radius + flat_normal * beside;
+    return vec4f((world - vec3f(0.0, studio.middle, 0.0)) / studio.radius + flat_normal * beside, beside);
+}
+
+// What of the sky's light reaches such a place on a wall that faces one way, and on one that faces the other.
+fn sky_reaches(place: vec4f, normal: vec3f, chance: f32) -> vec2f {
     var light = vec2f(0.0);
     var most = vec2f(0.0);
     for (var quarter = 0u; quarter < RINGS; quarter++) {
@@ -217,10 +216,10 @@ fn reached(world: vec3f, flat_normal: vec3f, normal: vec3f, error: f32, chance: 
         let facing = dot(normal, studio.lamps[number].towards.xyz);
         // Light from the ground, too, arrives where the sky's does.
         let share = 0.1 + max(vec2f(facing, -facing), vec2f(0.0));
-        light += share * lamp_reaches(number, place, beside);
+        light += share * lamp_reaches(number, place);
         most += share;
     }
-    return Reached(lamp_reaches(0u, place, beside), light / most);
+    return light / most;
 }
 
 // What a rough mirror reflects of light from everywhere (Karis 2014): factor on the reflectance, and what is added.
@@ -323,14 +322,15 @@ fn shade(in: Out, front: bool) -> vec4f {
     // shade of a crown with what stands for its outside.
     let is_leaf = surface.alpha_cutoff > 0.0;
     let error = in.normal_lambda_error.z * select(1.0, 0.5, is_leaf);
-    var light = reached(in.world, faced, normal, error, dither(in.clip.xy));
+    let place = beside_wall(in.world, faced, error);
     let left = select(vec2f(0.0, FROM_OTHERS), THROUGH_LEAVES, is_leaf);
-    light = Reached(mix(left.x, 1.0, light.key), mix(vec2f(left.y), vec2f(1.0), light.sky));
+    let from_key = mix(left.x, 1.0, lamp_reaches(0u, place));
+    let from_sky = mix(vec2f(left.y), vec2f(1.0), sky_reaches(place, normal, dither(in.clip.xy)));
     // A smooth mirror sees beside what shades it.
-    let seen = room(reflect(-to_eye, normal), 0.5 / (a * a) + 1.6, light.key, mix(1.0, light.sky.x, a));
-    let diffuse = point.albedo * room(normal, WALL, light.key, light.sky.x) + point.through * room(-normal, WALL, light.key, light.sky.y);
+    let seen = room(reflect(-to_eye, normal), 0.5 / (a * a) + 1.6, from_key, mix(1.0, from_sky.x, a));
+    let diffuse = point.albedo * room(normal, WALL, from_key, from_sky.x) + point.through * room(-normal, WALL, from_key, from_sky.y);
     var radiance = (diffuse * (1.0 - mirrored) + mirrored * seen) * open * studio.room;
-    radiance += sunlight(point, studio.lights[0]) * light.key + sunlight(point, studio.lights[1]);
+    radiance += sunlight(point, studio.lights[0]) * from_key + sunlight(point, studio.lights[1]);
     radiance += surface.emissive * select(glow, vec3f(0.0), tinted);
     return vec4f(select(radiance, unlit(base.rgb), surface.unlit > 0.5), base.a);
 }
@@ -399,6 +399,8 @@ fn lines(place: vec2f, cell: f32) -> f32 {
 
 // Part of the light on the ground that is the key light's.
 const KEY_ON_GROUND: f32 = 0.48;
+// How wide shadows by lamps of the sky are smeared there, as a part of the way from the middle.
+const BLUR: f32 = 0.3;
 
 struct Ground {
     @location(0) color: vec4f,
@@ -411,9 +413,17 @@ fn grid(in: Corner) -> Ground {
     let away = -view.eye.y / direction.y;
     let place = view.eye + away * direction;
     let near = 1.0 - smoothstep(1.5 * studio.radius, 7.0 * studio.radius, length(place.xz));
-    let light = reached(place, vec3f(0.0, 1.0, 0.0), vec3f(0.0, 1.0, 0.0), 0.0, dither(in.clip.xy));
+    let up = vec3f(0.0, 1.0, 0.0);
+    // The farther from what stands there, the softer: or one would see sixteen shadows.
+    let chance = dither(in.clip.xy);
+    let turn = 2.0 * PI * fract(7.0 * chance);
+    let aside = BLUR * min(length(place.xz), studio.radius) * sqrt(chance) * vec3f(cos(turn), 0.0, sin(turn));
+    let from_key = lamp_reaches(0u, beside_wall(place, up, 0.0));
+    // Of both halves of each quarter, for here nothing hides what is by chance.
+    let off_ground = beside_wall(place + aside, up, 0.0);
+    let from_sky = 0.5 * (sky_reaches(off_ground, up, chance).x + sky_reaches(off_ground, up, fract(chance + 0.5)).x);
     // What is left of the light when both are whole.
-    let shade = near * (1.0 - mix(light.sky.x, light.key, KEY_ON_GROUND));
+    let shade = near * (1.0 - mix(from_sky, from_key, KEY_ON_GROUND));
     let fine = lines(place.xz, studio.cell * 0.1);
     let coarse = lines(place.xz, studio.cell);
     let clip = view.clip_from_world * vec4f(place, 1.0);
