@@ -36,7 +36,7 @@ pub struct View {
 /// What is shown, as bound for this view, with what is kept from frame to frame.
 #[derive(Debug)]
 enum Bound {
-    Landscape(Box<BoundScene>, LandscapeChoice),
+    Landscape(Box<BoundScene>, Box<LandscapeChoice>),
     Asset(Box<BoundAsset>, AssetChoice),
 }
 
@@ -100,7 +100,7 @@ impl View {
         self.bound = Some(match exhibit.clone() {
             Exhibit::Landscape(scene) => {
                 let bound = BoundScene::new(gpu, layouts, scene, &self.uniform, self.turn);
-                Bound::Landscape(Box::new(bound), LandscapeChoice::default())
+                Bound::Landscape(Box::new(bound), Box::default())
             }
             Exhibit::Asset(asset) => {
                 Bound::Asset(Box::new(BoundAsset::new(gpu, layouts, asset)), AssetChoice::default())
