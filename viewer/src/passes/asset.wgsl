@@ -326,9 +326,11 @@ fn shade(in: Out, front: bool) -> vec4f {
     let left = select(vec2f(0.0, FROM_OTHERS), THROUGH_LEAVES, is_leaf);
     let from_key = mix(left.x, 1.0, lamp_reaches(0u, place));
     let from_sky = mix(vec2f(left.y), vec2f(1.0), sky_reaches(place, normal, dither(in.clip.xy)));
+    // Under a sun of the file the room's own key light, which no lamp stands for then, is as the rest of the room.
+    let key = select(vec2f(from_key), from_sky, studio.room < 1.0);
     // A smooth mirror sees beside what shades it.
-    let seen = room(reflect(-to_eye, normal), 0.5 / (a * a) + 1.6, from_key, mix(1.0, from_sky.x, a));
-    let diffuse = point.albedo * room(normal, WALL, from_key, from_sky.x) + point.through * room(-normal, WALL, from_key, from_sky.y);
+    let seen = room(reflect(-to_eye, normal), 0.5 / (a * a) + 1.6, key.x, mix(1.0, from_sky.x, a));
+    let diffuse = point.albedo * room(normal, WALL, key.x, from_sky.x) + point.through * room(-normal, WALL, key.y, from_sky.y);
     var radiance = (diffuse * (1.0 - mirrored) + mirrored * seen) * open * studio.room;
     radiance += sunlight(point, studio.lights[0]) * from_key + sunlight(point, studio.lights[1]);
     radiance += surface.emissive * select(glow, vec3f(0.0), tinted);

@@ -12,7 +12,7 @@ const KEY: Vec3 = Vec3::new(0.48, 0.64, 0.6);
 /// Part of a lamp's depths, beside a half, that what is shown takes; nothing is drawn where there is nothing.
 const HALF_DEPTH: f32 = 0.49;
 
-/// Parallel light. As `Lamp` of `common.wgsl`.
+/// Parallel light. As `Lamp` of `asset.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Lamp {
@@ -41,8 +41,8 @@ impl Lamp {
     }
 }
 
-/// `sun`: towards the file's own, which is the key light if there is one. Of the sky each quarter of the compass has one lamp of each ring, and
-/// rings are as high as each other: so all stand for as much of it (Archimedes).
+/// `sun`: towards the file's own, which is the key light if there is one. Of the sky each quarter of the compass has one lamp of each
+/// ring, and rings are as high as each other: so all stand for as much of it (Archimedes).
 pub(super) fn lamps(sun: Option<Vec3>) -> [Lamp; LAMPS] {
     std::array::from_fn(|number| {
         let Some(number) = number.checked_sub(1) else { return Lamp::new(sun.unwrap_or(KEY)) };

@@ -11,14 +11,14 @@ const MAX_LIGHTS: usize = 2;
 /// cannot be told: exporters differ by a factor of 683 and more.
 const SUN_RADIANCE: f32 = 1.8;
 /// How bright the room is beside a sun of the file.
-const ROOM_BESIDE_SUN: f32 = 0.45;
+const ROOM_BESIDE_SUN: f32 = 0.3;
 /// What is shown as it is: things of this colour on average. A darker one is shown brighter, by far less than makes it as bright.
 const USUAL_ALBEDO: f32 = 0.18;
 const ADAPTATION: f32 = 0.3;
 /// Texels of a picture that are asked for its colour.
 const ASKED_TEXELS: usize = 4096;
 
-/// `Studio` of `common.wgsl`.
+/// `Studio` of `asset.wgsl`, which says what each field is; a test compares the two.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct StudioUniform {
