@@ -10,11 +10,13 @@ use super::PlantVertex;
 
 /// In the place of one leaf, each so large beside it: all together they cover as much.
 const LEAVES: [Leaf; 3] = [
-    Leaf { at: [0.0, 0.0], tilt: 0.5, tint: 0.86 },
-    Leaf { at: [0.5, 0.05], tilt: -0.45, tint: 1.08 },
-    Leaf { at: [0.08, 0.42], tilt: 0.35, tint: 1.0 },
+    Leaf { at: [0.0, 0.0], tilt: 0.5, tint: 0.72 },
+    Leaf { at: [0.5, 0.05], tilt: -0.45, tint: 1.1 },
+    Leaf { at: [0.08, 0.42], tilt: 0.35, tint: 0.92 },
 ];
 const SIZE: f32 = 0.58;
+/// Factor on the tint at the root of each, which lies in the shade of others.
+const ROOT: f32 = 0.7;
 /// Shapes with fewer leaves are left as they are.
 const MIN_LEAVES: usize = 48;
 
@@ -74,7 +76,7 @@ impl Leaf {
         std::array::from_fn(|k| PlantVertex {
             position: places[k].to_array(),
             normal: normal.to_array(),
-            tint: (triangle[k].tint * self.tint).min(1.0),
+            tint: (triangle[k].tint * self.tint * if k == 0 { ROOT } else { 1.0 }).min(1.0),
         })
     }
 }
