@@ -186,6 +186,9 @@ fn room(direction: vec3f, blur: f32, key_reached: f32, sky_reached: f32) -> vec3
 // Lamps of the sky in a quarter of the compass, one to a ring: a place asks one of each quarter, each in another ring, and which they
 // are is by chance.
 const RINGS: u32 = 4u;
+// Part of a lamp's depths, beside a half, that what is shown takes: as in `upload/lamps.rs`.
+const HALF_DEPTH: f32 = 0.49;
+
 // Whether light of a lamp reaches a place, by what the lamp sees; between four texels. What shades it lies so far before it as
 // the place is off its wall.
 fn lamp_reaches(number: u32, off_wall: vec4f) -> f32 {
@@ -193,10 +196,10 @@ fn lamp_reaches(number: u32, off_wall: vec4f) -> f32 {
     let lamp = studio.lamps[number];
     let up = cross(lamp.towards.xyz, lamp.right.xyz);
     let uv = 0.5 + 0.5 * vec2f(dot(lamp.right.xyz, place), -dot(up, place));
-    let depth = 0.5 - 0.49 * dot(lamp.towards.xyz, place);
+    let depth = 0.5 - HALF_DEPTH * dot(lamp.towards.xyz, place);
     let four = textureGather(lamp_maps, nearest_depth, uv, number);
     // Where nothing is, it is as far as can be told; and outside all is lit.
-    let lit = select(saturate(1.5 - (depth - four) / (0.49 * off_wall.w)), vec4f(1.0), four > vec4f(0.999));
+    let lit = select(saturate(1.5 - (depth - four) / (HALF_DEPTH * off_wall.w)), vec4f(1.0), four > vec4f(0.999));
     return select(1.0, between(lit, uv, textureDimensions(lamp_maps)), all(uv == saturate(uv)));
 }
 
@@ -317,7 +320,6 @@ fn shade(in: Out, front: bool) -> vec4f {
     // With what is reflected twice and more between the facets of a rough mirror (Turquin 2019).
     let again = 1.0 + point.mirror * (1.0 / max(mirror.x + mirror.y, 0.05) - 1.0);
     let mirrored = (point.mirror * mirror.x + point.grazing * mirror.y) * again;
-    // Rough mirrors hardly see what is far from their normal: no lobe is wider than that of a wall.
     // Leaves shade each other whether or not they are where others were; less so the large ones of coarse levels, which reach into the
     // shade of a crown with what stands for its outside.
     let is_leaf = surface.alpha_cutoff > 0.0;
@@ -328,7 +330,7 @@ fn shade(in: Out, front: bool) -> vec4f {
     let from_sky = mix(vec2f(left.y), vec2f(1.0), sky_reaches(place, normal, dither(in.clip.xy)));
     // Under a sun of the file the room's own key light, which no lamp stands for then, is as the rest of the room.
     let key = select(vec2f(from_key), from_sky, studio.room < 1.0);
-    // A smooth mirror sees beside what shades it.
+    // Rough mirrors hardly see what is far from their normal: no lobe is wider than that of a wall. A smooth one sees beside what shades it.
     let seen = room(reflect(-to_eye, normal), 0.5 / (a * a) + 1.6, key.x, mix(1.0, from_sky.x, a));
     let diffuse = point.albedo * room(normal, WALL, key.x, from_sky.x) + point.through * room(-normal, WALL, key.y, from_sky.y);
     var radiance = (diffuse * (1.0 - mirrored) + mirrored * seen) * open * studio.room;
@@ -424,7 +426,7 @@ fn grid(in: Corner) -> Ground {
     // Of both halves of each quarter, for here nothing hides what is by chance.
     let off_ground = beside_wall(place + aside, up, 0.0);
     let from_sky = 0.5 * (sky_reaches(off_ground, up, chance).x + sky_reaches(off_ground, up, fract(chance + 0.5)).x);
-    // What is left of the light when both are whole.
+    // How much of its light the ground lacks.
     let shade = near * (1.0 - mix(from_sky, from_key, KEY_ON_GROUND));
     let fine = lines(place.xz, studio.cell * 0.1);
     let coarse = lines(place.xz, studio.cell);
