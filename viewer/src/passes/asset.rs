@@ -5,8 +5,13 @@ use super::bound_asset::{AssetDraw, BoundAsset, VisibleCopy};
 use super::shaders::ShaderError;
 use super::{Compiler, FilledOrWire, PipelineDesc, Shader, buffer_layout};
 use crate::scene::{Alpha, AssetVertex};
+use crate::upload::{HALF_DEPTH, RINGS};
 
-pub const SHADER: Shader = Shader { name: "asset", source: include_str!("asset.wgsl"), constants: &[] };
+pub const SHADER: Shader = Shader {
+    name: "asset",
+    source: include_str!("asset.wgsl"),
+    constants: &[("RINGS", RINGS as f64), ("HALF_DEPTH", HALF_DEPTH as f64)],
+};
 
 /// Attributes of [`AssetVertex`].
 pub const VERTEX: [wgpu::VertexAttribute; 9] = wgpu::vertex_attr_array![

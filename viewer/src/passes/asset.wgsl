@@ -185,9 +185,9 @@ fn room(direction: vec3f, blur: f32, key_reached: f32, sky_reached: f32) -> vec3
 
 // Lamps of the sky in a quarter of the compass, one to a ring: a place asks one of each quarter, each in another ring, and which they
 // are is by chance.
-const RINGS: u32 = 4u;
-// Part of a lamp's depths, beside a half, that what is shown takes: as in `upload/lamps.rs`.
-const HALF_DEPTH: f32 = 0.49;
+override RINGS: u32;
+// Part of a lamp's depths, beside a half, that what is shown takes.
+override HALF_DEPTH: f32;
 
 // Whether light of a lamp reaches a place, by what the lamp sees; between four texels. What shades it lies so far before it as
 // the place is off its wall.

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::bound::Elements;
 use super::{Binding, Layouts, bind};
 use crate::gpu::Gpu;
+use crate::scene::Part;
 use crate::upload::{AssetBuffers, SurfaceData};
 
 /// What the passes draw of a file in one view.
@@ -36,6 +37,13 @@ pub struct AssetDraw {
     pub indices: Range<u32>,
     /// In the list of visible copies.
     pub copies: Range<u32>,
+}
+
+impl AssetDraw {
+    pub fn of(part: &Part, copies: Range<u32>) -> Self {
+        let indices = part.range.first..part.range.first + part.range.count;
+        Self { surface: part.surface, indices, copies }
+    }
 }
 
 impl BoundAsset {

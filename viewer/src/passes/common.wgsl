@@ -186,9 +186,13 @@ fn way_to_template(rows: array<vec4f, 3>, way: vec3f) -> vec3f {
 // Irradiance from the sky above and the ground below on what faces upwards by that share of the way from straight down to
 // straight up, where as much of the sun and of the sky arrives.
 fn light_around(up: f32, sun: f32, sky: f32) -> vec3f {
-    let from_sky = view.sky_irradiance * sky;
-    let on_ground = view.sun_irradiance * (sun * max(view.sun_direction.y, 0.0)) + from_sky;
-    return mix(view.ground_albedo * on_ground, from_sky, up);
+    return mix(light_from_ground(sun, sky), view.sky_irradiance * sky, up);
+}
+
+// The part of it that the ground gives back, on what faces straight down.
+fn light_from_ground(sun: f32, sky: f32) -> vec3f {
+    let on_ground = view.sun_irradiance * (sun * max(view.sun_direction.y, 0.0)) + view.sky_irradiance * sky;
+    return view.ground_albedo * on_ground;
 }
 
 // The same in the open: what a crown among other crowns gets on average.

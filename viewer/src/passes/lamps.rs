@@ -104,11 +104,8 @@ impl Chosen {
                     lambda: level as f32,
                     error_m,
                 }));
-                draws.extend(shape.parts[level].iter().map(|part| AssetDraw {
-                    surface: part.surface,
-                    indices: part.range.first..part.range.first + part.range.count,
-                    copies: first..chosen.len() as u32,
-                }));
+                let copies = first..chosen.len() as u32;
+                draws.extend(shape.parts[level].iter().map(|part| AssetDraw::of(part, copies.clone())));
             }
         }
         Self { draws, copies: gpu.buffer("copies", &chosen, wgpu::BufferUsages::VERTEX) }

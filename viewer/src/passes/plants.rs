@@ -176,10 +176,12 @@ impl PlantChoice {
                     let away = Vec3::from(plant.instance.place).xzy().distance(eye_m) / reach_m;
                     let size = presence(plant.rank, away);
                     if size > 0.0 {
-                        let list = match away {
-                            _ if away < leafy => &mut self.leafy,
-                            _ if away < FINE => &mut self.instances,
-                            _ => &mut self.coarse,
+                        let list = if away < leafy {
+                            &mut self.leafy
+                        } else if away < FINE {
+                            &mut self.instances
+                        } else {
+                            &mut self.coarse
                         };
                         let turn = plant.instance.turn.map(|along| along * size);
                         list.push(PlantInstance { turn, ..plant.instance });

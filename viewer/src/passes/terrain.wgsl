@@ -323,8 +323,7 @@ const LAND_IN_LIGHT: f32 = 0.8;
 // Irradiance from the land around on a slope, which sees the more of it the steeper it is. Without it, slopes in the shade are as blue
 // as the sky alone.
 fn from_land(up: f32) -> vec3f {
-    let on_land = view.sun_irradiance * max(view.sun_direction.y, 0.0) + view.sky_irradiance;
-    return view.ground_albedo * on_land * (LAND_IN_LIGHT * (0.5 - 0.5 * up));
+    return light_from_ground(1.0, 1.0) * (LAND_IN_LIGHT * (0.5 - 0.5 * up));
 }
 
 // Irradiance from sky and land on the land, where that share of the sky arrives.

@@ -5,12 +5,12 @@ use glam::{Mat4, Vec3, Vec4};
 /// The key light, then [`SKY_LAMPS`].
 pub const LAMPS: usize = 1 + SKY_LAMPS;
 /// Rings above the horizon, each with as many lamps: `asset.wgsl` looks at one lamp of each quarter of the compass.
-const RINGS: usize = 4;
+pub const RINGS: usize = 4;
 const SKY_LAMPS: usize = RINGS * RINGS;
 /// Towards the key light of a file that has no sun: at the right of whoever looks at the front. Also in `asset.wgsl`.
 const KEY: Vec3 = Vec3::new(0.48, 0.64, 0.6);
 /// Part of a lamp's depths, beside a half, that what is shown takes; nothing is drawn where there is nothing.
-const HALF_DEPTH: f32 = 0.49;
+pub const HALF_DEPTH: f32 = 0.49;
 
 /// Parallel light. As `Lamp` of `asset.wgsl`.
 #[repr(C)]

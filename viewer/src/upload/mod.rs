@@ -30,7 +30,7 @@ pub use far_shade::SHADED_M;
 pub use ground::{DRY_ALPHA, GroundBuffers};
 pub use impostors::{ImpostorData, ImpostorSet, PICTURE_INDICES, PICTURE_LISTS, PICTURE_VERTICES};
 pub use lake::{Lake, Window};
-pub use lamps::{LAMPS, Lamp};
+pub use lamps::{HALF_DEPTH, LAMPS, Lamp, RINGS};
 pub use plants::{PLANT_BLOCK_M, PlantBuffers, PlantBuffersOfKind, PlantVertex};
 pub use ring::{Ring, RingVertex};
 pub use sky::SkyTextures;

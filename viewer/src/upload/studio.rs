@@ -52,11 +52,12 @@ pub(super) fn studio(asset: &Asset, staging: &Staging) -> StudioUniform {
 
 /// A factor on radiance by how light the file's materials are, each as often as it has triangles.
 pub(super) fn exposure(asset: &Asset) -> f32 {
+    let albedos: Vec<f64> = asset.surfaces.iter().map(|surface| f64::from(albedo(surface))).collect();
     let (mut sum, mut triangles) = (0.0, 0.0);
     for shape in &asset.shapes {
         for part in shape.levels.first().into_iter().flat_map(|level| &level.parts) {
             let often = f64::from(part.range.count) * shape.copies.len() as f64;
-            sum += often * f64::from(albedo(&asset.surfaces[part.surface]));
+            sum += often * albedos[part.surface];
             triangles += often;
         }
     }

@@ -1,7 +1,5 @@
 //! Camera and LOD mode → the copies of anyone's shapes that one picture draws, each at its level, and how they are drawn.
 
-use std::ops::Range;
-
 use super::Drawn;
 use super::targets::Targets;
 use crate::camera::{Camera, Frustum};
@@ -95,21 +93,15 @@ impl AssetChoice {
             self.levels.resize(self.levels.len().max(level + 1), 0);
             self.levels[level] += same.len() as u32;
             for part in &shape.parts[level] {
-                let indices = part.range.first..part.range.first + part.range.count;
                 let triangles = (part.range.count / 3).saturating_mul(same.len() as u32);
                 self.triangles = self.triangles.saturating_add(triangles);
-                let draw = |copies: Range<u32>| AssetDraw {
-                    surface: part.surface,
-                    indices: indices.clone(),
-                    copies,
-                };
                 if asset.surfaces[part.surface].alpha != Alpha::Blend {
-                    self.solid.push(draw(first..first + same.len() as u32));
+                    self.solid.push(AssetDraw::of(part, first..first + same.len() as u32));
                     continue;
                 }
                 for (at, copy) in (first..).zip(same) {
                     let away_m = asset.copies[copy.number as usize].center_m.distance(camera.position_m);
-                    self.blended.push((away_m, draw(at..at + 1)));
+                    self.blended.push((away_m, AssetDraw::of(part, at..at + 1)));
                 }
             }
         }

@@ -43,8 +43,8 @@ impl Brush {
         // One before the other by chance.
         let mut twigs: Vec<(f32, _)> = twigs.into_iter().map(|twig| (self.dice.unit(), twig)).collect();
         twigs.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-        for (before, twig) in &twigs {
-            let before = lerp(0.52, 1.33, *before);
+        for (place, twig) in &twigs {
+            let before = lerp(0.52, 1.33, *place);
             let count = (length(twig) / 0.0095) as usize;
             for k in 0..count {
                 let t = k as f32 / count as f32;
