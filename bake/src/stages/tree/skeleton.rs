@@ -163,11 +163,11 @@ pub(super) fn grow(params: &TreeParams, budget: &Budget, dice: &mut Dice) -> Ske
 }
 
 /// The crown's envelope: length of a branch over the longest, at `ratio` = 1 at the crown's base and 0 at its top
-/// (Weber & Penn, ShapeRatio).
+/// (Weber & Penn, ShapeRatio). A cone comes to a point, within its top quarter; theirs ends a fifth as wide as it began.
 fn envelope(shape: u32, ratio: f32) -> f32 {
     let flame = if ratio <= 0.7 { ratio / 0.7 } else { (1.0 - ratio) / 0.3 };
     match shape {
-        0 => 0.2 + 0.8 * ratio,
+        0 => (0.2 + 0.8 * ratio).min(1.5 * ratio),
         1 => 0.2 + 0.8 * libm::sinf(PI * ratio),
         2 => 0.2 + 0.8 * libm::sinf(0.5 * PI * ratio),
         3 => 1.0,
