@@ -132,9 +132,9 @@ struct Facet {
 }
 
 impl Facets {
-    /// Those of them that are within `half_m` from the middle, along x and z, in cells of the size of `apron`'s.
+    /// Those of them that are within `half_m` from the middle, along x and z, in cells of half the size of `apron`'s.
     fn new(ring: &Mesh, apron: &Heightfield, half_m: f32) -> Self {
-        let cell_m = apron.spacing_m;
+        let cell_m = 0.5 * apron.spacing_m;
         let across = (2.0 * half_m / cell_m).ceil() as usize;
         let mut facets = Self { half_m, cell_m, across, cells: vec![Vec::new(); across * across] };
         for triangle in ring.parts.iter().flat_map(|part| &part.triangles) {

@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use genescape_schema::scene::bintree::Sample;
 
+use super::curved::{Curved, Fine, PARTS};
 use crate::math::{cell, lerp_array, triangles_between};
 use crate::model::{Heightfield, Landform, Material, Mesh, Part, PartKind};
 
@@ -31,9 +32,10 @@ pub(super) fn border_samples(land: &Landform) -> Vec<Sample> {
 /// a strip whose inner vertices are just those of the near mesh. Empty if the apron is no wider than the field.
 pub(super) fn ring(land: &Landform, used: impl Fn(Sample) -> bool, colors: &[[u8; 4]]) -> Mesh {
     let Some(hole) = Hole::of(land) else { return Mesh::default() };
-    let numbers = vec![u32::MAX; land.field.heights_m.len() + land.apron.heights_m.len()];
+    let fine_side = (land.apron.side - 1) * PARTS + 1;
+    let numbers = vec![u32::MAX; land.field.heights_m.len() + (fine_side * fine_side) as usize];
     let (mesh, triangles) = (Mesh::default(), Vec::new());
-    let mut ring = Ring { land, colors, mesh, numbers, triangles };
+    let mut ring = Ring { land, curved: Curved::of(land), colors, fine_side, mesh, numbers, triangles };
     let mut inner = [const { Vec::new() }; 4];
     let last = land.field.side - 1;
     for along in 0..=last {
@@ -45,12 +47,10 @@ pub(super) fn ring(land: &Landform, used: impl Fn(Sample) -> bool, colors: &[[u8
         }
     }
     for (side, inner) in inner.iter().enumerate() {
-        let sample = |along: u32| {
-            [[along, hole.first], [hole.last, along], [along, hole.last], [hole.first, along]][side]
-        };
-        let outer: Vec<u32> =
-            (hole.first..=hole.last).map(|along| ring.vertex(Place::Outer(sample(along)))).collect();
-        ring.zip(inner, &outer, if side % 2 == 0 { 0 } else { 2 });
+        let axis = side % 2;
+        let from = [[hole.first, hole.first], [hole.last, hole.first], [hole.first, hole.last]][side % 3];
+        let outer = ring.line(from, axis, hole.last - hole.first);
+        ring.zip(inner, &outer, 2 * axis);
     }
     ring.cells(&hole);
     let parts = vec![Part { material: Material::Ground, kind: PartKind::Surface, triangles: ring.triangles }];
@@ -95,16 +95,19 @@ impl Hole {
 enum Place {
     /// A sample of the field, on its border, where the near mesh has a vertex.
     Inner(Sample),
-    /// A sample of the apron.
-    Outer(Sample),
+    /// A sample of the apron, or between its samples.
+    Outer(Fine),
 }
 
 /// The ring while it grows.
 struct Ring<'a> {
     land: &'a Landform,
+    curved: Curved<'a>,
     colors: &'a [[u8; 4]],
+    /// Places a side of the apron.
+    fine_side: u32,
     mesh: Mesh,
-    /// Of the vertices that are made, by the samples of the field and then of the apron.
+    /// Of the vertices that are made, by the samples of the field and then the places of the apron.
     numbers: Vec<u32>,
     triangles: Vec<[u32; 3]>,
 }
@@ -113,10 +116,10 @@ impl Ring<'_> {
     /// The number of a vertex, which is made when it is first needed.
     fn vertex(&mut self, place: Place) -> u32 {
         let (number, extent_m) = (self.mesh.positions.len() as u32, self.land.field.extent_m());
-        let Landform { field, apron, .. } = self.land;
+        let field = &self.land.field;
         let slot = match place {
             Place::Inner([i, j]) => (j * field.side + i) as usize,
-            Place::Outer([i, j]) => field.heights_m.len() + (j * apron.side + i) as usize,
+            Place::Outer([i, j]) => field.heights_m.len() + (j * self.fine_side + i) as usize,
         };
         if self.numbers[slot] != u32::MAX {
             return self.numbers[slot];
@@ -124,12 +127,9 @@ impl Ring<'_> {
         self.numbers[slot] = number;
         let (position, normal) = match place {
             Place::Inner(sample) => vertex(field, sample),
-            Place::Outer(sample) => vertex(apron, sample),
+            Place::Outer(fine) => self.curved.vertex(fine),
         };
-        let color = match place {
-            Place::Inner(_) => self.color_between(position[0], position[2]),
-            Place::Outer(_) => self.color(slot - field.heights_m.len()),
-        };
+        let color = self.color_between(position[0], position[2]);
         self.mesh.positions.push(position);
         self.mesh.normals.push(normal);
         self.mesh.uvs.push([position[0] / extent_m + 0.5, position[2] / extent_m + 0.5]);
@@ -162,25 +162,63 @@ impl Ring<'_> {
         }
     }
 
-    /// All whole cells outside the hole, cut along the diagonal that bends less.
+    /// The vertices along some of the apron's edges, from a sample on along x (0) or z (1).
+    fn line(&mut self, from: Sample, axis: usize, edges: u32) -> Vec<u32> {
+        let mut line = vec![self.vertex(Place::Outer(from.map(|along| along * PARTS)))];
+        for edge in 0..edges {
+            let mut sample = from;
+            sample[axis] += edge;
+            let step = PARTS / self.curved.parts(sample, axis);
+            for part in (step..=PARTS).step_by(step as usize) {
+                let mut fine = sample.map(|along| along * PARTS);
+                fine[axis] += part;
+                line.push(self.vertex(Place::Outer(fine)));
+            }
+        }
+        line
+    }
+
+    /// All whole cells outside the hole.
     fn cells(&mut self, hole: &Hole) {
         let within = hole.first..hole.last;
-        let apron = &self.land.apron;
-        for j in 0..apron.side - 1 {
-            for i in 0..apron.side - 1 {
-                if within.contains(&i) && within.contains(&j) {
-                    continue;
-                }
-                let [nw, ne, sw, se] = [[i, j], [i + 1, j], [i, j + 1], [i + 1, j + 1]]
-                    .map(|sample| self.vertex(Place::Outer(sample)));
-                let falls = (apron.at(i, j) - apron.at(i + 1, j + 1)).abs();
-                let rises = (apron.at(i + 1, j) - apron.at(i, j + 1)).abs();
-                if falls <= rises {
-                    self.triangles.extend([[nw, sw, se], [nw, se, ne]]);
-                } else {
-                    self.triangles.extend([[nw, sw, ne], [ne, sw, se]]);
+        for j in 0..self.land.apron.side - 1 {
+            for i in 0..self.land.apron.side - 1 {
+                if !(within.contains(&i) && within.contains(&j)) {
+                    self.cell([i, j]);
                 }
             }
+        }
+    }
+
+    /// A cell: two triangles, cut along the diagonal that bends less, or as many as its most finely cut edge asks for.
+    fn cell(&mut self, [i, j]: Sample) {
+        let sides = [([i, j], 0), ([i + 1, j], 1), ([i, j + 1], 0), ([i, j], 1)];
+        let sides = sides.map(|(from, axis)| self.line(from, axis, 1));
+        let parts = sides.iter().map(|side| side.len() as u32 - 1).max().unwrap_or(1);
+        if parts == 1 {
+            let [nw, ne, sw, se] = [sides[0][0], sides[0][1], sides[2][0], sides[2][1]];
+            let height_m = |vertex: u32| self.mesh.positions[vertex as usize][1];
+            let falls = (height_m(nw) - height_m(se)).abs();
+            let rises = (height_m(ne) - height_m(sw)).abs();
+            self.triangles.extend(match falls <= rises {
+                true => [[nw, sw, se], [nw, se, ne]],
+                false => [[nw, sw, ne], [ne, sw, se]],
+            });
+            return;
+        }
+        // A grid within, and strips between it and the edges, of which each may be cut otherwise.
+        let step = PARTS / parts;
+        let mut within = |u: u32, v: u32| self.vertex(Place::Outer([i * PARTS + u * step, j * PARTS + v * step]));
+        let rows: Vec<Vec<u32>> =
+            (1..parts).map(|v| (1..parts).map(|u| within(u, v)).collect()).collect();
+        for (upper, lower) in rows.iter().zip(&rows[1..]) {
+            self.zip(upper, lower, 0);
+        }
+        let column = |u: usize| rows.iter().map(|row| row[u]).collect::<Vec<u32>>();
+        let last = rows.len() - 1;
+        let inner = [rows[0].clone(), column(last), rows[last].clone(), column(0)];
+        for (side, (outer, inner)) in sides.iter().zip(&inner).enumerate() {
+            self.zip(inner, outer, 2 * (side % 2));
         }
     }
 

@@ -8,6 +8,7 @@
 //! - [`mesh`]: the land as triangles for any viewer, within a verified error bound.
 
 mod apron;
+mod curved;
 mod data;
 mod near;
 mod stage;

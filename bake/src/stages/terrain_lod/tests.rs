@@ -261,6 +261,58 @@ fn the_apron_joins_the_near_mesh_edge_by_edge() {
     }
 }
 
+/// Hills that are twice as wide as the apron's cells, around level land of 1024 m.
+fn round_hills(water_level_m: Option<f32>) -> Landform {
+    let mut land = land(17, 4, 0.0, water_level_m);
+    for j in 0..65 {
+        for i in 0..65 {
+            let [x, z] = [i, j].map(|line: u32| land.apron.place_m(line));
+            let away_m = (x.abs().max(z.abs()) - 512.0).max(0.0);
+            land.apron.heights_m[(j * 65 + i) as usize] = hill_m(x, z) * (away_m / 128.0).min(1.0);
+        }
+    }
+    land
+}
+
+fn hill_m(x_m: f32, z_m: f32) -> f32 {
+    40.0 * libm::sinf(x_m / 61.0) * libm::cosf(z_m / 67.0)
+}
+
+#[test]
+fn hills_beside_the_field_are_round() {
+    let land = round_hills(None);
+    let ring = mesh(&land, 1.0, f32::MAX, &[]).apron;
+    let (mut worst_m, mut coarse_m, mut counted) = (0.0f32, 0.0f32, 0);
+    for [a, b, c] in &ring.parts[0].triangles {
+        let [a, b, c] = [a, b, c].map(|&vertex| glam::Vec3::from_array(ring.positions[vertex as usize]));
+        let middle = (a + b + c) / 3.0;
+        let away_m = middle.x.abs().max(middle.z.abs()) - 512.0;
+        if (128.0..400.0).contains(&away_m) {
+            let hill_m = hill_m(middle.x, middle.z);
+            worst_m = worst_m.max((middle.y - hill_m).abs());
+            coarse_m = coarse_m.max((land.apron.height_m(middle.x, middle.z) - hill_m).abs());
+            counted += 1;
+        }
+    }
+    assert!(counted > 1000 && worst_m < 0.4 * coarse_m, "{counted}: {worst_m} m, {coarse_m} m without curves");
+}
+
+#[test]
+fn level_land_stays_coarse_and_no_curve_dips_below_the_water() {
+    let level = mesh(&land(17, 4, 0.0, None), 1.0, f32::MAX, &[]).apron.triangle_count();
+    // Two triangles a cell outside the hole of 18 cells a side, and a strip.
+    assert!((2 * (64 * 64 - 18 * 18)..7700).contains(&level), "{level}");
+    let land = round_hills(Some(4.0));
+    let ring = mesh(&land, 1.0, f32::MAX, &[]).apron;
+    assert!(ring.triangle_count() > level + 1000);
+    let is_dry = |x: f32, z: f32| {
+        let around = |along: f32| [0, 1].map(|k| ((along + 2048.0) / 64.0) as u32 + k).map(|line| line.min(64));
+        around(x).into_iter().all(|i| around(z).into_iter().all(|j| land.apron.at(i, j) > 4.0))
+    };
+    let dry: Vec<f32> = ring.positions.iter().filter(|p| is_dry(p[0], p[2])).map(|p| p[1]).collect();
+    assert!(dry.len() > 1000 && dry.iter().all(|&height_m| height_m > 4.0));
+}
+
 #[test]
 fn water_lies_at_its_level_or_nowhere() {
     let wet = mesh(&land(17, 4, 120.0, Some(3.5)), 1.0, f32::MAX, &[]).water;
