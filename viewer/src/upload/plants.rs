@@ -89,11 +89,11 @@ impl Uploader {
                 vertices.extend(foot(shape));
                 indices.extend(ring().map(|v| v + base));
                 buffers.foot.end = indices.len() as u32;
-            } else if let Some(leafy) = leaves::several_for_each(&vertices[base as usize..], shape) {
-                let start = indices.len() as u32;
-                indices.extend(vertices.len() as u32..(vertices.len() + leafy.len()) as u32);
-                vertices.extend(leafy);
-                buffers.leafy = start..indices.len() as u32;
+            } else {
+                let own = vertices[base as usize..].to_vec();
+                buffers.coarse = append(&mut vertices, &mut indices, &as_bright(&own, shape));
+                let leafy = leaves::several_for_each(&own, shape).unwrap_or_default();
+                buffers.leafy = append(&mut vertices, &mut indices, &leafy);
             }
             kinds.push(buffers);
         }
@@ -103,6 +103,45 @@ impl Uploader {
             kinds,
         }
     }
+}
+
+/// Adds triangles, three corners each; their indices.
+fn append(vertices: &mut Vec<PlantVertex>, indices: &mut Vec<u32>, corners: &[PlantVertex]) -> Range<u32> {
+    let (start, base) = (indices.len() as u32, vertices.len() as u32);
+    indices.extend(base..base + corners.len() as u32);
+    vertices.extend(corners);
+    start..indices.len() as u32
+}
+
+/// The corners of the triangles that are enough from afar, tinted as all of the shape is on the mean: inside a bush it is dark, and
+/// what hides that is left out there. `corners`: those of the shape.
+fn as_bright(corners: &[PlantVertex], shape: &PlantShape) -> Vec<PlantVertex> {
+    let triangles: Vec<[PlantVertex; 3]> = shape
+        .triangles
+        .iter()
+        .filter_map(|triangle| {
+            let [a, b, c] = triangle.map(|number| corners.get(number as usize).copied());
+            Some([a?, b?, c?])
+        })
+        .collect();
+    let coarse = &triangles[..triangles.len().min(shape.coarse as usize)];
+    let (whole, part) = (mean_tint(&triangles), mean_tint(coarse));
+    let lift = ((whole - part) / (1.0 - part).max(1e-3)).clamp(0.0, 1.0);
+    let lifted =
+        |corner: &PlantVertex| PlantVertex { tint: corner.tint + lift * (1.0 - corner.tint), ..*corner };
+    coarse.as_flattened().iter().map(lifted).collect()
+}
+
+/// Weighted with areas.
+fn mean_tint(triangles: &[[PlantVertex; 3]]) -> f32 {
+    let (mut sum, mut area) = (0.0, 0.0);
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|corner| Vec3::from(corner.position));
+        let doubled = (b - a).cross(c - a).length();
+        sum += doubled * triangle.iter().map(|corner| corner.tint).sum::<f32>() / 3.0;
+        area += doubled;
+    }
+    sum / area.max(f32::MIN_POSITIVE)
 }
 
 /// Corners of the edge of a foot.
@@ -162,6 +201,29 @@ fn grows(ground: &Ground, kind: &PlantKind, side: i32) -> Vec<bool> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn from_afar_a_plant_is_as_bright_as_near_by() {
+        let corner =
+            |x: f32, tint: f32| PlantVertex { position: [x, x * x, 0.0], normal: [0.0, 0.0, 1.0], tint };
+        // A dark triangle within, and a bright one before it.
+        let corners = [
+            corner(0.0, 0.1),
+            corner(1.0, 0.2),
+            corner(2.0, 0.3),
+            corner(0.0, 0.8),
+            corner(1.0, 0.9),
+            corner(2.0, 1.0),
+        ];
+        let shape =
+            |coarse| PlantShape { triangles: vec![[0, 1, 2], [3, 4, 5]], coarse, ..PlantShape::default() };
+        let mean = |corners: &[PlantVertex]| mean_tint(corners.as_chunks().0);
+        let dark = as_bright(&corners, &shape(1));
+        assert_eq!(dark.len(), 3);
+        assert!((mean(&dark) - mean(&corners)).abs() < 1e-5, "{} of {}", mean(&dark), mean(&corners));
+        assert!(dark[0].tint < dark[2].tint, "its inside stays darker");
+        assert_eq!(as_bright(&corners, &shape(2)), corners, "nothing is left out");
+    }
 
     #[test]
     fn the_ground_around_a_foot_begins_under_it() {

@@ -208,9 +208,9 @@ impl Ring<'_> {
         }
         // A grid within, and strips between it and the edges, of which each may be cut otherwise.
         let step = PARTS / parts;
-        let mut within = |u: u32, v: u32| self.vertex(Place::Outer([i * PARTS + u * step, j * PARTS + v * step]));
-        let rows: Vec<Vec<u32>> =
-            (1..parts).map(|v| (1..parts).map(|u| within(u, v)).collect()).collect();
+        let mut within =
+            |u: u32, v: u32| self.vertex(Place::Outer([i * PARTS + u * step, j * PARTS + v * step]));
+        let rows: Vec<Vec<u32>> = (1..parts).map(|v| (1..parts).map(|u| within(u, v)).collect()).collect();
         for (upper, lower) in rows.iter().zip(&rows[1..]) {
             self.zip(upper, lower, 0);
         }

@@ -69,7 +69,8 @@ impl<'a> Curved<'a> {
         let east = cubic(rows.map(|row| slope(row, u)), v) / self.apron.spacing_m;
         let south = slope(across, v) / self.apron.spacing_m;
         let (height_m, normal) = (cubic(across, v), Vec3::new(-east, 1.0, -south).normalize());
-        let place_m = |along: u32, part: f32| lerp(self.apron.place_m(along), self.apron.place_m(along + 1), part);
+        let place_m =
+            |along: u32, part: f32| lerp(self.apron.place_m(along), self.apron.place_m(along + 1), part);
         ([place_m(i, u), height_m, place_m(j, v)], normal.to_array())
     }
 }

@@ -294,7 +294,10 @@ fn hills_beside_the_field_are_round() {
             counted += 1;
         }
     }
-    assert!(counted > 1000 && worst_m < 0.4 * coarse_m, "{counted}: {worst_m} m, {coarse_m} m without curves");
+    assert!(
+        counted > 1000 && worst_m < 0.4 * coarse_m,
+        "{counted}: {worst_m} m, {coarse_m} m without curves"
+    );
 }
 
 #[test]
@@ -306,7 +309,8 @@ fn level_land_stays_coarse_and_no_curve_dips_below_the_water() {
     let ring = mesh(&land, 1.0, f32::MAX, &[]).apron;
     assert!(ring.triangle_count() > level + 1000);
     let is_dry = |x: f32, z: f32| {
-        let around = |along: f32| [0, 1].map(|k| ((along + 2048.0) / 64.0) as u32 + k).map(|line| line.min(64));
+        let around =
+            |along: f32| [0, 1].map(|k| ((along + 2048.0) / 64.0) as u32 + k).map(|line| line.min(64));
         around(x).into_iter().all(|i| around(z).into_iter().all(|j| land.apron.at(i, j) > 4.0))
     };
     let dry: Vec<f32> = ring.positions.iter().filter(|p| is_dry(p[0], p[2])).map(|p| p[1]).collect();
