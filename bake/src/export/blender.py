@@ -36,6 +36,7 @@ def main():
     set_sky()
     for material in {m for o in objects | kinds_of_trees() if o.type == "MESH" for m in o.data.materials if m}:
         let_light_through(material)
+        crease_rock(material)
         add_haze(material)
     set_view()
     print(f"{TITLE}: {count} trees and {far_count} far ones of {len(SETTINGS['kinds'])} kinds; camera, sun and sky are set")
@@ -266,6 +267,88 @@ def let_light_through(material):
         node.location = (shader.location.x + 60 * i, shader.location.y - 420 - 120 * i)
 
 
+# ---- rock ----
+
+# Metres between creases of rock, from gullies to blocks, and how much each size counts.
+CREASES = ((60.0, 0.5), (14.0, 0.5))
+
+
+def rock_group():
+    """Colour and normal of the land → the same, creased where it is steep and not green.
+
+    The file's colours are a metre apart, and beyond the field 64: slopes are smooth without."""
+    name = f"{TITLE} rock"
+    group = bpy.data.node_groups.get(name)
+    if group:
+        return group
+    group = bpy.data.node_groups.new(name, "ShaderNodeTree")
+    for in_out in ("INPUT", "OUTPUT"):
+        group.interface.new_socket("Color", in_out=in_out, socket_type="NodeSocketColor")
+        group.interface.new_socket("Normal", in_out=in_out, socket_type="NodeSocketVector")
+    nodes, links = group.nodes, group.links
+    inputs, outputs = nodes.new("NodeGroupInput"), nodes.new("NodeGroupOutput")
+    place = nodes.new("ShaderNodeTexCoord").outputs["Object"]
+    up = nodes.new("ShaderNodeSeparateXYZ")
+    links.new(nodes.new("ShaderNodeNewGeometry").outputs["Normal"], up.inputs[0])
+    steep = map_range(group, up.outputs["Z"], (0.86, 0.66), (0.0, 1.0))
+    rgb = nodes.new("ShaderNodeSeparateColor")
+    links.new(inputs.outputs["Color"], rgb.inputs[0])
+    greener = math_node(group, "DIVIDE", rgb.outputs["Green"], math_node(group, "MAXIMUM", rgb.outputs["Red"], 1e-3))
+    rocky = math_node(group, "MULTIPLY", steep, map_range(group, greener, (1.02, 1.18), (1.0, 0.0)))
+    height = 0.0
+    for size_m, weight in CREASES:
+        noise = nodes.new("ShaderNodeTexNoise")
+        for name, number in (("Scale", 1.0 / size_m), ("Detail", 7.0), ("Roughness", 0.62), ("Distortion", 0.4)):
+            noise.inputs[name].default_value = number
+        links.new(place, noise.inputs["Vector"])
+        away = math_node(group, "ABSOLUTE", math_node(group, "SUBTRACT", noise.outputs[0], 0.5))
+        # A crease where the noise passes its middle.
+        height = math_node(group, "ADD", height, map_range(group, away, (0.0, 0.16), (0.0, weight)))
+    bump, tone = nodes.new("ShaderNodeBump"), nodes.new("ShaderNodeMixRGB")
+    bump.inputs["Distance"].default_value = 2.5
+    links.new(rocky, bump.inputs["Strength"])
+    links.new(height, bump.inputs["Height"])
+    links.new(inputs.outputs["Normal"], bump.inputs["Normal"])
+    tone.blend_type = "MULTIPLY"
+    links.new(rocky, tone.inputs["Fac"])
+    links.new(inputs.outputs["Color"], tone.inputs["Color1"])
+    links.new(map_range(group, height, (0.0, 0.9), (0.55, 1.15)), tone.inputs["Color2"])
+    links.new(tone.outputs[0], outputs.inputs["Color"])
+    links.new(bump.outputs[0], outputs.inputs["Normal"])
+    return group
+
+
+def crease_rock(material):
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    shader = next((n for n in nodes if n.type == "BSDF_PRINCIPLED"), None)
+    is_land = material.name.split(".")[0] in ("ground", "apron")
+    if not is_land or not shader or any(n.type == "GROUP" and n.node_tree == rock_group() for n in nodes):
+        return
+    rock = nodes.new("ShaderNodeGroup")
+    rock.node_tree = rock_group()
+    rock.location = (shader.location.x - 200, shader.location.y)
+    if shader.inputs["Normal"].links:
+        links.new(shader.inputs["Normal"].links[0].from_socket, rock.inputs["Normal"])
+    else:
+        links.new(nodes.new("ShaderNodeNewGeometry").outputs["Normal"], rock.inputs["Normal"])
+    color = shader.inputs["Base Color"]
+    if color.links:
+        links.new(color.links[0].from_socket, rock.inputs["Color"])
+    else:
+        rock.inputs["Color"].default_value = color.default_value
+    links.new(rock.outputs["Color"], color)
+    links.new(rock.outputs["Normal"], shader.inputs["Normal"])
+
+
+def map_range(group, value, range_in, range_out):
+    node = group.nodes.new("ShaderNodeMapRange")
+    node.interpolation_type = "SMOOTHSTEP"
+    for socket, number in zip(list(node.inputs)[1:5], (*range_in, *range_out)):
+        socket.default_value = number
+    group.links.new(value, node.inputs["Value"])
+    return node.outputs["Result"]
+
+
 # ---- haze ----
 
 def haze_group():
@@ -282,21 +365,10 @@ def haze_group():
     alpha.default_value = 1.0
     group.interface.new_socket("Shader", in_out="OUTPUT", socket_type="NodeSocketShader")
     inputs, outputs = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
-
-    def math_node(operation, *values):
-        node = group.nodes.new("ShaderNodeMath")
-        node.operation = operation
-        for socket, value in zip(node.inputs, values):
-            if hasattr(value, "links"):
-                group.links.new(value, socket)
-            else:
-                socket.default_value = value
-        return node.outputs[0]
-
     distance_m = group.nodes.new("ShaderNodeCameraData").outputs["View Distance"]
-    clear = math_node("EXPONENT", math_node("MULTIPLY", distance_m, -SETTINGS["haze_extinction_per_m"]))
-    hazy = math_node("MULTIPLY", math_node("SUBTRACT", 1.0, clear), inputs.outputs["Alpha"])
-    seen = math_node("MULTIPLY", hazy, group.nodes.new("ShaderNodeLightPath").outputs["Is Camera Ray"])
+    clear = math_node(group, "EXPONENT", math_node(group, "MULTIPLY", distance_m, -SETTINGS["haze_extinction_per_m"]))
+    hazy = math_node(group, "MULTIPLY", math_node(group, "SUBTRACT", 1.0, clear), inputs.outputs["Alpha"])
+    seen = math_node(group, "MULTIPLY", hazy, group.nodes.new("ShaderNodeLightPath").outputs["Is Camera Ray"])
     air = group.nodes.new("ShaderNodeEmission")
     air.inputs["Color"].default_value = (*SETTINGS["haze_color"], 1.0)
     mix = group.nodes.new("ShaderNodeMixShader")
@@ -305,6 +377,18 @@ def haze_group():
     group.links.new(air.outputs[0], mix.inputs[2])
     group.links.new(mix.outputs[0], outputs.inputs["Shader"])
     return group
+
+
+def math_node(group, operation, *values):
+    """Of sockets and numbers."""
+    node = group.nodes.new("ShaderNodeMath")
+    node.operation = operation
+    for socket, value in zip(node.inputs, values):
+        if hasattr(value, "links"):
+            group.links.new(value, socket)
+        else:
+            socket.default_value = value
+    return node.outputs[0]
 
 
 def add_haze(material):
