@@ -22,7 +22,7 @@ pub const SHADER: Shader = Shader { name: "plants", source: include_str!("plants
 const FINE: f32 = 0.3;
 const FULL: f32 = 0.45;
 /// Metres up to which leaves are several in the place of one.
-const LEAFY_M: f32 = 7.0;
+const LEAFY_M: f32 = 5.0;
 /// Part of them that stands at the end of the reach.
 const FEWEST: f32 = 0.35;
 /// More metres than any plant is high or a block is uneven.

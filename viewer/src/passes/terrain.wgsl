@@ -407,7 +407,7 @@ const SILT: f32 = 1.25;
 // than deep water.
 fn wetness(height: f32) -> f32 {
     let above = height - view.water_level;
-    return mix(mix(SILT, 0.55, smoothstep(-0.5, -0.1, above)), 1.0, smoothstep(0.3 * WET_M, WET_M, above));
+    return mix(mix(SILT, 0.55, saturate(2.5 * above + 1.25)), 1.0, smoothstep(0.3 * WET_M, WET_M, above));
 }
 
 // Whether a place of land as it is drawn is under water. Drawn coarsely, land may be lower there than it is, and would leave a gap

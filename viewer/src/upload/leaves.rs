@@ -17,8 +17,10 @@ const LEAVES: [Leaf; 3] = [
 const SIZE: f32 = 0.6;
 /// Factor on the tint at the root of each, which lies in the shade of others.
 const ROOT: f32 = 0.7;
-/// Shapes with fewer leaves are left as they are.
+/// Shapes with fewer large leaves are left as they are.
 const MIN_LEAVES: usize = 48;
+/// Metres from the root of a large leaf to its tip, at least: those of dwarf shrubs are small enough.
+const MIN_LARGE_M: f32 = 0.11;
 
 /// A smaller leaf.
 struct Leaf {
@@ -42,7 +44,8 @@ pub(super) fn several_for_each(corners: &[PlantVertex], shape: &PlantShape) -> O
     }
     let is_leaf = |triangle: &[PlantVertex; 3]| sides(triangle).all(|side| edges[&side] == 1);
     let (coarse, fine) = triangles.split_at(triangles.len().min(shape.coarse as usize));
-    if fine.iter().filter(|triangle| is_leaf(triangle)).count() < MIN_LEAVES {
+    let long_m = |[root, _, tip]: &[PlantVertex; 3]| Vec3::from(root.position).distance(tip.position.into());
+    if fine.iter().filter(|leaf| is_leaf(leaf) && long_m(leaf) > MIN_LARGE_M).count() < MIN_LEAVES {
         return None;
     }
     let mut smaller = Vec::new();

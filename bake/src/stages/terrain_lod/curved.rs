@@ -16,7 +16,7 @@ pub(super) const PARTS: u32 = 4;
 
 /// A chord of an edge may be off by so many metres for each metre that the edge is away from the field: at 1080p, about
 /// two pixels.
-const OFF: f32 = 0.0018;
+const OFF: f32 = 0.002;
 /// Whoever looks at an edge is so many metres farther away than the field's border.
 const BACK_M: f32 = 150.0;
 /// Land rises so many metres above the water where its edges are cut: beside it, a curve might dip below.

@@ -34,7 +34,7 @@ pub struct TerrainFiles {
 
 impl Stage for TerrainStage {
     const NAME: &'static str = "terrain";
-    const VERSION: u32 = 18;
+    const VERSION: u32 = 19;
     type Output = TerrainFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<TerrainFiles, StageError> {
