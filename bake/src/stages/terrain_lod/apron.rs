@@ -48,7 +48,8 @@ pub(super) fn ring(land: &Landform, used: impl Fn(Sample) -> bool, colors: &[[u8
     }
     for (side, inner) in inner.iter().enumerate() {
         let axis = side % 2;
-        let from = [[hole.first, hole.first], [hole.last, hole.first], [hole.first, hole.last]][side % 3];
+        let (first, last) = (hole.first, hole.last);
+        let from = [[first, first], [last, first], [first, last], [first, first]][side];
         let outer = ring.line(from, axis, hole.last - hole.first);
         ring.zip(inner, &outer, 2 * axis);
     }

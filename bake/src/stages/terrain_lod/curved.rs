@@ -73,9 +73,7 @@ impl<'a> Curved<'a> {
             |along: u32, part: f32| lerp(self.apron.place_m(along), self.apron.place_m(along + 1), part);
         ([place_m(i, u), height_m, place_m(j, v)], normal.to_array())
     }
-}
 
-impl Curved<'_> {
     /// The kth of four lines of samples, of which the second is this one; beyond the last is the last.
     fn line(&self, line: u32, k: usize) -> u32 {
         (line + k as u32).saturating_sub(1).min(self.apron.side - 1)
