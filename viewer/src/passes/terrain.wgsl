@@ -400,14 +400,9 @@ fn flooded(under: vec3f, world: vec3f, open: f32) -> vec3f {
 // Metres above the lake up to which the ground is wet.
 const WET_M: f32 = 0.16;
 
-// Silt on the bed, a hand deep and more, is so much lighter than the shore.
-const SILT: f32 = 1.25;
-
-// Factor on the albedo of ground at a height: what is wet is darker; under water silt settles on it, so that shoals are lighter
-// than deep water.
+// Factor on the albedo of ground at a height: what is wet, on the shore and under water, is darker.
 fn wetness(height: f32) -> f32 {
-    let above = height - view.water_level;
-    return mix(mix(SILT, 0.55, saturate(2.5 * above + 1.25)), 1.0, smoothstep(0.3 * WET_M, WET_M, above));
+    return mix(0.55, 1.0, smoothstep(0.3 * WET_M, WET_M, height - view.water_level));
 }
 
 // Whether a place of land as it is drawn is under water. Drawn coarsely, land may be lower there than it is, and would leave a gap

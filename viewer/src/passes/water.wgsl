@@ -113,6 +113,10 @@ fn mirrored_land(world: vec3f, direction: vec3f, spread: f32) -> vec4f {
     return sum / f32(TAPS);
 }
 
+// Light that comes out of deep water went in metres away, so that no tree's shadow has an edge on a lake: the light map's mip level
+// whose texels are so large.
+const SCATTER_MIP: f32 = 4.0;
+
 @fragment
 fn fragment(in: Out) -> @location(0) vec4f {
     let to_eye = view.eye - in.world;
@@ -146,13 +150,15 @@ fn fragment(in: Out) -> @location(0) vec4f {
     let reflectance = mirrored_by_water(facing);
     let half_way = normalize(look + view.sun_direction);
     var light = vec4f(1.0);
+    var within = vec4f(1.0);
     if (inside) {
         light = light_on(in.world.xz);
+        within = textureSampleLevel(light_map, clamped, field_uv(in.world.xz), SCATTER_MIP);
     }
     // What is too fine to be seen spreads the sun's image.
     let sharpness = 1.0 / (1.0 / 900.0 + waves.variance);
     let glint = pow(max(dot(normal, half_way), 0.0), sharpness) * (sharpness / 15.0) * light.b * (1.0 - land.a);
-    let body = vec3f(0.012, 0.035, 0.032) * (view.sky_irradiance * light.r + 0.5 * view.sun_irradiance * light.b);
+    let body = vec3f(0.012, 0.035, 0.032) * (view.sky_irradiance * within.r + 0.5 * view.sun_irradiance * within.b * within.a);
     let clearness = exp(-max(depth, 0.0) * vec3f(0.9, 0.55, 0.6));
     let opaque = 1.0 - (clearness.x + clearness.y + clearness.z) / 3.0;
     // A film mirrors as well as deep water does.
