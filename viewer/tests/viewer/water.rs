@@ -205,3 +205,30 @@ fn a_lake_mirrors_alike_in_pictures_of_all_sizes_and_nothing_from_below() {
     assert_eq!(shoot(&mut view, &camera()), resized);
     assert_eq!(self::shoot(&studio, &lakeside(true, false, GREEN)), resized);
 }
+
+#[test]
+#[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
+fn shade_has_no_edge_on_deep_water() {
+    let studio = made_up::studio();
+    let mut scene = flooded(made_up::land(257, 0.5, |_, _| -30.0), GREEN);
+    // Trees leave all of the sun in the east and none in the west.
+    scene.ground.surface.light =
+        made_up::picture("shade", 128, |x, _| [255, 255, 255, if x < 64 { 0 } else { 255 }]);
+    let camera = Camera {
+        position_m: Vec3::new(0.0, 50.0, 0.1),
+        yaw_rad: 0.0,
+        pitch_rad: 0.01 - std::f32::consts::FRAC_PI_2,
+        fov_y_rad: 1.0,
+    };
+    let picture = shoot_from(&studio, &scene, &camera);
+    let column = |x: u32| {
+        (60..100)
+            .map(|y| picture.get_pixel(x, y).0[..3].iter().map(|&c| f32::from(c)).sum::<f32>())
+            .sum::<f32>()
+            / 120.0
+    };
+    let columns: Vec<f32> = (0..SIZE_PX[0]).map(column).collect();
+    let rise = columns[SIZE_PX[0] as usize - 1] - columns[0];
+    let edge = columns.windows(6).map(|near| near[5] - near[0]).fold(0.0, f32::max);
+    assert!(rise > 10.0 && edge < 0.25 * rise, "{edge} of {rise}");
+}
