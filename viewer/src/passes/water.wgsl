@@ -113,8 +113,8 @@ fn mirrored_land(world: vec3f, direction: vec3f, spread: f32) -> vec4f {
     return sum / f32(TAPS);
 }
 
-// Light that comes out of deep water went in metres away, so that no tree's shadow has an edge on a lake: the light map's mip level
-// whose texels are so large.
+// Mip level of the light map, whose texels are 16 m wide there, for light that comes out of deep water: it went in metres away, so that
+// no tree's shadow has an edge on a lake.
 const SCATTER_MIP: f32 = 4.0;
 
 @fragment

@@ -3,7 +3,6 @@
 
 use std::collections::HashMap;
 
-use genescape_schema::scene::PlantShape;
 use glam::Vec3;
 
 use super::PlantVertex;
@@ -32,18 +31,18 @@ struct Leaf {
     tint: f32,
 }
 
-/// All corners, three to a triangle; none where there are hardly any leaves. `corners`: those of the shape.
-pub(super) fn several_for_each(corners: &[PlantVertex], shape: &PlantShape) -> Option<Vec<PlantVertex>> {
-    let corner = |number: u32| corners.get(number as usize).copied();
-    let triangles: Vec<[PlantVertex; 3]> =
-        shape.triangles.iter().filter_map(|&[a, b, c]| Some([corner(a)?, corner(b)?, corner(c)?])).collect();
+/// All corners, three to a triangle; none where there are hardly any leaves. `coarse`: the triangles that are enough from afar, `fine`:
+/// the others.
+pub(super) fn several_for_each(
+    coarse: &[[PlantVertex; 3]],
+    fine: &[[PlantVertex; 3]],
+) -> Option<Vec<PlantVertex>> {
     // What bounds two triangles bounds no leaf.
     let mut edges = HashMap::<_, u32>::new();
-    for triangle in &triangles {
+    for triangle in coarse.iter().chain(fine) {
         sides(triangle).for_each(|side| *edges.entry(side).or_default() += 1);
     }
     let is_leaf = |triangle: &[PlantVertex; 3]| sides(triangle).all(|side| edges[&side] == 1);
-    let (coarse, fine) = triangles.split_at(triangles.len().min(shape.coarse as usize));
     let long_m = |[root, _, tip]: &[PlantVertex; 3]| Vec3::from(root.position).distance(tip.position.into());
     if fine.iter().filter(|leaf| is_leaf(leaf) && long_m(leaf) > MIN_LARGE_M).count() < MIN_LEAVES {
         return None;
@@ -162,11 +161,11 @@ mod tests {
         }
         let corner = |position| PlantVertex { position, normal: [0.0, 0.0, 1.0], tint: 0.9 };
         let corners: Vec<PlantVertex> = places.iter().copied().map(corner).collect();
-        let shape = PlantShape { positions_m: places, triangles, coarse: 4, ..PlantShape::default() };
-        let leafy = several_for_each(&corners, &shape).expect("it has leaves");
+        let triangles: Vec<[PlantVertex; 3]> =
+            triangles.iter().map(|triangle| triangle.map(|number: u32| corners[number as usize])).collect();
+        let leafy = several_for_each(&triangles[..4], &triangles[4..]).expect("it has leaves");
         assert_eq!(leafy.len(), 3 * (4 + 62 * LEAVES.len() * TRIANGLES));
-        let plain: Vec<PlantVertex> =
-            shape.triangles.as_flattened().iter().map(|number| corners[*number as usize]).collect();
+        let plain = triangles.as_flattened();
         let halves = 2 * 3 * LEAVES.len() * TRIANGLES;
         let (large, small) = (&leafy[6..6 + halves], &leafy[12 + halves..]);
         assert_eq!(leafy[..6], plain[..6], "the twig");
@@ -180,7 +179,6 @@ mod tests {
                 assert!((Vec3::from(corner.normal).length() - 1.0).abs() < 1e-3 && corner.tint <= 1.0);
             }
         }
-        let bare = PlantShape { triangles: shape.triangles[..6].to_vec(), ..shape };
-        assert!(several_for_each(&corners, &bare).is_none());
+        assert!(several_for_each(&triangles[..4], &triangles[4..6]).is_none());
     }
 }

@@ -90,9 +90,12 @@ impl Uploader {
                 indices.extend(ring().map(|v| v + base));
                 buffers.foot.end = indices.len() as u32;
             } else {
-                let own = vertices[base as usize..].to_vec();
-                buffers.coarse = append(&mut vertices, &mut indices, &as_bright(&own, shape));
-                let leafy = leaves::several_for_each(&own, shape).unwrap_or_default();
+                let triangles = triangles(&vertices[base as usize..], shape);
+                let (coarse, fine) = triangles.split_at(triangles.len().min(shape.coarse as usize));
+                if !fine.is_empty() {
+                    buffers.coarse = append(&mut vertices, &mut indices, &as_bright(coarse, &triangles));
+                }
+                let leafy = leaves::several_for_each(coarse, fine).unwrap_or_default();
                 buffers.leafy = append(&mut vertices, &mut indices, &leafy);
             }
             kinds.push(buffers);
@@ -113,19 +116,16 @@ fn append(vertices: &mut Vec<PlantVertex>, indices: &mut Vec<u32>, corners: &[Pl
     start..indices.len() as u32
 }
 
-/// The corners of the triangles that are enough from afar, tinted as all of the shape is on the mean: inside a bush it is dark, and
-/// what hides that is left out there. `corners`: those of the shape.
-fn as_bright(corners: &[PlantVertex], shape: &PlantShape) -> Vec<PlantVertex> {
-    let triangles: Vec<[PlantVertex; 3]> = shape
-        .triangles
-        .iter()
-        .filter_map(|triangle| {
-            let [a, b, c] = triangle.map(|number| corners.get(number as usize).copied());
-            Some([a?, b?, c?])
-        })
-        .collect();
-    let coarse = &triangles[..triangles.len().min(shape.coarse as usize)];
-    let (whole, part) = (mean_tint(&triangles), mean_tint(coarse));
+/// The triangles of a shape with these corners.
+fn triangles(corners: &[PlantVertex], shape: &PlantShape) -> Vec<[PlantVertex; 3]> {
+    let corner = |number: u32| corners.get(number as usize).copied();
+    shape.triangles.iter().filter_map(|&[a, b, c]| Some([corner(a)?, corner(b)?, corner(c)?])).collect()
+}
+
+/// The corners of the triangles that are enough from afar, tinted as the whole is on the mean: inside a bush it is dark, and what
+/// hides that is left out there.
+fn as_bright(coarse: &[[PlantVertex; 3]], whole: &[[PlantVertex; 3]]) -> Vec<PlantVertex> {
+    let (whole, part) = (mean_tint(whole), mean_tint(coarse));
     let lift = ((whole - part) / (1.0 - part).max(1e-3)).clamp(0.0, 1.0);
     let lifted =
         |corner: &PlantVertex| PlantVertex { tint: corner.tint + lift * (1.0 - corner.tint), ..*corner };
@@ -215,14 +215,14 @@ mod tests {
             corner(1.0, 0.9),
             corner(2.0, 1.0),
         ];
-        let shape =
-            |coarse| PlantShape { triangles: vec![[0, 1, 2], [3, 4, 5]], coarse, ..PlantShape::default() };
+        let shape = PlantShape { triangles: vec![[0, 1, 2], [3, 4, 5]], ..PlantShape::default() };
+        let whole = triangles(&corners, &shape);
         let mean = |corners: &[PlantVertex]| mean_tint(corners.as_chunks().0);
-        let dark = as_bright(&corners, &shape(1));
+        let dark = as_bright(&whole[..1], &whole);
         assert_eq!(dark.len(), 3);
         assert!((mean(&dark) - mean(&corners)).abs() < 1e-5, "{} of {}", mean(&dark), mean(&corners));
         assert!(dark[0].tint < dark[2].tint, "its inside stays darker");
-        assert_eq!(as_bright(&corners, &shape(2)), corners, "nothing is left out");
+        assert_eq!(as_bright(&whole, &whole), corners, "nothing is left out");
     }
 
     #[test]

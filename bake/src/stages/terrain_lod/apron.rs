@@ -194,19 +194,20 @@ impl Ring<'_> {
     /// A cell: two triangles, cut along the diagonal that bends less, or as many as its most finely cut edge asks for.
     fn cell(&mut self, [i, j]: Sample) {
         let sides = [([i, j], 0), ([i + 1, j], 1), ([i, j + 1], 0), ([i, j], 1)];
-        let sides = sides.map(|(from, axis)| self.line(from, axis, 1));
-        let parts = sides.iter().map(|side| side.len() as u32 - 1).max().unwrap_or(1);
+        let parts = sides.iter().map(|&(from, axis)| self.curved.parts(from, axis)).max().unwrap_or(1);
         if parts == 1 {
-            let [nw, ne, sw, se] = [sides[0][0], sides[0][1], sides[2][0], sides[2][1]];
-            let height_m = |vertex: u32| self.mesh.positions[vertex as usize][1];
-            let falls = (height_m(nw) - height_m(se)).abs();
-            let rises = (height_m(ne) - height_m(sw)).abs();
+            let [nw, ne, se, sw] = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]]
+                .map(|sample| self.vertex(Place::Outer(sample.map(|along| along * PARTS))));
+            let apron = &self.land.apron;
+            let falls = (apron.at(i, j) - apron.at(i + 1, j + 1)).abs();
+            let rises = (apron.at(i + 1, j) - apron.at(i, j + 1)).abs();
             self.triangles.extend(match falls <= rises {
                 true => [[nw, sw, se], [nw, se, ne]],
                 false => [[nw, sw, ne], [ne, sw, se]],
             });
             return;
         }
+        let sides = sides.map(|(from, axis)| self.line(from, axis, 1));
         // A grid within, and strips between it and the edges, of which each may be cut otherwise.
         let step = PARTS / parts;
         let mut within =
