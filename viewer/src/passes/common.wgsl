@@ -178,6 +178,18 @@ fn sun_through_crown(place: vec3f, to_sun: vec3f) -> f32 {
     return exp(-CROWN_DENSITY * way);
 }
 
+// How far out of a crown a leaf is, by how open it is: 0 where the sun reaches none, 1 where nothing is before it.
+fn outwardness(open: f32) -> f32 {
+    return smoothstep(0.0, 0.7, open);
+}
+
+// The part of the sun on a crown that a leaf gives back after two others did: next to nothing of it among green ones, but the
+// inside of a tree in blossom is bright. What is outside has less around it.
+fn by_way_of_others(albedo: vec3f, outwardness: f32) -> vec3f {
+    let bright = dot(albedo, vec3f(0.2126, 0.7152, 0.0722));
+    return albedo * (1.2 * bright * bright * (1.0 - 0.7 * outwardness));
+}
+
 // The rows of the linear part, weighted, are its transpose: for what is turned and scaled alike, the way back.
 fn way_to_template(rows: array<vec4f, 3>, way: vec3f) -> vec3f {
     return rows[0].xyz * way.x + rows[1].xyz * way.y + rows[2].xyz * way.z;

@@ -189,8 +189,10 @@ fn pixel(in: Out, is_kept: bool, is_beyond: bool) -> Pixel {
     // As `leaf` and `bark` of `trees.wgsl`.
     let through = albedo * vec3f(0.75, 0.9, 0.3);
     let leaf = one_leaf(in.leaf, in.uv * in.leaves.xy, in.leaves.z);
-    let leaf_sun = (albedo * 0.8 * leaf.x + through * (0.6 * leaf.y + in.sun.y)) * smoothstep(0.0, 0.7, open);
-    let sun = mix(albedo * in.sun.x, leaf_sun, relief.g) * sun_left(in, world, in_crown, relief.g, is_beyond);
+    let outward = outwardness(open);
+    let leaf_sun = (albedo * 0.8 * leaf.x + through * (0.6 * leaf.y + in.sun.y)) * outward;
+    var sun = mix(albedo * in.sun.x, leaf_sun, relief.g) * sun_left(in, world, in_crown, relief.g, is_beyond);
+    sun += by_way_of_others(albedo, outward) * relief.g;
     let up = mix(0.5, in.leaf.w, relief.g);
     let ambient = ambient_light(up) * mix(0.8, 0.15 + 0.75 * open * open, relief.g);
     let radiance = (albedo * ambient + view.sun_irradiance * sun) / PI;

@@ -136,10 +136,12 @@ fn leaf_light(in: Out, card: Card, normal: vec3f, bias_m: f32) -> Pixel {
     // Chlorophyll takes red and blue on the way through.
     let through = albedo * vec3f(0.75, 0.9, 0.3);
     let reflected = select(through * 0.6, albedo * 0.8, same_side) * lit;
-    let sun = in.sun * sun_visibility(in.world, bias_m) * smoothstep(0.0, 0.7, in.open);
-    let outward = select(-normal, normal, normal.y > 0.0);
-    var radiance = ambient(outward, albedo) * (0.15 + 0.75 * in.open * in.open);
-    radiance += (reflected + through * glow(dot(to_eye, view.sun_direction))) / PI * view.sun_irradiance * sun;
+    let outward = outwardness(in.open);
+    let sun = sun_visibility(in.world, bias_m) * outward;
+    let upper = select(-normal, normal, normal.y > 0.0);
+    var radiance = ambient(upper, albedo) * (0.15 + 0.75 * in.open * in.open);
+    let given_back = (reflected + through * glow(dot(to_eye, view.sun_direction))) * sun + by_way_of_others(albedo, outward);
+    radiance += given_back / PI * view.sun_irradiance * in.sun;
     return Pixel(vec4f(hazed(in.air, radiance), 1.0), card.samples);
 }
 

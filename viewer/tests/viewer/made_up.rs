@@ -172,6 +172,18 @@ pub fn template(name: &str, errors_m: &[f32]) -> Template {
     }
 }
 
+/// A tree of one upright leaf, wide and high enough to fill a picture taken from up to 3 m south of it. The alpha of its colour
+/// tells how open it is.
+pub fn one_leaf(name: &str, color: [u8; 4]) -> Template {
+    let corner = |[x, y]: [f32; 2]| TreeVertex { position_m: [x, y, 0.0], color, ..TreeVertex::default() };
+    let mut tree = template(name, &[0.1]);
+    tree.vertices = [[-9.0, -9.0], [9.0, -9.0], [9.0, 9.0], [-9.0, 9.0]].map(corner).to_vec();
+    tree.indices = vec![0, 1, 2, 0, 2, 3];
+    tree.levels[0].ranges[0] = Range { first: 0, count: 6 };
+    tree.materials[0].alpha_cutoff = Some(0.5);
+    tree
+}
+
 /// Pictures of any such tree: green discs in front of the axis, with that error.
 pub fn impostor(name: &str, error_m: f32) -> Impostor {
     let strip = |name: String, pixel: &dyn Fn(f32) -> [u8; 4]| {

@@ -6,6 +6,7 @@ mod asset_drawn;
 mod asset_hostile;
 mod asset_materials;
 mod cracks;
+mod crowns;
 mod desktop;
 mod display;
 mod exports;

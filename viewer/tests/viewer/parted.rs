@@ -3,28 +3,13 @@
 use genescape_viewer::camera::Camera;
 use genescape_viewer::headless::Headless;
 use genescape_viewer::options::{FrameInput, Options};
-use genescape_viewer::scene::{Range, Template, TreeVertex, Trees};
+use genescape_viewer::scene::Trees;
 use glam::Vec3;
 use image::RgbaImage;
 
 use crate::made_up::{self, differing};
 
-/// A tree of one upright leaf, wide and high enough to fill a picture taken from up to 3 m south of it.
-fn one_leaf(is_leaf: bool) -> Template {
-    let corner = |[x, y]: [f32; 2]| TreeVertex {
-        position_m: [x, y, 0.0],
-        color: [200, 60, 60, 255],
-        ..TreeVertex::default()
-    };
-    let mut tree = made_up::template(if is_leaf { "a leaf" } else { "a board" }, &[0.1]);
-    tree.vertices = [[-9.0, -9.0], [9.0, -9.0], [9.0, 9.0], [-9.0, 9.0]].map(corner).to_vec();
-    tree.indices = vec![0, 1, 2, 0, 2, 3];
-    tree.levels[0].ranges[0] = Range { first: 0, count: 6 };
-    tree.materials[0].alpha_cutoff = is_leaf.then_some(0.5);
-    tree
-}
-
-/// Part of a picture that such a tree changes, seen from so far.
+/// Part of a picture that a tree of one leaf, or of one board, changes, seen from so far.
 fn seen(studio: &Headless, is_leaf: bool, away_m: f32) -> f64 {
     let draw = |trees: Trees| -> RgbaImage {
         let scene = made_up::scene(made_up::field(65, 2.0, 0.0, 0.0), [128; 4], [0.5, 0.7, 1.0], trees);
@@ -41,7 +26,12 @@ fn seen(studio: &Headless, is_leaf: bool, away_m: f32) -> f64 {
         studio.shoot(&mut view, &frame, &camera, &camera).expect("a picture")
     };
     let instances = [made_up::instance(0, [0.0, 3.0, 0.0], 1.0, 0.0)].into();
-    let with = draw(Trees { templates: vec![one_leaf(is_leaf).into()], instances, ..Trees::default() });
+    let mut tree = made_up::one_leaf("a leaf", [200, 60, 60, 255]);
+    if !is_leaf {
+        tree.name = "a board".into();
+        tree.materials[0].alpha_cutoff = None;
+    }
+    let with = draw(Trees { templates: vec![tree.into()], instances, ..Trees::default() });
     let without = draw(Trees { templates: Vec::new(), instances: [].into(), ..Trees::default() });
     differing(&with, &without) as f64 / f64::from(96 * 64)
 }

@@ -193,48 +193,54 @@ impl Brush {
 
     /// Clusters of five-petalled flowers along a twig, among young leaves.
     fn flowers(&mut self) {
-        const CLUSTERS: usize = 11;
+        const CLUSTERS: usize = 13;
+        const FLOWERS: usize = 10;
         let bend = 0.25 * self.dice.signed();
         let half = 0.5 * self.canvas.width;
         let main = self.twig(Vec2::ZERO, -0.4 * bend, 0.9, bend, 0.013);
         let pink = 0.75 * self.dice.unit();
-        let clusters: Vec<Vec2> = (0..CLUSTERS)
+        let clusters: Vec<(Vec2, f32)> = (0..CLUSTERS)
             .map(|k| {
                 let (at, angle) = point(&main, (k as f32 + 0.9) / CLUSTERS as f32);
                 let turn = angle + alternating(k) * (1.05 + 0.25 * self.dice.signed());
-                let reach = if k + 1 == CLUSTERS { 0.0 } else { half * (0.38 + 0.32 * self.dice.signed()) };
+                let reach = if k + 1 == CLUSTERS { 0.0 } else { half * (0.42 + 0.36 * self.dice.signed()) };
                 let middle = at + towards(turn) * reach;
                 self.canvas.stroke(at, middle, (0.007, 0.004), TWIG);
-                middle.clamp(Vec2::new(0.15 - half, 0.13), Vec2::new(half - 0.15, 0.87))
+                let radius = 0.075 + 0.025 * self.dice.signed();
+                let room = radius + 0.045;
+                (middle.clamp(Vec2::new(room - half, room), Vec2::new(half - room, 1.0 - room)), radius)
             })
             .collect();
-        for (k, &middle) in clusters.iter().enumerate() {
+        for (k, &(middle, _)) in clusters.iter().enumerate() {
             for way in [-1.1, 0.6] {
                 let (angle, light) =
                     (alternating(k) * way + 0.5 * self.dice.signed(), 0.6 + 0.3 * self.dice.unit());
                 let paint =
                     Paint { veins: 0.3, pairs: 5.0, fold: 0.1, color: leaf_color(self.hue_deg) * light };
-                self.canvas.leaf(&self.outline, middle, towards(angle), 0.13, &paint);
+                self.canvas.leaf(&self.outline, middle, towards(angle), 0.11, &paint);
             }
         }
-        for middle in clusters {
-            // From the rim inwards: those in the middle lie above the others.
-            for k in 0..13 {
-                let away = 0.088 * (1.0 - k as f32 / 13.0).sqrt();
-                let at = middle + towards(2.4 * k as f32 + 0.4 * self.dice.signed()) * away;
-                let size = 0.043 + 0.012 * self.dice.unit();
-                self.flower(at, size, pink, 0.72 + 0.33 * k as f32 / 13.0);
+        for (middle, radius) in clusters {
+            // From behind to the front: of a ball of flowers those in front have the light.
+            for k in 0..FLOWERS {
+                let front = k as f32 / FLOWERS as f32;
+                let away = radius * (1.0 - front).sqrt() * (0.75 + 0.35 * self.dice.unit());
+                let at = middle + towards(2.4 * k as f32 + 0.6 * self.dice.signed()) * away;
+                let size = 0.037 + 0.012 * self.dice.unit();
+                let lift = 0.2 * (at.y - middle.y) / radius;
+                let light = 0.5 + 0.5 * front + lift + 0.1 * self.dice.signed();
+                self.flower(at, size, pink, light);
             }
         }
     }
 
     fn flower(&mut self, at: Vec2, size: f32, pink: f32, light: f32) {
         let turn = self.dice.unit() * std::f32::consts::TAU;
-        let white = Vec3::new(0.82, 0.80, 0.76);
-        let rose = Vec3::new(0.80, 0.48, 0.55);
+        let white = Vec3::new(0.9, 0.88, 0.84);
+        let rose = Vec3::new(0.88, 0.53, 0.6);
         for petal in 0..5 {
             let angle = turn + petal as f32 * std::f32::consts::TAU / 5.0;
-            let color = white.lerp(rose, pink * (0.5 + 0.5 * self.dice.unit())) * light.min(1.0);
+            let color = white.lerp(rose, pink * (0.5 + 0.5 * self.dice.unit())) * light.clamp(0.3, 1.0);
             let paint = Paint { color, veins: -0.1, pairs: 0.0, fold: 0.05 };
             self.canvas.leaf(&self.outline, at, towards(angle), size, &paint);
         }

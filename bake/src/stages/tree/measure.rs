@@ -103,7 +103,7 @@ fn profile(points: &[Vec3], base_m: f32, top_m: f32) -> [f32; PROFILE] {
 
 /// What cards of leaves of this colour, and of blossom among leaves, look like from afar.
 fn foliage(leaf: Vec3, cards: &[Card]) -> [f32; 3] {
-    const BLOSSOM: Vec3 = Vec3::new(0.72, 0.55, 0.58);
+    const BLOSSOM: Vec3 = Vec3::new(0.58, 0.48, 0.48);
     let of = |card: &Card| card.tint * if card.blossom { BLOSSOM } else { leaf };
     let sum: Vec3 = cards.iter().map(of).sum();
     if cards.is_empty() { leaf.to_array() } else { (sum / cards.len() as f32).to_array() }

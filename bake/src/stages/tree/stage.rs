@@ -22,7 +22,7 @@ pub struct TreeTexturesStage {
 
 impl Stage for TreeTexturesStage {
     const NAME: &'static str = "tree textures";
-    const VERSION: u32 = 13;
+    const VERSION: u32 = 14;
     type Output = TreeTextures<File>;
 
     fn run(&self, context: &Context<'_>) -> Result<TreeTextures<File>, StageError> {
