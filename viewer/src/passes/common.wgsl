@@ -178,7 +178,7 @@ fn sun_through_crown(place: vec3f, to_sun: vec3f) -> f32 {
     return exp(-CROWN_DENSITY * way);
 }
 
-// How far out of a crown a leaf is, by how open it is: 0 where the sun reaches none, 1 where nothing is before it.
+// How far out of a crown a leaf is, by how open it is: 0 where no sun comes straight, 1 where nothing is before it.
 fn outwardness(open: f32) -> f32 {
     return smoothstep(0.0, 0.7, open);
 }
@@ -188,6 +188,12 @@ fn outwardness(open: f32) -> f32 {
 fn by_way_of_others(albedo: vec3f, outwardness: f32) -> vec3f {
     let bright = dot(albedo, vec3f(0.2126, 0.7152, 0.0722));
     return albedo * (1.2 * bright * bright * (1.0 - 0.7 * outwardness));
+}
+
+// The share of the sun that the land leaves to a tree, where its foot is: beyond the field, all. For vertices.
+fn sun_past_land(rows: array<vec4f, 3>) -> f32 {
+    let foot = field_uv(vec2f(rows[0].w, rows[2].w));
+    return select(textureSampleLevel(light_map, clamped, foot, 0.0).b, 1.0, is_beyond_field(rows));
 }
 
 // The rows of the linear part, weighted, are its transpose: for what is turned and scaled alike, the way back.

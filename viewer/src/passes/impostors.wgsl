@@ -61,7 +61,7 @@ struct Out {
     // See `air_before`.
     @location(13) @interpolate(flat) air: vec4f,
     // What is seen of the sun's light by bark, averaged over all directions that face the eye, and through leaves.
-    @location(14) @interpolate(flat) sun: vec2f,
+    @location(14) @interpolate(flat) sun: vec3f,
 }
 
 // What to take of a place beside the axis, x and z, for how far it is to the right as it is seen from `ahead` beyond what the picture
@@ -121,7 +121,7 @@ fn vertex(@builtin(vertex_index) vertex: u32) -> Out {
     out.leaves = vec3f(size / leaf_m, saturate(leaf_m * view.focal_px / away));
     out.air = air_before(out.world);
     let cosine = dot(way / away, view.sun_direction);
-    out.sun = vec2f(phase(cosine), glow(cosine));
+    out.sun = vec3f(phase(cosine), glow(cosine), sun_past_land(rows));
     return out;
 }
 
@@ -192,7 +192,7 @@ fn pixel(in: Out, is_kept: bool, is_beyond: bool) -> Pixel {
     let outward = outwardness(open);
     let leaf_sun = (albedo * 0.8 * leaf.x + through * (0.6 * leaf.y + in.sun.y)) * outward;
     var sun = mix(albedo * in.sun.x, leaf_sun, relief.g) * sun_left(in, world, in_crown, relief.g, is_beyond);
-    sun += by_way_of_others(albedo, outward) * relief.g;
+    sun += by_way_of_others(albedo, outward) * (relief.g * in.sun.z);
     let up = mix(0.5, in.leaf.w, relief.g);
     let ambient = ambient_light(up) * mix(0.8, 0.15 + 0.75 * open * open, relief.g);
     let radiance = (albedo * ambient + view.sun_irradiance * sun) / PI;

@@ -42,6 +42,8 @@ struct Out {
     @location(9) sun: f32,
     // At the middle of the pixel.
     @location(10) middle: vec2f,
+    // What the land leaves of the sun.
+    @location(11) @interpolate(flat) past_land: f32,
 }
 
 fn placed(in: In) -> Out {
@@ -62,6 +64,7 @@ fn placed(in: In) -> Out {
     out.shown = in.shown.xy;
     out.air = air_before(world);
     out.chance = scattered(vec2f(f32(in.vertex), f32(in.tree)));
+    out.past_land = sun_past_land(rows);
     out.sun = 1.0;
     if (is_beyond_field(rows) && trees[in.tree].crown.x != 0u) {
         out.sun = sun_behind_crown(in.tree, in.position + alpha * in.delta);
@@ -140,7 +143,7 @@ fn leaf_light(in: Out, card: Card, normal: vec3f, bias_m: f32) -> Pixel {
     let sun = sun_visibility(in.world, bias_m) * outward;
     let upper = select(-normal, normal, normal.y > 0.0);
     var radiance = ambient(upper, albedo) * (0.15 + 0.75 * in.open * in.open);
-    let given_back = (reflected + through * glow(dot(to_eye, view.sun_direction))) * sun + by_way_of_others(albedo, outward);
+    let given_back = (reflected + through * glow(dot(to_eye, view.sun_direction))) * sun + by_way_of_others(albedo, outward) * in.past_land;
     radiance += given_back / PI * view.sun_irradiance * in.sun;
     return Pixel(vec4f(hazed(in.air, radiance), 1.0), card.samples);
 }
