@@ -178,6 +178,11 @@ fn sun_through_crown(place: vec3f, to_sun: vec3f) -> f32 {
     return exp(-CROWN_DENSITY * way);
 }
 
+// How bright a colour is, by the weights of Rec. 709.
+fn luminance(color: vec3f) -> f32 {
+    return dot(color, vec3f(0.2126, 0.7152, 0.0722));
+}
+
 // How far out of a crown a leaf is, by how open it is: 0 where no sun comes straight, 1 where nothing is before it.
 fn outwardness(open: f32) -> f32 {
     return smoothstep(0.0, 0.7, open);
@@ -186,7 +191,7 @@ fn outwardness(open: f32) -> f32 {
 // The part of the sun on a crown that a leaf gives back after two others did: next to nothing of it among green ones, but the
 // inside of a tree in blossom is bright. What is outside has less around it.
 fn by_way_of_others(albedo: vec3f, outwardness: f32) -> vec3f {
-    let bright = dot(albedo, vec3f(0.2126, 0.7152, 0.0722));
+    let bright = luminance(albedo);
     return albedo * (1.2 * bright * bright * (1.0 - 0.7 * outwardness));
 }
 

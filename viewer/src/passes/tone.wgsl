@@ -33,7 +33,7 @@ fn film(linear: vec3f) -> vec3f {
     let ev = clamp((log2(wide) - MIN_EV) / (MAX_EV - MIN_EV), vec3f(0.0), vec3f(1.0));
     var toned = curve(ev);
     // A little more contrast and colour than the neutral look (Troy Sobotka's "Punchy", two thirds of the way).
-    let luma = dot(toned, vec3f(0.2126, 0.7152, 0.0722));
+    let luma = luminance(toned);
     toned = pow(max(toned, vec3f(0.0)), vec3f(1.25));
     toned = luma_mix(toned, luma, 1.22);
     return clamp(OUTSET * toned, vec3f(0.0), vec3f(1.0));
