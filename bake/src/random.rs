@@ -1,15 +1,13 @@
 //! Four landscapes by chance, each a land of some kind with trees and a sky that go with it, and no two of a kind.
 
-use genescape_schema::{Category, Genome, INDIVIDUALS, Individual, Kind, Kinds, Population, Space};
+use genescape_schema::{Genome, INDIVIDUALS, Individual, Kind, Kinds, Population, Space};
 
 use crate::kinds::pick::Picker;
-use crate::kinds::{Company, Home, name};
+use crate::kinds::{Company, Home, ORDER, name};
 use crate::seed::Dice;
 
 /// Whole landscapes that are drawn until one repeats no kind of those before it.
 const TRIES: u32 = 24;
-/// Trees and sky follow the land.
-const ORDER: [Category; 3] = [Category::Terrain, Category::Tree, Category::Sky];
 
 /// A population by chance.
 pub struct Drawn {
@@ -97,6 +95,8 @@ fn draw<'a>(picker: &Picker<'a>, seen: &[&Kind], dice: &mut Dice) -> Option<Land
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeSet;
+
+    use genescape_schema::Category;
 
     use super::*;
     use crate::kinds::testing::{drawn, kinds};

@@ -15,11 +15,12 @@ use super::descent::{self, Origin};
 use super::evidence::{Evidence, point};
 use super::locked;
 use super::pairing::pair;
+use super::places::Settings;
 use super::prior::Prior;
 use super::spread::{Mean, Spread};
 use super::taste::{Ideal, ideals};
 use super::variety::Varied;
-use crate::kinds::{Company, Home};
+use crate::kinds::{Company, Home, ORDER};
 use crate::phenotype::visibility::{Seen, Visibility};
 use crate::seed::Dice;
 
@@ -27,8 +28,9 @@ use crate::seed::Dice;
 const GUESSES_EVERY: u32 = 5;
 
 /// From here on two of a category look clearly different, where 1 is what two landscapes by chance differ by. Relatives are 0.1 to 0.4
-/// apart, members of different kinds mostly 0.7 and more.
-const CLEARLY_DIFFERENT: f32 = 1.0;
+/// apart, members of different kinds mostly 0.7 and more. Among what goes together much is similar: at 1.0 four of one climate
+/// now and then look like two places.
+const CLEARLY_DIFFERENT: f32 = 1.1;
 
 /// Votes after which new chromosomes cost something: before, who has seen little sees as much as there is.
 const SETTLING: usize = 6;
@@ -45,12 +47,12 @@ pub struct Learned<'a> {
     votes: Votes,
     /// Whether a person chose the parents: then they are the best guess.
     chosen: Option<&'a Chosen>,
-    tastes: Vec<Taste>,
+    tastes: Vec<Taste<'a>>,
 }
 
 /// Of one category.
-pub struct Taste {
-    pub prior: Prior,
+pub struct Taste<'a> {
+    pub prior: Prior<'a>,
     pub ideals: Vec<Ideal>,
     means: Vec<Mean>,
     /// How many votes it rests on.
@@ -59,9 +61,9 @@ pub struct Taste {
     chosen: Vec<Chromosome>,
 }
 
-impl Taste {
+impl<'a> Taste<'a> {
     /// What votes on these populations say, which are in the order of generations.
-    pub fn of(space: &Space, kinds: &Kinds, category: Category, populations: &[&Population]) -> Self {
+    pub fn of(space: &Space, kinds: &'a Kinds, category: Category, populations: &[&Population]) -> Self {
         let evidence = Evidence::of(space, kinds, category, populations);
         let prior = Prior::of(space, kinds, category, &evidence);
         let Evidence { choices, chosen, .. } = evidence;
@@ -92,9 +94,11 @@ impl<'a> Learned<'a> {
 
     /// Generation `next`, where chance depends on `seed`.
     pub fn bred(&self, next: u32, seed: u64) -> Population {
-        let mut parts: [Vec<Chromosome>; 3] = Category::ALL.map(|category| self.part(category, next, seed));
-        for (category, part) in Category::ALL.into_iter().zip(&mut parts) {
-            part.iter_mut().enumerate().for_each(|(child, one)| self.keep_locked(category, child, one));
+        let mut parts: [Vec<Chromosome>; 3] = Default::default();
+        for category in ORDER {
+            let mut four = self.part(category, next, seed, &self.settings(category, &parts));
+            four.iter_mut().enumerate().for_each(|(child, one)| self.keep_locked(category, child, one));
+            parts[category as usize] = four;
         }
         let distance = |category, a: &_, b: &_| {
             let [at_a, at_b] = [a, b].map(|one| point(self.space, category, one));
@@ -130,7 +134,7 @@ impl<'a> Learned<'a> {
         Population::new(next, seed, individuals)
     }
 
-    pub fn taste(&self, category: Category) -> &Taste {
+    pub fn taste(&self, category: Category) -> &Taste<'a> {
         &self.tastes[category as usize]
     }
 
@@ -141,33 +145,54 @@ impl<'a> Learned<'a> {
         self.encoded(category, &at)
     }
 
+    /// What parts of one category are to go with, where the four have these others so far. Of what they do not have yet, the
+    /// favourite stands in the second landscape, so that it is seen again with what goes with it: in the first it stands with
+    /// the other favourites, whatever goes with it.
+    fn settings(&self, category: Category, parts: &[Vec<Chromosome>; 3]) -> Settings<'a> {
+        let companies = std::array::from_fn(|landscape| {
+            let mut company = Company::new(self.space);
+            for other in Category::ALL.into_iter().filter(|other| *other != category) {
+                let favourite = self.tastes[other as usize].chosen.last();
+                let is_there = landscape == 1 || self.is_locked(other);
+                let part = parts[other as usize].get(landscape).or(favourite.filter(|_| is_there));
+                if let Some(part) = part {
+                    company.add(other, part.clone(), Home::of(self.space, self.kinds, other, part));
+                }
+            }
+            company
+        });
+        Settings { companies }
+    }
+
     /// What the four have of one category. Seeds of what is no longer the favourite's kind are another individual's.
-    fn part(&self, category: Category, next: u32, seed: u64) -> Vec<Chromosome> {
+    fn part(&self, category: Category, next: u32, seed: u64, settings: &Settings<'_>) -> Vec<Chromosome> {
         let taste = &self.tastes[category as usize];
         let item = u64::from(next) << 2 | category as u64;
         let mut dice = Dice::new(seed, "spread", item);
         let legal = |component: usize, at: &mut Vec<f32>| self.legalise(category, component, at);
         let known: Vec<Vec<f32>> = taste.chosen.iter().map(|one| point(self.space, category, one)).collect();
-        let kind = |at: &[f32]| self.kind(category, &self.encoded(category, at));
+        let home = |at: &[f32]| Home::of(self.space, self.kinds, category, &self.encoded(category, at));
         let stands_out = |a: Seen<'_>, b: Seen<'_>| self.distance(category, a, b) > CLEARLY_DIFFERENT;
+        let variety = self.parents.variety.unwrap_or(Variety::USUAL);
+        let is_settling = taste.votes >= SETTLING && variety == Variety::USUAL && !taste.prior.is_wild();
         let spread = Spread {
             prior: &taste.prior,
             ideals: &taste.ideals,
             means: &taste.means,
             legal: &legal,
-            kind: &kind,
+            home: &home,
+            settings,
+            repeats: is_settling,
             stands_out: &stands_out,
         };
-        let favourite = known.last().map(|one| kind(one));
-        let is_like = |at: &[f32]| Some(kind(at)) == favourite;
+        let favourite = known.last().map(|one| spread.kind(one));
+        let is_like = |at: &[f32]| Some(spread.kind(at)) == favourite;
         let mut four = match (self.chosen, known.last()) {
             (Some(_), Some(chosen)) => vec![chosen.clone()],
             _ if self.asks(category, next) => Vec::new(),
             _ => vec![spread.best(&known, &is_like)],
         };
         let mut others = spread.others(&four, &mut dice);
-        let variety = self.parents.variety.unwrap_or(Variety::USUAL);
-        let is_settling = taste.votes >= SETTLING && variety == Variety::USUAL && !taste.prior.is_wild();
         if let Some(best) = four.first().filter(|_| is_settling) {
             others = spread.sparing(best, others, NEW_COSTS[category as usize], self.least_new(category));
         }
@@ -184,9 +209,13 @@ impl<'a> Learned<'a> {
     /// category makes up for that costs least.
     fn least_new(&self, category: Category) -> usize {
         let mut open: Vec<Category> = Category::ALL.to_vec();
-        open.retain(|one| !self.parents.locked.contains(one.name()));
+        open.retain(|one| !self.is_locked(*one));
         let is_cheapest = open.last() == Some(&category);
         if is_cheapest { INDIVIDUALS - open.len() } else { 1 }
+    }
+
+    fn is_locked(&self, category: Category) -> bool {
+        self.parents.locked.contains(category.name())
     }
 
     /// Whether all four are for asking: not where close variations are wanted. Kinds say so much of what may be wanted that
@@ -285,7 +314,7 @@ impl<'a> Learned<'a> {
 
     /// Moves genes to what the other parts go with, as far as their kinds may be that.
     fn reconcile(&self, parts: &mut [Chromosome; 3]) {
-        for category in [Category::Terrain, Category::Tree, Category::Sky] {
+        for category in ORDER {
             let homes = self.homes(parts.each_ref());
             let company = Company::beside(self.space, category, parts.each_ref(), homes);
             let mut bounds =
@@ -314,7 +343,7 @@ impl<'a> Learned<'a> {
 }
 
 /// Without what is like no kind, unless most is.
-fn plausible(prior: &Prior, mut ideals: Vec<Ideal>) -> Vec<Ideal> {
+fn plausible(prior: &Prior<'_>, mut ideals: Vec<Ideal>) -> Vec<Ideal> {
     let is_wild = |ideal: &Ideal| prior.component(ideal.component).bounds.is_none();
     if 2 * ideals.iter().filter(|one| is_wild(one)).count() < ideals.len() {
         ideals.retain(|one| !is_wild(one));

@@ -11,6 +11,7 @@ mod learned;
 mod likelihood;
 mod locked;
 mod pairing;
+mod places;
 mod prior;
 mod spread;
 mod step;

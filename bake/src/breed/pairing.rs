@@ -40,7 +40,7 @@ pub fn pair(
         let discord = |number: usize| {
             let place = place(number);
             let homes = std::array::from_fn(|category| homes[category][place[category]]);
-            discord(space, landscape(number), homes)
+            Company::discord(space, landscape(number), homes)
         };
         let all: [[&Chromosome; 3]; INDIVIDUALS] = std::array::from_fn(landscape);
         let pairs = || (0..INDIVIDUALS).flat_map(|a| (0..a).map(move |b| (a, b)));
@@ -64,13 +64,4 @@ pub fn pair(
         let part = &mut parts[category as usize];
         *part = order.iter().map(|from| part[*from].clone()).collect();
     }
-}
-
-/// How many of a landscape's kinds do not go with its other parts.
-fn discord(space: &Space, parts: [&Chromosome; 3], homes: [Home<'_>; 3]) -> usize {
-    let disagrees = |category: &Category| {
-        let company = Company::beside(space, *category, parts, homes);
-        homes[*category as usize].kinds().any(|kind| !company.suits(kind))
-    };
-    Category::ALL.iter().filter(|category| disagrees(category)).count()
 }

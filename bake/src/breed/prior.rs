@@ -3,6 +3,7 @@
 use genescape_schema::{Allowed, Bounds, Category, Kind, Kinds, Parameter, Scale, Space};
 
 use super::evidence::Evidence;
+use crate::kinds::Home;
 use crate::seed::Dice;
 
 /// Steps in which densities over 0 … 1 are tabulated.
@@ -19,8 +20,8 @@ const TYPICAL: f32 = 0.7;
 const STRAYED: f32 = 0.02;
 
 /// A mixture of components. In each, genes are independent of each other.
-pub struct Prior {
-    components: Vec<Component>,
+pub struct Prior<'a> {
+    components: Vec<Component<'a>>,
     /// Of genes whose values are names, the last code.
     choices: Vec<Option<f32>>,
     /// The share of all components up to each.
@@ -28,10 +29,9 @@ pub struct Prior {
 }
 
 /// A kind, a blend of two, or what is wild.
-pub struct Component {
-    /// The kind, or the first of the two.
-    pub kind: Option<String>,
-    /// `None` for what is wild.
+pub struct Component<'a> {
+    pub home: Home<'a>,
+    /// Of its home: `None` for what is wild.
     pub bounds: Option<Bounds>,
     log_share: f32,
     genes: Vec<Density>,
@@ -100,10 +100,10 @@ impl Density {
     }
 }
 
-impl Prior {
+impl<'a> Prior<'a> {
     /// Kinds and their blends, alike but for those that were shown when none of the four pleased. As much is wild as
     /// of what was shown so far.
-    pub fn of(space: &Space, kinds: &Kinds, category: Category, evidence: &Evidence) -> Self {
+    pub fn of(space: &Space, kinds: &'a Kinds, category: Category, evidence: &Evidence) -> Self {
         let genes: Vec<&Parameter> = space.traits(category).collect();
         let of = |bounds: &Bounds| -> Vec<Density> {
             let all = bounds.genes(space).filter(|(gene, _)| !gene.is_seed());
@@ -114,7 +114,7 @@ impl Prior {
         let rejected = |kind: &Kind| if evidence.rejected.contains(&kind.id) { REJECTED } else { 1.0 };
         let sum: f32 = all.iter().map(|kind| rejected(kind)).sum();
         let mut components = vec![Component {
-            kind: None,
+            home: Home::Wild,
             bounds: None,
             log_share: libm::logf(wild),
             genes: genes.iter().map(|_| Density::flat()).collect(),
@@ -125,7 +125,7 @@ impl Prior {
             let share = (1.0 - wild) * rejected(kind) / sum;
             let pure = if partners.is_empty() { share } else { share * (1.0 - BLENDS) };
             components.push(Component {
-                kind: Some(kind.id.clone()),
+                home: Home::Of(kind),
                 bounds: Some(kind.bounds.clone()),
                 log_share: libm::logf(pure),
                 genes: of(&kind.bounds),
@@ -133,7 +133,7 @@ impl Prior {
             for &other in &partners {
                 let blend = kind.bounds.blend(&all[other].bounds, BLEND_PART);
                 components.push(Component {
-                    kind: Some(kind.id.clone()),
+                    home: Home::Between(kind, all[other]),
                     log_share: libm::logf((share - pure) / partners.len() as f32),
                     genes: of(&blend),
                     bounds: Some(kind.bounds.hull(&all[other].bounds)),
@@ -166,7 +166,7 @@ impl Prior {
         self.choices[gene].is_some()
     }
 
-    pub fn component(&self, number: usize) -> &Component {
+    pub fn component(&self, number: usize) -> &Component<'a> {
         &self.components[number]
     }
 

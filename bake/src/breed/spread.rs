@@ -11,8 +11,10 @@ use std::collections::BTreeSet;
 
 use genescape_schema::INDIVIDUALS;
 
+use super::places::{Places, Settings, find_room};
 use super::prior::Prior;
 use super::taste::Ideal;
+use crate::kinds::Home;
 use crate::math::exp;
 use crate::phenotype::visibility::Seen;
 use crate::seed::Dice;
@@ -52,7 +54,7 @@ pub struct Mean {
 
 impl Mean {
     /// Of each component that has samples.
-    pub fn all(prior: &Prior, ideals: &[Ideal]) -> Vec<Self> {
+    pub fn all(prior: &Prior<'_>, ideals: &[Ideal]) -> Vec<Self> {
         let components: BTreeSet<usize> = ideals.iter().map(|ideal| ideal.component).collect();
         let of = |component| {
             let members: Vec<&Ideal> = ideals.iter().filter(|one| one.component == component).collect();
@@ -65,18 +67,22 @@ impl Mean {
 
 /// What candidates are made from.
 pub struct Spread<'a> {
-    pub prior: &'a Prior,
+    pub prior: &'a Prior<'a>,
     pub ideals: &'a [Ideal],
     pub means: &'a [Mean],
     /// Makes a point of a component what may be shown: of its kind, suiting the rest, on whole codes.
     pub legal: &'a dyn Fn(usize, &mut Vec<f32>),
-    /// The kind that a point is like most; none of what is wild.
-    pub kind: &'a dyn Fn(&[f32]) -> Option<&'a str>,
+    /// The kinds that a point belongs to.
+    pub home: &'a dyn Fn(&[f32]) -> Home<'a>,
+    /// Whether what is chosen will be shown more than once, and so had better go with all landscapes.
+    pub repeats: bool,
+    /// What is decided of the four landscapes.
+    pub settings: &'a Settings<'a>,
     /// Whether two points look clearly different.
     pub stands_out: &'a dyn Fn(Seen<'_>, Seen<'_>) -> bool,
 }
 
-impl Spread<'_> {
+impl<'a> Spread<'a> {
     /// The best guess: the favourite, which is the last of what was chosen, unless clearly less is missed in another of
     /// these or in the mean of a likely kind. Only what `is_like` the favourite takes its place: who chose a birch must not
     /// meet a palm instead.
@@ -100,20 +106,24 @@ impl Spread<'_> {
         }
     }
 
-    /// Others than `shown`, as many as it takes to make four, no two alike where the pool has so many. Beside a best guess
-    /// [`STRANGERS`] of them look different.
+    /// Others than `shown`, as many as it takes to make four, no two alike where the pool has so many, and, where it has
+    /// these, each for a landscape with which it goes. Beside a best guess [`STRANGERS`] of them look different.
     pub fn others(&self, shown: &[Vec<f32>], dice: &mut Dice) -> Vec<Vec<f32>> {
         let units: Vec<f32> = self.ideals.iter().map(Ideal::unit).collect();
         let worth = |rows: &[&[f32]]| worth(rows, &units);
         let best = shown.first().map(|best| self.seen(best));
         let is_strange = |one: &Candidate| {
-            let kind = self.prior.component(one.component).kind.as_deref();
-            best.is_some_and(|best| (self.stands_out)(best, Seen { at: &one.at, kind }))
+            best.is_some_and(|best| {
+                (self.stands_out)(best, seen(&one.at, self.prior.component(one.component).home))
+            })
         };
         let pool = self.pool(dice);
         let missed: Vec<Vec<f32>> = pool.iter().map(|one| self.missed(&one.at)).collect();
         let strange: Vec<bool> = pool.iter().map(is_strange).collect();
         let has_strangers = strange.contains(&true);
+        let fits = |one: &Candidate| self.settings.places(self.prior.component(one.component).home);
+        let places: Vec<Places> = pool.iter().map(fits).collect();
+        let mut seats: Vec<Places> = Vec::new();
         let mut set: Vec<Candidate> = Vec::new();
         let mut rows: Vec<Vec<f32>> = shown.iter().map(|one| self.missed(one)).collect();
         let mut strangers = 0;
@@ -124,12 +134,16 @@ impl Spread<'_> {
             };
             let must = has_strangers && INDIVIDUALS - rows.len() <= STRANGERS.saturating_sub(strangers);
             let is_new = |one: &usize| !is_among(&pool[*one].at, shown, &set);
+            let has_room = |one: &usize| find_room(&[&seats[..], &[places[*one]]].concat(), shown.len());
+            let goes_anywhere = |one: &usize| self.repeats && places[*one] == [true; INDIVIDUALS];
+            let rank = |one: &usize| (is_new(one), has_room(one), goes_anywhere(one));
             let all = (0..pool.len()).filter(|one| !must || strange[*one]);
             let best = all.max_by(|a, b| {
-                is_new(a).cmp(&is_new(b)).then_with(|| with(&missed[*a]).total_cmp(&with(&missed[*b])))
+                rank(a).cmp(&rank(b)).then_with(|| with(&missed[*a]).total_cmp(&with(&missed[*b])))
             });
             let best = best.unwrap_or_default();
             strangers += usize::from(strange[best]);
+            seats.push(places[best]);
             set.push(pool[best].clone());
             rows.push(missed[best].clone());
         }
@@ -155,14 +169,9 @@ impl Spread<'_> {
 
     /// Of three others than `best` those that tell what showing something new costs, in nats, and at least so many. A stranger
     /// stays, if there is one, and stands in place of those that go until there are [`STRANGERS`]; then there is `best` again. Two
-    /// of a category, each shown twice, make four landscapes of which each differs from each in two categories.
-    pub fn sparing(
-        &self,
-        best: &[f32],
-        mut others: Vec<Vec<f32>>,
-        cost: f32,
-        least_new: usize,
-    ) -> Vec<Vec<f32>> {
+    /// of a category, each shown twice, make four landscapes of which each differs from each in two categories. What would leave
+    /// a landscape with what does not go with it stays, too.
+    pub fn sparing(&self, best: &[f32], others: Vec<Vec<f32>>, cost: f32, least_new: usize) -> Vec<Vec<f32>> {
         let units: Vec<f32> = self.ideals.iter().map(Ideal::unit).collect();
         let own = self.missed(best);
         let mut rows: Vec<Vec<f32>> = others.iter().map(|one| self.missed(one)).collect();
@@ -173,6 +182,24 @@ impl Spread<'_> {
         let best_seen = self.seen(best);
         let strange: Vec<bool> =
             others.iter().map(|one| (self.stands_out)(best_seen, self.seen(one))).collect();
+        // Which of the others stands in place of each, and the best where it is `None`.
+        let standing = |new: &[usize]| -> Vec<Option<usize>> {
+            // Where nothing is strange, the only new one is shown twice all the same.
+            let stands_twice = |at: &&usize| strange[**at] || new.len() == 1;
+            let again = new.iter().find(stands_twice).copied();
+            let mut strangers = new.iter().filter(stands_twice).count();
+            let mut stand_in = || {
+                strangers += 1;
+                again.filter(|_| strangers <= STRANGERS)
+            };
+            (0..others.len()).map(|at| if new.contains(&at) { Some(at) } else { stand_in() }).collect()
+        };
+        let places = |at: &[f32]| self.settings.places((self.home)(at));
+        let (best_fits, fits) = (places(best), others.iter().map(|one| places(one)).collect::<Vec<_>>());
+        let has_room = |new: &[usize]| {
+            let seats = standing(new).into_iter().map(|one| one.map_or(best_fits, |one| fits[one]));
+            find_room(&seats.collect::<Vec<_>>(), 1)
+        };
         let mut new: Vec<usize> = (0..others.len()).collect();
         while new.len() > least_new {
             let all = worth(&rows);
@@ -183,30 +210,27 @@ impl Spread<'_> {
             };
             let is_last_stranger =
                 |at: usize| strange[at] && new.iter().filter(|one| strange[**one]).count() == 1;
-            let costs = new.iter().filter(|at| !is_last_stranger(**at)).map(|at| (all - without(*at), *at));
+            let leaves_room = |gone: usize| {
+                let rest: Vec<usize> = new.iter().copied().filter(|at| *at != gone).collect();
+                has_room(&rest) || !has_room(&new)
+            };
+            let may_go = new.iter().filter(|at| !is_last_stranger(**at) && leaves_room(**at));
+            let costs = may_go.map(|at| (all - without(*at), *at));
             let least = costs.reduce(|least, one| if one.0 < least.0 { one } else { least });
             let Some((_, at)) = least.filter(|(lost, _)| *lost < cost) else { break };
             new.retain(|one| *one != at);
             rows[at].clone_from(&own);
         }
-        // Where nothing is strange, the only new one is shown twice all the same.
-        let stands_twice = |at: &&usize| strange[**at] || new.len() == 1;
-        let again = new.iter().find(stands_twice).copied();
-        let mut strangers = new.iter().filter(stands_twice).count();
-        for at in (0..others.len()).filter(|at| !new.contains(at)) {
-            match again.filter(|_| strangers < STRANGERS) {
-                Some(again) => {
-                    others[at] = others[again].clone();
-                    strangers += 1;
-                }
-                None => others[at] = best.to_vec(),
-            }
-        }
-        others
+        standing(&new).into_iter().map(|one| one.map_or(best, |one| &others[one]).to_vec()).collect()
+    }
+
+    /// The kind that a point is like most; none of what is wild.
+    pub fn kind(&self, at: &[f32]) -> Option<&'a str> {
+        (self.home)(at).main().map(|kind| kind.id.as_str())
     }
 
     fn seen<'b>(&'b self, at: &'b [f32]) -> Seen<'b> {
-        Seen { at, kind: (self.kind)(at) }
+        seen(at, (self.home)(at))
     }
 
     /// What each sample misses in a point.
@@ -289,7 +313,7 @@ impl Spread<'_> {
 }
 
 /// Of genes whose values are names, the one that matters most.
-fn mean(prior: &Prior, members: &[&Ideal]) -> Vec<f32> {
+fn mean(prior: &Prior<'_>, members: &[&Ideal]) -> Vec<f32> {
     let units: Vec<f32> = members.iter().map(|ideal| 1.0 / ideal.weights.iter().sum::<f32>()).collect();
     let of = |gene: usize| {
         let weighted =
@@ -305,6 +329,10 @@ fn mean(prior: &Prior, members: &[&Ideal]) -> Vec<f32> {
         sum / weight
     };
     (0..prior.genes()).map(of).collect()
+}
+
+fn seen<'a>(at: &'a [f32], home: Home<'a>) -> Seen<'a> {
+    Seen { at, kind: home.main().map(|kind| kind.id.as_str()) }
 }
 
 /// Whether a point is one of those already.

@@ -38,7 +38,7 @@ pub struct Ideal {
 
 impl Ideal {
     /// What somebody who wants this misses in a point, in units in which choices between 0 and 1 are 1 to e.
-    pub fn missed(&self, prior: &Prior, point: &[f32]) -> f32 {
+    pub fn missed(&self, prior: &Prior<'_>, point: &[f32]) -> f32 {
         let terms = point.iter().zip(&self.at).zip(&self.weights).enumerate();
         terms.map(|(gene, ((x, t), a))| a * squared(prior.is_choice(gene), *x, *t)).sum::<f32>().sqrt()
     }
@@ -59,7 +59,7 @@ fn squared(is_choice: bool, x: f32, t: f32) -> f32 {
 }
 
 /// Samples of what a person wants who chose so: the same for the same choices. `seen` says how much each gene is seen.
-pub fn ideals(prior: &Prior, choices: &[Choice], seen: &[f32]) -> Vec<Ideal> {
+pub fn ideals(prior: &Prior<'_>, choices: &[Choice], seen: &[f32]) -> Vec<Ideal> {
     let genes = prior.genes();
     let votes = Votes::new(genes, choices);
     let chains = (0..CHAINS).into_par_iter().map(|chain| {
@@ -71,7 +71,7 @@ pub fn ideals(prior: &Prior, choices: &[Choice], seen: &[f32]) -> Vec<Ideal> {
 
 /// One Markov chain.
 struct Chain<'a> {
-    prior: &'a Prior,
+    prior: &'a Prior<'a>,
     votes: &'a Votes,
     dice: Dice,
     ideal: Ideal,
@@ -86,7 +86,7 @@ struct Chain<'a> {
 
 impl<'a> Chain<'a> {
     /// Begins at the likeliest of some that the prior gives.
-    fn start(prior: &'a Prior, votes: &'a Votes, weights: Weights<'a>, mut dice: Dice) -> Self {
+    fn start(prior: &'a Prior<'a>, votes: &'a Votes, weights: Weights<'a>, mut dice: Dice) -> Self {
         let genes = prior.genes();
         let mut chances = Chances::default();
         let best = (0..STARTS).map(|_| {
@@ -213,7 +213,7 @@ impl<'a> Chain<'a> {
     }
 }
 
-fn all_squares(prior: &Prior, votes: &Votes, ideal: &Ideal) -> Vec<f32> {
+fn all_squares(prior: &Prior<'_>, votes: &Votes, ideal: &Ideal) -> Vec<f32> {
     let mut squares = votes.blanks.clone();
     for (gene, column) in votes.columns.iter().enumerate() {
         let (is_choice, at, weight) = (prior.is_choice(gene), ideal.at[gene], ideal.weights[gene]);

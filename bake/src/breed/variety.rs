@@ -39,11 +39,11 @@ impl Varied<'_> {
     fn closer(&self, part: f32, best: &[f32], others: Vec<Vec<f32>>, dice: &mut Dice) -> Vec<Vec<f32>> {
         let count = others.len();
         let mut strangers = (count as f32 * part) as usize;
-        let own = (self.spread.kind)(best);
+        let own = self.spread.kind(best);
         let component = self.spread.prior.component_of(best, dice);
         let mut made: Vec<Vec<f32>> = Vec::new();
         for other in others {
-            let is_kin = (self.spread.kind)(&other) == own;
+            let is_kin = self.spread.kind(&other) == own;
             if !is_kin && strangers > 0 {
                 strangers -= 1;
                 made.push(other);
@@ -81,12 +81,12 @@ impl Varied<'_> {
         others.truncate(kept);
         for _ in 0..count {
             let seen: Vec<Option<&str>> =
-                shown.iter().chain(&others).map(|one| (self.spread.kind)(one)).collect();
+                shown.iter().chain(&others).map(|one| self.spread.kind(one)).collect();
             let mut one = Vec::new();
             for _ in 0..TRIES {
                 let component = self.spread.prior.any(dice);
                 one = self.spread.drawn(component, dice);
-                let kind = (self.spread.kind)(&one);
+                let kind = self.spread.kind(&one);
                 if kind.is_none() || !seen.contains(&kind) {
                     break;
                 }

@@ -31,6 +31,15 @@ impl<'a> Company<'a> {
         company
     }
 
+    /// How many of a landscape's categories have a kind that does not go with its other parts.
+    pub fn discord(space: &Space, parts: [&Chromosome; 3], homes: [Home<'_>; 3]) -> usize {
+        let disagrees = |category: &Category| {
+            let company = Company::beside(space, *category, parts, homes);
+            homes[*category as usize].kinds().any(|kind| !company.suits(kind))
+        };
+        Category::ALL.iter().filter(|category| disagrees(category)).count()
+    }
+
     pub fn add(&mut self, category: Category, chromosome: Chromosome, home: Home<'a>) {
         self.parts.push((category, chromosome, home));
     }

@@ -10,6 +10,11 @@ pub mod pick;
 #[cfg(test)]
 pub mod testing;
 
+use genescape_schema::Category;
+
+/// In which the parts of a landscape are decided: trees and sky follow the land.
+pub const ORDER: [Category; 3] = [Category::Terrain, Category::Tree, Category::Sky];
+
 pub use called::called;
 pub use company::Company;
 pub use home::Home;
