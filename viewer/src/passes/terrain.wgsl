@@ -385,6 +385,14 @@ fn wet_ground(in: Out) -> @location(0) vec4f {
     return vec4f(hazed(air_before(in.world), radiance), 1.0);
 }
 
+// Of young rice, the area that it shows from the side, over that of its field.
+const RICE: f32 = 0.12;
+// Metres between which single plants give way to their mean.
+const RICE_NEAR_M: f32 = 20.0;
+const RICE_FAR_M: f32 = 60.0;
+// How much brighter rice is than the ground under it, half of which is mud.
+const RICE_TONE: f32 = 1.5;
+
 // Ground with that light under still water a hand deep; `open` is the share of the sky that arrives there.
 fn flooded(under: vec3f, world: vec3f, open: f32) -> vec3f {
     let look = normalize(view.eye - world);
@@ -394,7 +402,10 @@ fn flooded(under: vec3f, world: vec3f, open: f32) -> vec3f {
     let sky = max(clear_sky(mirrored) + clouds_towards(mirrored, false, 0.0), vec3f(0.0)) * open;
     // Banks and trees around, about which nothing is known here, stand in the way of level rays.
     let seen = mix(under, sky, mix(0.5, 1.0, smoothstep(0.0, 0.12, mirrored.y)));
-    return mix(under * 0.8, seen, mirrored_by_water(up));
+    let water = mix(under * 0.8, seen, mirrored_by_water(up));
+    // Beyond where rice is drawn it hides the water, the more the flatter one looks across it (Beer's law, as of any crop).
+    let hidden = (1.0 - exp(-RICE / max(up, 0.01))) * smoothstep(RICE_NEAR_M, RICE_FAR_M, distance(view.eye, world));
+    return mix(water, under * RICE_TONE, hidden);
 }
 
 // Metres above the lake up to which the ground is wet.

@@ -183,6 +183,24 @@ fn flooded_ground_mirrors_the_sky() {
     assert!(r_flooded < r - 15.0 && b_flooded > b + 15.0, "{r_flooded} red, {b_flooded} blue under water");
 }
 
+/// Single plants are drawn near by only.
+#[test]
+#[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
+fn rice_hides_the_water_of_far_fields() {
+    let studio = made_up::studio();
+    let scene = flooded(made_up::land(257, 0.5, |_, _| 1.0), [200, 20, 20, 0]);
+    let camera = Camera { position_m: Vec3::new(0.0, 3.0, 60.0), ..camera() };
+    let picture = shoot_from(&studio, &scene, &camera);
+    let redness = |z_m: f32| {
+        let [x, y] = pixel_of(&camera, Vec3::new(0.0, 1.0, z_m));
+        let [r, _, b, _] = picture.get_pixel(x, y).0.map(f32::from);
+        r / b
+    };
+    // Of water alone the far field, across which one looks flatter, shows less of the red ground.
+    let [near, far] = [50.0, -50.0].map(redness);
+    assert!(far > 1.3 * near, "red is {near} of blue near by and {far} far away");
+}
+
 #[test]
 #[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
 fn a_lake_mirrors_alike_in_pictures_of_all_sizes_and_nothing_from_below() {
