@@ -12,6 +12,9 @@ use crate::model::{AlphaMask, Image8, Material, TreeTextures};
 static LINEAR: LazyLock<[f32; 256]> =
     LazyLock::new(|| std::array::from_fn(|byte| linear_from_srgb(byte as f32 / 255.0)));
 
+/// Bits in a word.
+const WORD: usize = u64::BITS as usize;
+
 /// A card's colours, and where it is cut away.
 pub(super) struct Card {
     pub mask: AlphaMask,
@@ -24,6 +27,13 @@ pub(super) struct Card {
 pub(super) struct Atlas {
     sunlit: Vec<f32>,
     texels: Texels,
+    /// Whether each texel is opaque, in bits of its row's words.
+    opaque: Vec<u64>,
+    /// Words in a row.
+    words: usize,
+    /// Texels across and down, and the last of each.
+    size: [Vec4; 2],
+    last: [Vec4; 2],
 }
 
 /// A picture: rows from the top.
@@ -71,17 +81,28 @@ impl Card {
 impl Atlas {
     /// Of an RGBA picture; with how far what each texel shows is turned to the sun.
     pub fn new(image: &Image8, sunlit: Vec<f32>) -> Self {
-        Self { sunlit, texels: Texels::of(image) }
+        let texels = Texels::of(image);
+        let is_opaque = |[.., alpha]: [u8; 4]| f32::from(alpha) >= 255.0 * ALPHA_CUTOFF;
+        let word = |pixels: &[[u8; 4]]| {
+            pixels.iter().enumerate().map(|(bit, &pixel)| u64::from(is_opaque(pixel)) << bit).sum::<u64>()
+        };
+        let rows = texels.pixels.chunks(texels.width);
+        let opaque = rows.flat_map(|row| row.chunks(WORD).map(word)).collect();
+        let size = [texels.width, texels.height].map(|count| Vec4::splat(count as f32));
+        let last = size.map(|count| count - 1.0);
+        Self { sunlit, opaque, words: texels.width.div_ceil(WORD), size, last, texels }
     }
 
-    pub fn is_opaque(&self, u: f32, v: f32) -> bool {
-        let [.., alpha] = self.texels.pixels[self.texels.index(u, v)];
-        f32::from(alpha) >= 255.0 * ALPHA_CUTOFF
-    }
-
-    /// The same at four places: a bit for each.
-    pub fn opaque(&self, [u, v]: [Vec4; 2]) -> u64 {
-        (0..4).map(|k| u64::from(self.is_opaque(u[k], v[k])) << k).sum()
+    /// Whether it is opaque at four places: a bit for each. Texture coordinates are clamped to [0, 1].
+    #[inline]
+    pub fn opaque(&self, uv: [Vec4; 2]) -> u64 {
+        let texels = |axis: usize| {
+            let places = (uv[axis] * self.size[axis]).clamp(Vec4::ZERO, self.last[axis]);
+            places.to_array().map(|place| place as i32 as usize)
+        };
+        let [x, y] = [0, 1].map(texels);
+        let bit = |k: usize| (self.opaque[y[k] * self.words + x[k] / WORD] >> (x[k] % WORD) & 1) << k;
+        bit(0) | bit(1) | bit(2) | bit(3)
     }
 
     /// Colour, and how far it is turned to the sun.
