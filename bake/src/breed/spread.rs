@@ -194,8 +194,8 @@ impl<'a> Spread<'a> {
             };
             (0..others.len()).map(|at| if new.contains(&at) { Some(at) } else { stand_in() }).collect()
         };
-        let places = |at: &[f32]| self.settings.places((self.home)(at));
-        let (best_fits, fits) = (places(best), others.iter().map(|one| places(one)).collect::<Vec<_>>());
+        let (best_fits, fits) =
+            (self.places(best), others.iter().map(|one| self.places(one)).collect::<Vec<_>>());
         let has_room = |new: &[usize]| {
             let seats = standing(new).into_iter().map(|one| one.map_or(best_fits, |one| fits[one]));
             find_room(&seats.collect::<Vec<_>>(), 1)
@@ -222,6 +222,11 @@ impl<'a> Spread<'a> {
             rows[at].clone_from(&own);
         }
         standing(&new).into_iter().map(|one| one.map_or(best, |one| &others[one]).to_vec()).collect()
+    }
+
+    /// In which landscapes a point goes with the rest.
+    pub fn places(&self, at: &[f32]) -> Places {
+        self.settings.places((self.home)(at))
     }
 
     /// The kind that a point is like most; none of what is wild.

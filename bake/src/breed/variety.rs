@@ -3,6 +3,7 @@
 
 use genescape_schema::Variety;
 
+use super::places::{Places, find_room};
 use super::spread::Spread;
 use crate::seed::Dice;
 
@@ -68,7 +69,7 @@ impl Varied<'_> {
         made
     }
 
-    /// Some of them, as many as `part` says, give way to anything of kinds that are not shown.
+    /// Some of them, as many as `part` says, give way to anything of kinds that are not shown and go with the rest somewhere.
     fn farther(
         &self,
         part: f32,
@@ -82,12 +83,14 @@ impl Varied<'_> {
         for _ in 0..count {
             let seen: Vec<Option<&str>> =
                 shown.iter().chain(&others).map(|one| self.spread.kind(one)).collect();
+            let places: Vec<Places> = others.iter().map(|one| self.spread.places(one)).collect();
             let mut one = Vec::new();
             for _ in 0..TRIES {
                 let component = self.spread.prior.any(dice);
                 one = self.spread.drawn(component, dice);
                 let kind = self.spread.kind(&one);
-                if kind.is_none() || !seen.contains(&kind) {
+                let is_new = kind.is_none() || !seen.contains(&kind);
+                if is_new && find_room(&[&places[..], &[self.spread.places(&one)]].concat(), shown.len()) {
                     break;
                 }
             }

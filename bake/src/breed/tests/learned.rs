@@ -5,7 +5,6 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::bench::person::{Person, Taste};
-use crate::kinds::Company;
 use crate::kinds::testing::kinds;
 use crate::phenotype::Phenotype;
 
@@ -240,31 +239,6 @@ fn whatever_was_voted_four_landscapes_look_like_four_places() {
             history.push(children);
         }
     }
-}
-
-/// The favourites stand together in the first landscape, whatever goes with them.
-#[test]
-fn whatever_was_voted_trees_and_sky_of_the_others_go_with_their_land() {
-    let space = Space::builtin();
-    let (kinds, _) = Kinds::shipped(&space);
-    let (mut discords, mut all) = (0, 0);
-    for seed in 80..88 {
-        let mut history = vec![drawn(&space, &kinds, seed, 0)];
-        for next in 1..=9 {
-            let (now, past) = history.split_last_mut().expect("a first one");
-            now.votes = Some(random_votes(seed, next));
-            let children = breed(&space, &kinds, past, now, next);
-            for one in &children.individuals[1..] {
-                let homes = Category::ALL.map(|category| home(&space, &kinds, category, one));
-                let parts = Category::ALL.map(|category| one.genome.chromosome(category));
-                discords += usize::from(Company::discord(&space, parts, homes) > 0);
-                all += 1;
-            }
-            history.push(children);
-        }
-    }
-    // Measured: 0.08 with 30 seeds, and 0.46 where each category is bred for itself.
-    assert!(discords * 8 < all, "{discords} of {all} have what does not go together");
 }
 
 #[test]
