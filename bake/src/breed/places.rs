@@ -24,6 +24,11 @@ pub fn find_room(parts: &[Places], taken: usize) -> bool {
     find(parts, &mut std::array::from_fn(|landscape| landscape < taken))
 }
 
+/// Whether another one finds a landscape, too.
+pub fn has_room(parts: &[Places], other: Places, taken: usize) -> bool {
+    find_room(&[parts, &[other]].concat(), taken)
+}
+
 fn find(parts: &[Places], taken: &mut [bool; INDIVIDUALS]) -> bool {
     let Some((part, rest)) = parts.split_first() else { return true };
     (0..INDIVIDUALS).any(|landscape| {

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 
 use genescape_schema::INDIVIDUALS;
 
-use super::places::{Places, Settings, find_room};
+use super::places::{self, Places, Settings};
 use super::prior::Prior;
 use super::taste::Ideal;
 use crate::kinds::Home;
@@ -134,7 +134,7 @@ impl<'a> Spread<'a> {
             };
             let must = has_strangers && INDIVIDUALS - rows.len() <= STRANGERS.saturating_sub(strangers);
             let is_new = |one: &usize| !is_among(&pool[*one].at, shown, &set);
-            let has_room = |one: &usize| find_room(&[&seats[..], &[places[*one]]].concat(), shown.len());
+            let has_room = |one: &usize| places::has_room(&seats, places[*one], shown.len());
             let goes_anywhere = |one: &usize| self.repeats && places[*one] == [true; INDIVIDUALS];
             let rank = |one: &usize| (is_new(one), has_room(one), goes_anywhere(one));
             let all = (0..pool.len()).filter(|one| !must || strange[*one]);
@@ -198,7 +198,7 @@ impl<'a> Spread<'a> {
             (self.places(best), others.iter().map(|one| self.places(one)).collect::<Vec<_>>());
         let has_room = |new: &[usize]| {
             let seats = standing(new).into_iter().map(|one| one.map_or(best_fits, |one| fits[one]));
-            find_room(&seats.collect::<Vec<_>>(), 1)
+            places::find_room(&seats.collect::<Vec<_>>(), 1)
         };
         let mut new: Vec<usize> = (0..others.len()).collect();
         while new.len() > least_new {

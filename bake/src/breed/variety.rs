@@ -3,7 +3,7 @@
 
 use genescape_schema::Variety;
 
-use super::places::{Places, find_room};
+use super::places::{Places, has_room};
 use super::spread::Spread;
 use crate::seed::Dice;
 
@@ -90,7 +90,7 @@ impl Varied<'_> {
                 one = self.spread.drawn(component, dice);
                 let kind = self.spread.kind(&one);
                 let is_new = kind.is_none() || !seen.contains(&kind);
-                if is_new && find_room(&[&places[..], &[self.spread.places(&one)]].concat(), shown.len()) {
+                if is_new && has_room(&places, self.spread.places(&one), shown.len()) {
                     break;
                 }
             }
