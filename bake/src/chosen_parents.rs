@@ -15,7 +15,7 @@ use crate::bad_input::BadInput;
 use crate::breed::{Breeder, Chosen};
 use crate::events::Listener;
 use crate::kinds::pick::Picker;
-use crate::kinds::{Company, Home, called};
+use crate::kinds::{Company, Home, ORDER, called};
 use crate::landscape::{Landscape, ParentArg, Reference};
 use crate::seed::Dice;
 use crate::session;
@@ -107,7 +107,7 @@ impl ChosenParents {
             company.add(category, part.chromosome.clone(), home);
             parts[category as usize] = Some(part);
         }
-        for category in [Category::Terrain, Category::Tree, Category::Sky] {
+        for category in ORDER {
             let Some(ParentArg::Kind(word)) = self.of(category) else { continue };
             let pool = kinds_of(kinds, category, word)?;
             let picker = Picker { space, kinds, pool };

@@ -14,7 +14,7 @@ use genescape_schema::{
 use super::descent::{self, Origin};
 use super::{cross, locked, step};
 use crate::kinds::pick::Picker;
-use crate::kinds::{Company, Home};
+use crate::kinds::{Company, Home, ORDER};
 use crate::seed::Dice;
 
 /// Generation `next` from the votes on `parents`; without votes nobody is a favourite.
@@ -91,7 +91,7 @@ impl<'a> Family<'a> {
 
     /// A child; `newcomers` are the kinds that those before it have shown, and now those of this one.
     fn child(&self, child: usize, newcomers: &mut Vec<&'a Kind>) -> Individual {
-        let mut order = [Category::Terrain, Category::Tree, Category::Sky];
+        let mut order = ORDER;
         order.sort_by_key(|category| self.role(child, *category));
         let mut company = Company::new(self.space);
         let mut genome = Genome::zero(self.space);

@@ -67,8 +67,8 @@ impl<'a> Taste<'a> {
         let evidence = Evidence::of(space, kinds, category, populations);
         let prior = Prior::of(space, kinds, category, &evidence);
         let Evidence { choices, chosen, .. } = evidence;
-        let kind = chosen.last().and_then(|one| Home::of(space, kinds, category, one).main());
-        let seen = Visibility::shipped().log_weights(space, category, kind.map(|kind| kind.id.as_str()));
+        let kind = chosen.last().and_then(|one| Home::of(space, kinds, category, one).id());
+        let seen = Visibility::shipped().log_weights(space, category, kind);
         let ideals = plausible(&prior, ideals(&prior, &choices, &seen));
         let means = Mean::all(&prior, &ideals);
         Self { prior, ideals, means, votes: choices.len(), chosen }
@@ -265,7 +265,7 @@ impl<'a> Learned<'a> {
 
     /// What a chromosome is like most.
     fn kind(&self, category: Category, chromosome: &Chromosome) -> Option<&'a str> {
-        Home::of(self.space, self.kinds, category, chromosome).main().map(|kind| kind.id.as_str())
+        Home::of(self.space, self.kinds, category, chromosome).id()
     }
 
     /// How different two parts look.
@@ -335,7 +335,7 @@ impl<'a> Learned<'a> {
         if let Some(same) = (0..INDIVIDUALS).find(|index| parent(*index) == part) {
             return Origin::Of(same);
         }
-        let kind = homes[category as usize].main().map(|kind| kind.id.as_str());
+        let kind = homes[category as usize].id();
         let favourite = self.votes.favourite(category);
         let like = favourite.filter(|vote| self.kind(category, parent(*vote)) == kind);
         like.map_or(Origin::New, Origin::Like)

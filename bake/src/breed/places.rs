@@ -13,9 +13,9 @@ pub struct Settings<'a> {
 }
 
 impl Settings<'_> {
-    /// Where a part of these kinds goes with the rest. What is like no kind goes with everything.
+    /// Where a part of these kinds goes with the rest.
     pub fn places(&self, home: Home<'_>) -> Places {
-        self.companies.each_ref().map(|company| home.kinds().all(|kind| company.suits(kind)))
+        self.companies.each_ref().map(|company| company.suits_all(home))
     }
 }
 

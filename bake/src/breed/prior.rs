@@ -113,31 +113,22 @@ impl<'a> Prior<'a> {
         let wild = if all.is_empty() { 1.0 } else { evidence.wild.min(MAX_WILD) };
         let rejected = |kind: &Kind| if evidence.rejected.contains(&kind.id) { REJECTED } else { 1.0 };
         let sum: f32 = all.iter().map(|kind| rejected(kind)).sum();
-        let mut components = vec![Component {
-            home: Home::Wild,
-            bounds: None,
-            log_share: libm::logf(wild),
-            genes: genes.iter().map(|_| Density::flat()).collect(),
-        }];
+        let component = |home: Home<'a>, share: f32, genes: Vec<Density>| {
+            let (bounds, log_share) = (home.bounds(), libm::logf(share));
+            Component { home, bounds, log_share, genes }
+        };
+        let mut components =
+            vec![component(Home::Wild, wild, genes.iter().map(|_| Density::flat()).collect())];
         for (number, kind) in all.iter().enumerate() {
             let partners: Vec<usize> =
                 (0..all.len()).filter(|&other| other != number && kind.mixes_with(all[other])).collect();
             let share = (1.0 - wild) * rejected(kind) / sum;
             let pure = if partners.is_empty() { share } else { share * (1.0 - BLENDS) };
-            components.push(Component {
-                home: Home::Of(kind),
-                bounds: Some(kind.bounds.clone()),
-                log_share: libm::logf(pure),
-                genes: of(&kind.bounds),
-            });
+            components.push(component(Home::Of(kind), pure, of(&kind.bounds)));
             for &other in &partners {
                 let blend = kind.bounds.blend(&all[other].bounds, BLEND_PART);
-                components.push(Component {
-                    home: Home::Between(kind, all[other]),
-                    log_share: libm::logf((share - pure) / partners.len() as f32),
-                    genes: of(&blend),
-                    bounds: Some(kind.bounds.hull(&all[other].bounds)),
-                });
+                let share = (share - pure) / partners.len() as f32;
+                components.push(component(Home::Between(kind, all[other]), share, of(&blend)));
             }
         }
         let shares = components.iter().scan(0.0, |sum, component| {

@@ -231,7 +231,7 @@ impl<'a> Spread<'a> {
 
     /// The kind that a point is like most; none of what is wild.
     pub fn kind(&self, at: &[f32]) -> Option<&'a str> {
-        (self.home)(at).main().map(|kind| kind.id.as_str())
+        (self.home)(at).id()
     }
 
     fn seen<'b>(&'b self, at: &'b [f32]) -> Seen<'b> {
@@ -337,7 +337,7 @@ fn mean(prior: &Prior<'_>, members: &[&Ideal]) -> Vec<f32> {
 }
 
 fn seen<'a>(at: &'a [f32], home: Home<'a>) -> Seen<'a> {
-    Seen { at, kind: home.main().map(|kind| kind.id.as_str()) }
+    Seen { at, kind: home.id() }
 }
 
 /// Whether a point is one of those already.

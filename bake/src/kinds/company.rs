@@ -35,7 +35,7 @@ impl<'a> Company<'a> {
     pub fn discord(space: &Space, parts: [&Chromosome; 3], homes: [Home<'_>; 3]) -> usize {
         let disagrees = |category: &Category| {
             let company = Company::beside(space, *category, parts, homes);
-            homes[*category as usize].kinds().any(|kind| !company.suits(kind))
+            !company.suits_all(homes[*category as usize])
         };
         Category::ALL.iter().filter(|category| disagrees(category)).count()
     }
@@ -48,6 +48,11 @@ impl<'a> Company<'a> {
     pub fn suits(&self, kind: &Kind) -> bool {
         let goes = |(category, genes, _): &(_, _, _)| kind.goes_with(self.space, *category, genes);
         self.parts.iter().all(goes) && self.demand(&mut kind.bounds.clone())
+    }
+
+    /// Whether all kinds of a home do; what is like no kind goes with everything.
+    pub fn suits_all(&self, home: Home<'_>) -> bool {
+        home.kinds().all(|kind| self.suits(kind))
     }
 
     /// Keeps of what a chromosome may be as much as the parts go with; `false` if they demand of a gene what it may not be,

@@ -48,6 +48,11 @@ impl<'a> Home<'a> {
         self.kinds().next()
     }
 
+    /// The name in files of the kind that it is, or is nearest to.
+    pub fn id(self) -> Option<&'a str> {
+        self.main().map(|kind| kind.id.as_str())
+    }
+
     pub fn kinds(self) -> impl Iterator<Item = &'a Kind> {
         let (one, other) = match self {
             Self::Of(kind) => (Some(kind), None),

@@ -80,7 +80,7 @@ impl<'a> Picker<'a> {
             let home = Home::of(self.space, self.kinds, kind.category, &chromosome);
             let is_its_own = home.main().is_some_and(|main| main.id == kind.id);
             tries += 1;
-            if is_its_own && home.kinds().all(|kind| company.suits(kind)) || tries == TRIES {
+            if is_its_own && company.suits_all(home) || tries == TRIES {
                 return (chromosome, home);
             }
         }
