@@ -74,9 +74,13 @@ impl Drawing {
         }
     }
 
-    /// A thin stem of tint 0, seen from one side and its other.
+    /// A thin stem of tint 0: two crossed slivers, lit from the side, which end in a point where grass hides them. What it carries
+    /// would hang in the air if they were pointed there.
     fn stem(&mut self, root: Vec3, tip: Vec3, radius: f32) {
-        self.leaf([root - radius * Vec3::X, root + radius * Vec3::X, tip], [0.0; 3]);
+        for across in [Vec3::X, Vec3::Z] {
+            let wide = radius * across;
+            self.lit([root, tip - wide, tip + wide], aside(across) + 0.6 * Vec3::Y, [0.0; 3]);
+        }
     }
 
     /// A blade that bends from `root` outwards in the direction of a turn and ends in a point. Where it stands its front is the outer
@@ -219,36 +223,48 @@ pub(super) fn fern() -> PlantShape {
     d.done()
 }
 
-/// A low dome of sprigs from one root; tint 1 is that of their outermost leaves, or of their bloom.
+/// A low dome of sprigs from one root, with leaves on their upper halves; tint 1 is that of their outermost leaves, or of their
+/// bloom.
 pub(super) fn shrub() -> PlantShape {
+    const SPRIGS: usize = 29;
+    const LEAVES: usize = 7;
     let mut d = Drawing::new(63);
-    let sprigs: Vec<(Vec3, Vec3)> = (0..34)
+    let sprigs: Vec<[Vec3; 2]> = (0..SPRIGS)
         .map(|k| {
             // Evenly over the dome, by the golden angle.
-            let (turn, up) = (2.4 * k as f32 + 0.6 * d.unit(), 1.0 - (k as f32 + 0.5) / 34.0);
+            let part = (k as f32 + 0.5) / SPRIGS as f32;
+            let (turn, up) = (2.4 * k as f32 + 0.6 * d.unit(), 1.0 - part);
             let out = heading(turn) * (1.0 - 0.8 * up * up).sqrt();
-            let tip = (out * 0.40 + Vec3::Y * (0.16 + 0.26 * up)) * (0.75 + 0.4 * d.unit());
-            (out * 0.05, tip)
+            let tip = (out * 0.36 + Vec3::Y * (0.15 + 0.26 * up)) * (0.75 + 0.4 * d.unit());
+            [out * 0.05, tip]
         })
         .collect();
-    let side = |root: Vec3, tip: Vec3| (tip - root).cross(Vec3::Y).normalize_or(Vec3::X);
-    for &(root, tip) in &sprigs {
-        let (across, thick) = (side(root, tip) * 0.016, root.lerp(tip, 0.7));
-        d.leaf([root, thick + across, thick - across], [0.0, 0.5, 0.5]);
-        d.leaf([thick + across, tip, thick - across], [0.5, 1.0, 0.5]);
+    // From where on its sprig a leaf stands off, across, to its end; and which way it faces.
+    let leaf = |d: &mut Drawing, [root, tip]: [Vec3; 2], along: f32, long: f32| {
+        let from = root.lerp(tip, along);
+        let ahead = (tip - root).normalize_or(Vec3::Y);
+        let aim = (0.9 * ahead + 0.9 * heading(d.unit() * TAU) + 0.3 * Vec3::Y).normalize_or(Vec3::Y);
+        let side = aim.cross(ahead + 0.4 * heading(d.unit() * TAU)).normalize_or(Vec3::X);
+        let face = aim.cross(side);
+        let normal = if face.y < 0.0 { -face } else { face } + 0.8 * Vec3::Y + 0.4 * ahead;
+        ([from, 0.24 * long * side, from + long * aim], normal)
+    };
+    for &sprig in &sprigs {
+        let ([from, side, end], normal) = leaf(&mut d, sprig, 0.76, 0.09);
+        let tint = 0.3 + 0.4 * sprig[1].y;
+        d.diamond([from, from.lerp(end, 0.45), end], side, normal, [0.7 * tint, tint, tint]);
     }
     d.coarse();
-    for &(root, tip) in &sprigs {
-        for k in 0..5 {
-            let from = root.lerp(tip, 0.35 + 0.15 * k as f32);
-            let way = if k % 2 == 0 { 1.0 } else { -1.0 };
-            let aim = (tip - root).normalize_or(Vec3::Y)
-                + 1.3 * way * side(root, tip)
-                + 0.9 * heading(d.unit() * TAU);
-            let leaf = aim.normalize_or(Vec3::Y) * (0.065 + 0.04 * d.unit());
-            let wide = leaf.cross(Vec3::Y).normalize_or(Vec3::X) * 0.019;
-            let tint = 0.12 * (k * k) as f32 * 0.5;
-            d.leaf([from, from + 0.5 * leaf + wide, from + leaf], [tint, tint, (tint + 0.15).min(1.0)]);
+    for &[root, tip] in &sprigs {
+        let across = 0.0035 * (tip - root).cross(Vec3::Y).normalize_or(Vec3::X);
+        d.leaf([root + across, root - across, tip], [0.0, 0.0, 0.2]);
+        for k in 0..LEAVES {
+            let along = 0.42 + 0.6 * (k as f32 + d.unit()) / LEAVES as f32;
+            let tint = (1.5 * along - 0.62 + 0.2 * d.unit()).clamp(0.0, 1.0);
+            let long = 0.038 + 0.02 * d.unit();
+            let ([from, side, end], normal) = leaf(&mut d, [root, tip], along, long);
+            let wide = from.lerp(end, 0.15);
+            d.lit([wide + side, wide - side, end], normal, [0.8 * tint, 0.8 * tint, tint]);
         }
     }
     d.done()
@@ -376,7 +392,7 @@ pub(super) fn spire() -> PlantShape {
     spikes.into_iter().for_each(|spike| flowers(&mut d, spike, 5, 0.078));
     d.coarse();
     for (top, wide) in spikes {
-        d.stem(foot(top), top, 0.005);
+        d.stem(foot(top), foot(top).lerp(top, 0.95), 0.0025);
         flowers(&mut d, (top, wide), (42.0 * wide) as usize, 0.042);
     }
     for k in 0..7 {
@@ -386,35 +402,43 @@ pub(super) fn spire() -> PlantShape {
     d.done()
 }
 
-/// Stalks that branch into flat heads of tiny flowers, over feathery leaves; tint 1 is the petals'.
+/// Stalks that branch into rays with flat heads of tiny flowers, over feathery leaves; tint 1 is the petals'.
 pub(super) fn umbel() -> PlantShape {
     let mut d = Drawing::new(72);
-    let heads = [([0.03, 0.80, 0.0], 0.085), ([-0.12, 0.64, 0.07], 0.065), ([0.10, 0.57, -0.11], 0.060)]
-        .map(|(middle, reach)| (Vec3::from_array(middle), reach));
-    for (head, reach) in heads {
-        let root = head.with_y(0.0) * 0.2;
-        d.stem(root, head, 0.004);
-        // Rays that carry the flowers, as three leaves of a disc.
-        for k in 0..3 {
-            let out = |turn: f32| head + 0.8 * reach * heading(turn + head.x * 20.0);
-            let turn = k as f32 / 3.0 * TAU;
-            d.leaf([head - 0.3 * reach * Vec3::Y, out(turn), out(turn + 0.9)], [0.2, 0.75, 0.75]);
+    let heads =
+        [([0.03, 0.80, 0.0], 0.085, 13), ([-0.12, 0.64, 0.07], 0.065, 9), ([0.10, 0.57, -0.11], 0.060, 9)]
+            .map(|(middle, reach, umbellets)| (Vec3::from_array(middle), reach, umbellets));
+    // Where rays part, and where each ends: those in the middle of a head higher.
+    let fork = |head: Vec3, reach: f32| head - 0.42 * reach * Vec3::Y;
+    let umbellet = |(head, reach, umbellets): (Vec3, f32, usize), k: usize| {
+        let part = (k as f32 + 0.3) / umbellets as f32;
+        head + reach * part.sqrt() * heading(2.4 * k as f32) + Vec3::Y * (0.02 * (1.0 - part))
+    };
+    let petals = |d: &mut Drawing, middle: Vec3, size: f32, outward: Vec3| {
+        let (turn, tint) = (d.unit() * TAU, 0.7 + 0.3 * d.unit());
+        let out = |k: usize| middle + size * heading(turn + k as f32 / 3.0 * TAU);
+        d.lit([out(0), out(1), out(2)], Vec3::Y + 0.4 * outward, [tint; 3]);
+    };
+    for (head, reach, umbellets) in heads {
+        d.stem(head.with_y(0.0) * 0.2, fork(head, reach), 0.0028);
+        // From afar four umbellets show.
+        for k in (1..umbellets).step_by(umbellets / 4).take(4) {
+            let middle = umbellet((head, reach, umbellets), k);
+            petals(&mut d, middle, 0.34 * reach, (middle - head) / reach);
         }
     }
     d.coarse();
-    for (head, reach) in heads {
-        // In each umbellet a few flowers, the middle ones higher.
-        let umbellets = if reach > 0.08 { 13 } else { 9 };
+    for (head, reach, umbellets) in heads {
+        let fork = fork(head, reach);
         for k in 0..umbellets {
-            let part = (k as f32 + 0.3) / umbellets as f32;
-            let from = head + reach * part.sqrt() * heading(2.4 * k as f32) + Vec3::Y * (0.02 * (1.0 - part));
+            let from = umbellet((head, reach, umbellets), k);
+            let wide = 0.0022 * aside((from - fork).with_y(0.0).normalize_or(Vec3::X));
+            d.leaf([fork - wide, fork + wide, from], [0.0, 0.0, 0.2]);
             let small = 0.30 * reach;
             for _ in 0..3 {
                 let middle = from + 0.5 * small * heading(d.unit() * TAU) + Vec3::Y * (0.006 * d.unit());
-                let (turn, size) = (d.unit() * TAU, small * (0.4 + 0.2 * d.unit()));
-                let out = |k: usize| middle + size * heading(turn + k as f32 / 3.0 * TAU);
-                let tint = 0.7 + 0.3 * d.unit();
-                d.lit([out(0), out(1), out(2)], Vec3::Y + 0.4 * (middle - head) / reach, [tint; 3]);
+                let size = small * (0.4 + 0.2 * d.unit());
+                petals(&mut d, middle, size, (middle - head) / reach);
             }
         }
     }

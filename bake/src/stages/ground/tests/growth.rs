@@ -1,5 +1,7 @@
 //! Small plants and stones: where they stand, and what they are made of.
 
+use glam::Vec3;
+
 use super::*;
 
 /// The density in bytes of a kind of plants at each pixel of its map, with the height of the land above the lake.
@@ -134,6 +136,30 @@ fn few_enough_stand_within_reach_to_draw_them_each_frame() {
         let most = |kind: &PlantKind| kind.per_m2 * std::f32::consts::PI * kind.reach_m * kind.reach_m;
         assert!(kinds.len() == 16 && kinds.iter().all(|kind| most(kind) < 20_000.0));
         assert!(kinds.iter().all(|kind| kind.shape.triangles.len() <= 300 && kind.shape.coarse <= 100));
+    }
+}
+
+#[test]
+fn flowers_do_not_hang_in_the_air() {
+    let kinds = plants::all_kinds(&PARAMS, &LAND);
+    for kind in kinds.iter().filter(|kind| ["flower", "umbel"].contains(&kind.name.as_str())) {
+        let shape = &kind.shape;
+        let at = |v: u32| Vec3::from_array(shape.positions_m[v as usize]);
+        let tint = |v: u32| shape.tints[v as usize];
+        // A stem or a ray, where it is as wide as one sees it.
+        let width = |t: &[u32; 3]| {
+            let ends = [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]
+                .map(|[a, b]| (at(a).distance(at(b)), at(a).midpoint(at(b))));
+            ends.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(wide_m, _)| *wide_m > 0.002)
+        };
+        let of_stems = shape.triangles.iter().filter(|t| t.iter().all(|&v| tint(v) <= 0.2));
+        let carried: Vec<Vec3> = of_stems.filter_map(width).map(|(_, at)| at).collect();
+        let mut petals = (0..shape.tints.len() as u32).filter(|&v| tint(v) >= 0.7).peekable();
+        assert!(petals.peek().is_some());
+        for petal in petals.map(at) {
+            let away_m = carried.iter().map(|stem| stem.distance(petal)).fold(f32::MAX, f32::min);
+            assert!(away_m < 0.13, "a petal {away_m} m from any stem");
+        }
     }
 }
 
