@@ -239,7 +239,46 @@ pub struct Staging {
 /// What is smaller is enlarged, and what is larger shrunk: sides in metres.
 const SIZES_M: [f64; 2] = [1.0, 50_000.0];
 
+/// Of shapes with more copies, boxes are looked at instead of vertices.
+const FEW_COPIES: usize = 16;
+
 impl Asset {
+    /// How far anything of it reaches in a direction from the origin of a world, times the direction's length, in the finest levels.
+    pub fn reach_m(&self, direction: Vec3, world_from_file: &DAffine3) -> f64 {
+        let direction = direction.as_dvec3();
+        let corners = |[low, high]: [Vec3; 2]| {
+            (0..8u8).map(move |n| {
+                Vec3::from_array([0, 1, 2].map(|axis| [low, high][usize::from(n >> axis & 1)][axis]))
+            })
+        };
+        let of_shape = |shape: &Shape| {
+            let points: Vec<Vec3> =
+                shape.levels.iter().take(1).flat_map(|level| self.corners(level)).collect();
+            let box_of_it =
+                || points.iter().fold([Vec3::MAX, Vec3::MIN], |[low, high], &p| [low.min(p), high.max(p)]);
+            let points =
+                if shape.copies.len() > FEW_COPIES { corners(box_of_it()).collect() } else { points };
+            let of_copy = |copy: &DAffine3| {
+                let place = *world_from_file * *copy;
+                let along = place.matrix3.transpose() * direction;
+                let farthest =
+                    points.iter().map(|p| p.as_dvec3().dot(along)).fold(f64::NEG_INFINITY, f64::max);
+                farthest + place.translation.dot(direction)
+            };
+            shape.copies.iter().map(of_copy).fold(f64::NEG_INFINITY, f64::max)
+        };
+        self.shapes.iter().map(of_shape).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Where the corners of a level's triangles lie, in its shape's space.
+    pub fn corners<'a>(&'a self, level: &'a ShapeLevel) -> impl Iterator<Item = Vec3> + 'a {
+        let indices = level.parts.iter().flat_map(|part| {
+            let first = part.range.first as usize;
+            &self.indices[first..first + part.range.count as usize]
+        });
+        indices.map(|index| self.vertices[*index as usize].position_m.into())
+    }
+
     pub fn staging(&self) -> Staging {
         let [low, high] = self.bounds_m.map(|corner| corner.as_dvec3());
         let size = high - low;

@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 
 use super::{Anchor, Trunk, Trunks};
 use crate::camera::Camera;
-use crate::scene::{Asset, Heightfield, Scene, StartView};
+use crate::scene::{Asset, Heightfield, Scene, Staging, StartView};
 
 /// Height of a walker's eyes above what it stands on.
 pub const EYE_HEIGHT_M: f32 = StartView::EYE_HEIGHT_M;
@@ -82,7 +82,7 @@ impl Land {
             top_m: 2.0 * middle_m,
             water_level_m: None,
             trunks: Trunks::default(),
-            start: seen.unwrap_or_else(|| subject.view()),
+            start: seen.unwrap_or_else(|| front_view(asset, &staging)),
             anchor: Anchor::default(),
             subject: Some(subject),
         }
@@ -180,19 +180,28 @@ impl Land {
     }
 }
 
-impl Subject {
-    /// From the front, a little from the right and from above, so that all of it is in the picture.
-    fn view(&self) -> StartView {
-        let (aside, above) = (0.52, 0.26);
-        let ((sin_a, cos_a), (sin_e, cos_e)) = (libm::sincosf(aside), libm::sincosf(above));
-        let towards_eye = Vec3::new(sin_a * cos_e, sin_e, cos_a * cos_e);
-        let middle_m = Vec3::Y * self.middle_m;
-        StartView { position_m: middle_m + towards_eye * (FRAMED * self.radius_m), direction: -towards_eye }
-    }
+/// From the front, a little from the right and from above, so near that what stands there fills a square picture and all of it
+/// is in it.
+fn front_view(asset: &Asset, staging: &Staging) -> StartView {
+    let (aside, above) = (0.52, 0.26);
+    let ((sin_a, cos_a), (sin_e, cos_e)) = (libm::sincosf(aside), libm::sincosf(above));
+    let towards_eye = Vec3::new(sin_a * cos_e, sin_e, cos_a * cos_e);
+    let right = Vec3::new(cos_a, 0.0, -sin_a);
+    let middle_m = Vec3::Y * staging.middle_m;
+    // A point is in the picture from so far away as it is before the middle, and as it is off the axis over `HALF_PICTURE`.
+    let off_axis = [right, -right, towards_eye.cross(right), right.cross(towards_eye)];
+    let needed_m = off_axis.map(|off| {
+        let direction = towards_eye + off / HALF_PICTURE;
+        (asset.reach_m(direction, &staging.world_from_file) - f64::from(middle_m.dot(direction))) as f32
+    });
+    let away_m = needed_m.into_iter().fold(MIN_RADII * staging.radius_m, f32::max);
+    StartView { position_m: middle_m + towards_eye * away_m, direction: -towards_eye }
 }
 
-/// Radii from its middle from which a subject fills a picture with the usual field of view.
-const FRAMED: f32 = 2.0;
+/// Half of a square picture at a distance of 1 with the usual field of view, 60°, less a margin.
+const HALF_PICTURE: f32 = 0.55;
+/// Nobody first looks at a thing from nearer than this, in its radii.
+const MIN_RADII: f32 = 1.25;
 
 /// The nearest place to walk to that any of these landscapes has: the others' walkers wait at their edges. Without a
 /// landscape there is no edge.

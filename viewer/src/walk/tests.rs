@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use super::testing::{forest, hilly, land_with, trunk};
 use super::*;
 use crate::input::Controls;
-use crate::scene::{Asset, StartView};
+use crate::scene::{Asset, AssetVertex, Part, Range, Shape, ShapeLevel, StartView};
 
 /// Four dense forests on four different lands, many times over.
 static FORESTS: LazyLock<Vec<[Land; 4]>> = LazyLock::new(|| {
@@ -44,6 +44,16 @@ prop_compose! {
 }
 
 /// A frame: its length, the wishes, and how many frames they last.
+/// A file with a box in it.
+fn boxed(bounds_m: [glam::Vec3; 2]) -> Asset {
+    let corner = |n: u32| [0, 1, 2].map(|axis| bounds_m[(n >> axis & 1) as usize][axis]);
+    let vertices = (0..8).map(|n| AssetVertex { position_m: corner(n), ..AssetVertex::default() }).collect();
+    let parts = vec![Part { surface: 0, range: Range { first: 0, count: 8 } }];
+    let levels = vec![ShapeLevel { error_m: 0.0, parts }];
+    let shape = Shape { levels, copies: vec![glam::DAffine3::IDENTITY], ..Shape::default() };
+    Asset { bounds_m, shapes: vec![shape], vertices, indices: (0..8).collect(), ..Asset::default() }
+}
+
 fn frames() -> impl Strategy<Value = Vec<(f32, Controls, u8)>> {
     let dt_s = prop_oneof![4 => 0.002f32..0.04, 1 => 0.04f32..2.0];
     prop::collection::vec((dt_s, controls(), 1u8..4), 1..4)
@@ -187,7 +197,7 @@ proptest! {
     ) {
         let size_m = glam::Vec3::from(size.map(libm::exp10f));
         let low_m = glam::Vec3::new(x, 3.0, -x);
-        let asset = Asset { bounds_m: [low_m, low_m + size_m], ..Asset::default() };
+        let asset = boxed([low_m, low_m + size_m]);
         let land = Land::under(&asset);
         let lands = [&land];
         let mut rig = Rig::new(start_pose(&lands), &lands);

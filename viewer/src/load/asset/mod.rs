@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use genescape_schema::scene::{GSC_HEIGHTFIELD, GSC_SKY};
-use glam::{Affine3A, DVec3, Vec3};
+use glam::{Affine3A, DAffine3, Vec3};
 
 use super::Result;
 use crate::lod::tree::{COVERED_PX, rising};
@@ -118,7 +118,7 @@ fn build(
     if levels.is_empty() {
         return Ok(None);
     }
-    let corners = || levels.iter().flat_map(|(level, _)| corners(asset, level));
+    let corners = || levels.iter().flat_map(|(level, _)| asset.corners(level));
     let (low, high) = (corners().fold(Vec3::MAX, Vec3::min), corners().fold(Vec3::MIN, Vec3::max));
     let center_m = 0.5 * (low + high);
     let radius_m = corners().map(|corner| corner.distance(center_m)).fold(0.0, f32::max);
@@ -130,15 +130,6 @@ fn build(
         morphs: plan.levels.iter().any(|level| level.morph.is_some()),
         copies: plan.copies,
     }))
-}
-
-/// Where the corners of a level's triangles are, in the shape's space.
-fn corners<'a>(asset: &'a Asset, level: &'a ShapeLevel) -> impl Iterator<Item = Vec3> + 'a {
-    let indices = level.parts.iter().flat_map(|part| {
-        let first = part.range.first as usize;
-        &asset.indices[first..first + part.range.count as usize]
-    });
-    indices.map(|index| asset.vertices[*index as usize].position_m.into())
 }
 
 /// Levels with their errors in metres, which rise.
@@ -154,23 +145,12 @@ fn with_errors(levels: Vec<(ShapeLevel, Change)>, radius_m: f32) -> Vec<ShapeLev
     levels.into_iter().zip(errors_m).map(|((level, _), error_m)| ShapeLevel { error_m, ..level }).collect()
 }
 
-/// A box around the boxes of all copies.
+/// A box around all copies.
 fn bounds(asset: &Asset) -> Option<[Vec3; 2]> {
-    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for shape in &asset.shapes {
-        let places = corners(asset, &shape.levels[0]);
-        let [min, max] = places.fold([Vec3::MAX, Vec3::MIN], |[min, max], p| [min.min(p), max.max(p)]);
-        let corner = |n: u8| {
-            let pick = |axis: usize| f64::from(if n >> axis & 1 == 0 { min[axis] } else { max[axis] });
-            DVec3::new(pick(0), pick(1), pick(2))
-        };
-        for place in &shape.copies {
-            for corner in (0..8).map(|n| place.transform_point3(corner(n))) {
-                (low, high) = (low.min(corner), high.max(corner));
-            }
-        }
-    }
-    let bounds = [low.as_vec3(), high.as_vec3()];
+    let reach = |direction: Vec3| asset.reach_m(direction, &DAffine3::IDENTITY) as f32;
+    let high = Vec3::AXES.map(reach);
+    let low = Vec3::AXES.map(|axis| -reach(-axis));
+    let bounds = [low, high].map(Vec3::from_array);
     bounds.iter().all(|corner| corner.is_finite()).then_some(bounds)
 }
 
