@@ -1,12 +1,12 @@
 //! Four landscapes by chance, each a land of some kind with trees and a sky that go with it, and no two of a kind.
 
-use genescape_schema::{Genome, INDIVIDUALS, Individual, Kind, Kinds, Population, Space};
+use genescape_schema::{Category, Genome, INDIVIDUALS, Individual, Kind, Kinds, Population, Space};
 
 use crate::kinds::pick::Picker;
 use crate::kinds::{Company, Home, ORDER, name};
 use crate::seed::Dice;
 
-/// Whole landscapes that are drawn until one repeats no kind of those before it.
+/// Whole landscapes that are drawn until all parts of one are new.
 const TRIES: u32 = 24;
 
 /// A population by chance.
@@ -17,7 +17,7 @@ pub struct Drawn {
 }
 
 /// The same for the same seed, generation, space and kinds. Of a category of which `wanted` names kinds, only these
-/// are drawn.
+/// are drawn; of the first such category, each in its turn.
 /// `None` unless there is a kind of each category.
 pub fn population(
     space: &Space,
@@ -30,15 +30,25 @@ pub fn population(
         let mut same = wanted.iter().filter(|one| one.category == kind.category).peekable();
         same.peek().is_none() || same.any(|one| one.id == kind.id)
     };
-    let picker = Picker { space, kinds, pool: kinds.iter().filter(is_open).collect() };
+    // What is asked for comes first, and the rest is drawn to go with it.
+    let mut order = ORDER;
+    order.sort_by_key(|category| wanted.iter().all(|kind| kind.category != *category));
+    // Each in its turn, so that a landscape that is drawn again is of the same kind.
+    let turns: Vec<&Kind> = wanted.iter().copied().filter(|kind| kind.category == order[0]).collect();
+    let picker = |number: usize| {
+        let turn = turns.get(number % turns.len().max(1));
+        let is_its_turn =
+            |kind: &&Kind| turn.is_none_or(|turn| turn.category != kind.category || turn.id == kind.id);
+        Picker { space, kinds, pool: kinds.iter().filter(is_open).filter(is_its_turn).collect() }
+    };
     let mut dice = Dice::new(seed, "random", u64::from(generation));
     let (mut seen, mut notices) = (Vec::new(), Vec::new());
     let mut individuals = Vec::new();
-    for number in 1..=INDIVIDUALS {
-        let landscape = landscape(&picker, &seen, &mut dice)?;
+    for number in 0..INDIVIDUALS {
+        let landscape = landscape(&picker(number), order, &seen, &mut dice)?;
         if !landscape.suits {
             let name = &landscape.individual.name;
-            notices.push(format!("landscape {number} ({name}): these kinds do not go together"));
+            notices.push(format!("landscape {} ({name}): these kinds do not go together", number + 1));
         }
         seen.extend(landscape.homes.into_iter().filter_map(Home::main));
         individuals.push(landscape.individual);
@@ -51,17 +61,22 @@ pub fn population(
 struct Landscape<'a> {
     individual: Individual,
     homes: [Home<'a>; 3],
-    /// How many of its kinds were seen before.
-    repeats: usize,
+    /// How many of its parts show what was seen before, or are taken for another kind.
+    stale: usize,
     suits: bool,
 }
 
-/// One that goes together and repeats no kind, or of those that were drawn the one that comes nearest to this.
-fn landscape<'a>(picker: &Picker<'a>, seen: &[&Kind], dice: &mut Dice) -> Option<Landscape<'a>> {
+/// One that goes together and shows nothing that was seen, or of those that were drawn the one that comes nearest to this.
+fn landscape<'a>(
+    picker: &Picker<'a>,
+    order: [Category; 3],
+    seen: &[&Kind],
+    dice: &mut Dice,
+) -> Option<Landscape<'a>> {
     let mut best: Option<Landscape<'a>> = None;
     for _ in 0..TRIES {
-        let one = draw(picker, seen, dice)?;
-        let rank = |one: &Landscape| (!one.suits, one.repeats);
+        let one = draw(picker, order, seen, dice)?;
+        let rank = |one: &Landscape| (!one.suits, one.stale);
         let is_best = best.as_ref().is_none_or(|best| rank(&one) < rank(best));
         if is_best {
             best = Some(one);
@@ -73,30 +88,33 @@ fn landscape<'a>(picker: &Picker<'a>, seen: &[&Kind], dice: &mut Dice) -> Option
     best
 }
 
-fn draw<'a>(picker: &Picker<'a>, seen: &[&Kind], dice: &mut Dice) -> Option<Landscape<'a>> {
+fn draw<'a>(
+    picker: &Picker<'a>,
+    order: [Category; 3],
+    seen: &[&Kind],
+    dice: &mut Dice,
+) -> Option<Landscape<'a>> {
     let space = picker.space;
     let mut company = Company::new(space);
     let mut genome = Genome::zero(space);
     let mut homes = [Home::Wild; 3];
-    let (mut repeats, mut suits) = (0, true);
-    for category in ORDER {
+    let (mut stale, mut suits) = (0, true);
+    for category in order {
         let picked = picker.pick(category, &company, seen, dice)?;
         company.add(category, picked.chromosome.clone(), picked.home);
         *genome.chromosome_mut(category) = picked.chromosome;
         homes[category as usize] = picked.home;
-        repeats += usize::from(picked.is_seen);
+        stale += usize::from(!picked.is_new);
         suits &= picked.suits;
     }
     let name = name::landscape(homes).unwrap_or_default();
     let individual = Individual { name, descent: String::new(), genome };
-    Some(Landscape { individual, homes, repeats, suits })
+    Some(Landscape { individual, homes, stale, suits })
 }
 
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeSet;
-
-    use genescape_schema::Category;
 
     use super::*;
     use crate::kinds::testing::{drawn, kinds};
@@ -176,6 +194,25 @@ mod tests {
             }
         }
         assert!(near * 3 > all * 2 && far > 0, "{near} near, {far} far of {all}");
+    }
+
+    #[test]
+    fn kinds_that_are_asked_for_are_drawn_in_turn() {
+        let space = Space::builtin();
+        let (kinds, _) = Kinds::shipped(&space);
+        let (mut drawn, mut missing) = (0, Vec::new());
+        for category in Category::ALL {
+            let all: Vec<&Kind> = kinds.iter().filter(|kind| kind.category == category).collect();
+            for (seed, wanted) in (1..).zip(all.chunks(INDIVIDUALS)) {
+                let population = population(&space, &kinds, wanted, seed, 0).expect("kinds").population;
+                for (kind, one) in wanted.iter().zip(&population.individuals) {
+                    let home = homes(&space, &kinds, one)[category as usize];
+                    missing.extend(home.main().is_none_or(|main| main.id != kind.id).then_some(&kind.id));
+                    drawn += 1;
+                }
+            }
+        }
+        assert!(drawn > 90 && missing.is_empty(), "{missing:?} of {drawn}");
     }
 
     #[test]

@@ -25,8 +25,8 @@ pub struct Picker<'a> {
 pub struct Picked<'a> {
     pub chromosome: Chromosome,
     pub home: Home<'a>,
-    /// Whether its kind was seen before.
-    pub is_seen: bool,
+    /// Whether it is recognised as of the kind that it was drawn from, and that was not seen before.
+    pub is_new: bool,
     /// Whether it goes with the rest.
     pub suits: bool,
 }
@@ -55,7 +55,8 @@ impl<'a> Picker<'a> {
             .collect();
         let other = dice.chance(BLEND).then(|| dice.one(&partners).copied()).flatten();
         let (chromosome, home) = self.draw(kind, other, company, dice);
-        Some(Picked { chromosome, home, is_seen: is_in(seen, kind), suits })
+        let is_new = is_of(home, kind) && !is_in(seen, kind);
+        Some(Picked { chromosome, home, is_new, suits })
     }
 
     /// A member of a kind, or something between it and another, that is recognised as such.
@@ -78,9 +79,8 @@ impl<'a> Picker<'a> {
             company.demand(&mut bounds);
             let chromosome = draw::member(self.space, &bounds, dice);
             let home = Home::of(self.space, self.kinds, kind.category, &chromosome);
-            let is_its_own = home.main().is_some_and(|main| main.id == kind.id);
             tries += 1;
-            if is_its_own && company.suits_all(home) || tries == TRIES {
+            if is_of(home, kind) && company.suits_all(home) || tries == TRIES {
                 return (chromosome, home);
             }
         }
@@ -91,6 +91,10 @@ impl<'a> Picker<'a> {
 fn familiarity(kind: &Kind, seen: &[&Kind]) -> usize {
     let itself = seen.iter().filter(|one| one.id == kind.id && one.category == kind.category).count();
     itself * 1000 + seen.iter().filter(|one| one.mixes_with(kind)).count()
+}
+
+fn is_of(home: Home<'_>, kind: &Kind) -> bool {
+    home.main().is_some_and(|main| main.id == kind.id)
 }
 
 fn is_in(seen: &[&Kind], kind: &Kind) -> bool {

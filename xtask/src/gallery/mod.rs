@@ -1,4 +1,5 @@
-//! Contact sheets for the eye: random landscapes as they come, and generations bred by random votes, each with its name.
+//! Contact sheets for the eye: random landscapes as they come, generations bred by random votes, or one landscape of each kind,
+//! each with its name.
 //! Every population has a world of its own below `target/gallery`, whose cache makes the next gallery quick, and takes some
 //! 250 MB.
 
@@ -17,6 +18,10 @@ use sheet::Sheet;
 
 /// Landscapes in a population.
 const LANDSCAPES: u64 = 4;
+/// Folders of kinds, one a category.
+const CATEGORIES: [&str; 3] = ["tree", "terrain", "sky"];
+/// Kinds in a row of their sheet.
+const KINDS_A_ROW: u32 = 6;
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -29,6 +34,9 @@ pub struct Options {
     /// Also breed that many generations from the first population, by random votes.
     #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
     generations: u32,
+    /// Instead, one landscape of each kind of trees, of lands and of skies.
+    #[arg(long, conflicts_with_all = ["count", "generations"])]
+    kinds: bool,
     /// Width of one picture; it is two thirds as high.
     #[arg(long, value_name = "PX", default_value_t = 480, value_parser = clap::value_parser!(u32).range(90..=1920))]
     width: u32,
@@ -62,6 +70,10 @@ pub fn run(options: &Options) -> Result<()> {
     };
     let out = options.out.clone().unwrap_or_else(|| gallery.folder.clone());
     std::fs::create_dir_all(&out).with_context(|| format!("cannot make {}", out.display()))?;
+    if options.kinds {
+        let hang = |category| gallery.kinds(category)?.write(&out.join(format!("kinds-{category}.jpg")));
+        return CATEGORIES.into_iter().try_for_each(hang);
+    }
     gallery.random()?.write(&out.join(format!("random-{}-{}.jpg", options.seed, options.count)))?;
     if options.generations > 0 {
         let name = format!("bred-{}-{}.jpg", options.seed, options.generations);
@@ -102,6 +114,26 @@ impl Gallery<'_> {
             }
             self.hang(&world, generation, 1, &format!("{generation}."), &mut sheet)?;
             tell(u64::from(generation) + 1, rows, &format!("generation {generation}"), start);
+        }
+        Ok(sheet)
+    }
+
+    /// One landscape of each kind of a category, four a population, with the name that one asks for it by.
+    fn kinds(&self, category: &str) -> Result<Sheet> {
+        let kinds = kinds(category)?;
+        let mut sheet = Sheet::new(self.options.width, KINDS_A_ROW, kinds.len() as u64);
+        let populations = kinds.chunks(LANDSCAPES as usize);
+        let count = populations.len() as u64;
+        for (number, four) in (0..).zip(populations) {
+            let start = Instant::now();
+            let world = self.folder.join(format!("{category}-{number}"));
+            fresh(world.join("population"))?;
+            let seed = (self.options.seed + number).to_string();
+            let asked = four.iter().flat_map(|kind| ["--kind", kind]);
+            let words: Vec<&str> = ["random", "--seed", &seed].into_iter().chain(asked).collect();
+            self.bake(&world, &words)?;
+            sheet.hang(&self.picture(&world, 0)?, four)?;
+            tell(number + 1, count, &four.join(", "), start);
         }
         Ok(sheet)
     }
@@ -156,6 +188,18 @@ fn population(world: &Path, generation: u32) -> PathBuf {
     world.join(format!("population/g{generation:04}.ron"))
 }
 
+/// All kinds of a category, by the names of their files.
+fn kinds(category: &str) -> Result<Vec<String>> {
+    let folder = root().join("configs/kinds").join(category);
+    let files = std::fs::read_dir(&folder).with_context(|| format!("cannot read {}", folder.display()))?;
+    let name = |file: std::io::Result<std::fs::DirEntry>| {
+        Ok(file?.path().file_stem().unwrap_or_default().to_string_lossy().into_owned())
+    };
+    let mut names = files.map(name).collect::<std::io::Result<Vec<_>>>()?;
+    names.sort();
+    Ok(names)
+}
+
 /// What the landscapes of a population file are called.
 fn names(path: &Path) -> Result<Vec<String>> {
     let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
@@ -174,7 +218,7 @@ fn vote(world: &Path, seed: u64, generation: u32) -> Result<()> {
         let vote = if best < 2 * LANDSCAPES { format!("Some({})", best / 2) } else { "None".to_owned() };
         format!("{category}: {vote}")
     };
-    let votes = ["tree", "terrain", "sky"].map(ballot).join(", ");
+    let votes = CATEGORIES.map(ballot).join(", ");
     let voted = text.replacen("votes: None", &format!("votes: Some(({votes}))"), 1);
     ensure!(voted != text, "{} has votes already", path.display());
     std::fs::write(&path, voted).with_context(|| format!("cannot write {}", path.display()))
