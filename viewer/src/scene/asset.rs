@@ -246,24 +246,18 @@ impl Asset {
     /// How far anything of it reaches in a direction from the origin of a world, times the direction's length, in the finest levels.
     pub fn reach_m(&self, direction: Vec3, world_from_file: &DAffine3) -> f64 {
         let direction = direction.as_dvec3();
-        let corners = |[low, high]: [Vec3; 2]| {
-            (0..8u8).map(move |n| {
-                Vec3::from_array([0, 1, 2].map(|axis| [low, high][usize::from(n >> axis & 1)][axis]))
-            })
-        };
         let of_shape = |shape: &Shape| {
-            let points: Vec<Vec3> =
-                shape.levels.iter().take(1).flat_map(|level| self.corners(level)).collect();
-            let box_of_it =
-                || points.iter().fold([Vec3::MAX, Vec3::MIN], |[low, high], &p| [low.min(p), high.max(p)]);
-            let points =
-                if shape.copies.len() > FEW_COPIES { corners(box_of_it()).collect() } else { points };
+            let points = || shape.levels.iter().take(1).flat_map(|level| self.corners(level));
+            let is_many = shape.copies.len() > FEW_COPIES;
+            let of_all =
+                is_many.then(|| points().fold([Vec3::MAX, Vec3::MIN], |[a, b], p| [a.min(p), b.max(p)]));
+            let along = |axis: DVec3| match of_all {
+                Some([low, high]) => (low.as_dvec3() * axis).max(high.as_dvec3() * axis).element_sum(),
+                None => points().map(|p| p.as_dvec3().dot(axis)).fold(f64::NEG_INFINITY, f64::max),
+            };
             let of_copy = |copy: &DAffine3| {
                 let place = *world_from_file * *copy;
-                let along = place.matrix3.transpose() * direction;
-                let farthest =
-                    points.iter().map(|p| p.as_dvec3().dot(along)).fold(f64::NEG_INFINITY, f64::max);
-                farthest + place.translation.dot(direction)
+                along(place.matrix3.transpose() * direction) + place.translation.dot(direction)
             };
             shape.copies.iter().map(of_copy).fold(f64::NEG_INFINITY, f64::max)
         };

@@ -44,13 +44,13 @@ prop_compose! {
 }
 
 /// A frame: its length, the wishes, and how many frames they last.
-/// A file with a box in it.
-fn boxed(bounds_m: [glam::Vec3; 2]) -> Asset {
+/// A file with a box in it, or several in one place.
+fn boxed(bounds_m: [glam::Vec3; 2], copies: usize) -> Asset {
     let corner = |n: u32| [0, 1, 2].map(|axis| bounds_m[(n >> axis & 1) as usize][axis]);
     let vertices = (0..8).map(|n| AssetVertex { position_m: corner(n), ..AssetVertex::default() }).collect();
     let parts = vec![Part { surface: 0, range: Range { first: 0, count: 8 } }];
     let levels = vec![ShapeLevel { error_m: 0.0, parts }];
-    let shape = Shape { levels, copies: vec![glam::DAffine3::IDENTITY], ..Shape::default() };
+    let shape = Shape { levels, copies: vec![glam::DAffine3::IDENTITY; copies], ..Shape::default() };
     Asset { bounds_m, shapes: vec![shape], vertices, indices: (0..8).collect(), ..Asset::default() }
 }
 
@@ -193,11 +193,11 @@ proptest! {
 
     #[test]
     fn all_of_a_file_is_in_the_picture_at_first_and_an_orbit_stays_around_it(
-        frames in frames(), size in prop::array::uniform3(-3f32..4.5), x in -1e4f32..1e4, turn in -2000f32..2000.
+        frames in frames(), size in prop::array::uniform3(-3f32..4.5), x in -1e4f32..1e4, turn in -2000f32..2000., copies in 1usize..32
     ) {
         let size_m = glam::Vec3::from(size.map(libm::exp10f));
         let low_m = glam::Vec3::new(x, 3.0, -x);
-        let asset = boxed([low_m, low_m + size_m]);
+        let asset = boxed([low_m, low_m + size_m], copies);
         let land = Land::under(&asset);
         let lands = [&land];
         let mut rig = Rig::new(start_pose(&lands), &lands);

@@ -23,8 +23,8 @@ pub enum Want {
     Depth,
     /// Of high land, its slopes at a distance: it is by them that a person tells lands from each other.
     Relief,
-    /// Trees between 10 m and 60 m, or 90 m if they are tall, whole, and others beside them; none in the face, and not nothing but
-    /// trees.
+    /// Trees between 10 m and 60 m, or 90 m if they are tall, whole, before the sky, and others beside them; none in the face, and not
+    /// nothing but trees.
     Trees,
     /// Water in sight where there is much of it, but not at the feet and not everywhere.
     Water,
@@ -162,7 +162,10 @@ impl Picture<'_> {
         let is_close = |seen: &Seen| is_at(seen, 0.0..60.0);
         let cut = self.part_of_upper_edge(is_close);
         let whole = (0.5 + 0.5 * ramp(0.3, 0.04, cut)) * lerp(1.0, 0.25, self.part_cut_off(is_close));
-        some * none_near * not_all * not_in_the_way * not_cut * not_alone * whole
+        // From above a tree is one spot of a wood; before the sky its shape is seen.
+        let outlined = self.part_of_skyline(|seen| is_at(seen, 10.0..120.0));
+        let before_sky = 0.7 + 0.3 * ramp(0.0, 0.15, outlined);
+        some * none_near * not_all * not_in_the_way * not_cut * not_alone * whole * before_sky
     }
 
     /// The more of the land is under water, the more is missed where none is seen.

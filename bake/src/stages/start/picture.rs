@@ -80,6 +80,12 @@ impl<'a> Picture<'a> {
         self.mean(|column| f32::from(u8::from(column.seen.iter().any(&is_wanted))))
     }
 
+    /// Part of the columns in which something that is wanted is what one sees below the sky.
+    pub fn part_of_skyline(&self, is_wanted: impl Fn(&Seen) -> bool) -> f32 {
+        let top = |column: &Column<'_>| column.seen.iter().rev().find(|seen| seen.kind != Kind::Sky).copied();
+        self.mean(|column| f32::from(u8::from(top(column).is_some_and(|seen| is_wanted(&seen)))))
+    }
+
     /// Part of the upper edge that shows something that is wanted.
     pub fn part_of_upper_edge(&self, is_wanted: impl Fn(&Seen) -> bool) -> f32 {
         self.part(self.upper_edge(), |_, seen| is_wanted(seen))

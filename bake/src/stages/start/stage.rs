@@ -28,7 +28,7 @@ pub struct StartFiles {
 
 impl Stage for StartStage {
     const NAME: &'static str = "start";
-    const VERSION: u32 = 21;
+    const VERSION: u32 = 22;
     type Output = StartFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<StartFiles, StageError> {

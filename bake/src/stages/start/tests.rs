@@ -212,10 +212,16 @@ fn the_sun_is_not_in_the_eyes_and_lights_the_ground() {
 /// How good the trees are that one sees who looks north on level land, at `(heading, metres)` from there; a heading is a 24th of a
 /// turn.
 fn trees_north(footprint: TreeFootprint, around: impl IntoIterator<Item = (f32, f32)>) -> f32 {
-    let (land, light) = (land(|_, _| 0.0, None), light(40.0, 130.0));
+    trees_before(0.0, footprint, around)
+}
+
+/// The same before a hill of that height, 150 m away.
+fn trees_before(hill_m: f32, footprint: TreeFootprint, around: impl IntoIterator<Item = (f32, f32)>) -> f32 {
     let first = Lookout::HEADINGS * 136;
     let lookout = Lookout::all().nth(first).expect("a lookout");
-    let place = lookout.place_m(land.field.extent_m());
+    let place = lookout.place_m(1024.0);
+    let (land, light) =
+        (land(|_, z| if z < place.y - 150.0 { hill_m } else { 0.0 }, None), light(40.0, 130.0));
     let towards = |heading: f32| {
         let (sin, cos) = libm::sincosf(heading * TAU / Lookout::HEADINGS as f32);
         Vec2::new(sin, -cos)
@@ -230,6 +236,13 @@ fn crowns_that_fill_the_picture_spoil_it_and_the_same_farther_away_do_not() {
     // Before the eyes, and 30 degrees to both sides.
     let score = |away_m: f32| trees_north(huge, [-2.0, 0.0, 2.0].map(|heading| (heading, away_m)));
     assert!(score(11.0) < 0.6 * score(36.0), "{} {}", score(11.0), score(36.0));
+}
+
+#[test]
+fn trees_before_the_sky_are_worth_more_than_the_same_before_a_hill() {
+    let row = [-2.0, 0.0, 2.0].map(|heading| (heading, 30.0));
+    let (sky, hill) = (trees_before(0.0, TREE, row), trees_before(90.0, TREE, row));
+    assert!(hill < 0.8 * sky, "{hill} {sky}");
 }
 
 #[test]
