@@ -45,7 +45,8 @@ pub fn population(
     let (mut seen, mut notices) = (Vec::new(), Vec::new());
     let mut individuals = Vec::new();
     for number in 0..INDIVIDUALS {
-        let landscape = landscape(&picker(number), order, &seen, &mut dice)?;
+        let picker = picker(number);
+        let landscape = best(|| draw(&picker, order, &seen, &mut dice))?;
         if !landscape.suits {
             let name = &landscape.individual.name;
             notices.push(format!("landscape {} ({name}): these kinds do not go together", number + 1));
@@ -67,15 +68,10 @@ struct Landscape<'a> {
 }
 
 /// One that goes together and shows nothing that was seen, or of those that were drawn the one that comes nearest to this.
-fn landscape<'a>(
-    picker: &Picker<'a>,
-    order: [Category; 3],
-    seen: &[&Kind],
-    dice: &mut Dice,
-) -> Option<Landscape<'a>> {
+fn best<'a>(mut draw: impl FnMut() -> Option<Landscape<'a>>) -> Option<Landscape<'a>> {
     let mut best: Option<Landscape<'a>> = None;
     for _ in 0..TRIES {
-        let one = draw(picker, order, seen, dice)?;
+        let one = draw()?;
         let rank = |one: &Landscape| (!one.suits, one.stale);
         let is_best = best.as_ref().is_none_or(|best| rank(&one) < rank(best));
         if is_best {
