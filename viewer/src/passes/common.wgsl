@@ -43,19 +43,20 @@ struct View {
     field: vec4f,
     // Where `near_shade` lies: its middle as x and z, how wide it is in metres, and 1 if it is known, or else 0.
     shade: vec4f,
-    // Tile sizes in metres of the first four tiling textures of the ground, and of the fifth.
-    tiles: vec4f,
-    last_tile: f32,
+    // Kinds of ground: linear colour on average, and metres that a tile of its texture covers.
+    ground_kinds: array<vec4f, 5>,
+    // Of the field, on average, linear.
+    ground_albedo: vec3f,
+    // Up to so many metres away turf lies in the shade of blades of grass; 0 where none are drawn.
+    turf_m: f32,
     // The terrain's greatest level.
     lod_top: f32,
     // Sides of the picture as a part of full resolution.
     part: f32,
     // Up to so many metres the terrain's blocks have level 0.
     lod_unit: f32,
-    // Of the field, on average, linear.
-    ground_albedo: vec3f,
-    // Up to so many metres away turf lies in the shade of blades of grass; 0 where none are drawn.
-    turf_m: f32,
+    // Fills the row of four.
+    unused: f32,
 }
 
 @group(0) @binding(0) var<uniform> view: View;

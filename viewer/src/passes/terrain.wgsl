@@ -194,13 +194,25 @@ fn scales_at(away: f32) -> Scales {
 // Where no texture is seen any more.
 const SMOOTH_M: f32 = 1200.0;
 
-// One look at a tiling texture: which texture, seen along which axis, at which of the two scales.
-fn look(k: u32, at: Surface, parts: array<f32, 5>, scales: Scales) -> Tiles {
+// What one or several kinds of ground look like, each multiplied by its share.
+struct Look {
+    tiles: Tiles,
+    // Linear, as far as it is the kinds' own; and the sum of the shares.
+    color: vec4f,
+}
+
+// Powers of two by which a kind's share grows from where it is black to its mean, where it meets another one: what is dark is low.
+const RELIEF: f32 = 12.0;
+
+// One look at a tiling texture: which texture, seen along which axis, at which of the two scales. Where kinds meet, each comes through
+// where it is high, and none is seen through the other (A. Mishkinis, Advanced Terrain Texture Splatting, 2013): with weights
+// alone, of a texel a metre, rock would lie under turf as under mist.
+fn look(k: u32, at: Surface, parts: array<f32, 5>, relief: f32, scales: Scales) -> Look {
     let layer = min(k / 6u, 4u);
     let axis = (k / 2u) % 3u;
     let is_coarser = (k & 1u) == 1u;
     let scale = scales.finer + (k & 1u);
-    let tiles_m = array<f32, 5>(view.tiles.x, view.tiles.y, view.tiles.z, view.tiles.w, view.last_tile);
+    let tiles_m = array<f32, 5>(view.ground_kinds[0].w, view.ground_kinds[1].w, view.ground_kinds[2].w, view.ground_kinds[3].w, view.ground_kinds[4].w);
     let tile_m = entry(tiles_m, layer) * select(select(1.0, WIDER, scale == 1u), WIDER * WIDER, scale == 2u);
     let turn = turn_of(scale);
     let to_tile = turn * (1.0 / tile_m);
@@ -210,28 +222,40 @@ fn look(k: u32, at: Surface, parts: array<f32, 5>, scales: Scales) -> Tiles {
     let tiles = tiles_of(textureSampleGrad(details, repeating, p, layer, dx, dy));
     let vividness = vividness_of(scale, layer);
     let seen = select(select(at.sides.z, at.sides.x, axis == 1u), at.sides.y, axis == 0u);
-    let share = entry(parts, layer) * seen * select(1.0 - scales.far, scales.far, is_coarser);
+    let part = entry(parts, layer);
+    let comes_through = part * part * part * exp2(relief * tiles.factor.g);
+    let share = comes_through * seen * select(1.0 - scales.far, scales.far, is_coarser);
     // v runs against the bitangent: normals turn back the other way.
     let bump = vec3f(turn * tiles.bump.xy * vividness, tiles.bump.z);
-    return Tiles(share * mix(vec3f(1.0), tiles.factor, vividness), share * bump);
+    let looks = Tiles(share * mix(vec3f(1.0), tiles.factor, vividness), share * bump);
+    return Look(looks, share * vec4f(view.ground_kinds[layer].rgb, 1.0));
 }
 
 // All looks that count. Mesa's software driver takes both ways of every `if`, but ends a loop when no pixel needs it any
 // more: so a loop over the looks, of which there are one or two nearly everywhere, and not thirty conditions.
-fn looks(at: Surface, parts: array<f32, 5>, scales: Scales) -> Tiles {
+fn looks(at: Surface, parts: array<f32, 5>, scales: Scales) -> Look {
     let far = scales.far;
     let both = select(0u, 1u, far < 1.0) | select(0u, 2u, far > 0.0);
     // From above, and on steep ground from the sides, too: else the texture is stretched.
     let seen = select(0u, both, at.sides.y > 0.02) | select(0u, both << 2u, at.sides.x > 0.02)
         | select(0u, both << 4u, at.sides.z > 0.02);
     var left = 0u;
+    var alone = 0.0;
     for (var layer = 0u; layer < 5u; layer++) {
-        left |= select(0u, seen << (6u * layer), entry(parts, layer) > 0.0);
+        let part = entry(parts, layer);
+        left |= select(0u, seen << (6u * layer), part > 0.0);
+        alone += part * part;
     }
-    var sum = Tiles(vec3f(0.0), vec3f(0.0));
+    // The scales and axes of a kind that lies alone are mixed as they are.
+    let relief = RELIEF * saturate(4.0 - 4.0 * alone);
+    var factor = vec3f(0.0);
+    var bump = vec3f(0.0);
+    var color = vec4f(0.0);
     loop {
-        let one = look(countTrailingZeros(left), at, parts, scales);
-        sum = Tiles(sum.factor + one.factor, sum.bump + one.bump);
+        let one = look(countTrailingZeros(left), at, parts, relief, scales);
+        factor += one.tiles.factor;
+        bump += one.tiles.bump;
+        color += one.color;
         left &= left - 1u;
         if (left == 0u) {
             break;
@@ -239,7 +263,16 @@ fn looks(at: Surface, parts: array<f32, 5>, scales: Scales) -> Tiles {
     }
     // The mean of two scales varies less than either; this is as if it did not (Heitz & Neyret 2018, equation 2).
     let vivid = inverseSqrt(far * far + (1.0 - far) * (1.0 - far));
-    return Tiles(1.0 + vivid * (sum.factor - 1.0), vec3f(vivid * sum.bump.xy, sum.bump.z));
+    let all = 1.0 / max(color.a, 1e-6);
+    let mean = Tiles(1.0 + vivid * (all * factor - 1.0), all * vec3f(vivid * bump.xy, bump.z));
+    return Look(mean, all * color);
+}
+
+// Colour of the kinds of ground, mixed as the map does.
+fn mixed_color(weights: vec4f) -> vec3f {
+    let first = max(1.0 - dot(weights, vec4f(1.0)), 0.0);
+    let others = mat4x3f(view.ground_kinds[1].rgb, view.ground_kinds[2].rgb, view.ground_kinds[3].rgb, view.ground_kinds[4].rgb);
+    return first * view.ground_kinds[0].rgb + others * weights;
 }
 
 // Where the eye is so near that a texel of the usual scale covers several pixels: the strongest texture once more, five
@@ -251,7 +284,7 @@ fn close_up(at: Surface, parts: array<f32, 5>, near: f32) -> Tiles {
     }
     let side = select(2u, 1u, at.sides.x > at.sides.z);
     let axis = select(side, 0u, at.sides.y > 0.5);
-    let tiles_m = array<f32, 5>(view.tiles.x, view.tiles.y, view.tiles.z, view.tiles.w, view.last_tile);
+    let tiles_m = array<f32, 5>(view.ground_kinds[0].w, view.ground_kinds[1].w, view.ground_kinds[2].w, view.ground_kinds[3].w, view.ground_kinds[4].w);
     let turn = mat2x2f(0.29, 0.957, -0.957, 0.29) * (FINER / entry(tiles_m, best));
     var result = Tiles(vec3f(1.0), vec3f(0.0));
     for (var once = select(1u, 0u, near > 0.0); once < 1u; once++) {
@@ -350,10 +383,12 @@ fn ground_at(in: Out) -> Ground {
         let shorter = less_stretched(dx, dy);
         let at = Surface(in.world, dx * shorter.x, dy * shorter.y, sides_of(normal));
         let parts = parts_of(weights);
-        var tiles = looks(at, parts, scales_at(away));
+        let seen = looks(at, parts, scales_at(away));
         let close = close_up(at, parts, smoothstep(3.5, 1.5, away));
-        tiles = Tiles(tiles.factor * close.factor, tiles.bump + close.bump);
+        let tiles = Tiles(seen.tiles.factor * close.factor, seen.tiles.bump + close.bump);
         let fade = 1.0 - smoothstep(0.4 * SMOOTH_M, SMOOTH_M, away);
+        // The map's mixture becomes what comes through, as much darker or warmer as the map is here.
+        albedo *= mix(vec3f(1.0), seen.color.rgb / max(mixed_color(weights), vec3f(1e-3)), fade);
         albedo *= mix(vec3f(1.0), tiles.factor, fade);
         let bump = mix(vec3f(0.0, 0.0, 1.0), tiles.bump, fade);
         // Tangent along x, bitangent along −z: as texture coordinates run, v down being south.

@@ -8,7 +8,7 @@ use super::{Shift, SunView};
 use crate::camera::Camera;
 use crate::lod::morph::Detail;
 use crate::options::FrameInput;
-use crate::upload::SceneBuffers;
+use crate::upload::{KINDS, SceneBuffers};
 
 /// `View` of `common.wgsl`, which says what each field is; a test compares the two.
 #[repr(C)]
@@ -39,13 +39,13 @@ pub struct ViewUniform {
     pub lod_above: f32,
     pub field: [f32; 4],
     pub shade: [f32; 4],
-    pub tiles: [f32; 4],
-    pub last_tile: f32,
+    pub ground_kinds: [[f32; 4]; KINDS],
+    pub ground_albedo: [f32; 3],
+    pub turf_m: f32,
     pub lod_top: f32,
     pub part: f32,
     pub lod_unit: f32,
-    pub ground_albedo: [f32; 3],
-    pub turf_m: f32,
+    pub unused: f32,
 }
 
 /// What stands for "no lake".
@@ -90,7 +90,6 @@ impl ViewUniform {
         shade: [f32; 4],
     ) -> Self {
         let (options, sky) = (&frame.options, &scene.sky);
-        let [tiles @ .., last_tile] = scene.land.tiles_m;
         let drift = if options.drift_clouds { Drift::after(frame.time_s) } else { Drift::default() };
         let ([x, z], [other_x, other_z]) = (drift.main_m.to_array(), drift.other_m.to_array());
         Self {
@@ -107,8 +106,7 @@ impl ViewUniform {
             drift: [x, z, other_x, other_z],
             lod_eye: lod_camera.position_m.into(),
             lod_above: detail.above_m,
-            tiles,
-            last_tile,
+            ground_kinds: scene.land.kinds,
             lod_top: detail.top,
             lod_unit: detail.unit_m,
             ground_albedo: scene.land.albedo_linear.to_array(),

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 use rayon::prelude::*;
 
+use super::ground_kinds;
 use super::texture::{mean_light, mip_levels};
 use super::{ImageUse, Lake, PlantBuffers, Ring, Uploader};
 use crate::lod::block;
@@ -34,8 +35,8 @@ pub struct GroundBuffers {
     pub light: Arc<wgpu::Texture>,
     /// Tiling textures, a layer each, as [`packed`] has them.
     pub details: Arc<wgpu::Texture>,
-    /// Metres that each tile covers.
-    pub tiles_m: [f32; 5],
+    /// Of the ground of each tiling texture: linear colour on average, and metres that a tile covers.
+    pub kinds: [[f32; 4]; ground_kinds::KINDS],
     /// The coarse land around the field.
     pub ring: Ring,
     /// What trees leave there of the sun.
@@ -79,7 +80,7 @@ impl Uploader {
             weights: self.image(&surface.weights, ImageUse::Data),
             light: self.image(&surface.light, ImageUse::Data),
             details: self.tiling(&surface.details)?,
-            tiles_m: std::array::from_fn(|layer| surface.details[layer].tile_m),
+            kinds: ground_kinds::of(surface),
             ring: self.ring(&ground.apron, half_m),
             far_shade: self.far_shade(&scene.trees, &ground.apron, half_m, scene.sky.light.sun_direction),
             lake: Lake::of(ground),

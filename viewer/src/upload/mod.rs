@@ -6,6 +6,7 @@ mod clusters;
 mod exhibit;
 mod far_shade;
 mod ground;
+mod ground_kinds;
 mod horizon;
 mod impostors;
 mod lake;
@@ -28,6 +29,7 @@ pub use asset::{AssetBuffers, CopyData, ShapeData, SurfaceData, SurfaceUniform, 
 pub use exhibit::{Exhibit, WeakExhibit};
 pub use far_shade::SHADED_M;
 pub use ground::{DRY_ALPHA, GroundBuffers};
+pub use ground_kinds::KINDS;
 pub use impostors::{ImpostorData, ImpostorSet, PICTURE_INDICES, PICTURE_LISTS, PICTURE_VERTICES};
 pub use lake::{Lake, Window};
 pub use lamps::{HALF_DEPTH, LAMPS, Lamp, RINGS};

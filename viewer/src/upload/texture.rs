@@ -188,12 +188,16 @@ fn halve(pixels: &[u8], width: u32, height: u32, kind: ImageUse) -> Vec<u8> {
 
 /// The mean of an image's colours, linear, by some of its pixels, evenly spread.
 pub(super) fn mean_light(image: &Image) -> Vec3 {
-    let table = linear_table();
     let pixels = image.levels.first().map_or(&[][..], |level| level.as_chunks::<4>().0);
     // No side is a multiple of it, so that all columns are among them.
     let some = || pixels.iter().step_by(61);
-    let light = |pixel: &[u8; 4]| Vec3::from_array([0, 1, 2].map(|c| table[usize::from(pixel[c])]));
-    some().map(light).sum::<Vec3>() / some().count().max(1) as f32
+    some().map(linear).sum::<Vec3>() / some().count().max(1) as f32
+}
+
+/// The light of a pixel in sRGB, [0, 1].
+pub(super) fn linear(&[r, g, b, _]: &[u8; 4]) -> Vec3 {
+    let table = linear_table();
+    Vec3::from_array([r, g, b].map(|byte| table[usize::from(byte)]))
 }
 
 /// Light of each byte of sRGB, [0, 1].

@@ -12,6 +12,7 @@ mod display;
 mod exports;
 mod files;
 mod golden;
+mod ground_kinds;
 mod lab;
 mod lod_twin;
 mod made_up;

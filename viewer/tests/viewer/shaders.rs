@@ -102,13 +102,13 @@ fn uniforms_are_laid_out_alike() {
             lod_above,
             field,
             shade,
-            tiles,
-            last_tile,
+            ground_kinds,
+            ground_albedo,
+            turf_m,
             lod_top,
             part,
             lod_unit,
-            ground_albedo,
-            turf_m,
+            unused,
         }
     );
     same!(
