@@ -21,8 +21,8 @@ pub const SHADER: Shader = Shader { name: "plants", source: include_str!("plants
 /// Part of its reach up to which a kind is drawn finely, and beyond which plants get fewer and smaller.
 const FINE: f32 = 0.3;
 const FULL: f32 = 0.45;
-/// Metres up to which leaves are several in the place of one.
-const LEAFY_M: f32 = 5.0;
+/// Metres up to which leaves are several in the place of one, of a plant as large as its shape.
+const LEAFY_M: f32 = 9.0;
 /// Part of them that stands at the end of the reach.
 const FEWEST: f32 = 0.35;
 /// More metres than any plant is high or a block is uneven.
@@ -176,7 +176,8 @@ impl PlantChoice {
                     let away = Vec3::from(plant.instance.place).xzy().distance(eye_m) / reach_m;
                     let size = presence(plant.rank, away);
                     if size > 0.0 {
-                        let list = if away < leafy {
+                        let [x, y] = plant.instance.turn;
+                        let list = if away * away < leafy * leafy * (x * x + y * y) {
                             &mut self.leafy
                         } else if away < FINE {
                             &mut self.instances
