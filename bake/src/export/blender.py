@@ -36,7 +36,7 @@ def main():
     set_sky()
     for material in {m for o in objects | kinds_of_trees() if o.type == "MESH" for m in o.data.materials if m}:
         let_light_through(material)
-        crease_rock(material)
+        roughen_land(material)
         add_haze(material)
     set_view()
     print(f"{TITLE}: {count} trees and {far_count} far ones of {len(SETTINGS['kinds'])} kinds; camera, sun and sky are set")
@@ -267,17 +267,19 @@ def let_light_through(material):
         node.location = (shader.location.x + 60 * i, shader.location.y - 420 - 120 * i)
 
 
-# ---- rock ----
+# ---- land ----
 
 # Metres between creases of rock, from gullies to blocks, and how much each size counts.
 CREASES = ((60.0, 0.5), (14.0, 0.5))
+# The same of what grows on the rest, from patches to tufts.
+TUFTS = ((23.0, 0.35), (4.0, 0.35), (0.9, 0.3))
 
 
-def rock_group():
-    """Colour and normal of the land → the same, creased where it is steep and not green.
+def land_group():
+    """Colour and normal of the land → the same, creased where it is steep and not green, and tufted elsewhere but in snow.
 
     The file's colours are a metre apart, and beyond the field 64: slopes are smooth without."""
-    name = f"{TITLE} rock"
+    name = f"{TITLE} land"
     group = bpy.data.node_groups.get(name)
     if group:
         return group
@@ -295,49 +297,61 @@ def rock_group():
     links.new(inputs.outputs["Color"], rgb.inputs[0])
     greener = math_node(group, "DIVIDE", rgb.outputs["Green"], math_node(group, "MAXIMUM", rgb.outputs["Red"], 1e-3))
     rocky = math_node(group, "MULTIPLY", steep, map_range(group, greener, (1.02, 1.18), (1.0, 0.0)))
-    height = 0.0
+    # Snow is the only ground so bright.
+    turfy = math_node(group, "MULTIPLY", math_node(group, "SUBTRACT", 1.0, rocky), map_range(group, rgb.outputs["Blue"], (0.4, 0.6), (1.0, 0.0)))
+    creases, tufts = 0.0, 0.0
     for size_m, weight in CREASES:
-        noise = nodes.new("ShaderNodeTexNoise")
-        for name, number in (("Scale", 1.0 / size_m), ("Detail", 7.0), ("Roughness", 0.62), ("Distortion", 0.4)):
-            noise.inputs[name].default_value = number
-        links.new(place, noise.inputs["Vector"])
-        away = math_node(group, "ABSOLUTE", math_node(group, "SUBTRACT", noise.outputs[0], 0.5))
+        away = math_node(group, "ABSOLUTE", math_node(group, "SUBTRACT", noise(group, place, size_m, 7.0), 0.5))
         # A crease where the noise passes its middle.
-        height = math_node(group, "ADD", height, map_range(group, away, (0.0, 0.16), (0.0, weight)))
-    bump, tone = nodes.new("ShaderNodeBump"), nodes.new("ShaderNodeMixRGB")
-    bump.inputs["Distance"].default_value = 2.5
-    links.new(rocky, bump.inputs["Strength"])
-    links.new(height, bump.inputs["Height"])
-    links.new(inputs.outputs["Normal"], bump.inputs["Normal"])
-    tone.blend_type = "MULTIPLY"
-    links.new(rocky, tone.inputs["Fac"])
-    links.new(inputs.outputs["Color"], tone.inputs["Color1"])
-    links.new(map_range(group, height, (0.0, 0.9), (0.55, 1.15)), tone.inputs["Color2"])
-    links.new(tone.outputs[0], outputs.inputs["Color"])
-    links.new(bump.outputs[0], outputs.inputs["Normal"])
+        creases = math_node(group, "ADD", creases, map_range(group, away, (0.0, 0.16), (0.0, weight)))
+    for size_m, weight in TUFTS:
+        tufts = math_node(group, "ADD", tufts, map_range(group, noise(group, place, size_m, 3.0), (0.25, 0.75), (0.0, weight)))
+    color, normal = inputs.outputs["Color"], inputs.outputs["Normal"]
+    for height, where, distance_m, tones in ((creases, rocky, 2.5, (0.55, 1.15)), (tufts, turfy, 0.5, (0.6, 1.4))):
+        bump, tone = nodes.new("ShaderNodeBump"), nodes.new("ShaderNodeMixRGB")
+        bump.inputs["Distance"].default_value = distance_m
+        links.new(where, bump.inputs["Strength"])
+        links.new(height, bump.inputs["Height"])
+        links.new(normal, bump.inputs["Normal"])
+        tone.blend_type = "MULTIPLY"
+        links.new(where, tone.inputs["Fac"])
+        links.new(color, tone.inputs["Color1"])
+        links.new(map_range(group, height, (0.0, 1.0), tones), tone.inputs["Color2"])
+        color, normal = tone.outputs[0], bump.outputs[0]
+    links.new(color, outputs.inputs["Color"])
+    links.new(normal, outputs.inputs["Normal"])
     return group
 
 
-def crease_rock(material):
+def noise(group, place, size_m, detail):
+    """About 0.5, with features so large and finer ones."""
+    node = group.nodes.new("ShaderNodeTexNoise")
+    for name, number in (("Scale", 1.0 / size_m), ("Detail", detail), ("Roughness", 0.62), ("Distortion", 0.4)):
+        node.inputs[name].default_value = number
+    group.links.new(place, node.inputs["Vector"])
+    return node.outputs[0]
+
+
+def roughen_land(material):
     nodes, links = material.node_tree.nodes, material.node_tree.links
     shader = next((n for n in nodes if n.type == "BSDF_PRINCIPLED"), None)
     is_land = material.name.split(".")[0] in ("ground", "apron")
-    if not is_land or not shader or any(n.type == "GROUP" and n.node_tree == rock_group() for n in nodes):
+    if not is_land or not shader or any(n.type == "GROUP" and n.node_tree == land_group() for n in nodes):
         return
-    rock = nodes.new("ShaderNodeGroup")
-    rock.node_tree = rock_group()
-    rock.location = (shader.location.x - 200, shader.location.y)
+    land = nodes.new("ShaderNodeGroup")
+    land.node_tree = land_group()
+    land.location = (shader.location.x - 200, shader.location.y)
     if shader.inputs["Normal"].links:
-        links.new(shader.inputs["Normal"].links[0].from_socket, rock.inputs["Normal"])
+        links.new(shader.inputs["Normal"].links[0].from_socket, land.inputs["Normal"])
     else:
-        links.new(nodes.new("ShaderNodeNewGeometry").outputs["Normal"], rock.inputs["Normal"])
+        links.new(nodes.new("ShaderNodeNewGeometry").outputs["Normal"], land.inputs["Normal"])
     color = shader.inputs["Base Color"]
     if color.links:
-        links.new(color.links[0].from_socket, rock.inputs["Color"])
+        links.new(color.links[0].from_socket, land.inputs["Color"])
     else:
-        rock.inputs["Color"].default_value = color.default_value
-    links.new(rock.outputs["Color"], color)
-    links.new(rock.outputs["Normal"], shader.inputs["Normal"])
+        land.inputs["Color"].default_value = color.default_value
+    links.new(land.outputs["Color"], color)
+    links.new(land.outputs["Normal"], shader.inputs["Normal"])
 
 
 def map_range(group, value, range_in, range_out):
