@@ -100,6 +100,8 @@ pub(super) const RICE: [Rgb; 5] = [
 /// How far rice has come when its field is drained, and the part of a flooded field where none stands.
 const FLOODED_TILL: f32 = 0.36;
 const FLOODED_MUD: f32 = 0.5;
+/// Part of its ground that is mud, between stalks that stand apart: turf does not grow under water.
+const UNDER_WATER: f32 = 0.95;
 /// From when on rice has ears.
 const IN_EAR: f32 = 0.7;
 /// Trodden earth along the fields' edges.
@@ -217,7 +219,7 @@ impl Painter {
         if rice(t) > 0.5 {
             // Young rice stands apart in mud.
             let mut field = Cover::default();
-            field.over(EARTH, FLOODED_MUD * self.flooded(t));
+            field.over(EARTH, UNDER_WATER * self.flooded(t));
             return field;
         }
         let broken = 0.55 * n.broad + 0.35 * n.fine;
@@ -424,7 +426,11 @@ impl Painter {
     #[inline]
     pub fn flooded(&self, t: &Traits) -> f32 {
         let rice = rice(t);
-        if rice <= 0.5 || self.ripe(t) > FLOODED_TILL { 0.0 } else { step(0.66, 0.86, rice) }
+        if rice <= 0.5 || self.ripe(t) > FLOODED_TILL {
+            return 0.0;
+        }
+        // Where terraces are narrower than samples of the land are apart, water would stand on a slope.
+        step(0.7, 0.8, rice) * (1.0 - step(0.07, 0.11, t.slope))
     }
 
     /// How densely rice stands in leaf and in ear, of which a field has one: young rice stands apart.

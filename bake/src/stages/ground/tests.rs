@@ -2,6 +2,7 @@
 
 mod drifts;
 mod growth;
+mod rice;
 
 use std::sync::LazyLock;
 
@@ -11,27 +12,26 @@ use crate::model::{DensityMap, GroundPlants, Material, PlantKind};
 use crate::stages::land::{LandParams, landform};
 
 /// An alpine land with snow, scree and a lake: everything that can cover the ground.
-static LAND: LazyLock<Landform> = LazyLock::new(|| {
-    let params = LandParams {
-        terrain_seed: 5,
-        relief_m: 220.0,
-        wavelength_m: 700.0,
-        hurst: 0.9,
-        lacunarity: 2.0,
-        ridged: 0.6,
-        domain_warp: 0.3,
-        offset: 0.4,
-        terraces: 0.0,
-        stream_power_steps: 6,
-        droplets: 15000.0,
-        talus_angle_deg: 33.0,
-        water_level: 0.15,
-        snow_line: 0.6,
-        cliff_m: 0.0,
-        paddies: 0.0,
-    };
-    landform(&params, 257)
-});
+static LAND: LazyLock<Landform> = LazyLock::new(|| landform(&LAND_PARAMS, 257));
+
+const LAND_PARAMS: LandParams = LandParams {
+    terrain_seed: 5,
+    relief_m: 220.0,
+    wavelength_m: 700.0,
+    hurst: 0.9,
+    lacunarity: 2.0,
+    ridged: 0.6,
+    domain_warp: 0.3,
+    offset: 0.4,
+    terraces: 0.0,
+    stream_power_steps: 6,
+    droplets: 15000.0,
+    talus_angle_deg: 33.0,
+    water_level: 0.15,
+    snow_line: 0.6,
+    cliff_m: 0.0,
+    paddies: 0.0,
+};
 
 const PARAMS: GroundParams = GroundParams {
     terrain_seed: 5,

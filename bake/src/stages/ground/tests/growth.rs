@@ -431,7 +431,8 @@ fn rice_grows_in_fields_and_nothing_else_does() {
         color.data.chunks_exact(4).filter(|rgba| rgba[3] == 0).count()
     };
     let counts: Vec<usize> = (0..12).map(flooded).collect();
-    assert!(counts.contains(&0) && counts.iter().any(|&count| count > 200), "{counts:?} of 4096 under water");
+    // Few places of this land, of which no terraces were made, are level.
+    assert!(counts.contains(&0) && counts.iter().any(|&count| count > 50), "{counts:?} of 4096 under water");
 }
 
 #[test]
