@@ -107,7 +107,8 @@ pub enum Command {
         /// The same seed makes the same population [default: drawn by chance, and told].
         #[arg(long, value_name = "N", allow_negative_numbers = true)]
         seed: Option<u64>,
-        /// Draw only this kind, as `oak` or `fjord`; several of a category are drawn in turn. `bake kinds` lists them.
+        /// Draw only this kind, as `oak` or `fjord`. Of several, lands are drawn in turn, or else trees, or else skies. `bake kinds`
+        /// lists them.
         #[arg(long = "kind", value_name = "KIND", conflicts_with = "uniform")]
         kinds: Vec<String>,
         /// Every value of every gene equally likely, as in the thesis, instead of kinds.
