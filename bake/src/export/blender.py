@@ -276,7 +276,7 @@ TUFTS = ((23.0, 0.35), (4.0, 0.35), (0.9, 0.3))
 
 
 def land_group():
-    """Colour and normal of the land → the same, creased where it is steep and not green, and tufted elsewhere but in snow.
+    """Colour and normal of the land → the same, creased where it is steep and not green, and tufted elsewhere but on sand and snow.
 
     The file's colours are a metre apart, and beyond the field 64: slopes are smooth without."""
     name = f"{TITLE} land"
@@ -297,8 +297,8 @@ def land_group():
     links.new(inputs.outputs["Color"], rgb.inputs[0])
     greener = math_node(group, "DIVIDE", rgb.outputs["Green"], math_node(group, "MAXIMUM", rgb.outputs["Red"], 1e-3))
     rocky = math_node(group, "MULTIPLY", steep, map_range(group, greener, (1.02, 1.18), (1.0, 0.0)))
-    # Snow is the only ground so bright.
-    turfy = math_node(group, "MULTIPLY", math_node(group, "SUBTRACT", 1.0, rocky), map_range(group, rgb.outputs["Blue"], (0.4, 0.6), (1.0, 0.0)))
+    # Sand and snow are brighter than anything that grows.
+    turfy = math_node(group, "MULTIPLY", math_node(group, "SUBTRACT", 1.0, rocky), map_range(group, rgb.outputs["Green"], (0.2, 0.32), (1.0, 0.0)))
     creases, tufts = 0.0, 0.0
     for size_m, weight in CREASES:
         away = math_node(group, "ABSOLUTE", math_node(group, "SUBTRACT", noise(group, place, size_m, 7.0), 0.5))

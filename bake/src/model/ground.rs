@@ -14,17 +14,24 @@ pub struct GroundMaps<P> {
     pub plants: GroundPlants<P>,
 }
 
-/// The ground around the start, finely meshed for tiling textures: core glTF cannot blend these by a map, so each
-/// kind of ground is a part of its own, `Material::Foreign(k)` for the kth of the ground textures.
+/// Surfaces with tiling textures of the ground: core glTF cannot blend these by a map, so what has the kth of them is a part
+/// of its own, `Material::Foreign(k)`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Foreground {
+pub struct Tiled {
     /// Parts with vertices of their own; uvs count tiles; colours times the kind's tile give the albedo.
     pub mesh: Mesh,
     /// For each vertex its place on the maps over the whole field, as the uvs of `TerrainMesh::near`.
     pub map_uvs: Vec<[f32; 2]>,
+}
+
+/// The ground around the start, finely meshed, and what stands and lies on it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Foreground {
+    pub ground: Tiled,
+    /// Stones, fallen trunks and stumps.
+    pub stones: Tiled,
     /// The triangles of `TerrainMesh::near` that it does not replace.
     pub rest: Vec<[u32; 3]>,
-    /// Blades of grass, small plants and stones that stand on it: no uvs, colours that are to be multiplied by
-    /// `ground::BLADE_WHITE`.
+    /// Blades of grass and small plants: no uvs, colours that are to be multiplied by `ground::BLADE_WHITE`.
     pub grass: Mesh,
 }

@@ -18,7 +18,7 @@ pub use genescape_schema::scene::{
 };
 
 pub use climate::{Climate, SnowMap, dryness};
-pub use ground::{Foreground, GroundMaps};
+pub use ground::{Foreground, GroundMaps, Tiled};
 pub use image::{AlphaMask, Image8, ImageF16};
 pub use leaf_color::leaf_color;
 pub use light::LightMap;

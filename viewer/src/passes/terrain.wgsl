@@ -212,8 +212,7 @@ fn look(k: u32, at: Surface, parts: array<f32, 5>, relief: f32, scales: Scales) 
     let axis = (k / 2u) % 3u;
     let is_coarser = (k & 1u) == 1u;
     let scale = scales.finer + (k & 1u);
-    let tiles_m = array<f32, 5>(view.ground_kinds[0].w, view.ground_kinds[1].w, view.ground_kinds[2].w, view.ground_kinds[3].w, view.ground_kinds[4].w);
-    let tile_m = entry(tiles_m, layer) * select(select(1.0, WIDER, scale == 1u), WIDER * WIDER, scale == 2u);
+    let tile_m = view.ground_kinds[layer].w * select(select(1.0, WIDER, scale == 1u), WIDER * WIDER, scale == 2u);
     let turn = turn_of(scale);
     let to_tile = turn * (1.0 / tile_m);
     let p = to_tile * along(axis, at.world);
@@ -284,8 +283,7 @@ fn close_up(at: Surface, parts: array<f32, 5>, near: f32) -> Tiles {
     }
     let side = select(2u, 1u, at.sides.x > at.sides.z);
     let axis = select(side, 0u, at.sides.y > 0.5);
-    let tiles_m = array<f32, 5>(view.ground_kinds[0].w, view.ground_kinds[1].w, view.ground_kinds[2].w, view.ground_kinds[3].w, view.ground_kinds[4].w);
-    let turn = mat2x2f(0.29, 0.957, -0.957, 0.29) * (FINER / entry(tiles_m, best));
+    let turn = mat2x2f(0.29, 0.957, -0.957, 0.29) * (FINER / view.ground_kinds[best].w);
     var result = Tiles(vec3f(1.0), vec3f(0.0));
     for (var once = select(1u, 0u, near > 0.0); once < 1u; once++) {
         let p = turn * along(axis, at.world);

@@ -17,7 +17,9 @@ use super::textures::{TILE_M, TILE_MEAN};
 use super::window::MapWindow;
 use super::woods::Woods;
 use crate::math::triangles_between;
-use crate::model::{Foreground, GroundPlants, Image8, Landform, Material, Mesh, Part, PartKind, StartView};
+use crate::model::{
+    Foreground, GroundPlants, Image8, Landform, Material, Mesh, Part, PartKind, StartView, Tiled,
+};
 use crate::noise::{fbm2, gradient2};
 use crate::raster::square;
 use crate::seed::noise_seed;
@@ -57,10 +59,10 @@ pub fn foreground(
     let mut points = patch.points(&window);
     let border = patch.border(positions, &cut, &mut points);
     let shape = patch.triangles(&points, &border);
-    let (mesh, map_uvs) = by_kind(&points, &shape, field.extent_m());
+    let ground = by_kind(&points, &shape, field.extent_m());
     let mut grass = grass(&patch, &window, view);
-    stand(plants, &patch, view, &mut grass);
-    Foreground { mesh, map_uvs, rest, grass }
+    let stones = stand(plants, &patch, view, &mut grass);
+    Foreground { ground, stones, rest, grass }
 }
 
 /// A vertex before it has a texture.
@@ -163,8 +165,8 @@ impl Patch<'_> {
 }
 
 /// Each triangle goes to the kind that covers most of it.
-fn by_kind(points: &[Point], triangles: &[[u32; 3]], extent_m: f32) -> (Mesh, Vec<[f32; 2]>) {
-    let (mut mesh, mut map_uvs) = (Mesh::default(), Vec::new());
+fn by_kind(points: &[Point], triangles: &[[u32; 3]], extent_m: f32) -> Tiled {
+    let Tiled { mut mesh, mut map_uvs } = Tiled::default();
     let kinds: Vec<usize> = triangles
         .iter()
         .map(|t| {
@@ -189,7 +191,7 @@ fn by_kind(points: &[Point], triangles: &[[u32; 3]], extent_m: f32) -> (Mesh, Ve
         let material = Material::Foreign(kind as u32);
         mesh.parts.push(Part { material, kind: PartKind::Surface, triangles: part });
     }
-    (mesh, map_uvs)
+    Tiled { mesh, map_uvs }
 }
 
 fn push(mesh: &mut Mesh, point: &Point, kind: usize) {

@@ -123,7 +123,7 @@ pub struct ForegroundStage {
 
 impl Stage for ForegroundStage {
     const NAME: &'static str = "foreground";
-    const VERSION: u32 = 29;
+    const VERSION: u32 = 30;
     type Output = File;
 
     fn run(&self, context: &Context<'_>) -> Result<File, StageError> {

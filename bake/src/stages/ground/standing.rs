@@ -1,14 +1,18 @@
 //! Maps of small plants and the foreground → those around the eye as plain triangles among the blades of grass, where a
 //! viewer of `GSC_heightfield` has them, too. Metres.
 
+use std::collections::BTreeMap;
+
 use glam::{Vec2, Vec3};
 
 use super::cover::KINDS;
 use super::grass::BLADE_WHITE;
 use super::patch::{Patch, SIDE_M, plan};
+use super::textures::TILE_MEAN;
 use crate::math::{lerp, lerp_array};
 use crate::model::{
-    DensityMap, GroundPlants, Image8, Material, Mesh, Part, PartKind, Plant, PlantKind, StartView, ground_m,
+    DensityMap, GroundPlants, Image8, Material, Mesh, Part, PartKind, Plant, PlantKind, StartView, Tiled,
+    ground_m,
 };
 
 /// Metres from the eye to the last of them: files are to stay small.
@@ -33,20 +37,30 @@ struct Standing<'a> {
     triangles: &'a [[u32; 3]],
 }
 
-/// Adds the plants on the piece of ground to the mesh of its grass, as a part of their own: `Material::Foreign(6)`.
-pub(super) fn stand(plants: &GroundPlants<Image8>, patch: &Patch<'_>, view: &StartView, mesh: &mut Mesh) {
+/// Adds the plants on the piece of ground to the mesh of its grass, as a part of their own: `Material::Foreign(6)`. Gives what is
+/// textured among them.
+pub(super) fn stand(
+    plants: &GroundPlants<Image8>,
+    patch: &Patch<'_>,
+    view: &StartView,
+    grass: &mut Mesh,
+) -> Tiled {
     let mut near: Vec<Standing<'_>> =
         plants.kinds.iter().flat_map(|kind| around(plants, kind, patch, view)).collect();
     // Where there are too many, those of the lowest ranks stand for all.
     near.sort_by(|a, b| a.plant.rank.total_cmp(&b.plant.rank));
     let material = Material::Foreign(KINDS as u32 + 1);
-    mesh.parts.push(Part { material, kind: PartKind::Surface, triangles: Vec::new() });
+    grass.parts.push(Part { material, kind: PartKind::Surface, triangles: Vec::new() });
     let mut left = MAX_TRIANGLES;
-    for standing in near {
-        let Some(rest) = left.checked_sub(standing.triangles.len()) else { return };
-        left = rest;
-        add(mesh, &standing, patch, view.position_m);
-    }
+    near.retain(|standing| {
+        let rest = left.checked_sub(standing.triangles.len());
+        left = rest.unwrap_or(0);
+        rest.is_some()
+    });
+    let (rough, leafy): (Vec<_>, Vec<_>) =
+        near.into_iter().partition(|standing| standing.kind.texture.is_some());
+    leafy.iter().for_each(|standing| add(grass, standing, patch, view.position_m));
+    tiled(&rough, patch)
 }
 
 /// Those of one kind.
@@ -87,32 +101,87 @@ fn through(albedo: [f32; 3]) -> f32 {
     lerp(THROUGH, 1.0, (palest / PALE).min(1.0))
 }
 
-fn add(mesh: &mut Mesh, Standing { kind, plant, triangles }: &Standing<'_>, patch: &Patch<'_>, eye: Vec3) {
+impl Standing<'_> {
+    fn turned(&self, v: [f32; 3]) -> Vec3 {
+        let (sin, cos) = libm::sincosf(self.plant.turn_rad);
+        Vec3::new(cos * v[0] - sin * v[2], v[1], sin * v[0] + cos * v[2])
+    }
+
+    /// Where a corner of its shape is, each on its own ground.
+    fn placed(&self, position: [f32; 3], patch: &Patch<'_>) -> [f32; 3] {
+        let middle = Vec2::new(self.plant.x_m, self.plant.z_m);
+        let offset = self.plant.scale * self.turned(position);
+        let place = middle + Vec2::new(offset.x, offset.z);
+        let height_m = ground_m(patch.height_m(place), patch.height_m(middle), place.distance(middle));
+        [place.x, height_m + offset.y, place.y]
+    }
+
+    fn albedo(&self, tint: f32) -> [f32; 3] {
+        let [root, tip] = self.kind.colors[self.plant.color as usize];
+        lerp_array(root, tip, tint)
+    }
+}
+
+/// An albedo as a factor on a colour.
+fn color(albedo: [f32; 3], of: f32) -> [u8; 4] {
+    let [r, g, b] = albedo.map(|c| (c / of * 255.0 + 0.5).clamp(0.0, 255.0) as u8);
+    [r, g, b, 255]
+}
+
+fn add(mesh: &mut Mesh, standing: &Standing<'_>, patch: &Patch<'_>, eye: Vec3) {
+    let Standing { kind, triangles, .. } = standing;
     let shape = &kind.shape;
-    let (sin, cos) = libm::sincosf(plant.turn_rad);
-    let turn = |v: [f32; 3]| Vec3::new(cos * v[0] - sin * v[2], v[1], sin * v[0] + cos * v[2]);
-    let middle = Vec2::new(plant.x_m, plant.z_m);
-    let middle_m = patch.height_m(middle);
-    let [root, tip] = kind.colors[plant.color as usize];
     let base = mesh.positions.len() as u32;
     let corners = shape.positions_m.iter().zip(&shape.normals).zip(&shape.tints);
     let used = triangles.as_flattened().iter().max().map_or(0, |&last| last as usize + 1);
     for ((&position, &normal), &tint) in corners.take(used) {
-        let offset = plant.scale * turn(position);
-        let place = middle + Vec2::new(offset.x, offset.z);
-        let height_m = ground_m(patch.height_m(place), middle_m, place.distance(middle));
-        mesh.positions.push([place.x, height_m + offset.y, place.y]);
-        mesh.normals.push(turn(normal).to_array());
-        let albedo = lerp_array(root, tip, tint);
+        mesh.positions.push(standing.placed(position, patch));
+        mesh.normals.push(standing.turned(normal).to_array());
+        let albedo = standing.albedo(tint);
         let light = if kind.sway > 0.0 { through(albedo) } else { 1.0 };
-        let [r, g, b] = albedo.map(|c| (light * c / BLADE_WHITE * 255.0 + 0.5).clamp(0.0, 255.0) as u8);
-        mesh.colors.push([r, g, b, 255]);
+        mesh.colors.push(color(albedo.map(|c| light * c), BLADE_WHITE));
     }
     for corners in *triangles {
         let corners = corners.map(|v| v + base);
         let seen = if kind.sway > 0.0 { turned_to(eye, corners, mesh) } else { corners };
         mesh.parts[1].triangles.push(seen);
     }
+}
+
+/// Metres that a tile covers on a stone, which shows less of it than the ground does.
+pub(super) const STONE_TILE_M: f32 = 1.3;
+
+/// What is rough, a part for each texture, which is seen along the axis that each triangle faces most.
+fn tiled(rough: &[Standing<'_>], patch: &Patch<'_>) -> Tiled {
+    let Tiled { mut mesh, mut map_uvs } = Tiled::default();
+    let extent_m = patch.land.field.extent_m();
+    for (texture, &white) in TILE_MEAN.iter().enumerate() {
+        let mut part = Vec::new();
+        for standing in rough.iter().filter(|one| one.kind.texture == Some(texture as u32)) {
+            let shape = &standing.kind.shape;
+            let mut numbers = BTreeMap::new();
+            for triangle in standing.triangles {
+                let [a, b, c] = triangle.map(|v| Vec3::from_array(shape.positions_m[v as usize]));
+                let axis = (b - a).cross(c - a).abs().max_position();
+                part.push(triangle.map(|v| {
+                    *numbers.entry((v, axis)).or_insert_with(|| {
+                        let (v, position) = (v as usize, shape.positions_m[v as usize]);
+                        let at = standing.placed(position, patch);
+                        mesh.positions.push(at);
+                        mesh.normals.push(standing.turned(shape.normals[v]).to_array());
+                        mesh.colors.push(color(standing.albedo(shape.tints[v]), white));
+                        let [x, y, z] = position.map(|along| standing.plant.scale * along / STONE_TILE_M);
+                        mesh.uvs.push([[z, -y], [x, z], [x, -y]][axis]);
+                        map_uvs.push((plan(at) / extent_m + 0.5).to_array());
+                        mesh.positions.len() as u32 - 1
+                    })
+                }));
+            }
+        }
+        let material = Material::Foreign(texture as u32);
+        mesh.parts.push(Part { material, kind: PartKind::Surface, triangles: part });
+    }
+    Tiled { mesh, map_uvs }
 }
 
 /// A leaf with its front towards the eye, and its normals on that side, too: renderers turn the normals of what is seen from

@@ -294,7 +294,7 @@ fn the_foreground_fills_its_hole_edge_by_edge() {
         let (near, made) = cut(east_m, south_m);
         let mut edges = std::collections::BTreeMap::new();
         let mut area = 0.0;
-        let pieces = made.mesh.parts.iter().map(|part| (&made.mesh.positions, &part.triangles));
+        let pieces = made.ground.mesh.parts.iter().map(|part| (&made.ground.mesh.positions, &part.triangles));
         for (positions, triangles) in pieces.chain([(&near.positions, &made.rest)]) {
             for triangle in triangles {
                 let [a, b, c] = triangle.map(|v| positions[v as usize]);
@@ -322,17 +322,18 @@ fn the_foreground_fills_its_hole_edge_by_edge() {
 fn the_foreground_looks_like_the_map_at_its_border() {
     let (_, made) = cut(10.0, -35.0);
     let map = &MAPS.color;
-    let bounds = made.mesh.bounds();
+    let bounds = made.ground.mesh.bounds();
     let (mut differences, mut count) = (0.0, 0.0);
-    for part in &made.mesh.parts {
+    for part in &made.ground.mesh.parts {
         let Material::Foreign(kind) = part.material else { panic!("a kind of ground") };
         for &v in part.triangles.as_flattened() {
-            let ([x, _, z], uv) = (made.mesh.positions[v as usize], made.map_uvs[v as usize]);
+            let ([x, _, z], uv) = (made.ground.mesh.positions[v as usize], made.ground.map_uvs[v as usize]);
             let inside = (x - bounds.min.x).min(bounds.max.x - x).min(z - bounds.min.z).min(bounds.max.z - z);
             if inside > 1.0 {
                 continue;
             }
-            let own = f32::from(made.mesh.colors[v as usize][1]) / 255.0 * textures::TILE_MEAN[kind as usize];
+            let own = f32::from(made.ground.mesh.colors[v as usize][1]) / 255.0
+                * textures::TILE_MEAN[kind as usize];
             let texel = map.pixel((uv[0] * 256.0) as u32, (uv[1] * 256.0) as u32)[1];
             let own = 255.0 * srgb_from_linear(own);
             (differences, count) = (differences + own - f32::from(texel), count + 1.0);

@@ -102,11 +102,30 @@ fn the_foreground_has_no_more_plants_than_a_file_can_bear() {
     let mut crowded = maps(&PARAMS, &Woods::none(Season::default()), &LAND, 256);
     crowded.plants.maps.iter_mut().for_each(|map| map.data.fill(255));
     let (_, made) = cut_with(&crowded.plants, 10.0, -35.0);
-    let count = made.grass.parts[1].triangles.len();
+    let count = made.grass.parts[1].triangles.len() + made.stones.mesh.triangle_count();
     assert!((standing::MAX_TRIANGLES * 9 / 10..=standing::MAX_TRIANGLES).contains(&count), "{count}");
     let used: std::collections::BTreeSet<u32> =
         made.grass.parts.iter().flat_map(|part| part.triangles.as_flattened()).copied().collect();
     assert_eq!(used.len(), made.grass.positions.len(), "vertices that no triangle has");
+}
+
+#[test]
+fn stones_of_the_foreground_have_the_texture_of_rock_nowhere_stretched() {
+    let mut rough = MAPS.plants.clone();
+    rough.maps.iter_mut().for_each(|map| map.data.fill(255));
+    rough.kinds.retain(|kind| kind.texture.is_some());
+    let (_, made) = cut_with(&rough, 10.0, -35.0);
+    assert!(made.grass.parts[1].triangles.is_empty(), "a stone among the leaves");
+    let mesh = &made.stones.mesh;
+    assert!(mesh.triangle_count() > 1000, "{}", mesh.triangle_count());
+    for triangle in mesh.parts.iter().flat_map(|part| &part.triangles) {
+        let [a, b, c] = triangle.map(|v| glam::Vec3::from_array(mesh.positions[v as usize]));
+        let [p, q, r] = triangle.map(|v| glam::Vec2::from_array(mesh.uvs[v as usize]));
+        let area = (b - a).cross(c - a).length();
+        let tiles = (q - p).perp_dot(r - p).abs() * standing::STONE_TILE_M * standing::STONE_TILE_M;
+        // A face is seen at 55° at most; feet follow the ground, so that what stands on a slope is sheared.
+        assert!(area < 1e-4 || (0.25..3.0).contains(&(tiles / area)), "{tiles} m² of tiles on {area} m²");
+    }
 }
 
 #[test]
@@ -331,10 +350,15 @@ fn shapes_stand_on_the_ground_and_are_made_of_proper_triangles() {
 #[test]
 fn small_plants_of_the_foreground_stand_where_the_maps_have_them() {
     let (_, made) = cut(10.0, -35.0);
-    let [_, part] = &made.grass.parts[..] else { panic!("grass and plants") };
-    assert!(part.triangles.len() > 200, "{} triangles", part.triangles.len());
-    for corner in part.triangles.as_flattened() {
-        let [x, y, z] = made.grass.positions[*corner as usize];
+    let [_, leafy] = &made.grass.parts[..] else { panic!("grass and plants") };
+    let stones = made.stones.mesh.parts.iter().map(|part| (&made.stones.mesh, part));
+    let all = || stones.clone().chain([(&made.grass, leafy)]);
+    let count: usize = all().map(|(_, part)| part.triangles.len()).sum();
+    assert!(count > 200, "{count} triangles");
+    for (mesh, corner) in
+        all().flat_map(|(mesh, part)| part.triangles.as_flattened().iter().map(move |corner| (mesh, corner)))
+    {
+        let [x, y, z] = mesh.positions[*corner as usize];
         let above = y - LAND.field.height_m(x, z);
         assert!((-1.0..3.0).contains(&above), "{above} m above the ground");
     }
