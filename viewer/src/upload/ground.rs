@@ -60,6 +60,7 @@ impl Uploader {
         }
         let (field, nested) = (&ground.field, Nested::of(&ground.field));
         let half_m = 0.5 * field.extent_m();
+        let albedo_linear = mean_light(&surface.color);
         let samples = |what: &str, format, bytes: &[u8]| {
             self.samples(&format!("{what} {}", ground.name), field.side, format, bytes)
         };
@@ -75,12 +76,12 @@ impl Uploader {
                 self.array(&[&normals(field)], ImageUse::Data, 1)
             }),
             color: self.image(&surface.color, ImageUse::Albedo),
-            albedo_linear: mean_light(&surface.color),
+            albedo_linear,
             is_wet: is_wet(&surface.color),
             weights: self.image(&surface.weights, ImageUse::Data),
             light: self.image(&surface.light, ImageUse::Data),
             details: self.tiling(&surface.details)?,
-            kinds: ground_kinds::of(surface),
+            kinds: ground_kinds::of(surface, albedo_linear),
             ring: self.ring(&ground.apron, half_m),
             far_shade: self.far_shade(&scene.trees, &ground.apron, half_m, scene.sky.light.sun_direction),
             lake: Lake::of(ground),

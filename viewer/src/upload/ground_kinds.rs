@@ -1,7 +1,9 @@
 //! Albedo and blend weights of the ground → the colour of each kind of it by itself, which a map of a texel a metre has only in
 //! mixtures where two kinds meet.
 
-use super::texture::{linear, mean_light};
+use glam::Vec3;
+
+use super::texture::linear;
 use crate::scene::{GroundSurface, Image};
 
 /// Kinds of ground, each with a tiling texture.
@@ -13,10 +15,10 @@ const STEP: usize = 61;
 /// How many texels the mean of the whole map counts as, which is all that is known of what lies nowhere.
 const UNKNOWN: f32 = 1e-3;
 
-/// Linear colour on average where a kind lies nearly alone, and metres that a tile covers.
-pub(super) fn of(surface: &GroundSurface<Image>) -> [[f32; 4]; KINDS] {
+/// Linear colour on average where a kind lies nearly alone, and metres that a tile covers; `albedo_linear` is the mean of the map.
+pub(super) fn of(surface: &GroundSurface<Image>, albedo_linear: Vec3) -> [[f32; 4]; KINDS] {
     let GroundSurface { color, weights, details, .. } = surface;
-    let mut sums = [mean_light(color).extend(1.0) * UNKNOWN; KINDS];
+    let mut sums = [albedo_linear.extend(1.0) * UNKNOWN; KINDS];
     let texels = |image: &Image| image.levels.first().cloned().unwrap_or_default();
     let (colors, parts) = (texels(color), texels(weights));
     let width = color.width_px.max(1) as usize;
@@ -26,8 +28,9 @@ pub(super) fn of(surface: &GroundSurface<Image>) -> [[f32; 4]; KINDS] {
         let i = same(n % width, color.width_px, weights.width_px);
         let j = same(n / width, color.height_px, weights.height_px);
         let Some(parts) = parts.as_chunks().0.get(j * weights.width_px as usize + i) else { continue };
+        let seen = linear(texel).extend(1.0);
         for (sum, part) in sums.iter_mut().zip(all_parts(parts)) {
-            *sum += linear(texel).extend(1.0) * (part * part * part);
+            *sum += seen * (part * part * part);
         }
     }
     std::array::from_fn(|kind| {

@@ -13,7 +13,7 @@ use super::cover::KINDS;
 use super::grass::grass;
 use super::patch::{Patch, SIDE_M, corner, plan};
 use super::standing::stand;
-use super::textures::{TILE_M, TILE_MEAN};
+use super::textures::{TILE_M, TILE_MEAN, factor_on};
 use super::window::MapWindow;
 use super::woods::Woods;
 use crate::math::triangles_between;
@@ -198,6 +198,5 @@ fn push(mesh: &mut Mesh, point: &Point, kind: usize) {
     mesh.positions.push(point.position);
     mesh.normals.push(point.normal);
     mesh.uvs.push((plan(point.position) / TILE_M[kind]).to_array());
-    let [r, g, b] = point.color.map(|c| (c / TILE_MEAN[kind] * 255.0 + 0.5).clamp(0.0, 255.0) as u8);
-    mesh.colors.push([r, g, b, 255]);
+    mesh.colors.push(factor_on(TILE_MEAN[kind], point.color));
 }

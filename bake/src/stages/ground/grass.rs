@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use super::cover::KINDS;
 use super::patch::{Patch, SIDE_M, plan};
+use super::textures::factor_on;
 use super::window::MapWindow;
 use crate::model::{Material, Mesh, Part, PartKind, StartView};
 use crate::noise::{gradient2, hash01};
@@ -41,8 +42,7 @@ pub(super) fn grass(patch: &Patch<'_>, window: &MapWindow, view: &StartView) -> 
         for (point, color) in blade.points.iter().zip([blade.root, blade.root, blade.tip]) {
             mesh.positions.push(point.to_array());
             mesh.normals.push(blade.normal.to_array());
-            let [r, g, b] = color.map(|c| (c / BLADE_WHITE * 255.0 + 0.5).clamp(0.0, 255.0) as u8);
-            mesh.colors.push([r, g, b, 255]);
+            mesh.colors.push(factor_on(BLADE_WHITE, color));
         }
         triangles.push([first, first + 1, first + 2]);
     }

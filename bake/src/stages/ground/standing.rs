@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3};
 use super::cover::KINDS;
 use super::grass::BLADE_WHITE;
 use super::patch::{Patch, SIDE_M, plan};
-use super::textures::TILE_MEAN;
+use super::textures::{TILE_MEAN, factor_on};
 use crate::math::{lerp, lerp_array};
 use crate::model::{
     DensityMap, GroundPlants, Image8, Material, Mesh, Part, PartKind, Plant, PlantKind, StartView, Tiled,
@@ -101,45 +101,56 @@ fn through(albedo: [f32; 3]) -> f32 {
     lerp(THROUGH, 1.0, (palest / PALE).min(1.0))
 }
 
-impl Standing<'_> {
+/// How a plant stands on a piece of ground.
+struct Pose<'a> {
+    patch: &'a Patch<'a>,
+    cos_sin: [f32; 2],
+    scale: f32,
+    middle: Vec2,
+    middle_m: f32,
+}
+
+impl<'a> Pose<'a> {
+    fn of(plant: &Plant, patch: &'a Patch<'a>) -> Self {
+        let (sin, cos) = libm::sincosf(plant.turn_rad);
+        let middle = Vec2::new(plant.x_m, plant.z_m);
+        Self { patch, cos_sin: [cos, sin], scale: plant.scale, middle, middle_m: patch.height_m(middle) }
+    }
+
     fn turned(&self, v: [f32; 3]) -> Vec3 {
-        let (sin, cos) = libm::sincosf(self.plant.turn_rad);
+        let [cos, sin] = self.cos_sin;
         Vec3::new(cos * v[0] - sin * v[2], v[1], sin * v[0] + cos * v[2])
     }
 
     /// Where a corner of its shape is, each on its own ground.
-    fn placed(&self, position: [f32; 3], patch: &Patch<'_>) -> [f32; 3] {
-        let middle = Vec2::new(self.plant.x_m, self.plant.z_m);
-        let offset = self.plant.scale * self.turned(position);
-        let place = middle + Vec2::new(offset.x, offset.z);
-        let height_m = ground_m(patch.height_m(place), patch.height_m(middle), place.distance(middle));
+    fn placed(&self, position: [f32; 3]) -> [f32; 3] {
+        let offset = self.scale * self.turned(position);
+        let place = self.middle + Vec2::new(offset.x, offset.z);
+        let height_m = ground_m(self.patch.height_m(place), self.middle_m, place.distance(self.middle));
         [place.x, height_m + offset.y, place.y]
     }
+}
 
+impl Standing<'_> {
     fn albedo(&self, tint: f32) -> [f32; 3] {
         let [root, tip] = self.kind.colors[self.plant.color as usize];
         lerp_array(root, tip, tint)
     }
 }
 
-/// An albedo as a factor on a colour.
-fn color(albedo: [f32; 3], of: f32) -> [u8; 4] {
-    let [r, g, b] = albedo.map(|c| (c / of * 255.0 + 0.5).clamp(0.0, 255.0) as u8);
-    [r, g, b, 255]
-}
-
 fn add(mesh: &mut Mesh, standing: &Standing<'_>, patch: &Patch<'_>, eye: Vec3) {
     let Standing { kind, triangles, .. } = standing;
     let shape = &kind.shape;
+    let pose = Pose::of(&standing.plant, patch);
     let base = mesh.positions.len() as u32;
     let corners = shape.positions_m.iter().zip(&shape.normals).zip(&shape.tints);
     let used = triangles.as_flattened().iter().max().map_or(0, |&last| last as usize + 1);
     for ((&position, &normal), &tint) in corners.take(used) {
-        mesh.positions.push(standing.placed(position, patch));
-        mesh.normals.push(standing.turned(normal).to_array());
+        mesh.positions.push(pose.placed(position));
+        mesh.normals.push(pose.turned(normal).to_array());
         let albedo = standing.albedo(tint);
         let light = if kind.sway > 0.0 { through(albedo) } else { 1.0 };
-        mesh.colors.push(color(albedo.map(|c| light * c), BLADE_WHITE));
+        mesh.colors.push(factor_on(BLADE_WHITE, albedo.map(|c| light * c)));
     }
     for corners in *triangles {
         let corners = corners.map(|v| v + base);
@@ -159,6 +170,7 @@ fn tiled(rough: &[Standing<'_>], patch: &Patch<'_>) -> Tiled {
         let mut part = Vec::new();
         for standing in rough.iter().filter(|one| one.kind.texture == Some(texture as u32)) {
             let shape = &standing.kind.shape;
+            let pose = Pose::of(&standing.plant, patch);
             let mut numbers = BTreeMap::new();
             for triangle in standing.triangles {
                 let [a, b, c] = triangle.map(|v| Vec3::from_array(shape.positions_m[v as usize]));
@@ -166,10 +178,10 @@ fn tiled(rough: &[Standing<'_>], patch: &Patch<'_>) -> Tiled {
                 part.push(triangle.map(|v| {
                     *numbers.entry((v, axis)).or_insert_with(|| {
                         let (v, position) = (v as usize, shape.positions_m[v as usize]);
-                        let at = standing.placed(position, patch);
+                        let at = pose.placed(position);
                         mesh.positions.push(at);
-                        mesh.normals.push(standing.turned(shape.normals[v]).to_array());
-                        mesh.colors.push(color(standing.albedo(shape.tints[v]), white));
+                        mesh.normals.push(pose.turned(shape.normals[v]).to_array());
+                        mesh.colors.push(factor_on(white, standing.albedo(shape.tints[v])));
                         let [x, y, z] = position.map(|along| standing.plant.scale * along / STONE_TILE_M);
                         mesh.uvs.push([[z, -y], [x, z], [x, -y]][axis]);
                         map_uvs.push((plan(at) / extent_m + 0.5).to_array());

@@ -33,6 +33,12 @@ pub fn tile_srgb(kind: usize, detail: &Image8) -> Image8 {
     Image8 { data, ..*detail }
 }
 
+/// An albedo as a vertex colour, of what is so white where that is 1.
+pub(super) fn factor_on(white: f32, albedo: [f32; 3]) -> [u8; 4] {
+    let [r, g, b] = albedo.map(|c| (c / white * 255.0 + 0.5).clamp(0.0, 255.0) as u8);
+    [r, g, b, 255]
+}
+
 /// What the ground is tiled with where it is bare and loose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Loose {

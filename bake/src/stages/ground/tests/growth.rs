@@ -449,14 +449,15 @@ fn rice_grows_in_fields_and_nothing_else_does() {
     let steep =
         |k: u32| corners.iter().all(|&(di, dj)| LAND.field.normal_at(k % 256 + di, k / 256 + dj).y < 0.94);
     assert!(pixels().all(|((_, &dry), k)| !steep(k) || dry == 255), "water on a slope");
+    // Water stands on what is level, as all of these fields are.
+    land.field.heights_m.fill(land.water_level_m.expect("a lake") + 20.0);
     let flooded = |seed| {
         let params = GroundParams { terrain_seed: seed, ..PARAMS };
         let color = maps(&params, &Woods::none(Season::default()), &land, 64).color;
         color.data.chunks_exact(4).filter(|rgba| rgba[3] == 0).count()
     };
     let counts: Vec<usize> = (0..12).map(flooded).collect();
-    // Few places of this land, of which no terraces were made, are level.
-    assert!(counts.contains(&0) && counts.iter().any(|&count| count > 50), "{counts:?} of 4096 under water");
+    assert!(counts.contains(&0) && counts.iter().any(|&count| count > 200), "{counts:?} of 4096 under water");
 }
 
 #[test]
