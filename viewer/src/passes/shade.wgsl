@@ -11,7 +11,8 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 }
 
 const TAPS: u32 = 8u;
-const GOLDEN_ANGLE: f32 = 2.39996323;
+// Columns of the rotation by the golden angle: sines and cosines of each tap's own angle would cost as much as what it looks up.
+const GOLDEN_TURN = mat2x2f(vec2f(-0.737368878, 0.675490294), vec2f(-0.675490294, -0.737368878));
 // From so far away edges are as wide as they get.
 const FAR_M: f32 = 30.0;
 const MAX_TEXELS: f32 = 9.0;
@@ -51,11 +52,12 @@ fn fragment(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
         let edge = view.sun_angular_radius * away / max(count, 1.0) * uv_per_m;
         let reach = clamp(edge, 0.6 * texel, widest + 0.6 * texel);
         let turn = 6.2831853 * dither(pixel.xy);
+        var way = vec2f(cos(turn), sin(turn));
         // Where nothing is before it, nothing more is looked up.
         for (var k = 0u; k < TAPS && count > 0.0; k++) {
-            let angle = turn + f32(k) * GOLDEN_ANGLE;
-            let way = sqrt((f32(k) + 0.5) / f32(TAPS)) * vec2f(cos(angle), sin(angle));
-            lit -= (1.0 - is_lit(uv + way * reach, seen.z)) / f32(TAPS);
+            let out = sqrt((f32(k) + 0.5) / f32(TAPS));
+            lit -= (1.0 - is_lit(uv + out * way * reach, seen.z)) / f32(TAPS);
+            way = GOLDEN_TURN * way;
         }
     }
     return vec4f(lit);

@@ -33,15 +33,12 @@ fn film(linear: vec3f) -> vec3f {
     let ev = clamp((log2(wide) - MIN_EV) / (MAX_EV - MIN_EV), vec3f(0.0), vec3f(1.0));
     var toned = curve(ev);
     // A little more contrast and colour than the neutral look (Troy Sobotka's "Punchy", two thirds of the way).
+    toned = max(toned, vec3f(0.0));
     let luma = luminance(toned);
-    toned = pow(max(toned, vec3f(0.0)), vec3f(1.25));
-    toned = luma_mix(toned, luma, 1.22);
-    return clamp(OUTSET * toned, vec3f(0.0), vec3f(1.0));
-}
-
-fn luma_mix(color: vec3f, luma: f32, saturation: f32) -> vec3f {
-    let grey = pow(luma, 1.25);
-    return vec3f(grey) + saturation * (color - vec3f(grey));
+    // To the power of 1.25, without a logarithm.
+    let color = toned * sqrt(sqrt(toned));
+    let grey = vec3f(luma * sqrt(sqrt(luma)));
+    return clamp(OUTSET * (grey + 1.22 * (color - grey)), vec3f(0.0), vec3f(1.0));
 }
 
 // A grain of less than one step of 8 bits, the same every frame: without it skies show bands.
