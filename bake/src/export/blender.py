@@ -236,13 +236,20 @@ def set_sky():
         world.sun_threshold = 0.0  # Eevee would take the glow around the sun for a second one
 
 
+# ---- materials ----
+
+def principled(material):
+    """The shader that the importer made, if the material has one still."""
+    return next((n for n in material.node_tree.nodes if n.type == "BSDF_PRINCIPLED"), None)
+
+
 # ---- leaves ----
 
 def let_light_through(material):
     """What the file says of light through leaves (KHR_materials_diffuse_transmission), which Blender's importer leaves out."""
     told = material.get("light_through")
     nodes, links = material.node_tree.nodes, material.node_tree.links
-    shader = next((n for n in nodes if n.type == "BSDF_PRINCIPLED"), None)
+    shader = principled(material)
     if not told or not shader or any(n.type == "BSDF_TRANSLUCENT" for n in nodes):
         return
     tint, through = nodes.new("ShaderNodeMixRGB"), nodes.new("ShaderNodeBsdfTranslucent")
@@ -334,7 +341,7 @@ def noise(group, place, size_m, detail):
 
 def roughen_land(material):
     nodes, links = material.node_tree.nodes, material.node_tree.links
-    shader = next((n for n in nodes if n.type == "BSDF_PRINCIPLED"), None)
+    shader = principled(material)
     is_land = material.name.split(".")[0] in ("ground", "apron")
     if not is_land or not shader or any(n.type == "GROUP" and n.node_tree == land_group() for n in nodes):
         return
@@ -414,7 +421,7 @@ def add_haze(material):
     haze = nodes.new("ShaderNodeGroup")
     haze.node_tree = haze_group()
     haze.location = (output.location.x, output.location.y + 200)
-    shader = next((n for n in nodes if n.type == "BSDF_PRINCIPLED"), None)
+    shader = principled(material)
     alpha = shader and shader.inputs["Alpha"].links
     if alpha:
         links.new(alpha[0].from_socket, haze.inputs["Alpha"])
