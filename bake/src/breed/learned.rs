@@ -96,14 +96,16 @@ impl<'a> Learned<'a> {
     pub fn bred(&self, next: u32, seed: u64) -> Population {
         // Of two kinds of trees that stand twice each, one may have to stand where it does not grow, lest two landscapes look
         // like one: then there are more.
-        let mut best = self.paired(next, seed, 1);
+        let (mut parts, mut discord) = self.paired(next, seed, 1);
         for least_trees in 2..INDIVIDUALS {
-            if best.1 > 0 {
-                let other = self.paired(next, seed, least_trees);
-                best = if other.1 < best.1 { other } else { best };
+            if discord == 0 {
+                break;
+            }
+            let (others, less) = self.paired(next, seed, least_trees);
+            if less < discord {
+                (parts, discord) = (others, less);
             }
         }
-        let (parts, _) = best;
         let individuals = std::array::from_fn(|child| {
             let chromosomes = parts.each_ref().map(|part| part[child].clone());
             self.individual(child, chromosomes)
