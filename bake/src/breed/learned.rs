@@ -94,36 +94,9 @@ impl<'a> Learned<'a> {
 
     /// Generation `next`, where chance depends on `seed`.
     pub fn bred(&self, next: u32, seed: u64) -> Population {
-        // Of two kinds of trees that stand twice each, one may have to stand where it does not grow, lest two landscapes look
-        // like one: then there are more.
-        let (mut parts, mut discord) = self.paired(next, seed, 1);
-        for least_trees in 2..INDIVIDUALS {
-            if discord == 0 {
-                break;
-            }
-            let (others, less) = self.paired(next, seed, least_trees);
-            if less < discord {
-                (parts, discord) = (others, less);
-            }
-        }
-        let individuals = std::array::from_fn(|child| {
-            let chromosomes = parts.each_ref().map(|part| part[child].clone());
-            self.individual(child, chromosomes)
-        });
-        let Population { generation, seed, variety, ref locked, .. } = *self.parents;
-        let parent = Some(Parent { generation, votes: self.votes, variety });
-        Population { parent, variety, locked: locked.clone(), ..Population::new(next, seed, individuals) }
-    }
-
-    /// What the landscapes have of each category, where so many trees at least are not those of the first; and how much does not go
-    /// together, but for the first.
-    fn paired(&self, next: u32, seed: u64, least_trees: usize) -> ([Vec<Chromosome>; 3], usize) {
         let mut parts: [Vec<Chromosome>; 3] = Default::default();
         for category in ORDER {
-            let settings = self.settings(category, &parts);
-            let least_new = if category == Category::Tree { least_trees } else { 1 };
-            let least_new = least_new.max(self.least_new(category));
-            let mut four = self.part(category, next, seed, &settings, least_new);
+            let mut four = self.part(category, next, seed, &self.settings(category, &parts));
             four.iter_mut().enumerate().for_each(|(child, one)| self.keep_locked(category, child, one));
             parts[category as usize] = four;
         }
@@ -133,8 +106,14 @@ impl<'a> Learned<'a> {
                 [(a, &at_a), (b, &at_b)].map(|(one, at)| Seen { at, kind: self.kind(category, one) });
             self.distance(category, a, b)
         };
-        let discord = pair(self.space, self.kinds, &mut parts, &distance, CLEARLY_DIFFERENT);
-        (parts, discord)
+        pair(self.space, self.kinds, &mut parts, &distance, CLEARLY_DIFFERENT);
+        let individuals = std::array::from_fn(|child| {
+            let chromosomes = parts.each_ref().map(|part| part[child].clone());
+            self.individual(child, chromosomes)
+        });
+        let Population { generation, seed, variety, ref locked, .. } = *self.parents;
+        let parent = Some(Parent { generation, votes: self.votes, variety });
+        Population { parent, variety, locked: locked.clone(), ..Population::new(next, seed, individuals) }
     }
 
     /// Four of what votes leave possible, by chance.
@@ -185,16 +164,8 @@ impl<'a> Learned<'a> {
         Settings { companies }
     }
 
-    /// What the four have of one category, of which so many at least are not the first one. Seeds of what is no longer the
-    /// favourite's kind are another individual's.
-    fn part(
-        &self,
-        category: Category,
-        next: u32,
-        seed: u64,
-        settings: &Settings<'_>,
-        least_new: usize,
-    ) -> Vec<Chromosome> {
+    /// What the four have of one category. Seeds of what is no longer the favourite's kind are another individual's.
+    fn part(&self, category: Category, next: u32, seed: u64, settings: &Settings<'_>) -> Vec<Chromosome> {
         let taste = &self.tastes[category as usize];
         let item = u64::from(next) << 2 | category as u64;
         let mut dice = Dice::new(seed, "spread", item);
@@ -223,7 +194,7 @@ impl<'a> Learned<'a> {
         };
         let mut others = spread.others(&four, &mut dice);
         if let Some(best) = four.first().filter(|_| is_settling) {
-            others = spread.sparing(best, others, NEW_COSTS[category as usize], least_new);
+            others = spread.sparing(best, others, NEW_COSTS[category as usize], self.least_new(category));
         }
         four.extend(Varied { spread: &spread }.others(variety, &four, others, &mut dice));
         let mut made: Vec<Chromosome> = Vec::new();

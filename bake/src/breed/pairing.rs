@@ -13,15 +13,14 @@ const ORDERS: [[usize; INDIVIDUALS]; 6] =
 /// Trees and skies in the order in which no two landscapes are alike, most look different in two parts at least, for one alone
 /// hardly makes another place, most parts go together, most have the land and trees of the first, whose light alone is to be
 /// baked, and the two that look most alike differ most. All parts of the first, the best guess, stay together. How different
-/// two parts look is told by `distance`; they look clearly different from `clearly` on. Returns how much does not go together then,
-/// but for the first.
+/// two parts look is told by `distance`; they look clearly different from `clearly` on.
 pub fn pair(
     space: &Space,
     kinds: &Kinds,
     parts: &mut [Vec<Chromosome>; 3],
     distance: &dyn Fn(Category, &Chromosome, &Chromosome) -> f32,
     clearly: f32,
-) -> usize {
+) {
     let homes: Vec<Vec<Home<'_>>> = Category::ALL
         .into_iter()
         .zip(parts.iter())
@@ -38,6 +37,11 @@ pub fn pair(
             let place = place(number);
             std::array::from_fn(|category| &parts[category][place[category]])
         };
+        let discord = |number: usize| {
+            let place = place(number);
+            let homes = std::array::from_fn(|category| homes[category][place[category]]);
+            Company::discord(space, landscape(number), homes)
+        };
         let all: [[&Chromosome; 3]; INDIVIDUALS] = std::array::from_fn(landscape);
         let pairs = || (0..INDIVIDUALS).flat_map(|a| (0..a).map(move |b| (a, b)));
         let alike = pairs().filter(|(a, b)| all[*a] == all[*b]).count();
@@ -50,21 +54,14 @@ pub fn pair(
         let least = pairs().map(|pair| differ(pair).iter().map(|one| one * one).sum::<f32>());
         let least = least.fold(f32::MAX, f32::min);
         let planted = all.iter().filter(|one| one[..2] != all[0][..2]).count();
-        let discord = |number: usize| {
-            let place = place(number);
-            let homes = std::array::from_fn(|category| homes[category][place[category]]);
-            Company::discord(space, all[number], homes)
-        };
         let discord: usize = (1..INDIVIDUALS).map(discord).sum();
         // In thousandths, for floats are not ordered.
         (alike, with(0), with(1), discord, planted, Reverse((1000.0 * least) as u32))
     };
     let all = ORDERS.iter().flat_map(|trees| ORDERS.iter().map(move |skies| (trees, skies)));
-    let ranked = all.map(|(trees, skies)| (rank(trees, skies), trees, skies));
-    let Some(((_, _, _, discord, ..), trees, skies)) = ranked.min() else { return 0 };
+    let Some((trees, skies)) = all.min_by_key(|(trees, skies)| rank(trees, skies)) else { return };
     for (category, order) in [(Category::Tree, trees), (Category::Sky, skies)] {
         let part = &mut parts[category as usize];
         *part = order.iter().map(|from| part[*from].clone()).collect();
     }
-    discord
 }

@@ -107,24 +107,18 @@ fn whatever_the_variety_children_are_of_kinds() {
     }
 }
 
-/// How many landscapes of these generations of some lineages have something that does not go together, and how many there are.
-/// First ones do not count: favourites stand together there, whatever goes with them.
-fn discords(
-    space: &Space,
-    kinds: &Kinds,
-    variety: Option<Variety>,
-    seeds: Range<u64>,
-    generations: Range<u32>,
-) -> [usize; 2] {
+/// How many landscapes of some lineages have something that does not go together, and how many there are. First ones do not
+/// count: favourites stand together there, whatever goes with them.
+fn discords(space: &Space, kinds: &Kinds, variety: Option<Variety>, seeds: Range<u64>) -> [usize; 2] {
     let strategy = Strategy::Learned;
     let of = |seed| {
         let mut history = vec![Population { variety, ..drawn(space, kinds, seed, 0) }];
         let (mut discords, mut all) = (0, 0);
-        for next in 1..generations.end {
+        for next in 1..=9 {
             let (now, past) = history.split_last_mut().expect("a first one");
             now.votes = Some(random_votes(seed, next));
             let children = Breeder::new(space, kinds, strategy, past, now).expect("votes").bred(next, seed);
-            for one in children.individuals[1..].iter().filter(|_| generations.contains(&next)) {
+            for one in &children.individuals[1..] {
                 let homes = Category::ALL.map(|category| home(space, kinds, category, one));
                 let parts = Category::ALL.map(|category| one.genome.chromosome(category));
                 discords += usize::from(Company::discord(space, parts, homes) > 0);
@@ -142,21 +136,11 @@ fn whatever_was_voted_trees_and_sky_of_the_others_go_with_their_land() {
     let space = Space::builtin();
     let (kinds, _) = Kinds::shipped(&space);
     for part in [None, variety(0.75), variety(1.0)] {
-        let [discords, all] = discords(&space, &kinds, part, 80..85, 1..10);
+        let [discords, all] = discords(&space, &kinds, part, 80..85);
         // Measured with 15 seeds: 0.09, 0.11 and 0.13, and 0.46 where each category is bred for itself. Towards no variety all are
         // variations of the favourites, which may disagree.
         assert!(discords * 6 < all, "{part:?}: {discords} of {all} have what does not go together");
     }
-}
-
-/// From some votes on fewer are new, and trees and lands stand twice each.
-#[test]
-fn what_stands_twice_goes_with_both_of_its_lands() {
-    let space = Space::builtin();
-    let (kinds, _) = Kinds::shipped(&space);
-    let [discords, all] = discords(&space, &kinds, None, 320..326, 8..13);
-    // 0 of 90; 4 where two kinds of trees have to do. (Of 26 seeds 11 and 20 of 390.)
-    assert!(discords * 25 < all, "{discords} of {all} have what does not go together");
 }
 
 #[test]
