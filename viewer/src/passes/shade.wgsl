@@ -11,7 +11,7 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 }
 
 const TAPS: u32 = 8u;
-// Columns of the rotation by the golden angle: sines and cosines of each tap's own angle would cost as much as what it looks up.
+// Columns of the rotation by the golden angle, from one tap to the next: a sine and a cosine for each take longer.
 const GOLDEN_TURN = mat2x2f(vec2f(-0.737368878, 0.675490294), vec2f(-0.675490294, -0.737368878));
 // From so far away edges are as wide as they get.
 const FAR_M: f32 = 30.0;

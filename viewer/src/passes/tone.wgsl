@@ -31,9 +31,8 @@ fn curve(x: vec3f) -> vec3f {
 fn film(linear: vec3f) -> vec3f {
     let wide = max(INSET * linear, vec3f(1e-10));
     let ev = clamp((log2(wide) - MIN_EV) / (MAX_EV - MIN_EV), vec3f(0.0), vec3f(1.0));
-    var toned = curve(ev);
+    let toned = max(curve(ev), vec3f(0.0));
     // A little more contrast and colour than the neutral look (Troy Sobotka's "Punchy", two thirds of the way).
-    toned = max(toned, vec3f(0.0));
     let luma = luminance(toned);
     // To the power of 1.25, without a logarithm.
     let color = toned * sqrt(sqrt(toned));
