@@ -206,7 +206,13 @@ pub fn terrain(land: &Landform) -> TerrainMesh {
             triangles: vec![[0, 1, 2], [0, 2, 3]],
         }],
     };
-    TerrainMesh { near: grid(&land.field, false), apron: grid(&land.apron, true), water, error_m: 0.5 }
+    TerrainMesh {
+        near: grid(&land.field, false),
+        apron: grid(&land.apron, true),
+        apron_weights: Vec::new(),
+        water,
+        error_m: 0.5,
+    }
 }
 
 /// Turned, stretched and sheared instances on dry land.

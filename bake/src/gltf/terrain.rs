@@ -1,10 +1,11 @@
 //! The terrain mesh → a .glb that opens alone, whose buffer scenes use by byte offset; and the materials that a
 //! scene gives it.
 
+use genescape_schema::scene::GROUND_WEIGHTS;
 use serde_json::{Value, json};
 
 use super::ExportError;
-use super::document::{Document, Node};
+use super::document::{ARRAY_BUFFER, Document, Node, UNSIGNED_BYTE};
 use super::glb::write_glb;
 use super::materials::matte;
 use super::vertices::{Surface, add_vertices};
@@ -35,7 +36,10 @@ pub fn terrain_glb(terrain: &TerrainMesh) -> Result<Vec<u8>, ExportError> {
         let bare = Mesh { uvs: Vec::new(), ..mesh.clone() };
         let surface = Surface { material: Some(material), normal_map: near };
         let primitives = add_vertices(&mut document, name, if near { mesh } else { &bare }, &|_| surface)?;
-        let primitives: Vec<Value> = primitives.into_iter().map(|p| p.json).collect();
+        let mut primitives: Vec<Value> = primitives.into_iter().map(|p| p.json).collect();
+        if name == TERRAIN_MESHES[1] {
+            primitives.iter_mut().for_each(|apron| add_weights(&mut document, apron, &terrain.apron_weights));
+        }
         let mut object = json!({ "name": name, "primitives": primitives });
         if near {
             object["extras"] = json!({ "error_m": terrain.error_m });
@@ -47,6 +51,16 @@ pub fn terrain_glb(terrain: &TerrainMesh) -> Result<Vec<u8>, ExportError> {
     document.scenes.push(json!({ "name": "terrain", "nodes": roots }));
     let json = document.json();
     Ok(write_glb(json, document.bin))
+}
+
+/// Blend weights of the kinds of ground as an attribute of a mesh's vertices, of all of them, if there are any.
+fn add_weights(document: &mut Document, primitive: &mut Value, weights: &[[u8; 4]]) {
+    if !weights.is_empty() {
+        let view = document.view(weights.as_flattened(), Some(ARRAY_BUFFER), None);
+        let all = document.accessor(view, 0, UNSIGNED_BYTE, weights.len(), "VEC4");
+        document.accessors[all]["normalized"] = true.into();
+        primitive["attributes"][GROUND_WEIGHTS] = all.into();
+    }
 }
 
 /// A material without textures.

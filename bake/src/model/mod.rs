@@ -24,7 +24,7 @@ pub use leaf_color::leaf_color;
 pub use light::LightMap;
 pub use lookout::Lookout;
 pub use mesh::{Bounds, Material, Mesh, Part, PartKind};
-pub use terrain::{Landform, TerrainMesh};
+pub use terrain::{FarGround, Landform, TerrainMesh};
 pub use tree::{
     Caster, Clusters, Impostor, Level, LevelledMesh, Morph, Placement, TreeFootprint, TreeTemplate,
     TreeTextures, is_dead,

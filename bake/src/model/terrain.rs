@@ -1,5 +1,6 @@
 //! The land.
 
+use bytemuck::{Pod, Zeroable};
 use genescape_schema::scene::{Heightfield, floats};
 use glam::Vec2;
 use serde::{Deserialize, Serialize};
@@ -56,6 +57,16 @@ impl Landform {
     }
 }
 
+/// What the ground around a sample of `Landform::apron` is like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct FarGround {
+    /// Albedo: linear red, green and blue, 0 to 255 for 0 to 1, and 255.
+    pub color: [u8; 4],
+    /// Parts of rock, scree, snow and earth, as `GroundMaps::weights` has them: at most 255 in all, the rest is grass.
+    pub weights: [u8; 4],
+}
+
 /// The land as triangles for any viewer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TerrainMesh {
@@ -63,6 +74,8 @@ pub struct TerrainMesh {
     pub near: Mesh,
     /// The ring of `Landform::apron` around it, joined to its border without a crack; uv continues beyond 0..1.
     pub apron: Mesh,
+    /// Of each of its vertices, [`FarGround::weights`].
+    pub apron_weights: Vec<[u8; 4]>,
     /// The water surface: two triangles or empty.
     pub water: Mesh,
     /// Greatest vertical distance in metres between `near` and the heightfield, as verified.

@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 use super::{GroundSurface, Resource, floats};
 
 pub const GSC_HEIGHTFIELD: &str = "GSC_heightfield";
+/// Attribute of the vertices of the land around the field: parts of the surface's details 1 to 4, as `weights` has them.
+pub const GROUND_WEIGHTS: &str = "_GROUND_WEIGHTS";
 
 /// Heights on a square grid of (2^k+1)² samples, centred on the origin.
 ///

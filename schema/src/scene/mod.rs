@@ -28,7 +28,7 @@ mod view;
 
 pub use cutout::Alpha;
 pub use ground::{GroundDetail, GroundSurface};
-pub use heightfield::{GSC_HEIGHTFIELD, Heightfield, HeightfieldExtension, TerrainLod};
+pub use heightfield::{GROUND_WEIGHTS, GSC_HEIGHTFIELD, Heightfield, HeightfieldExtension, TerrainLod};
 pub use heightfield_bytes::HeightfieldError;
 pub use impostor::{GSC_IMPOSTOR, IMPOSTOR_PICTURES, ImpostorExtension};
 pub use instances::{

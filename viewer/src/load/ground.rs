@@ -3,7 +3,9 @@
 use std::convert::Infallible;
 use std::sync::Arc;
 
-use genescape_schema::scene::{GSC_HEIGHTFIELD, GroundSurface, HeightfieldExtension, Resource, TerrainLod};
+use genescape_schema::scene::{
+    GROUND_WEIGHTS, GSC_HEIGHTFIELD, GroundSurface, HeightfieldExtension, Resource, TerrainLod,
+};
 use rayon::prelude::*;
 
 use super::bounds::{MAX_LAND_M, is_plant, within};
@@ -70,6 +72,10 @@ fn apron(document: &Document) -> Result<Apron> {
             Some(colors) => apron.colors.extend(document.values::<[u8; 4]>(colors)?),
             None => apron.colors.resize(apron.positions_m.len(), [128; 4]),
         }
+        match get(gltf::Semantic::Extras(GROUND_WEIGHTS.trim_start_matches('_').into())) {
+            Some(weights) => apron.weights.extend(document.values::<[u8; 4]>(weights)?),
+            None => apron.weights.resize(apron.positions_m.len(), [0; 4]),
+        }
         let count = apron.positions_m.len() - base as usize;
         let indices = document.indices(&primitive, count)?;
         apron.triangles.extend(indices.chunks_exact(3).map(|t| [t[0] + base, t[1] + base, t[2] + base]));
@@ -77,6 +83,7 @@ fn apron(document: &Document) -> Result<Apron> {
     let count = apron.positions_m.len();
     let sound = apron.normals.len() == count
         && apron.colors.len() == count
+        && apron.weights.len() == count
         && within(apron.positions_m.as_flattened(), MAX_LAND_M);
     if sound {
         Ok(apron)

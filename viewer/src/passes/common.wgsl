@@ -77,7 +77,8 @@ struct View {
 struct Tree {
     // World from the template's space, by rows.
     rows: array<vec4f, 3>,
-    template_index: u32,
+    // Number of its template, and the share of the sun that the land around leaves, as halves.
+    template_and_sun: u32,
     // Greatest singular value of its linear part.
     scale: f32,
     // Of the ellipsoid around its leaves, in the template's space, as halves: height of its middle, semi-axes; 0 if there
@@ -196,10 +197,11 @@ fn by_way_of_others(albedo: vec3f, outwardness: f32) -> vec3f {
     return albedo * (1.2 * bright * bright * (1.0 - 0.7 * outwardness));
 }
 
-// The share of the sun that the land leaves to a tree, where its foot is: beyond the field, all. For vertices.
-fn sun_past_land(rows: array<vec4f, 3>) -> f32 {
+// The share of the sun that the land leaves to a tree, where its foot is: the light map tells in the field. For vertices.
+fn sun_past_land(rows: array<vec4f, 3>, template_and_sun: u32) -> f32 {
     let foot = field_uv(vec2f(rows[0].w, rows[2].w));
-    return select(textureSampleLevel(light_map, clamped, foot, 0.0).b, 1.0, is_beyond_field(rows));
+    let beyond = unpack2x16unorm(template_and_sun).y;
+    return select(textureSampleLevel(light_map, clamped, foot, 0.0).b, beyond, is_beyond_field(rows));
 }
 
 // The rows of the linear part, weighted, are its transpose: for what is turned and scaled alike, the way back.

@@ -187,7 +187,7 @@ fn choose(@builtin(global_invocation_id) id: vec3u) {
     if (index >= cull.instances) {
         return;
     }
-    let template_index = trees[index].template_index;
+    let template_index = trees[index].template_and_sun & 0xFFFFu;
     let center = from_template(trees[index].rows, templates[template_index].center);
     let scale = trees[index].scale;
     let radius = templates[template_index].radius * scale;
@@ -204,7 +204,7 @@ fn choose(@builtin(global_invocation_id) id: vec3u) {
 
 // Enters a tree that is seen into the lists of what it is drawn as.
 fn list_tree(index: u32, center: vec3f, radius: f32) {
-    let template_index = trees[index].template_index;
+    let template_index = trees[index].template_and_sun & 0xFFFFu;
     let scale = trees[index].scale;
     let to_eye = cull.eye - center;
     let distance = max(length(to_eye) - radius, MIN_DISTANCE_M);

@@ -79,7 +79,7 @@ fn vertex(@builtin(vertex_index) vertex: u32) -> Out {
     let shown = visible[slot].shown;
     let index = vertex & 3u;
     let rows = trees[tree].rows;
-    let template_index = trees[tree].template_index;
+    let template_index = trees[tree].template_and_sun & 0xFFFFu;
     let axis = frames[template_index].axis;
     let size = frames[template_index].size;
     let low = frames[template_index].low;
@@ -121,7 +121,7 @@ fn vertex(@builtin(vertex_index) vertex: u32) -> Out {
     out.leaves = vec3f(size / leaf_m, saturate(leaf_m * view.focal_px / away));
     out.air = air_before(out.world);
     let cosine = dot(way / away, view.sun_direction);
-    out.sun = vec3f(phase(cosine), glow(cosine), sun_past_land(rows));
+    out.sun = vec3f(phase(cosine), glow(cosine), sun_past_land(rows, trees[tree].template_and_sun));
     return out;
 }
 

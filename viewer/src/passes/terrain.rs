@@ -22,8 +22,8 @@ pub const SHADER: Shader = Shader {
 /// Attributes of [`block::Block`].
 pub const BLOCK: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Uint32x2, 1 => Uint32];
 /// Attributes of [`RingVertex`].
-pub const RING: [wgpu::VertexAttribute; 3] =
-    wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Unorm8x4];
+pub const RING: [wgpu::VertexAttribute; 4] =
+    wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Unorm8x4, 3 => Unorm8x4];
 
 #[derive(Debug)]
 pub struct Terrain {

@@ -475,19 +475,22 @@ override SHADED_M: f32;
 struct RingVertex {
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
-    @location(2) color: vec4f,
+    // Albedo, and the share of the sun that the land around leaves.
+    @location(2) color_and_sun: vec4f,
+    @location(3) weights: vec4f,
 }
 
 struct RingOut {
     @builtin(position) clip: vec4f,
     @location(0) world: vec3f,
     @location(1) normal: vec3f,
-    @location(2) color: vec3f,
+    @location(2) color_and_sun: vec4f,
+    @location(3) weights: vec4f,
 }
 
 @vertex
 fn ring_vertex(in: RingVertex) -> RingOut {
-    return RingOut(view.clip_from_world * vec4f(in.position, 1.0), in.position, in.normal, in.color.rgb);
+    return RingOut(view.clip_from_world * vec4f(in.position, 1.0), in.position, in.normal, in.color_and_sun, in.weights);
 }
 
 // Metres of a tile of far rock, which stands for crags and gullies that the ring is too coarse for, and how far its bumps
@@ -512,19 +515,36 @@ fn patches(color: vec3f, crag: vec3f) -> vec3f {
     return 1.0 + dry * vec3f(0.2, 0.1, -0.05) * (1.0 - smoothstep(0.35, 0.6, color.b));
 }
 
+// From how far on crags begin to stand for what the kinds of ground look like, and from where on they do.
+const CRAGS_FROM_M = vec2f(150.0, 500.0);
+
 fn ring_radiance(in: RingOut) -> vec3f {
     let smooth_normal = normalize(in.normal);
+    let color = in.color_and_sun.rgb;
+    let away = distance(in.world, view.eye);
+    let far = smoothstep(CRAGS_FROM_M.x, CRAGS_FROM_M.y, away);
     let tiles = crags(in.world.xz);
     // Plains are smooth, slopes are not.
     let rough = mix(0.12, 1.0, smoothstep(0.97, 0.78, smooth_normal.y));
-    let lean = tiles.bump.xy * (CRAGS_LEAN * rough);
+    var lean = tiles.bump.xy * (CRAGS_LEAN * rough * far);
+    var albedo = color * mix(vec3f(1.0), mix(patches(color, tiles.factor), tiles.factor, rough), far);
+    let finer = exp2(view.mip_bias);
+    let dx = finer * dpdx(in.world);
+    let dy = finer * dpdy(in.world);
+    // As the field has them; a loop, for the reason given there.
+    for (var near = 1.0 - far; near > 0.0; near = 0.0) {
+        let shorter = less_stretched(dx, dy);
+        let at = Surface(in.world, dx * shorter.x, dy * shorter.y, sides_of(smooth_normal));
+        let seen = looks(at, parts_of(in.weights), scales_at(away));
+        let comes_through = seen.color.rgb / max(mixed_color(in.weights), vec3f(1e-3));
+        albedo *= mix(vec3f(1.0), comes_through * seen.tiles.factor, near);
+        lean += near * seen.tiles.bump.xy;
+    }
     let normal = normalize(vec3f(smooth_normal.x + lean.x, smooth_normal.y, smooth_normal.z - lean.y));
-    let albedo = in.color * mix(patches(in.color, tiles.factor), tiles.factor, rough);
     let shaded = in.world.xz / (2.0 * (view.field.z + SHADED_M)) + 0.5;
-    let left = textureSample(far_shade, clamped, shaded).r;
+    let left = textureSample(far_shade, clamped, shaded).r * in.color_and_sun.a;
     let sun = view.sun_irradiance * (max(dot(normal, view.sun_direction), 0.0) * left);
-    let sky = view.sky_irradiance * (0.5 + 0.5 * normal.y);
-    return hazed(air_before(in.world), albedo / PI * (sun + sky + from_land(normal.y)));
+    return hazed(air_before(in.world), albedo / PI * (sun + ambient_on_land(normal.y, 1.0)));
 }
 
 @fragment

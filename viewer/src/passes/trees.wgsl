@@ -64,7 +64,7 @@ fn placed(in: In) -> Out {
     out.shown = in.shown.xy;
     out.air = air_before(world);
     out.chance = scattered(vec2f(f32(in.vertex), f32(in.tree)));
-    out.past_land = sun_past_land(rows);
+    out.past_land = sun_past_land(rows, trees[in.tree].template_and_sun);
     out.sun = 1.0;
     if (is_beyond_field(rows) && trees[in.tree].crown.x != 0u) {
         out.sun = sun_behind_crown(in.tree, in.position + alpha * in.delta);

@@ -41,6 +41,8 @@ pub struct Apron {
     pub normals: Vec<[f32; 3]>,
     /// Linear albedo in 8 bits a channel, alpha unused.
     pub colors: Vec<[u8; 4]>,
+    /// Parts of the surface's details 1 to 4, in 8 bits each; the rest is detail 0.
+    pub weights: Vec<[u8; 4]>,
     /// Triangles, counter-clockwise.
     pub triangles: Vec<[u32; 3]>,
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 use rayon::prelude::*;
 
+use super::far_sun::FarSun;
 use super::ground_kinds;
 use super::texture::{mean_light, mip_levels};
 use super::{ImageUse, Lake, PlantBuffers, Ring, Uploader};
@@ -48,7 +49,7 @@ pub struct GroundBuffers {
 }
 
 impl Uploader {
-    pub(super) fn ground(&self, scene: &Scene) -> Result<GroundBuffers, String> {
+    pub(super) fn ground(&self, scene: &Scene, far_sun: &FarSun) -> Result<GroundBuffers, String> {
         let ground = &scene.ground;
         let surface = &ground.surface;
         if surface.details.len() != 5 {
@@ -82,7 +83,7 @@ impl Uploader {
             light: self.image(&surface.light, ImageUse::Data),
             details: self.tiling(&surface.details)?,
             kinds: ground_kinds::of(surface, albedo_linear),
-            ring: self.ring(&ground.apron, half_m),
+            ring: self.ring(&ground.apron, half_m, far_sun),
             far_shade: self.far_shade(&scene.trees, &ground.apron, half_m, scene.sky.light.sun_direction),
             lake: Lake::of(ground),
             plants: self.plants(ground),

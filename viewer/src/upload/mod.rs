@@ -5,6 +5,7 @@ mod asset;
 mod clusters;
 mod exhibit;
 mod far_shade;
+mod far_sun;
 mod ground;
 mod ground_kinds;
 mod horizon;
@@ -45,6 +46,7 @@ pub use trees::{
 
 use crate::gpu::{Gpu, flat};
 use crate::scene::{Ground, Scene};
+use far_sun::FarSun;
 
 /// A landscape on the device.
 #[derive(Debug)]
@@ -80,14 +82,11 @@ impl Uploader {
 
     /// Uploads a landscape. May run on any thread.
     pub fn upload(&self, scene: &Scene) -> Result<SceneBuffers, String> {
+        let sun_direction = scene.sky.light.sun_direction;
+        let far_sun = FarSun::of(&scene.ground.field, &scene.ground.apron, sun_direction);
         let (land, (trees, sky_textures)) = rayon::join(
-            || self.ground(scene),
-            || {
-                rayon::join(
-                    || self.trees(&scene.trees, scene.sky.light.sun_direction),
-                    || self.sky(&scene.sky),
-                )
-            },
+            || self.ground(scene, &far_sun),
+            || rayon::join(|| self.trees(&scene.trees, sun_direction, &far_sun), || self.sky(&scene.sky)),
         );
         Ok(SceneBuffers {
             name: scene.name.clone(),

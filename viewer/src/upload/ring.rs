@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use glam::Vec3;
+use rayon::prelude::*;
 
 use super::Uploader;
+use super::far_sun::FarSun;
 use crate::camera::Frustum;
 use crate::scene::Apron;
 
@@ -41,13 +43,15 @@ pub struct RingVertex {
     pub position_m: [f32; 3],
     /// Unit length.
     pub normal: [f32; 3],
-    /// Linear albedo.
-    pub color: [u8; 4],
+    /// Linear albedo; in alpha, the share of the sun that the land around leaves.
+    pub color_and_sun: [u8; 4],
+    /// [`Apron::weights`].
+    pub weights: [u8; 4],
 }
 
 impl Uploader {
-    pub(super) fn ring(&self, apron: &Apron, half_m: f32) -> Ring {
-        let (vertices, indices) = ring(apron, half_m);
+    pub(super) fn ring(&self, apron: &Apron, half_m: f32, sun: &FarSun) -> Ring {
+        let (vertices, indices) = ring(apron, half_m, sun);
         let (indices, sectors) = sectors(&vertices, &indices);
         Ring {
             vertices: self.gpu.buffer("ring", &vertices, wgpu::BufferUsages::VERTEX),
@@ -106,13 +110,14 @@ fn sectors(vertices: &[RingVertex], indices: &[u32]) -> (Vec<u32>, Vec<Sector>) 
 
 /// The ring with a curtain below its inner edge. The field's edge moves with its level of detail, the ring's doesn't:
 /// where the field's sinks below, the curtain closes the gap as seen from inside the field, where walkers are.
-fn ring(apron: &Apron, half_m: f32) -> (Vec<RingVertex>, Vec<u32>) {
-    let vertex = |v: usize| RingVertex {
-        position_m: apron.positions_m[v],
-        normal: apron.normals[v],
-        color: apron.colors[v],
+fn ring(apron: &Apron, half_m: f32, sun: &FarSun) -> (Vec<RingVertex>, Vec<u32>) {
+    let vertex = |v: usize| {
+        let (position_m, [r, g, b, _]) = (apron.positions_m[v], apron.colors[v]);
+        let left = (255.0 * sun.left(position_m.into()) + 0.5) as u8;
+        let (normal, weights) = (apron.normals[v], apron.weights[v]);
+        RingVertex { position_m, normal, color_and_sun: [r, g, b, left], weights }
     };
-    let mut vertices: Vec<RingVertex> = (0..apron.positions_m.len()).map(vertex).collect();
+    let mut vertices: Vec<RingVertex> = (0..apron.positions_m.len()).into_par_iter().map(vertex).collect();
     let mut indices: Vec<u32> = apron.triangles.as_flattened().to_vec();
     for [a, b] in inner_edges(apron, half_m) {
         let first = vertices.len() as u32;
@@ -152,6 +157,7 @@ fn inner_edges(apron: &Apron, half_m: f32) -> Vec<[u32; 2]> {
 mod tests {
     use super::*;
     use crate::camera::Camera;
+    use crate::scene::Heightfield;
 
     #[test]
     fn a_curtain_hangs_from_every_inner_edge_and_from_no_other() {
@@ -166,11 +172,14 @@ mod tests {
         let apron = Apron {
             normals: vec![[0.0, 1.0, 0.0]; 8],
             colors: vec![[100; 4]; 8],
+            weights: vec![[30; 4]; 8],
             triangles: triangles.collect(),
             positions_m,
         };
         assert_eq!(inner_edges(&apron, 1.0), [[0, 1], [0, 3], [1, 2], [2, 3]]);
-        let (vertices, indices) = ring(&apron, 1.0);
+        let sun =
+            FarSun::of(&Heightfield { side: 3, spacing_m: 1.0, heights_m: vec![5.0; 9] }, &apron, Vec3::Y);
+        let (vertices, indices) = ring(&apron, 1.0, &sun);
         assert_eq!((vertices.len(), indices.len()), (8 + 8, 8 * 3 + 4 * 12));
         assert!(vertices[8..].iter().all(|v| v.position_m[1] == 5.0 - CURTAIN_M));
     }
@@ -183,7 +192,8 @@ mod tests {
             RingVertex {
                 position_m: [away_m * cos, 0.0, away_m * sin],
                 normal: [0.0, 1.0, 0.0],
-                color: [0; 4],
+                color_and_sun: [0; 4],
+                weights: [0; 4],
             }
         };
         let quad = |q: u32| [0, 1, 2, 2, 1, 3].map(|corner| (2 * q + corner) % (2 * quads));

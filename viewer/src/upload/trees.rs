@@ -8,6 +8,7 @@ use glam::Vec3;
 use half::f16;
 
 use super::clusters::{self, ClusterSheet};
+use super::far_sun::FarSun;
 use super::{ImageUse, ImpostorSet, PICTURE_VERTICES, Uploader};
 use crate::scene::{Crown, Image, Instance, Material, Range, Template, TreeVertex, Trees};
 
@@ -21,8 +22,8 @@ pub const MATERIALS_PER_TREE_SET: usize = 4;
 pub struct TreeData {
     /// World from the template's space, by rows.
     pub rows: [[f32; 4]; 3],
-    /// Number of its template.
-    pub template_index: u32,
+    /// Number of its template, and the share of the sun that the land around leaves, 0 to 65535 for 0 to 1, for trees beyond the field.
+    pub template_and_sun: [u16; 2],
     /// Greatest singular value of the linear part.
     pub scale: f32,
     /// Of the ellipsoid around its template's leaves: height of its middle, semi-axes along x, y and z; 0 if nothing is known.
@@ -157,7 +158,7 @@ pub struct TreeMaterial {
 
 impl Uploader {
     /// With the sun in that direction; `None` if there are no trees to draw.
-    pub(super) fn trees(&self, trees: &Trees, sun: Vec3) -> Option<TreeSet> {
+    pub(super) fn trees(&self, trees: &Trees, sun: Vec3, far_sun: &FarSun) -> Option<TreeSet> {
         if trees.all().next().is_none() || trees.templates.is_empty() {
             return None;
         }
@@ -171,7 +172,7 @@ impl Uploader {
         let trees = plain.as_ref().unwrap_or(trees);
         let (gpu, materials) = (&self.gpu, common_materials(trees, sheet.as_ref()));
         let lists = arrange(trees, &materials);
-        let all_trees: Vec<TreeData> = trees.all().map(|tree| tree_data(trees, tree)).collect();
+        let all_trees: Vec<TreeData> = trees.all().map(|tree| tree_data(trees, tree, far_sun)).collect();
         let vertices = trees.templates.iter().enumerate().map(|(number, template)| match &sheet {
             Some(sheet) => Cow::Owned(sheet.moved(number, template)),
             None => Cow::Borrowed(&template.vertices),
@@ -327,16 +328,18 @@ fn template_data(template: &Template, first: u32, capacity: u32) -> TemplateData
     }
 }
 
-fn tree_data(trees: &Trees, instance: &Instance) -> TreeData {
+fn tree_data(trees: &Trees, instance: &Instance, far_sun: &FarSun) -> TreeData {
     let template = trees.templates.get(instance.template as usize);
     // Bare twigs hardly shade each other.
     let leafy = template.filter(|template| template.materials.iter().all(|material| !material.thin));
     let crown = leafy.and_then(|template| template.impostor.as_ref()).map(|pictures| pictures.crown);
     let crown =
         crown.map_or([0.0; 4], |Crown { middle_m: [_, middle, _], half_m: [x, y, z] }| [middle, x, y, z]);
+    let [x, y, z] = instance.world_from_tree.map(|row| row[3]);
+    let sun = 65_535.0 * far_sun.left(Vec3::new(x, y, z)) + 0.5;
     TreeData {
         rows: instance.world_from_tree,
-        template_index: instance.template,
+        template_and_sun: [instance.template as u16, sun as u16],
         scale: instance.max_scale(),
         crown: crown.map(f16::from_f32),
     }

@@ -17,8 +17,8 @@ pub const MIN_HEIGHT_M: f32 = 0.5;
 pub const WADING_DEPTH_M: f32 = 1.2;
 /// Radius of a walker's body.
 pub const BODY_RADIUS_M: f32 = 0.25;
-/// A walker keeps this far from the edge of the land.
-pub const EDGE_M: f32 = 1.0;
+/// So much of the way from the middle to the edge may be walked: of 1,024 m, up to 41 m before the edge, beyond which no grass grows.
+pub const WALKABLE: f32 = 0.92;
 
 /// What a walker meets in one landscape.
 #[derive(Clone, Debug)]
@@ -166,7 +166,7 @@ impl Land {
 
     /// Half the side in metres of the square around the landscape's middle on which one can walk.
     fn reach_m(&self) -> f32 {
-        if self.field.side < 2 { 0.0 } else { (0.5 * self.field.extent_m() - EDGE_M).max(0.0) }
+        if self.field.side < 2 { 0.0 } else { WALKABLE * 0.5 * self.field.extent_m() }
     }
 
     fn has(&self, place_m: Vec2) -> bool {

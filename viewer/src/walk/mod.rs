@@ -24,7 +24,7 @@ use glam::{Vec2, Vec3, Vec3Swizzles};
 use serde::Serialize;
 
 pub use anchor::Anchor;
-pub use land::{BODY_RADIUS_M, EDGE_M, EYE_HEIGHT_M, Land, MIN_HEIGHT_M, Subject, WADING_DEPTH_M, within};
+pub use land::{BODY_RADIUS_M, EYE_HEIGHT_M, Land, MIN_HEIGHT_M, Subject, WADING_DEPTH_M, WALKABLE, within};
 pub use start::{anchor_for, start_pose};
 pub use steps::{advance, free, nearest_free};
 pub use trunks::{Trunk, Trunks};

@@ -120,7 +120,7 @@ proptest! {
             let pose = rig.pose();
             for (camera, land) in cameras.iter().zip(lands) {
                 let gone_m = land.anchor.in_walk(Vec2::new(camera.position_m.x, camera.position_m.z));
-                let edge_m = 0.5 * land.field.extent_m() - EDGE_M;
+                let edge_m = WALKABLE * 0.5 * land.field.extent_m() - 1e-2;
                 let is_at_edge = land.anchor.in_land(pose.place_m()).abs().max_element() > edge_m;
                 prop_assert!(gone_m.distance(pose.place_m()) < 1e-3 || is_at_edge, "{gone_m} {pose:?}");
                 prop_assert!(wrapped(camera.yaw_rad - land.anchor.yaw_rad - pose.yaw_rad).abs() < 1e-5);

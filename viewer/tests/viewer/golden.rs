@@ -80,6 +80,7 @@ fn frame_of_land(field: &Heightfield) -> Apron {
         positions_m: [ring(half, -4.0), ring(2000.0, -4.0)].concat(),
         normals: vec![[0.0, 1.0, 0.0]; 8],
         colors: vec![[30, 45, 20, 255]; 8],
+        weights: vec![[0; 4]; 8],
         triangles: (0..4u32)
             .flat_map(|k| [[k, (k + 1) % 4, 4 + k], [(k + 1) % 4, 4 + (k + 1) % 4, 4 + k]])
             .collect(),

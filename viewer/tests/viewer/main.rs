@@ -14,6 +14,7 @@ mod files;
 mod golden;
 mod ground_kinds;
 mod lab;
+mod land_around;
 mod lod_twin;
 mod made_up;
 mod manual;

@@ -138,7 +138,11 @@ fn uniforms_are_laid_out_alike() {
 
 #[test]
 fn elements_of_buffers_are_laid_out_alike() {
-    same!(["cull", "trees", "impostors", "shadow"], "Tree", TreeData { rows, template_index, scale, crown });
+    same!(
+        ["cull", "trees", "impostors", "shadow"],
+        "Tree",
+        TreeData { rows, template_and_sun, scale, crown }
+    );
     same!(
         ["cull"],
         "Template",
@@ -181,7 +185,7 @@ fn attributes_start_where_fields_do() {
     assert_eq!(offsets(&plants::VERTEX), fields!(PlantVertex { position, normal, tint }));
     let (block, size) = fields!(Block { i, level });
     assert_eq!((offsets(&terrain::BLOCK), offset_of!(Block, j)), ((block, size), 4));
-    assert_eq!(offsets(&terrain::RING), fields!(RingVertex { position_m, normal, color }));
+    assert_eq!(offsets(&terrain::RING), fields!(RingVertex { position_m, normal, color_and_sun, weights }));
     let tree = fields!(TreeVertex {
         position_m,
         color,

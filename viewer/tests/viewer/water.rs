@@ -114,6 +114,7 @@ fn a_far_flat_shore_is_where_the_ring_comes_out_of_the_lake() {
             .to_vec(),
         normals: vec![[0.0, 1.0, 0.0]; 4],
         colors: vec![[200, 20, 20, 255]; 4],
+        weights: vec![[0; 4]; 4],
         triangles: vec![[0, 1, 2], [0, 2, 3]],
     });
     let camera =
@@ -158,6 +159,7 @@ fn a_sea_is_darker_than_the_sky_where_it_ends_and_a_lake_is_not() {
             positions_m: corners.map(|[x, z]| [x, shore_m, z]).to_vec(),
             normals: vec![[0.0, 1.0, 0.0]; 3],
             colors: vec![[100; 4]; 3],
+            weights: vec![[0; 4]; 3],
             triangles: vec![[0, 1, 2]],
         });
         let eye = Camera { position_m: Vec3::new(0.0, 25.0, 0.0), ..camera() };

@@ -1,5 +1,5 @@
 //! Landform → the look of the ground: an albedo map and blend weights over the field (one texel a
-//! metre at 1024²), colours for the apron, and five tiling detail textures. Albedo holds no light: linear
+//! metre at 1024²), what the apron is like, and five tiling detail textures. Albedo holds no light: linear
 //! reflectances of grass, rock, scree, snow, earth and sand as measured outdoors, written as sRGB where 8-bit.
 //!
 //! Cover follows slope, drained area, deposits, altitude and distance to water, as in
@@ -34,7 +34,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::math::lerp_array;
-use crate::model::{GroundMaps, Image8, Landform};
+use crate::model::{FarGround, GroundMaps, Image8, Landform};
 use crate::raster::square;
 use cover::{Noise, Painter};
 pub use foreground::{Ground, foreground};
@@ -101,9 +101,8 @@ pub fn maps(params: &GroundParams, woods: &Woods, land: &Landform, side_px: u32)
     GroundMaps { color: color_srgb, weights, plants }
 }
 
-/// Colours the apron: linear red, green, blue and 255 for each of its samples, row by row, 0 to 255 for 0 to 1. On
-/// the field's border they are the mean of the map around.
-pub fn apron_colors(params: &GroundParams, season: Season, land: &Landform) -> Vec<[u8; 4]> {
+/// What the ground is like at each of the apron's samples, row by row. On the field's border that is the mean of the maps around.
+pub fn far_ground(params: &GroundParams, season: Season, land: &Landform) -> Vec<FarGround> {
     let painter = Painter::new(params, land, &Woods::none(season));
     let patches = Patches::new(params.terrain_seed, land.field.extent_m(), 0.0..=1.0);
     let apron = &land.apron;
@@ -115,34 +114,39 @@ pub fn apron_colors(params: &GroundParams, season: Season, land: &Landform) -> V
         let away_m = (x - inner_x).abs().max((z - inner_z).abs());
         let own = || {
             let here = traits::far(&patches, land, i, j);
-            mean_color(&painter, |_| here)
+            mean_ground(&painter, |_| here)
         };
         let border = || {
-            mean_color(&painter, |s| {
+            mean_ground(&painter, |s| {
                 let (dx, dz) = ((s % 4) as f32 - 1.5, (s / 4) as f32 - 1.5);
                 let at = |v: f32, d: f32| ((v + d * 14.0) / (2.0 * half_m) + 0.5).clamp(0.0, 1.0);
                 traits::near(&patches, land, at(inner_x, dx), at(inner_z, dz))
             })
         };
         let t = (away_m / 300.0).min(1.0);
-        let linear = match t {
+        let mean = match t {
             0.0 => border(),
             1.0 => own(),
             t => lerp_array(border(), own(), t),
         };
-        let [r, g, b] = linear.map(|c| (c * 255.0 + 0.5) as u8);
-        [r, g, b, 255]
+        let [r, g, b, weights @ ..] = mean;
+        let [r, g, b] = [r, g, b].map(|c| (c * 255.0 + 0.5) as u8);
+        // Rounded down, so that four of them cannot pass 255.
+        FarGround { color: [r, g, b, 255], weights: weights.map(|part| (part * 255.0) as u8) }
     })
 }
 
-/// The mean colour of sixteen texels that differ in grain.
-fn mean_color(painter: &Painter, traits: impl Fn(u32) -> Traits) -> [f32; 3] {
-    let mut sum = [0.0; 3];
+/// Mean colour, and parts of all kinds but grass, of sixteen texels that differ in grain.
+fn mean_ground(painter: &Painter, traits: impl Fn(u32) -> Traits) -> [f32; 7] {
+    let mut sum = [0.0; 7];
     for s in 0..16 {
         let here = traits(s);
         let noise = Noise::sample(s);
-        let color = painter.color(&here, &painter.cover(&here, &noise), &noise);
-        sum = [0, 1, 2].map(|c| sum[c] + color[c] * 0.0625);
+        let cover = painter.cover(&here, &noise);
+        let [r, g, b] = painter.color(&here, &cover, &noise);
+        let [_, rock, scree, snow, earth] = cover.parts();
+        let found = [r, g, b, rock, scree, snow, earth];
+        sum.iter_mut().zip(found).for_each(|(sum, found)| *sum += found * 0.0625);
     }
     sum
 }

@@ -63,7 +63,7 @@ fn same_bytes_on_any_number_of_threads() {
         with_threads(threads, || {
             (
                 maps(&PARAMS, &Woods::none(Season::default()), &LAND, 256),
-                apron_colors(&PARAMS, Season::default(), &LAND),
+                far_ground(&PARAMS, Season::default(), &LAND),
             )
         })
     };
@@ -185,9 +185,9 @@ fn apron_continues_the_map() {
 
 fn check_apron(season: Season) {
     let made = maps(&PARAMS, &Woods::none(season), &LAND, 512);
-    let colors = apron_colors(&PARAMS, season, &LAND);
+    let far = far_ground(&PARAMS, season, &LAND);
     let linear = |c: u8| libm::powf((f32::from(c) / 255.0 + 0.055) / 1.055, 2.4);
-    let mut apart = 0.0f32;
+    let (mut apart, mut apart_of_kinds) = (0.0f32, [0.0f32; 4]);
     for k in 0..=12 {
         // The northern border, 32 texels around, against the apron's samples there, smoothed alike.
         let mean = |texels: std::ops::Range<u32>| {
@@ -199,13 +199,20 @@ fn check_apron(season: Season) {
             sum / (texels.len() * 12) as f32
         };
         let map = mean(k * 32..(k + 4) * 32);
-        let apron: f32 =
-            (0..=4).map(|s| f32::from(colors[(56 * 129 + 56 + k + s) as usize][1]) / 255.0).sum::<f32>()
-                / 5.0;
+        let samples = || far[(56 * 129 + 56 + k) as usize..][..5].iter();
+        let apron = samples().map(|s| f32::from(s.color[1]) / 255.0).sum::<f32>() / 5.0;
         apart += (map - apron).abs() / 13.0;
+        for (kind, apart) in apart_of_kinds.iter_mut().enumerate() {
+            let texels = (k * 32..(k + 4) * 32).flat_map(|i| (0..12).map(move |j| (i, j)));
+            let map: f32 = texels.map(|(i, j)| f32::from(made.weights.pixel(i, j)[kind])).sum();
+            let apron = samples().map(|s| f32::from(s.weights[kind])).sum::<f32>() / 5.0;
+            *apart += (map / (128.0 * 12.0) - apron).abs() / (255.0 * 13.0);
+        }
     }
     assert!(apart < 0.05, "{apart} apart");
-    assert!(colors.len() == 129 * 129 && colors.iter().all(|c| c[3] == 255));
+    assert!(apart_of_kinds.iter().all(|&apart| apart < 0.15), "{apart_of_kinds:?} apart");
+    assert!(far.len() == 129 * 129 && far.iter().all(|s| s.color[3] == 255));
+    assert!(far.iter().all(|s| s.weights.map(u32::from).iter().sum::<u32>() <= 255));
 }
 
 #[test]

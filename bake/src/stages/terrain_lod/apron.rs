@@ -6,7 +6,7 @@ use genescape_schema::scene::bintree::Sample;
 
 use super::curved::{Curved, Fine, PARTS};
 use crate::math::{cell, lerp_array, triangles_between};
-use crate::model::{Heightfield, Landform, Material, Mesh, Part, PartKind};
+use crate::model::{FarGround, Heightfield, Landform, Material, Mesh, Part, PartKind};
 
 /// Metres of water that one unit of its texture coordinates covers.
 const WATER_TILE_M: f32 = 16.0;
@@ -29,13 +29,19 @@ pub(super) fn border_samples(land: &Landform) -> Vec<Sample> {
 }
 
 /// The apron outside the field. Between the field's border and the apron's first line of samples outside it lies
-/// a strip whose inner vertices are just those of the near mesh. Empty if the apron is no wider than the field.
-pub(super) fn ring(land: &Landform, used: impl Fn(Sample) -> bool, colors: &[[u8; 4]]) -> Mesh {
-    let Some(hole) = Hole::of(land) else { return Mesh::default() };
+/// a strip whose inner vertices are just those of the near mesh. With each vertex's weights of the kinds of ground. Empty if the
+/// apron is no wider than the field.
+pub(super) fn ring(
+    land: &Landform,
+    used: impl Fn(Sample) -> bool,
+    ground: &[FarGround],
+) -> (Mesh, Vec<[u8; 4]>) {
+    let Some(hole) = Hole::of(land) else { return Default::default() };
     let fine_side = (land.apron.side - 1) * PARTS + 1;
     let numbers = vec![u32::MAX; land.field.heights_m.len() + (fine_side * fine_side) as usize];
-    let (mesh, triangles) = (Mesh::default(), Vec::new());
-    let mut ring = Ring { land, curved: Curved::of(land), colors, fine_side, mesh, numbers, triangles };
+    let (mesh, weights, triangles) = Default::default();
+    let curved = Curved::of(land);
+    let mut ring = Ring { land, curved, ground, fine_side, mesh, weights, numbers, triangles };
     let mut inner = [const { Vec::new() }; 4];
     let last = land.field.side - 1;
     for along in 0..=last {
@@ -55,7 +61,7 @@ pub(super) fn ring(land: &Landform, used: impl Fn(Sample) -> bool, colors: &[[u8
     }
     ring.cells(&hole);
     let parts = vec![Part { material: Material::Ground, kind: PartKind::Surface, triangles: ring.triangles }];
-    Mesh { parts, ..ring.mesh }
+    (Mesh { parts, ..ring.mesh }, ring.weights)
 }
 
 /// Two triangles as wide as the apron at the water's level; empty if the land is dry.
@@ -104,10 +110,11 @@ enum Place {
 struct Ring<'a> {
     land: &'a Landform,
     curved: Curved<'a>,
-    colors: &'a [[u8; 4]],
+    ground: &'a [FarGround],
     /// Places a side of the apron.
     fine_side: u32,
     mesh: Mesh,
+    weights: Vec<[u8; 4]>,
     /// Of the vertices that are made, by the samples of the field and then the places of the apron.
     numbers: Vec<u32>,
     triangles: Vec<[u32; 3]>,
@@ -130,29 +137,33 @@ impl Ring<'_> {
             Place::Inner(sample) => vertex(field, sample),
             Place::Outer(fine) => self.curved.vertex(fine),
         };
-        let color = self.color_between(position[0], position[2]);
+        let FarGround { color, weights } = self.ground_between(position[0], position[2]);
         self.mesh.positions.push(position);
         self.mesh.normals.push(normal);
         self.mesh.uvs.push([position[0] / extent_m + 0.5, position[2] / extent_m + 0.5]);
         self.mesh.colors.push(color);
+        self.weights.push(weights);
         number
     }
 
-    /// The colours of the apron's four samples around a point, blended.
-    fn color_between(&self, x_m: f32, z_m: f32) -> [u8; 4] {
+    /// The ground at the apron's four samples around a point, blended.
+    fn ground_between(&self, x_m: f32, z_m: f32) -> FarGround {
         let apron = &self.land.apron;
         let last = (apron.side - 1) as f32;
         let grid = |along: f32| (along / apron.spacing_m + 0.5 * last).clamp(0.0, last);
         let side = apron.side as usize;
         let ((i, u), (j, v)) = (cell(grid(x_m), side), cell(grid(z_m), side));
-        let color = |at: usize| self.color(at).map(f32::from);
-        let along = |j: usize| lerp_array(color(j * side + i), color(j * side + i + 1), u);
-        lerp_array(along(j), along(j + 1), v).map(|c| (c + 0.5) as u8)
+        let values = |at: usize| bytemuck::cast::<_, [u8; 8]>(self.ground(at)).map(f32::from);
+        let along = |j: usize| lerp_array(values(j * side + i), values(j * side + i + 1), u);
+        let [color, weights] = bytemuck::cast::<_, [[f32; 4]; 2]>(lerp_array(along(j), along(j + 1), v));
+        // Weights are rounded down, so that four of them cannot pass 255.
+        FarGround { color: color.map(|c| (c + 0.5) as u8), weights: weights.map(|part| part as u8) }
     }
 
-    /// The colour of a sample of the apron; white where there is none.
-    fn color(&self, index: usize) -> [u8; 4] {
-        self.colors.get(index).copied().unwrap_or([255; 4])
+    /// At a sample of the apron; white where nothing is known.
+    fn ground(&self, index: usize) -> FarGround {
+        const UNKNOWN: FarGround = FarGround { color: [255; 4], weights: [0; 4] };
+        self.ground.get(index).copied().unwrap_or(UNKNOWN)
     }
 
     /// Fills the strip between two rows of vertices that both ascend along `axis` (0 = x, 2 = z).

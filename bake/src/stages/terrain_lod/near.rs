@@ -12,7 +12,7 @@ use genescape_schema::scene::bintree::{Sample, Triangle, requires};
 use super::apron;
 use super::data::{displacements_m, nested};
 use super::verify::max_error_m;
-use crate::model::{Heightfield, Landform, Material, Mesh, Part, PartKind, TerrainMesh};
+use crate::model::{FarGround, Heightfield, Landform, Material, Mesh, Part, PartKind, TerrainMesh};
 
 /// The smallest error bound that [`default_error_m`] gives, in metres.
 const MIN_DEFAULT_M: f32 = 0.15;
@@ -26,11 +26,11 @@ const GOOD_AFTER: u8 = 4;
 
 /// The land as triangles. `near` lies within `max_error_m` metres (vertically) of the triangulation of all samples
 /// with diagonals as in the bintree; 0 or less keeps every sample. The true maximum, measured afterwards on the
-/// finished mesh at every sample, is `error_m`. `apron_colors` holds a linear RGB factor for each sample of the
-/// apron (missing ones are white). No triangle crosses the lines every `block_m` metres from the north-west corner
+/// finished mesh at every sample, is `error_m`. `far_ground` says what the ground is like at each sample of the apron
+/// (missing ones are white, and of grass). No triangle crosses the lines every `block_m` metres from the north-west corner
 /// (rounded down to a power of two in cells), so that scenes can cut out squares. Triangles are in the order of
 /// Sierpiński's curve, which suits vertex caches.
-pub fn mesh(land: &Landform, max_error_m: f32, block_m: f32, apron_colors: &[[u8; 4]]) -> TerrainMesh {
+pub fn mesh(land: &Landform, max_error_m: f32, block_m: f32, far_ground: &[FarGround]) -> TerrainMesh {
     let field = &land.field;
     let mut refiner = Refiner::new(field, max_error_m);
     for sample in apron::border_samples(land).into_iter().chain(block_corners(field, block_m)) {
@@ -40,7 +40,8 @@ pub fn mesh(land: &Landform, max_error_m: f32, block_m: f32, apron_colors: &[[u8
     let near = refiner.triangles();
     let error_m = self::max_error_m(field, &near);
     let used = |[i, j]: Sample| refiner.marks[(j * field.side + i) as usize] & USED != 0;
-    TerrainMesh { error_m, apron: apron::ring(land, used, apron_colors), water: apron::water(land), near }
+    let (apron, apron_weights) = apron::ring(land, used, far_ground);
+    TerrainMesh { error_m, apron, apron_weights, water: apron::water(land), near }
 }
 
 /// The corners of square blocks of 2^n cells, at most `block_m` wide but at least one cell. Where both ends of a

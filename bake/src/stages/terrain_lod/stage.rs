@@ -12,7 +12,7 @@ use crate::stages::ground::{self, GroundParams, Season};
 /// Landform → mesh for any viewer, data for the levels of detail, 16-bit heights.
 #[derive(Serialize)]
 pub struct TerrainStage {
-    /// Genes of the colours of the land beyond the field.
+    /// Genes of what covers the land beyond the field.
     pub params: GroundParams,
     pub season: Season,
     pub landform: Input<Landform>,
@@ -34,15 +34,15 @@ pub struct TerrainFiles {
 
 impl Stage for TerrainStage {
     const NAME: &'static str = "terrain";
-    const VERSION: u32 = 19;
+    const VERSION: u32 = 20;
     type Output = TerrainFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<TerrainFiles, StageError> {
         let landform = context.get(&self.landform)?;
         let field = &landform.field;
-        let colors = ground::apron_colors(&self.params, self.season, &landform);
+        let far_ground = ground::far_ground(&self.params, self.season, &landform);
         let triangles = || -> Result<_, StageError> {
-            let mesh = mesh(&landform, default_error_m(field), ground::BLOCK_M, &colors);
+            let mesh = mesh(&landform, default_error_m(field), ground::BLOCK_M, &far_ground);
             let glb = terrain_glb(&mesh)?;
             let Mesh { positions, parts, .. } = mesh.apron;
             let ring = Mesh { positions, parts, ..Mesh::default() };

@@ -9,7 +9,7 @@ use genescape_schema::scene::{HeightfieldError, bintree};
 use super::data::displacements_m;
 use super::verify::max_error_m;
 use super::*;
-use crate::model::{Heightfield, Landform, Mesh, TerrainLod};
+use crate::model::{FarGround, Heightfield, Landform, Mesh, TerrainLod};
 use crate::noise::fbm2;
 
 fn field(side: u32, spacing_m: f32, seed: u32, relief_m: f32) -> Heightfield {
@@ -239,8 +239,12 @@ fn the_verifier_sees_what_is_wrong() {
 fn the_apron_joins_the_near_mesh_edge_by_edge() {
     for (side, bound_m) in [(129, 0.3), (129, 50.0), (5, 0.0)] {
         let land = land(side, 4, 120.0, None);
-        let colors: Vec<[u8; 4]> = (0..65 * 65).map(|k| [(k % 65) as u8, (k / 65) as u8, 9, 255]).collect();
-        let built = mesh(&land, bound_m, f32::MAX, &colors);
+        let ground = |k: u32| FarGround {
+            color: [(k % 65) as u8, (k / 65) as u8, 9, 255],
+            weights: [(k / 65) as u8, 0, 190, (k % 65) as u8],
+        };
+        let all: Vec<FarGround> = (0..65 * 65).map(ground).collect();
+        let built = mesh(&land, bound_m, f32::MAX, &all);
         assert_faces_up(&built.apron);
         let place = |mesh: &Mesh, edge: [u32; 2]| edge.map(|v| mesh.positions[v as usize].map(f32::to_bits));
         let mut near: Vec<_> =
@@ -256,6 +260,13 @@ fn the_apron_joins_the_near_mesh_edge_by_edge() {
         for (position, color) in built.apron.positions.iter().zip(&built.apron.colors) {
             let grid = position[0] / 64.0 + 32.0;
             assert!((f32::from(color[0]) - grid).abs() <= 0.51 && color[2] == 9);
+        }
+        assert_eq!(built.apron_weights.len(), built.apron.positions.len());
+        for (position, weights) in built.apron.positions.iter().zip(&built.apron_weights) {
+            let [x, z] = [0, 2].map(|axis: usize| position[axis] / 64.0 + 32.0);
+            let [rock, scree, snow, earth] = weights.map(f32::from);
+            assert!((0.0..1.01).contains(&(z - rock)) && (0.0..1.01).contains(&(x - earth)), "{weights:?}");
+            assert_eq!([scree, snow], [0.0, 190.0]);
         }
         assert!(built.near.colors.is_empty());
     }
