@@ -325,7 +325,7 @@ fn kinds(params: &GroundParams, painter: &Painter) -> Vec<PlantKind> {
         (stones::stone(), stone_colors),
         (stones::boulder(), boulders(painter)),
         (
-            shapes::litter(litter.leaf_m, litter.is_needles),
+            shapes::litter(litter.leaf_m, litter.wide),
             vec![litter.colors, litter.colors.map(|c| c.map(|c| 0.7 * c))],
         ),
         (shapes::tussock(), tussocks(painter)),

@@ -521,21 +521,29 @@ pub(super) fn herb() -> PlantShape {
     d.done()
 }
 
-/// Six fallen leaves, or a scatter of needles, flat on the ground.
-pub(super) fn litter(leaf_m: f32, is_needles: bool) -> PlantShape {
+/// Narrower leaves, as parts of their length, are needles or leaflets of fronds: twice as many lie there.
+const NARROW: f32 = 0.2;
+
+/// Fallen leaves flat on the ground, `wide` times as wide as they are long, folded along the middle and curled up.
+pub(super) fn litter(leaf_m: f32, wide: f32) -> PlantShape {
     let mut d = Drawing::new(66);
-    let (count, long, wide) = if is_needles { (12, 0.07, 0.006) } else { (6, leaf_m, 0.62 * leaf_m) };
+    let count = if wide < NARROW { 12 } else { 6 };
     for _ in 0..count {
         let turn = d.unit() * TAU;
         let middle =
             heading(d.unit() * TAU) * (0.34 * d.unit().sqrt()) + Vec3::Y * (0.008 + 0.016 * d.unit());
-        let (along, across) = (heading(turn) * (0.5 * long), heading(turn + 0.25 * TAU) * (0.5 * wide));
-        let curl = Vec3::Y * (0.16 * long * d.unit());
+        let (along, across) = (leaf_m * heading(turn), 0.5 * wide * leaf_m * heading(turn + 0.25 * TAU));
+        let curl = Vec3::Y * (0.16 * leaf_m * d.unit());
+        let (root, tip) = (middle - 0.5 * along, middle + 0.5 * along + curl);
         let tint = d.unit();
-        let [root, tip, left, right] =
-            [middle - along, middle + along + curl, middle - across + curl, middle + across];
-        d.leaf([root, right, tip], [tint; 3]);
-        d.leaf([root, tip, left], [tint * 0.8; 3]);
+        for (way, tint) in [(-1.0, 0.8 * tint), (1.0, tint)] {
+            let fold = Vec3::Y * (0.3 * wide * leaf_m * d.unit());
+            let edge =
+                |at: f32, part: f32| middle + at * along + part * (way * across + fold) + (at + 0.5) * curl;
+            let (low, high) = (edge(-0.2, 0.9), edge(0.18, 0.85));
+            d.leaf([root, low, high], [tint; 3]);
+            d.leaf([root, high, tip], [tint; 3]);
+        }
     }
     d.done()
 }

@@ -51,8 +51,9 @@ pub(super) struct Litter {
     pub amount: f32,
     /// Of the carpet, and of leaves that lie on it.
     pub colors: [Rgb; 2],
+    /// Length of a leaf, and its width as a part of it.
     pub leaf_m: f32,
-    pub is_needles: bool,
+    pub wide: f32,
 }
 
 /// What comes up under a kind of tree.
@@ -91,14 +92,14 @@ impl Litter {
         let broad = |amount: f32, colors: [Rgb; 2]| Self {
             amount,
             colors,
-            leaf_m: params.leaf_size_m.clamp(0.04, 0.16),
-            is_needles: false,
+            leaf_m: params.leaf_size_m.clamp(0.04, 0.1),
+            wide: 0.62,
         };
         match params.leaf_shape {
             _ if params.is_asleep() => broad(0.8, [BROWN, STRAW]),
             _ if params.is_dead() => broad(0.25, [BROWN, RUSSET]),
-            NEEDLES => Self { is_needles: true, ..broad(0.85, [RUSSET, BROWN]) },
-            FRONDS => broad(0.25, [STRAW, BROWN]),
+            NEEDLES => Self { leaf_m: 0.07, wide: 0.086, ..broad(0.85, [RUSSET, BROWN]) },
+            FRONDS => Self { leaf_m: 0.2, wide: 0.12, ..broad(0.25, [STRAW, BROWN]) },
             _ => {
                 let amount = 0.4 + 0.5 * autumn;
                 let carpet = lerp_array(BROWN, bright, 0.45 * autumn);

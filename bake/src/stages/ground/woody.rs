@@ -44,6 +44,8 @@ pub(super) fn bush() -> PlantShape {
         .collect();
     let outward = |at: Vec3| (at - 0.3 * Vec3::Y).normalize_or(Vec3::Y);
     let depth = |at: Vec3| ((at - 0.42 * Vec3::Y).length() / 0.6).min(1.0);
+    // What is deep inside or below is in the shade of the rest.
+    let lit = |at: Vec3| 0.02 + 0.55 * depth(at) * depth(at) * lerp(0.4, 1.0, (at.y / 0.8).clamp(0.0, 1.0));
     // Within, in the shade of the leaves.
     for &(middle, aim) in &sprays {
         let inner = middle - 0.08 * outward(middle);
@@ -61,16 +63,9 @@ pub(super) fn bush() -> PlantShape {
             // In the light of its own face, and of the bush's.
             let normal = |face: Vec3| {
                 let front = if face.dot(outward(middle)) < 0.0 { -face } else { face };
-                front + 0.6 * outward(middle)
+                front + 0.25 * outward(middle)
             };
-            twig_leaf(
-                &mut d,
-                [from, along],
-                normal,
-                [0.12, 0.05, 0.05],
-                [0.3 + 0.35 * depth(from), 0.35],
-                0.7,
-            );
+            twig_leaf(&mut d, [from, along], normal, [0.12, 0.05, 0.05], [lit(from), 0.45], 0.7);
         }
     }
     d.done()
