@@ -8,8 +8,9 @@ use crate::scene::{Apron, Heightfield};
 
 /// Metres from height to height, as far as the apron's samples are apart.
 const CELL_M: f32 = 64.0;
-/// Metres from step to step of a ray: fewer, so that none passes a ridge's edge unseen.
+/// Metres from step to step of a ray: fewer, so that none passes a ridge's edge unseen; far away as many as are this part of the way.
 const STEP_M: f32 = 0.5 * CELL_M;
+const STEP: f32 = 1.0 / 32.0;
 /// No land is looked for farther away than this.
 const REACH_M: f32 = 8_000.0;
 /// From so far below the horizon up to as far above it, as slopes, more and more of the sun is seen: several times as much as its disc
@@ -78,20 +79,20 @@ impl FarSun {
         }
         let (mut away_m, mut horizon) = (CELL_M, f32::NEG_INFINITY);
         while away_m < REACH_M && place_m.y + (self.rise - SOFTNESS) * away_m < self.top_m {
-            let height_m = self.height_m(place_m.xz() + away_m * self.towards);
+            let Some(height_m) = self.height_m(place_m.xz() + away_m * self.towards) else { break };
             horizon = horizon.max((height_m - place_m.y) / away_m);
-            away_m += STEP_M;
+            away_m += STEP_M.max(STEP * away_m);
         }
         let seen = ((self.rise - horizon) / (2.0 * SOFTNESS) + 0.5).clamp(0.0, 1.0);
         seen * seen * (3.0 - 2.0 * seen)
     }
 
-    /// Bilinear; far below all land where some of it is unknown.
-    fn height_m(&self, place_m: Vec2) -> f32 {
+    /// Bilinear; far below all land where some of it is unknown, and `None` beyond the last cells.
+    fn height_m(&self, place_m: Vec2) -> Option<f32> {
         let at = (place_m + self.half_m) / CELL_M;
         let last = self.across as f32 - 1.0;
         if !(at.min_element() >= 0.0 && at.max_element() < last) {
-            return UNKNOWN_M;
+            return None;
         }
         let (first, part) = (at.floor(), at.fract());
         let north_west = first.y as usize * self.across + first.x as usize;
@@ -100,7 +101,7 @@ impl FarSun {
             west_m + (east_m - west_m) * part.x
         };
         let (north_m, south_m) = (along(north_west), along(north_west + self.across));
-        north_m + (south_m - north_m) * part.y
+        Some(north_m + (south_m - north_m) * part.y)
     }
 }
 
