@@ -13,11 +13,11 @@ use wgpu::{CommandEncoder, LoadOp, RenderPass, TextureView};
 pub const SHADER: Shader = Shader {
     name: "shadow",
     source: include_str!("shadow.wgsl"),
-    constants: &[("LAND_STEP", LAND_STEP as f64)],
+    constants: &[("LAND_CELLS", LAND_CELLS as f64)],
 };
 
-/// The land is drawn as a grid of every so many samples.
-const LAND_STEP: u32 = 4;
+/// The land is drawn as a grid of so many cells a side, 8 m each, or of as many as it has: both are powers of two.
+const LAND_CELLS: u32 = 128;
 /// Trees that are drawn in one go: in software, a fifth of what four pictures take.
 const TREES_A_PIECE: u32 = 256;
 
@@ -86,7 +86,7 @@ impl ShadowBake<'_> {
             let mut pass = begin(&mut encoder, &self.map, LoadOp::Clear(1.0));
             pass.set_bind_group(0, &self.view, &[]);
             pass.set_pipeline(&self.passes.shadow.land);
-            let cells = (self.scene.ground.field.side - 1) / LAND_STEP;
+            let cells = (self.scene.ground.field.side - 1).min(LAND_CELLS);
             pass.draw(0..cells * cells * 6, 0..1);
         }
         self.gpu.work(encoder.finish());

@@ -37,15 +37,16 @@ fn twig(in: Out) {
     }
 }
 
-// The land as a grid of every so many samples, two triangles a cell, without buffers.
-override LAND_STEP: u32;
+// The land as a grid of so many cells a side, or of as many as it has, two triangles a cell, without buffers.
+override LAND_CELLS: u32;
 
 @vertex
 fn land(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    let cells = (u32(view.field.x) - 1u) / LAND_STEP;
+    let side = u32(view.field.x) - 1u;
+    let cells = min(side, LAND_CELLS);
     let cell = index / 6u;
     let corner = array<vec2u, 6>(vec2u(0, 0), vec2u(0, 1), vec2u(1, 0), vec2u(1, 0), vec2u(0, 1), vec2u(1, 1))[index % 6u];
-    let sample = (vec2u(cell % cells, cell / cells) + corner) * LAND_STEP;
+    let sample = (vec2u(cell % cells, cell / cells) + corner) * (side / cells);
     // A little lower than it is, lest what stands on it be shaded by it.
     let height = textureLoad(heights, vec2i(sample), 0).r - 0.5;
     let world = vec4f(place_m(f32(sample.x)), height, place_m(f32(sample.y)), 1.0);

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use genescape_viewer::camera::Camera;
 use genescape_viewer::headless::Headless;
 use genescape_viewer::options::{FrameInput, Options};
-use genescape_viewer::scene::{Range, Scene, Template, TreeVertex, Trees};
+use genescape_viewer::scene::{Range, Scene, Template, TerrainLod, TreeVertex, Trees};
 use genescape_viewer::view::View;
 use glam::Vec3;
 
@@ -35,11 +35,16 @@ fn pole() -> Template {
     tree
 }
 
-/// Such poles on grey land, under a sun in the east that stands as high as 8 to 6.
+/// Such poles on level grey land.
 fn scene(places: &[[f32; 2]], let_through: u8) -> Scene {
+    on_land(made_up::land(257, 1.0, |_, _| 0.0), places, let_through)
+}
+
+/// Such poles at height 0 on grey land, under a sun in the east that stands as high as 8 to 6.
+fn on_land(land: TerrainLod, places: &[[f32; 2]], let_through: u8) -> Scene {
     let instances = places.iter().map(|&[x, z]| made_up::instance(0, [x, 0.0, z], 1.0, 0.0)).collect();
     let trees = Trees { templates: vec![Arc::new(pole())], instances, ..Trees::default() };
-    let mut scene = made_up::scene(made_up::land(257, 1.0, |_, _| 0.0), [90, 90, 90, 255], [0.2; 3], trees);
+    let mut scene = made_up::scene(land, [90, 90, 90, 255], [0.2; 3], trees);
     let light = [255, (0.8 * 255.0) as u8, 255, let_through];
     scene.ground.surface.light = made_up::picture(&format!("light {let_through}"), 1, |_, _| light);
     scene.sky.light.sun_direction = Vec3::new(0.6, 0.8, 0.0);
@@ -107,6 +112,34 @@ fn shade_follows_where_one_walks() {
     assert_is_shade_of_pole(&shoot(&studio, &mut view, &above(88.0, 41.0), 1.0));
     // And back at once.
     assert_is_shade_of_pole(&shoot(&studio, &mut view, &above(-2.0, 1.0), 1.0));
+}
+
+/// As seen from the sun's side.
+fn brightness_of_pole(studio: &Headless, scene: &Scene, x: f32) -> f32 {
+    let mut view = studio.view(made_up::upload(studio, scene), [64; 2]);
+    let camera = Camera {
+        position_m: Vec3::new(x + 6.0, 4.0, 0.0),
+        yaw_rad: std::f32::consts::FRAC_PI_2,
+        pitch_rad: 0.0,
+        fov_y_rad: 0.1,
+    };
+    let options = Options { grass: false, ..Options::default() };
+    let frame = FrameInput { options, ..FrameInput::default() };
+    let drawn = studio.shoot(&mut view, &frame, &camera, &camera).expect("a picture");
+    f32::from(drawn.get_pixel(32, 32)[1])
+}
+
+#[test]
+#[ignore = "needs a Vulkan driver: `cargo xtask test` runs it"]
+fn land_of_few_samples_does_not_shade_what_stands_in_its_valleys() {
+    let studio = made_up::studio();
+    // Valleys 64 m apart, 16 m a sample, with slopes that the sun overlooks.
+    let valleys = |i: u32, _| [0.0, 10.0, 20.0, 10.0][(i as usize + 2) % 4];
+    let x = 32.0;
+    let level =
+        brightness_of_pole(&studio, &on_land(made_up::land(65, 16.0, |_, _| 0.0), &[[x, 0.0]], 255), x);
+    let below = brightness_of_pole(&studio, &on_land(made_up::land(65, 16.0, valleys), &[[x, 0.0]], 255), x);
+    assert!((below / level - 1.0).abs() < 0.1, "{below} in a valley, {level} on level land");
 }
 
 #[test]

@@ -184,7 +184,9 @@ impl Placer<'_> {
             }
             Habit::Willow => {
                 let lean = if ends { 0.1 } else { 0.4 };
-                (along + side * lean - Vec3::Y * 0.5, out * 0.6 + any * 0.9, 0.3)
+                // Leaves of a stem that points up hang from it, too.
+                let hang = 0.5 + 0.9 * along.y.max(0.0);
+                (along + side * lean - Vec3::Y * hang, out * 0.6 + any * 0.9, 0.3)
             }
             _ => {
                 let lean = if ends { 0.2 } else { 0.95 };

@@ -260,7 +260,7 @@ impl Grower<'_> {
             if segment == segments {
                 break;
             }
-            along = self.bend(along, sprout.axis, level, z, segments);
+            along = self.bend(along, &sprout, z, segments);
             let forks = self.forks(&sprout, segment);
             if forks > 0 {
                 thickness *= 1.0 / (0.35 + 0.65 * (forks + 1) as f32).sqrt();
@@ -324,8 +324,8 @@ impl Grower<'_> {
     }
 
     /// The direction after one more segment: curve, gnarl, and the pull up or down.
-    fn bend(&mut self, along: Vec3, axis: Vec3, level: usize, z: f32, segments: u32) -> Vec3 {
-        let p = self.params;
+    fn bend(&mut self, along: Vec3, sprout: &Sprout, z: f32, segments: u32) -> Vec3 {
+        let (p, axis, level) = (self.params, sprout.axis, sprout.level as usize);
         let palm = self.is_palm();
         let nods = p.is_cane() && z >= 0.5;
         let curve_gain = [if palm { 0.3 } else { f32::from(u8::from(nods)) }, 1.0, 0.7, 0.5][level];
@@ -334,18 +334,20 @@ impl Grower<'_> {
         let back = if z + 0.5 * step >= 0.5 { 2.0 * p.curve_back_deg } else { 0.0 };
         let gnarl = (p.curve_variation_deg * gnarl_gain * step).to_radians();
         // Where all hangs, a leader that stood upright would stand alone above it.
-        let weeps = level == 0 && !palm && z >= NODS_FROM;
-        let weeping = if weeps { ramp(-0.5, -0.9, p.tropism) } else { 0.0 };
-        let nod_deg = weeping * NODS_BY_DEG / (1.0 - NODS_FROM);
+        let weeping = if palm { 0.0 } else { ramp(-0.5, -0.9, p.tropism) };
+        let leader = if level == 0 && z >= NODS_FROM { weeping } else { 0.0 };
+        let nod_deg = leader * NODS_BY_DEG / (1.0 - NODS_FROM);
         let curve =
             (((p.curve_deg + back) * curve_gain + nod_deg) * step).to_radians() + gnarl * self.dice.signed();
         let mut next = turned(along, axis, curve);
         next = (next + axis * (gnarl * self.dice.signed())).normalize_or(along);
-        let down = [0.0, 0.9, 3.4, 2.6][level];
+        // And so would a short branch near its top, which is no stiffer than a twig.
+        let short = (1.0 - sprout.length_m / (self.trunk_m * p.primary_length).max(0.01)).max(0.0);
+        let down = [0.0, 0.9 + 2.5 * weeping * short, 3.4, 2.6][level];
         let up = [if palm { 0.4 } else { 0.0 }, 0.5, 0.9, 0.9][level];
         let pull = if p.tropism < 0.0 { p.tropism * down } else { p.tropism * up };
         // Leaders right themselves whatever the genes say, but for the tips of canes.
-        let pull = if level == 0 && !palm && !nods { 0.45 * (1.0 - weeping) } else { pull };
+        let pull = if level == 0 && !palm && !nods { 0.45 * (1.0 - leader) } else { pull };
         let level_part = Vec3::Y - next * next.y;
         (next + level_part * (pull * step)).normalize_or(next)
     }
