@@ -218,11 +218,8 @@ def set_sky():
     bpy.context.scene.world, world.use_nodes = world, True
     nodes, links = world.node_tree.nodes, world.node_tree.links
     nodes.clear()
-    environment = nodes.new("ShaderNodeTexEnvironment")
-    environment.image = bpy.data.images.load(beside(SETTINGS["sky_file"]), check_existing=True)
-    coordinates, mapping = nodes.new("ShaderNodeTexCoord"), nodes.new("ShaderNodeMapping")
-    # The middle column of a picture is +x to Blender; ours is north, which is +y.
-    mapping.inputs["Rotation"].default_value = (0, 0, -math.pi / 2)
+    environment, mapping = sky_nodes(nodes)
+    coordinates = nodes.new("ShaderNodeTexCoord")
     background = nodes.new("ShaderNodeBackground")
     background.inputs["Strength"].default_value = SETTINGS["sky_strength"]
     output = nodes.new("ShaderNodeOutputWorld")
@@ -234,6 +231,16 @@ def set_sky():
         node.location = (300 * i, 0)
     if hasattr(world, "sun_threshold"):
         world.sun_threshold = 0.0  # Eevee would take the glow around the sun for a second one
+
+
+def sky_nodes(nodes):
+    """The sky's picture, and what turns a direction to it."""
+    environment = nodes.new("ShaderNodeTexEnvironment")
+    environment.image = bpy.data.images.load(beside(SETTINGS["sky_file"]), check_existing=True)
+    mapping = nodes.new("ShaderNodeMapping")
+    # The middle column of a picture is +x to Blender; ours is north, which is +y.
+    mapping.inputs["Rotation"].default_value = (0, 0, -math.pi / 2)
+    return environment, mapping
 
 
 # ---- materials ----
@@ -391,13 +398,29 @@ def haze_group():
     hazy = math_node(group, "MULTIPLY", math_node(group, "SUBTRACT", 1.0, clear), inputs.outputs["Alpha"])
     seen = math_node(group, "MULTIPLY", hazy, group.nodes.new("ShaderNodeLightPath").outputs["Is Camera Ray"])
     air = group.nodes.new("ShaderNodeEmission")
-    air.inputs["Color"].default_value = (*SETTINGS["haze_color"], 1.0)
+    group.links.new(horizon_behind(group), air.inputs["Color"])
+    air.inputs["Strength"].default_value = SETTINGS["sky_strength"]
     mix = group.nodes.new("ShaderNodeMixShader")
     group.links.new(seen, mix.inputs[0])
     group.links.new(inputs.outputs["Shader"], mix.inputs[1])
     group.links.new(air.outputs[0], mix.inputs[2])
     group.links.new(mix.outputs[0], outputs.inputs["Shader"])
     return group
+
+
+def horizon_behind(group):
+    """The sky just below the horizon, where there are no clouds, in the direction in which one looks: air glows towards the sun."""
+    environment, mapping = sky_nodes(group.nodes)
+    # Towards the eye → away from it, and level.
+    mapping.inputs["Scale"].default_value = (-1, -1, 0)
+    level, below = group.nodes.new("ShaderNodeVectorMath"), group.nodes.new("ShaderNodeVectorMath")
+    level.operation, below.operation = "NORMALIZE", "ADD"
+    below.inputs[1].default_value = (0, 0, -0.003)
+    group.links.new(group.nodes.new("ShaderNodeNewGeometry").outputs["Incoming"], mapping.inputs["Vector"])
+    group.links.new(mapping.outputs["Vector"], level.inputs[0])
+    group.links.new(level.outputs["Vector"], below.inputs[0])
+    group.links.new(below.outputs["Vector"], environment.inputs["Vector"])
+    return environment.outputs["Color"]
 
 
 def math_node(group, operation, *values):

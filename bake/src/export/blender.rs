@@ -31,7 +31,6 @@ struct Settings<'a> {
     sun_color: [f32; 3],
     sun_angle_rad: f32,
     sky_strength: f32,
-    haze_color: [f32; 3],
     haze_extinction_per_m: f32,
 }
 
@@ -54,7 +53,6 @@ pub fn script(scene: &Value, names: &Names) -> Result<String> {
         sun_color: sun.map(|c| if strength > 0.0 { c / strength } else { 1.0 }),
         sun_angle_rad: 2.0 * light.sun_angular_radius_rad,
         sky_strength: exposure,
-        haze_color: light.haze_linear.map(|c| c * exposure),
         haze_extinction_per_m: light.haze_extinction_per_m,
     };
     // What JSON and Python write alike: texts, numbers, lists, objects.
