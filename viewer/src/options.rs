@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::ArgAction;
 use clap::builder::{PathBufValueParser, TypedValueParser};
+use genescape_schema::scene::START_FOV_Y_DEG;
 use serde::{Deserialize, Serialize};
 
 use crate::lod_mode::{TerrainLodMode, TreeLodMode};
@@ -169,7 +170,7 @@ impl Default for Options {
             cull: true,
             exposure: 1.0,
             samples: 1,
-            fov_y_deg: 60.0,
+            fov_y_deg: START_FOV_Y_DEG,
         }
     }
 }

@@ -252,6 +252,11 @@ def principled(material):
 
 # ---- leaves ----
 
+# Parts of its colour that a leaf gives back and lets through: those of Genescape's viewer. A file says how what arrives is shared, and
+# by its shares a crown is half as bright as the one that was voted for.
+REFLECTED, TRANSMITTED = 0.8, 0.6
+
+
 def let_light_through(material):
     """What the file says of light through leaves (KHR_materials_diffuse_transmission), which Blender's importer leaves out."""
     told = material.get("light_through")
@@ -259,25 +264,30 @@ def let_light_through(material):
     shader = principled(material)
     if not told or not shader or any(n.type == "BSDF_TRANSLUCENT" for n in nodes):
         return
-    tint, through = nodes.new("ShaderNodeMixRGB"), nodes.new("ShaderNodeBsdfTranslucent")
+    tint, bright, through = (nodes.new(kind) for kind in ("ShaderNodeMixRGB", "ShaderNodeMixRGB", "ShaderNodeBsdfTranslucent"))
     clear, cut_out, both = (nodes.new(kind) for kind in ("ShaderNodeBsdfTransparent", "ShaderNodeMixShader", "ShaderNodeMixShader"))
-    tint.blend_type, tint.inputs["Fac"].default_value = "MULTIPLY", 1.0
-    tint.inputs["Color2"].default_value = (*told["tint"], 1.0)
-    for source, target in ((shader.inputs["Base Color"], tint.inputs["Color1"]), (shader.inputs["Normal"], through.inputs["Normal"]),
+    part = min(max(told["part"], 0.01), 0.99)
+    # No leaf gives back more than falls on it.
+    for node, factor in ((bright, [REFLECTED / (1.0 - part)] * 3), (tint, [c * TRANSMITTED / part for c in told["tint"]])):
+        node.blend_type, node.inputs["Fac"].default_value, node.use_clamp = "MULTIPLY", 1.0, True
+        node.inputs["Color2"].default_value = (*factor, 1.0)
+    color = shader.inputs["Base Color"]
+    for source, target in ((color, tint.inputs["Color1"]), (color, bright.inputs["Color1"]), (shader.inputs["Normal"], through.inputs["Normal"]),
                            (shader.inputs["Alpha"], cut_out.inputs[0])):
         if source.links:
             links.new(source.links[0].from_socket, target)
         elif source.name != "Normal":
             target.default_value = source.default_value
+    links.new(bright.outputs["Color"], color)
     links.new(tint.outputs["Color"], through.inputs["Color"])
     links.new(clear.outputs[0], cut_out.inputs[1])
     links.new(through.outputs[0], cut_out.inputs[2])
-    both.inputs[0].default_value = told["part"]
+    both.inputs[0].default_value = part
     for link in list(shader.outputs["BSDF"].links):
         links.new(both.outputs[0], link.to_socket)
     links.new(shader.outputs["BSDF"], both.inputs[1])
     links.new(cut_out.outputs[0], both.inputs[2])
-    for i, node in enumerate((tint, through, clear, cut_out, both)):
+    for i, node in enumerate((tint, bright, through, clear, cut_out, both)):
         node.location = (shader.location.x + 60 * i, shader.location.y - 420 - 120 * i)
 
 

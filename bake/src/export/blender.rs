@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::names::Names;
 use super::source::{self, list};
-use crate::gltf::KHR_MATERIALS_DIFFUSE_TRANSMISSION;
+use crate::gltf::{GRASS_MATERIAL, KHR_MATERIALS_DIFFUSE_TRANSMISSION};
 
 /// The script, but for its settings.
 const SCRIPT: &str = include_str!("blender.py");
@@ -79,6 +79,9 @@ pub fn prepare(root: &mut Value, names: &Names) -> Result<()> {
         if let Some(part) = transmission["diffuseTransmissionFactor"].as_f64() {
             let tint = transmission["diffuseTransmissionColorFactor"].clone();
             material["extras"]["light_through"] = json!({ "part": part, "tint": tint });
+        } else if material["name"] == GRASS_MATERIAL {
+            // Its colours are those of vertices, which the extension leaves out of what comes through.
+            material["extras"]["light_through"] = json!({ "part": 0.4, "tint": [0.9, 1.0, 0.5] });
         }
     }
     let mut kinds = Vec::new();

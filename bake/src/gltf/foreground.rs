@@ -10,6 +10,9 @@ use super::materials::matte;
 use super::vertices::{Primitive, Surface, add_vertices};
 use crate::model::{Foreground, Material, Tiled};
 
+/// Name of the material of all that grows on the ground around the start.
+pub const GRASS_MATERIAL: &str = "grass blades";
+
 /// Mesh 0: the ground and the stones on it with a material for each of `kinds` of ground, `TEXCOORD_1` on the maps of the whole
 /// field. Mesh 1, if grass grows there: its blades; `white` is the albedo of a vertex colour of 1. The last accessor:
 /// indices of the rest of the near mesh.
@@ -69,7 +72,7 @@ fn tiled(document: &mut Document, what: &str, tiled: &Tiled) -> Result<Vec<Value
 
 /// Blades of grass, coloured by their vertices.
 pub fn blade_material(white: f32) -> Value {
-    matte(json!({ "name": "grass blades", "doubleSided": true, "pbrMetallicRoughness": {
+    matte(json!({ "name": GRASS_MATERIAL, "doubleSided": true, "pbrMetallicRoughness": {
         "baseColorFactor": [white, white, white, 1], "metallicFactor": 0, "roughnessFactor": 0.8 } }))
 }
 

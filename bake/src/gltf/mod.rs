@@ -32,7 +32,7 @@ mod vertices;
 use thiserror::Error;
 
 pub(crate) use document::for_each_object;
-pub use foreground::foreground_glb;
+pub use foreground::{GRASS_MATERIAL, foreground_glb};
 pub(crate) use glb::split_glb;
 pub use levels::levelled_glb;
 pub use materials::{KHR_MATERIALS_DIFFUSE_TRANSMISSION, MaterialSet, Picture};

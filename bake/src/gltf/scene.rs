@@ -2,8 +2,8 @@
 //! which shows the scene in any viewer, without any extension but KHR_lights_punctual and KHR_texture_transform.
 
 use genescape_schema::scene::{
-    GSC_HEIGHTFIELD, GSC_SKY, HeightfieldExtension, Resource, START_NODE, SkyExtension, SkyLight,
-    rotation_from_z,
+    GSC_HEIGHTFIELD, GSC_SKY, HeightfieldExtension, Resource, START_ASPECT, START_FOV_Y_DEG, START_NODE,
+    SkyExtension, SkyLight, rotation_from_z,
 };
 use glam::Vec3;
 use serde_json::{Value, json};
@@ -42,7 +42,8 @@ fn add_camera(document: &mut Document, parts: &SceneParts<'_>) -> usize {
     let camera = push(
         &mut document.cameras,
         json!({ "name": START_NODE, "type": "perspective",
-            "perspective": { "aspectRatio": 1.6, "yfov": 0.87, "znear": 0.1, "zfar": 30000 } }),
+            "perspective": { "aspectRatio": rounded(START_ASPECT), "yfov": rounded(START_FOV_Y_DEG.to_radians()),
+                "znear": 0.1, "zfar": 30000 } }),
     );
     document.node(Node {
         name: START_NODE.into(),
@@ -51,6 +52,11 @@ fn add_camera(document: &mut Document, parts: &SceneParts<'_>) -> usize {
         rotation: Some(view.rotation().to_array()),
         ..Node::default()
     })
+}
+
+/// As a person would write it: 1.6, not the 1.60000002 of the nearest number of single precision.
+fn rounded(number: f32) -> f64 {
+    (f64::from(number) * 1e6).round() / 1e6
 }
 
 /// The sun as a directional light. See `schema/docs/GSC_sky.md` on its intensity.

@@ -39,7 +39,7 @@ pub use plants::{DensityMap, GroundPlants, Plant, PlantKind, PlantShape, ground_
 pub use progressive_mesh::{GSC_PROGRESSIVE_MESH, ProgressiveLevel, ProgressiveMeshExtension, error_weight};
 pub use resource::Resource;
 pub use sky::{CloudLayer, GSC_SKY, SkyExtension, SkyImages, SkyLight};
-pub use view::{START_NODE, StartView, rotation_from_z};
+pub use view::{START_ASPECT, START_FOV_Y_DEG, START_NODE, StartView, rotation_from_z};
 
 /// Names of all our extensions, in the order in which files list them.
 pub const EXTENSIONS: [&str; 5] =

@@ -6,6 +6,10 @@ use serde::{Deserialize, Serialize};
 
 /// Name of the node with the camera.
 pub const START_NODE: &str = "start";
+/// Its field of view from the lower edge to the upper one, in degrees: what first looks are chosen for, and what the viewer shows.
+pub const START_FOV_Y_DEG: f32 = 60.0;
+/// Width over height of the picture that first looks are chosen for.
+pub const START_ASPECT: f32 = 1.6;
 
 /// A place to look from.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -7,7 +7,7 @@ use super::panorama::{COLUMNS, Column, Kind, Panorama, ROW_STEP, ROWS, Seen, slo
 use crate::math::ramp;
 use crate::model::Lookout;
 
-/// Columns of the panorama in half a picture: ±41°, the viewer's 60° upright at 16:10.
+/// Columns of the panorama in half a picture: ±41°, of [`START_FOV_Y_DEG`](genescape_schema::scene::START_FOV_Y_DEG) upright.
 pub(super) const HALF_COLUMNS: usize = 11;
 /// Slope from the middle of a picture to its upper edge: tan 30°.
 pub(super) const HALF_HEIGHT: f32 = 0.577;

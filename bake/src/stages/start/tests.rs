@@ -3,10 +3,13 @@
 
 use std::f32::consts::TAU;
 
+use genescape_schema::scene::{START_ASPECT, START_FOV_Y_DEG};
 use genescape_schema::{Genome, Kinds, Space};
 use glam::{Vec2, Vec3, Vec3Swizzles};
 
 use super::appraise::Appraisal;
+use super::panorama::COLUMNS;
+use super::picture::{HALF_COLUMNS, HALF_HEIGHT};
 use super::{FirstLook, Want, first_look, looks};
 use crate::export::film;
 use crate::model::TreeFootprint;
@@ -488,4 +491,14 @@ fn who_comes_to_the_sea_sees_it() {
         looks.iter().map(|look| look.term(Want::Water)).filter(|&t| t > 0.0).fold(1.0, f32::min)
     };
     assert!(least(&by_sea) < 0.5 && least(&inland) > 0.8, "{} {}", least(&by_sea), least(&inland));
+}
+
+/// What a picture is judged by is what the file's camera and the viewer show.
+#[test]
+fn pictures_are_as_wide_and_high_as_the_camera_shows() {
+    let half_height = libm::tanf(0.5 * START_FOV_Y_DEG.to_radians());
+    assert!((HALF_HEIGHT / half_height - 1.0).abs() < 0.01, "{HALF_HEIGHT} for {half_height}");
+    let half_width_rad = (HALF_COLUMNS as f32 + 0.5) * TAU / COLUMNS as f32;
+    let shown_rad = libm::atanf(START_ASPECT * half_height);
+    assert!((half_width_rad / shown_rad - 1.0).abs() < 0.03, "{half_width_rad} for {shown_rad}");
 }
