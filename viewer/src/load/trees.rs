@@ -21,6 +21,9 @@ use crate::scene::{
     sort_by_place,
 };
 
+/// Numbers of templates have 16 bits on the device.
+const MAX_TEMPLATES: usize = 1 << 16;
+
 /// The trees; none if the scene has none.
 pub(super) fn read(document: &Document) -> Result<Trees> {
     let is_far = |node: &gltf::Node<'_>| node.name() == Some(FAR_TREES_NODE);
@@ -36,6 +39,12 @@ pub(super) fn read(document: &Document) -> Result<Trees> {
     };
     let Some(value) = of_node(false) else { return Ok(Trees::default()) };
     let (extension, instances) = records(&value)?;
+    if extension.templates.len() > MAX_TEMPLATES {
+        let count = extension.templates.len();
+        return Err(
+            document.wrong(format!("it has {count} templates of trees; at most {MAX_TEMPLATES} are drawn"))
+        );
+    }
     let mut far = of_node(true).map_or(Ok(Vec::new()), |value| Ok(records(&value)?.1))?;
     sort_by_place(&mut far);
     let templates = extension
