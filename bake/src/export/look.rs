@@ -11,8 +11,12 @@ use super::source::{self, list, number, text};
 /// Part of the sky's light that glows from materials under a bright sun, beside which it hardly counts: about half of the
 /// sky is hidden by hills, trees and leaves. Without a sun, all of it: it is the only light.
 const GLOW_IN_SUN: f32 = 0.5;
-/// The part of that which leaves and blades of grass get: they shade one another.
-const GLOW_OF_LEAVES: f32 = 0.5;
+/// The part of the sky's light that a lamp gives from above; the rest glows. Under an even sky what faces sideways gets half of
+/// what faces up, (1 + cos θ) / 2, and a lamp and a glow of a half each are just that. A lamp also lights colours of vertices,
+/// which emission has not, and in VTK what has no texture coordinates, which emission does not.
+const FROM_ABOVE: f32 = 0.5;
+/// Its node, and itself: it shines down.
+const SKY_LAMP: &str = "sky from above";
 /// Lumens in a watt, by which Blender's importer divides.
 const LUMENS_PER_WATT: f64 = 683.0;
 
@@ -39,36 +43,54 @@ pub fn remove_apron(root: &mut Value) {
     }
 }
 
-/// Lets materials glow as much as the sky would light them, for glTF has no sky: without this, whatever the sun does not
-/// reach is black, and an overcast landscape is black altogether. `bytes` gives an accessor's bytes and stride.
+/// Lets materials glow and a lamp shine as much as the sky would light them, for glTF has no sky: without this, whatever the sun
+/// does not reach is black, and an overcast landscape is black altogether. `bytes` gives an accessor's bytes and stride.
 pub fn add_sky_glow(root: &mut Value, bytes: &dyn Fn(usize) -> Result<(Vec<u8>, usize)>) -> Result<()> {
     let SkyLight { sky_irradiance_linear: sky, sun_irradiance_linear: sun, exposure, .. } =
         source::sky(root)?.light;
     let sunny = sun[1] / (sun[1] + sky[1]).max(f32::MIN_POSITIVE);
     let part = 1.0 + (GLOW_IN_SUN - 1.0) * sunny;
-    let glow = sky.map(|irradiance| part * exposure * irradiance / PI);
-    let ground = list(root, "materials").iter().find(|material| material["name"] == "ground");
-    let map = ground.map(|ground| ground["pbrMetallicRoughness"]["baseColorTexture"]["index"].clone());
+    add_lamp(root, sky.map(|irradiance| FROM_ABOVE * part * exposure * irradiance));
+    let glow = sky.map(|irradiance| (1.0 - FROM_ABOVE) * part * exposure * irradiance / PI);
     for index in 0..list(root, "materials").len() {
         let material = &root["materials"][index];
         let surface = &material["pbrMetallicRoughness"];
         let mut albedo = [0, 1, 2].map(|c| surface["baseColorFactor"][c].as_f64().unwrap_or(1.0) as f32);
-        let mut texture = surface.get("baseColorTexture").cloned();
-        if let (Some(map), 1) = (&map, number(&material["occlusionTexture"], "texCoord")) {
-            // Its tile is grey and coloured by its vertices, which emission is not.
-            texture = Some(json!({ "index": map, "texCoord": 1 }));
-        } else if let (None, Some(colors)) = (&texture, vertex_colors(root, index)) {
+        let texture = surface.get("baseColorTexture").cloned();
+        // Tiles of the near ground are grey, and blades are nothing: their colour is their vertices', which emission has not. What
+        // trees have is shades of their texture's.
+        let is_tile = number(&material["occlusionTexture"], "texCoord") == 1;
+        if let Some(colors) = vertex_colors(root, index).filter(|_| is_tile || texture.is_none()) {
             let mean = mean_color(&root["accessors"][colors], &bytes(colors)?);
             albedo = std::array::from_fn(|c| albedo[c] * mean[c]);
         }
-        let shade = if material["doubleSided"] == true { GLOW_OF_LEAVES } else { 1.0 };
-        let factor: [f32; 3] = std::array::from_fn(|c| (shade * glow[c] * albedo[c]).clamp(0.0, 1.0));
+        let factor: [f32; 3] = std::array::from_fn(|c| (glow[c] * albedo[c]).clamp(0.0, 1.0));
         root["materials"][index]["emissiveFactor"] = json!(factor);
         if let Some(texture) = texture {
             root["materials"][index]["emissiveTexture"] = texture;
         }
     }
     Ok(())
+}
+
+/// A light that shines down on everything with that irradiance.
+fn add_lamp(root: &mut Value, irradiance: [f32; 3]) {
+    let greatest = irradiance.into_iter().fold(f32::MIN_POSITIVE, f32::max);
+    let lamp = json!({ "name": SKY_LAMP, "type": "directional", "intensity": greatest,
+        "color": irradiance.map(|part| (part / greatest).clamp(0.0, 1.0)) });
+    let lights = root.pointer_mut("/extensions/KHR_lights_punctual/lights").and_then(Value::as_array_mut);
+    let Some(lights) = lights else { return };
+    lights.push(lamp);
+    let light = lights.len() - 1;
+    let down = [-std::f32::consts::FRAC_1_SQRT_2, 0.0, 0.0, std::f32::consts::FRAC_1_SQRT_2];
+    let nodes = list(root, "nodes").len();
+    let node = json!({ "name": SKY_LAMP, "rotation": down,
+        "extensions": { "KHR_lights_punctual": { "light": light } } });
+    for (list, one) in [("/nodes", node), ("/scenes/0/nodes", nodes.into())] {
+        if let Some(list) = root.pointer_mut(list).and_then(Value::as_array_mut) {
+            list.push(one);
+        }
+    }
 }
 
 /// The accessor of the vertex colours of a primitive with that material.

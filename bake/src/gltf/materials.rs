@@ -12,6 +12,10 @@ use crate::model::Material;
 pub const REPEATING: (u32, u32) = (9987, 10497);
 /// Trilinear filtering, clamped to the edge.
 pub const CLAMPED: (u32, u32) = (9987, 33071);
+/// Linear filtering of the full picture at any distance, clamped to the edge: for what alpha cuts out. Other programs average
+/// alpha for their mip levels, and of leaves of a few pixels less and less passes the cutoff: in three.js woods stood bare at the
+/// other end of a meadow. Our viewer has mip levels of its own, which keep a crown's coverage.
+const CUT_OUT: (u32, u32) = (9729, 33071);
 
 /// What lets light through, as leaves do.
 pub const KHR_MATERIALS_DIFFUSE_TRANSMISSION: &str = "KHR_materials_diffuse_transmission";
@@ -83,9 +87,9 @@ impl<'a> MaterialSet<'a> {
         alpha_cutoff: f32,
         roughness: f64,
     ) -> usize {
-        let clamped = sampler(CLAMPED);
-        let known = self.samplers.iter().position(|sampler| *sampler == clamped);
-        let sampler = known.unwrap_or_else(|| push(&mut self.samplers, clamped));
+        let cut_out = sampler(CUT_OUT);
+        let known = self.samplers.iter().position(|sampler| *sampler == cut_out);
+        let sampler = known.unwrap_or_else(|| push(&mut self.samplers, cut_out));
         let image = push(&mut self.images, (name.into(), picture));
         let texture = push(&mut self.textures, json!({ "name": name, "sampler": sampler, "source": image }));
         push(

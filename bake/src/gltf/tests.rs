@@ -287,6 +287,24 @@ fn nothing_is_required_and_all_our_extensions_are_named() {
 }
 
 #[test]
+fn what_alpha_cuts_out_is_sampled_at_full_resolution_at_any_distance() {
+    let (document, _) = gltf_of(&tree_file(&tree(false)));
+    let mut seen = BTreeSet::new();
+    for material in document.materials() {
+        let filter = |texture: gltf::Texture<'_>| texture.sampler().min_filter();
+        let colors =
+            material.pbr_metallic_roughness().base_color_texture().map(|info| filter(info.texture()));
+        let expected = match material.alpha_mode() {
+            gltf::material::AlphaMode::Mask => gltf::texture::MinFilter::Linear,
+            _ => gltf::texture::MinFilter::LinearMipmapLinear,
+        };
+        assert_eq!(colors, Some(Some(expected)), "{:?}", material.name());
+        seen.insert(expected.as_gl_enum());
+    }
+    assert_eq!(seen.len(), 2, "bark and leaves");
+}
+
+#[test]
 fn only_water_and_bark_mirror_the_sky() {
     let (_, bytes) = scene(3);
     let json: Value = serde_json::from_slice(&bytes).unwrap();

@@ -40,7 +40,7 @@ pub struct SceneStage {
 
 impl Stage for SceneStage {
     const NAME: &'static str = "scene";
-    const VERSION: u32 = 11;
+    const VERSION: u32 = 12;
     type Output = File;
 
     fn run(&self, context: &Context<'_>) -> Result<File, StageError> {

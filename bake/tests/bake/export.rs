@@ -144,6 +144,34 @@ fn viewers_get_the_field_alone_unless_they_ask_for_more() {
 }
 
 #[test]
+fn level_ground_gets_half_of_the_skys_light_from_a_lamp_above_and_half_from_itself() {
+    let world = World::starters();
+    let (document, json, _) = exported(&world, &[]);
+    let lamp = document.nodes().find(|node| node.name() == Some("sky from above")).expect("a lamp");
+    let (_, rotation, _) = lamp.transform().decomposed();
+    assert!((glam::Quat::from_array(rotation) * glam::Vec3::NEG_Z).abs_diff_eq(glam::Vec3::NEG_Y, 1e-6));
+    let lights = |json: &Value| json["extensions"]["KHR_lights_punctual"]["lights"].clone();
+    let lamp = &lights(&json)[1];
+    let number = |value: &Value| value.as_f64().expect("a number") as f32;
+    for material in document.materials() {
+        let glow = material.emissive_factor();
+        let colors = &json["materials"][material.index().expect("listed")];
+        let texture = &colors["pbrMetallicRoughness"]["baseColorTexture"];
+        if material.name() == Some("ground") {
+            for (channel, glow) in glow.into_iter().enumerate() {
+                let color = number(&lamp["color"][channel]);
+                let lamp = number(&lamp["intensity"]) * color / std::f32::consts::PI;
+                assert!((glow / lamp - 1.0).abs() < 1e-3, "{glow} and {lamp}");
+            }
+        }
+        // With coordinates of its own, VTK would take others for it.
+        assert_eq!(colors["emissiveTexture"], *texture, "{:?}", material.name());
+    }
+    let (_, json, _) = exported(&world, &["--for", "blender"]);
+    assert_eq!(lights(&json).as_array().map(Vec::len), Some(1), "in Blender the sky is the world's");
+}
+
+#[test]
 fn blender_gets_lux_kinds_of_trees_and_a_script() {
     let world = World::starters();
     let (plain, _, _) = exported(&world, &[]);
