@@ -86,7 +86,7 @@ enum Content {
 /// # Errors
 /// A scene that cannot be read.
 pub fn stem(scene: &Path) -> Result<String> {
-    Ok(Names::of(&SceneFile::open(scene)?.json).stem)
+    Ok(names::stem(&SceneFile::open(scene)?.json))
 }
 
 /// Writes a scene, its sky and its trees into a folder, which is made if it isn't there.
@@ -95,7 +95,7 @@ pub fn stem(scene: &Path) -> Result<String> {
 /// [`InTheWay`], before anything is written; a scene that cannot be read; a folder that cannot be written to.
 pub fn to_folder(scene: &Path, folder: &Path, options: Options, listener: &dyn Listener) -> Result<Exported> {
     let scene = SceneFile::open(scene)?;
-    let names = Names::of(&scene.json);
+    let names = Names::of(&scene);
     output::check(&folder.join(names.scene()), "glb", &[])?;
     let files = plan(&scene.json, &names, options)?;
     write(&scene, &names, folder, &files, options, listener)
@@ -109,7 +109,7 @@ pub fn to_file(scene: &Path, file: &Path, options: Options, listener: &dyn Liste
     output::check(file, "glb", &[scene.to_owned()])?;
     let scene = SceneFile::open(scene)?;
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let names = Names { stem, ..Names::of(&scene.json) };
+    let names = Names { stem, ..Names::of(&scene) };
     let folder = file.parent().unwrap_or(Path::new(""));
     let mut files = plan(&scene.json, &names, options)?;
     let for_blender = options.audience == Audience::Blender;
@@ -149,7 +149,7 @@ fn write(
     options: Options,
     listener: &dyn Listener,
 ) -> Result<Exported> {
-    let mut receipts = Receipts::open(&scene.baked(), &Names::of(&scene.json).stem)?;
+    let mut receipts = Receipts::open(&scene.baked(), &names::stem(&scene.json))?;
     for file in files {
         receipts.allow(&folder.join(&file.name), &file.name)?;
     }

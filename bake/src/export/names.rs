@@ -1,6 +1,13 @@
 //! A scene → the names of its files, such as a person would give: by the landscape's name and the kind of its trees.
 
+use std::path::Path;
+
+use genescape_schema::{Category, Chromosome, Kinds, Space};
+use genescape_world::World;
 use serde_json::Value;
+
+use super::source::SceneFile;
+use crate::kinds::Home;
 
 /// Names that Windows keeps for devices, with whatever ending.
 const RESERVED: [&str; 22] = [
@@ -9,14 +16,8 @@ const RESERVED: [&str; 22] = [
 ];
 /// Characters of a name, so that paths stay short enough for every system.
 const MAX_LENGTH: usize = 60;
-/// Metres below which whatever grows is a bush.
-const BUSH_M: f64 = 4.0;
-/// Part of the leaf cards in blossom from which that is what one sees.
-const IN_BLOSSOM: f64 = 0.1;
-/// Tone of bark from which it is white.
-const WHITE_BARK: f64 = 0.85;
-/// What grows leaves of each `leaf_shape`.
-const BY_LEAF: [&str; 8] = ["broadleaf", "ash", "willow", "oak", "maple", "linden", "conifer", "palm"];
+/// What a tree that is like no kind is called.
+const WILD: &str = "tree";
 
 /// What the files of an export are called.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,14 +25,14 @@ pub struct Names {
     /// What names of files begin with.
     pub stem: String,
     /// What kind of tree grows there: "oak".
-    pub plant: &'static str,
+    pub plant: String,
 }
 
 impl Names {
-    pub fn of(scene: &Value) -> Self {
-        let scene = &scene["scenes"][0];
-        let stem = slug(scene["name"].as_str().unwrap_or_default());
-        Self { stem, plant: plant(&scene["extras"]["genome"]) }
+    pub fn of(scene: &SceneFile) -> Self {
+        let (space, kinds) = nature(&scene.baked().join(".."));
+        let genome = &scene.json["scenes"][0]["extras"]["genome"];
+        Self { stem: stem(&scene.json), plant: plant(&space, &kinds, genome) }
     }
 
     pub fn scene(&self) -> String {
@@ -80,25 +81,41 @@ fn slug(name: &str) -> String {
     }
 }
 
-/// What a tree of these genes would be called at a glance.
-fn plant(genome: &Value) -> &'static str {
-    let gene = |name: &str| genome[name].as_f64();
-    if gene("leaves_per_stem") == Some(0.0) {
-        "bare-tree"
-    } else if gene("height_m").is_some_and(|height_m| height_m < BUSH_M) {
-        "bush"
-    } else if gene("blossom").is_some_and(|part| part > IN_BLOSSOM) {
-        "cherry"
-    } else if gene("bark_tone").is_some_and(|tone| tone > WHITE_BARK) && gene("leaf_shape") < Some(6.0) {
-        "birch"
-    } else {
-        let shape = gene("leaf_shape").and_then(|shape| BY_LEAF.get(shape as usize));
-        shape.copied().unwrap_or("tree")
+/// What names of a scene's files begin with.
+pub fn stem(scene: &Value) -> String {
+    slug(scene["scenes"][0]["name"].as_str().unwrap_or_default())
+}
+
+/// The genes and kinds of the world in a folder; those that ship where there is none, or none that can be read.
+fn nature(world: &Path) -> (Space, Kinds) {
+    let read = || {
+        let world = World::open(world).ok()?;
+        let (space, _) = world.space().ok()?;
+        let kinds = world.kinds(&space).kinds;
+        Some((space, kinds))
+    };
+    read().unwrap_or_else(|| {
+        let space = Space::builtin();
+        let (kinds, _) = Kinds::shipped(&space);
+        (space, kinds)
+    })
+}
+
+/// The kind of a tree of these genes: a name for files.
+fn plant(space: &Space, kinds: &Kinds, genome: &Value) -> String {
+    let mut genes = Chromosome::zero(space, Category::Tree);
+    for gene in space.category(Category::Tree) {
+        // A scene that an older version baked lacks the newer genes.
+        let code = genome[&gene.name].as_f64().map(|value| gene.snap(value));
+        genes.set_code(gene, code.or(gene.default).unwrap_or_default());
     }
+    let id = Home::of(space, kinds, Category::Tree, &genes).id();
+    id.map_or_else(|| WILD.into(), slug)
 }
 
 #[cfg(test)]
 mod tests {
+    use genescape_schema::Allowed;
     use proptest::prelude::*;
     use serde_json::json;
 
@@ -132,27 +149,22 @@ mod tests {
     }
 
     #[test]
-    fn presets_are_recognised() {
-        let space = genescape_schema::Space::builtin();
-        for (file, expected) in [
-            ("birch", "birch"),
-            ("broadleaf", "oak"),
-            ("bush", "bush"),
-            ("cherry", "cherry"),
-            ("conifer", "conifer"),
-            ("maple", "maple"),
-            ("palm", "palm"),
-            ("willow", "willow"),
-            ("winter", "bare-tree"),
-        ] {
-            let path = format!("{}/../configs/presets/{file}.ron", env!("CARGO_MANIFEST_DIR"));
-            let text = std::fs::read_to_string(&path).expect("a preset");
-            let preset = genescape_schema::TreePreset::load(&space, &path, &text).expect("sound").preset;
-            let genes = space.category(genescape_schema::Category::Tree);
-            let genome: Value =
-                genes.map(|gene| (gene.name.clone(), json!(gene.value(preset.tree.code(gene))))).collect();
-            assert_eq!(plant(&genome), expected, "{file}");
+    fn trees_are_called_what_they_are() {
+        let (space, kinds) = nature(Path::new("no world"));
+        let mut all = 0;
+        for kind in kinds.of(Category::Tree) {
+            let typical = |allowed: &Allowed| match allowed {
+                Allowed::Near { typical, .. } => *typical,
+                other => other.ends().0,
+            };
+            let genes = kind.bounds.genes(&space);
+            let typical: Value = genes
+                .map(|(gene, allowed)| (gene.name.clone(), json!(gene.value(typical(allowed)))))
+                .collect();
+            assert_eq!(plant(&space, &kinds, &typical), kind.id.replace('_', "-"));
+            all += 1;
         }
-        assert_eq!(plant(&Value::Null), "tree");
+        assert!(all > 30, "{all} kinds");
+        assert_eq!(plant(&space, &Kinds::default(), &Value::Null), WILD);
     }
 }

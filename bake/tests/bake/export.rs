@@ -80,10 +80,10 @@ fn a_second_export_replaces_the_first_but_nothing_of_a_persons() {
 
     fs::remove_file(&painted).expect("removed");
     world.edit(0, |text| {
-        text.replace("Spruces by a mountain lake", "Oaks").replace("leaf_shape: 6", "leaf_shape: 3")
+        text.replace("Oak valley in June", "Oaks").replacen("height_m: ", "height_m: 9, //", 1)
     });
     world.bake(&[]).ok();
-    let error = export(&world, &["2", out]).expect_err("another landscape's oaks are there");
+    let error = export(&world, &["1", out]).expect_err("another landscape's oaks are there");
     assert!(error.contains("oak-1.glb is there already"), "{error}");
 }
 
@@ -112,7 +112,7 @@ fn landscapes_are_counted_from_one_or_named_by_file() {
     }
     export(&world, &[world.scene(3).to_str().expect("a path"), out]).expect("exported");
     assert!(names(Path::new(out)).contains("bare-trees-in-november-mist.glb"));
-    assert!(names(&Path::new(out).join("trees")).contains("bare-tree-1.glb"));
+    assert!(names(&Path::new(out).join("trees")).contains("winter-oak-1.glb"));
 }
 
 /// Half the width of all that a file shows, in metres.
