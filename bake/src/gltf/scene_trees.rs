@@ -11,10 +11,10 @@ use serde_json::json;
 use super::ExportError;
 use super::document::{Document, Node, push};
 use super::impostor::{self, IMPOSTOR};
-use super::materials::Picture;
+use super::materials::{MaterialSet, Picture};
 use super::scene_import::{FileMaterial, GlbImport};
 use super::scene_parts::{Blob, SceneParts};
-use super::tree::{CLUSTER_NORMALS, CLUSTERS, add_clusters, tree_materials};
+use super::tree::{CLUSTER_NORMALS, CLUSTERS, THROUGH_LEAVES, add_clusters, tree_materials};
 use crate::model::Material;
 
 /// Triangles that any viewer opens quickly.
@@ -58,7 +58,7 @@ pub fn add_trees(
         let cutoff = parts.tree_images.alpha_cutoff;
         own.push([
             (IMPOSTOR, impostor.map(|picture| impostor::add_material(&mut set, picture))),
-            (CLUSTERS, clusters.map(|pictures| add_clusters(&mut set, pictures.into(), cutoff))),
+            (CLUSTERS, clusters.map(|pictures| add_lit_clusters(&mut set, pictures.into(), cutoff))),
         ]);
     }
     let first_material = set.add_to(document);
@@ -99,6 +99,13 @@ pub fn add_trees(
         add_node("trees", &parts.instances, children),
         add_node(FAR_TREES_NODE, &parts.far_trees, Vec::new()),
     ])
+}
+
+/// Clusters that let light through, as single leaves do.
+fn add_lit_clusters<'a>(set: &mut MaterialSet<'a>, pictures: [Picture<'a>; 2], cutoff: f32) -> usize {
+    let number = add_clusters(set, pictures, cutoff);
+    set.add_transmission(number, THROUGH_LEAVES);
+    number
 }
 
 /// A view of a whole file as a buffer.

@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::synthetic::*;
 use super::*;
-use crate::model::{Image8, LevelledMesh, Material, Mesh, TreeTextures};
+use crate::model::{Clusters, Image8, LevelledMesh, Material, Mesh, TreeTextures};
 
 pub(super) fn gltf_of(glb: &[u8]) -> (gltf::Document, Vec<u8>) {
     let gltf = gltf::Gltf::from_slice(glb).expect("the gltf crate reads it");
@@ -302,6 +302,20 @@ fn what_alpha_cuts_out_is_sampled_at_full_resolution_at_any_distance() {
         seen.insert(expected.as_gl_enum());
     }
     assert_eq!(seen.len(), 2, "bark and leaves");
+}
+
+#[test]
+fn babylon_never_replaces_a_level_whose_material_alone_lets_light_through() {
+    let pictures = impostor();
+    let clusters = Clusters { colors: pictures.colors, normals: pictures.relief };
+    let pictures = TreePictures { impostor: None, clusters: Some(&clusters) };
+    let glb = tree_glb("tree", &tree(false), &images(&tree_images()), &pictures).unwrap();
+    let (document, _) = gltf_of(&glb);
+    let lets_light_through = |name: &str| {
+        let material = document.materials().find(|material| material.name() == Some(name));
+        material.unwrap().extension_value(KHR_MATERIALS_DIFFUSE_TRANSMISSION).is_some()
+    };
+    assert!(lets_light_through("leaf") && !lets_light_through("clusters"));
 }
 
 #[test]

@@ -11,7 +11,7 @@ use super::png;
 use crate::model::{Clusters, Image8, Impostor, LevelledMesh, Material, TreeTextures};
 
 /// How light is tinted on its way through a leaf, where chlorophyll takes red and blue, and through a petal.
-const THROUGH_LEAVES: [f64; 3] = [0.75, 0.9, 0.3];
+pub const THROUGH_LEAVES: [f64; 3] = [0.75, 0.9, 0.3];
 const THROUGH_PETALS: [f64; 3] = [0.9; 3];
 
 /// Bark, leaf and blossom as glTF materials; cards only as far as `used` says that parts have them.
@@ -75,7 +75,9 @@ pub struct TreePictures<'a> {
     pub clusters: Option<&'a Clusters>,
 }
 
-/// Adds the material of clusters of leaves with their pictures of colours and of normals; gives its number.
+/// Adds the material of clusters of leaves with their pictures of colours and of normals; gives its number. A tree's own file
+/// leaves it at that: once Babylon.js has replaced a level with a material that lets light through (MSFT_lod), it draws no other
+/// such material, and the tree would stand bare.
 pub fn add_clusters<'a>(
     set: &mut MaterialSet<'a>,
     [colors, normals]: [Picture<'a>; 2],
@@ -83,7 +85,6 @@ pub fn add_clusters<'a>(
 ) -> usize {
     let number = set.add_cards(CLUSTERS, colors, alpha_cutoff, 0.65);
     set.add_normals(number, CLUSTER_NORMALS, normals);
-    set.add_transmission(number, THROUGH_LEAVES);
     number
 }
 
