@@ -46,7 +46,7 @@ pub struct GroundMapsFiles {
 
 impl Stage for GroundMapsStage {
     const NAME: &'static str = "ground maps";
-    const VERSION: u32 = 35;
+    const VERSION: u32 = 36;
     type Output = GroundMapsFiles;
 
     fn run(&self, context: &Context<'_>) -> Result<GroundMapsFiles, StageError> {
@@ -123,7 +123,7 @@ pub struct ForegroundStage {
 
 impl Stage for ForegroundStage {
     const NAME: &'static str = "foreground";
-    const VERSION: u32 = 31;
+    const VERSION: u32 = 32;
     type Output = File;
 
     fn run(&self, context: &Context<'_>) -> Result<File, StageError> {

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::shapes::{Drawing, aside, heading};
+use super::shapes::{Drawing, heading};
 use crate::math::lerp;
 use crate::model::PlantShape;
 
@@ -122,30 +122,38 @@ fn whip(d: &mut Drawing, has_leaves: bool) {
     }
 }
 
-/// Whorls of drooping sprays that get shorter towards the top.
+/// Sprays around a stem that get shorter and steeper towards the top, each turned about itself: in level whorls they would be the
+/// rungs of a ladder to whoever stands beside it. Near by each has two more.
 fn spire(d: &mut Drawing) {
-    const WHORLS: u32 = 9;
-    d.stalk(Vec3::ZERO, Vec3::Y * 1.7, 0.035);
-    let spray = |d: &mut Drawing, whorl: u32, turn: f32, small: f32| {
-        let t = whorl as f32 / WHORLS as f32;
-        let long = lerp(0.62, 0.1, t) * small * (0.85 + 0.3 * d.unit());
-        let (out, root) = (heading(turn), Vec3::Y * lerp(0.16, 1.72, t));
-        let tip = root + out * long + Vec3::Y * (0.12 - 0.22 * long);
-        let side = aside(out) * (0.32 * long);
-        let middle = root.lerp(tip, 0.45) + Vec3::Y * 0.05;
+    const SPRAYS: u32 = 45;
+    d.stalk(Vec3::ZERO, Vec3::Y * 1.85, 0.035);
+    let spray = |d: &mut Drawing, [root, out]: [Vec3; 2], long: f32| {
+        let tip = root + out * long;
+        let [side, _] = tangents(out, 1.1 * (2.0 * d.unit() - 1.0));
+        let middle = root.lerp(tip, 0.45) + Vec3::Y * (0.06 * long);
         let tint = 0.55 + 0.4 * d.unit();
-        d.diamond([root, middle, tip], side, out + 0.7 * Vec3::Y, [0.1, 0.8 * tint, tint]);
+        d.diamond([root, middle, tip], 0.15 * long * side, out + 0.7 * Vec3::Y, [0.1, 0.8 * tint, tint]);
     };
-    for whorl in 0..WHORLS {
-        for k in 0..5 {
-            spray(d, whorl, TAU * (k as f32 + 0.5 * whorl as f32) / 5.0, 1.0);
-        }
+    let main: Vec<([Vec3; 2], f32, f32)> = (0..SPRAYS)
+        .map(|k| {
+            let t = (k as f32 + d.unit()) / SPRAYS as f32;
+            let turn = GOLDEN * k as f32 + 0.5 * d.unit();
+            let rise = lerp(-0.1, 0.9, t * t) + 0.25 * d.unit();
+            let out = (heading(turn) + Vec3::Y * rise).normalize_or(Vec3::Y);
+            let long = lerp(0.68, 0.16, t) * (0.8 + 0.35 * d.unit());
+            ([Vec3::Y * lerp(0.08, 1.78, t), out], long, turn)
+        })
+        .collect();
+    for &(place, long, _) in &main {
+        spray(d, place, long);
     }
     d.coarse();
-    for whorl in 0..WHORLS {
-        for k in 0..9 {
-            let turn = TAU * (k as f32 + 0.3 + 0.4 * d.unit()) / 9.0;
-            spray(d, whorl, turn, 0.75);
+    for &([root, out], long, turn) in &main {
+        for side in [-1.0, 1.0] {
+            let from = root + out * (long * (0.2 + 0.25 * d.unit()));
+            let aim = (out + heading(turn + side * 1.3) * 0.8).normalize_or(out);
+            let short = long * (0.5 + 0.15 * d.unit());
+            spray(d, [from, aim], short);
         }
     }
 }
