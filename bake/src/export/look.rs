@@ -3,10 +3,12 @@
 use std::f32::consts::PI;
 
 use anyhow::Result;
-use genescape_schema::scene::{FAR_TREES_NODE, GSC_HEIGHTFIELD, SkyLight};
+use genescape_schema::scene::{FAR_TREES_NODE, GSC_HEIGHTFIELD, SkyLight, rotation_from_z};
+use glam::Vec3;
 use serde_json::{Value, json};
 
 use super::source::{self, list, number, text};
+use crate::gltf;
 
 /// Part of the sky's light that glows from materials under a bright sun, beside which it hardly counts: about half of the
 /// sky is hidden by hills, trees and leaves. Without a sun, all of it: it is the only light.
@@ -50,7 +52,7 @@ pub fn add_sky_glow(root: &mut Value, bytes: &dyn Fn(usize) -> Result<(Vec<u8>, 
         source::sky(root)?.light;
     let sunny = sun[1] / (sun[1] + sky[1]).max(f32::MIN_POSITIVE);
     let part = 1.0 + (GLOW_IN_SUN - 1.0) * sunny;
-    add_lamp(root, sky.map(|irradiance| FROM_ABOVE * part * exposure * irradiance));
+    add_lamp(root, gltf::directional_light(SKY_LAMP, sky, FROM_ABOVE * part * exposure));
     let glow = sky.map(|irradiance| (1.0 - FROM_ABOVE) * part * exposure * irradiance / PI);
     for index in 0..list(root, "materials").len() {
         let material = &root["materials"][index];
@@ -60,7 +62,9 @@ pub fn add_sky_glow(root: &mut Value, bytes: &dyn Fn(usize) -> Result<(Vec<u8>, 
         // Tiles of the near ground are grey, and blades are nothing: their colour is their vertices', which emission has not. What
         // trees have is shades of their texture's.
         let is_tile = number(&material["occlusionTexture"], "texCoord") == 1;
-        if let Some(colors) = vertex_colors(root, index).filter(|_| is_tile || texture.is_none()) {
+        if (is_tile || texture.is_none())
+            && let Some(colors) = vertex_colors(root, index)
+        {
             let mean = mean_color(&root["accessors"][colors], &bytes(colors)?);
             albedo = std::array::from_fn(|c| albedo[c] * mean[c]);
         }
@@ -73,18 +77,14 @@ pub fn add_sky_glow(root: &mut Value, bytes: &dyn Fn(usize) -> Result<(Vec<u8>, 
     Ok(())
 }
 
-/// A light that shines down on everything with that irradiance.
-fn add_lamp(root: &mut Value, irradiance: [f32; 3]) {
-    let greatest = irradiance.into_iter().fold(f32::MIN_POSITIVE, f32::max);
-    let lamp = json!({ "name": SKY_LAMP, "type": "directional", "intensity": greatest,
-        "color": irradiance.map(|part| (part / greatest).clamp(0.0, 1.0)) });
+/// A node from which that light shines down on everything.
+fn add_lamp(root: &mut Value, lamp: Value) {
     let lights = root.pointer_mut("/extensions/KHR_lights_punctual/lights").and_then(Value::as_array_mut);
     let Some(lights) = lights else { return };
     lights.push(lamp);
     let light = lights.len() - 1;
-    let down = [-std::f32::consts::FRAC_1_SQRT_2, 0.0, 0.0, std::f32::consts::FRAC_1_SQRT_2];
     let nodes = list(root, "nodes").len();
-    let node = json!({ "name": SKY_LAMP, "rotation": down,
+    let node = json!({ "name": SKY_LAMP, "rotation": rotation_from_z(Vec3::Y).to_array(),
         "extensions": { "KHR_lights_punctual": { "light": light } } });
     for (list, one) in [("/nodes", node), ("/scenes/0/nodes", nodes.into())] {
         if let Some(list) = root.pointer_mut(list).and_then(Value::as_array_mut) {

@@ -36,7 +36,7 @@ pub use foreground::{GRASS_MATERIAL, foreground_glb};
 pub(crate) use glb::split_glb;
 pub use levels::levelled_glb;
 pub use materials::{KHR_MATERIALS_DIFFUSE_TRANSMISSION, MaterialSet, Picture};
-pub use scene::scene_gltf;
+pub use scene::{directional_light, scene_gltf};
 pub use scene_parts::{Blob, GlbBlob, SceneParts};
 pub use single::single_glb;
 pub use terrain::terrain_glb;

@@ -61,14 +61,10 @@ fn rounded(number: f32) -> f64 {
 
 /// The sun as a directional light. See `schema/docs/GSC_sky.md` on its intensity.
 fn add_sun(document: &mut Document, light: &SkyLight) -> usize {
-    let rgb = light.sun_irradiance_linear;
-    let greatest = rgb[0].max(rgb[1]).max(rgb[2]);
-    let color = if greatest > 0.0 { rgb.map(|c| (c / greatest).clamp(0.0, 1.0)) } else { [1.0; 3] };
     document.extensions_used.insert("KHR_lights_punctual".into());
     document.extensions.insert(
         "KHR_lights_punctual".into(),
-        json!({ "lights": [{ "name": "sun", "type": "directional", "color": color,
-            "intensity": greatest.max(0.0) * light.exposure }] }),
+        json!({ "lights": [directional_light("sun", light.sun_irradiance_linear, light.exposure)] }),
     );
     // A glTF light shines along its own −z.
     let rotation = rotation_from_z(light.sun_direction.normalize_or(Vec3::Y));
@@ -79,6 +75,14 @@ fn add_sun(document: &mut Document, light: &SkyLight) -> usize {
         extras: Some(json!({ "angle_rad": 2.0 * light.sun_angular_radius_rad })),
         ..Node::default()
     })
+}
+
+/// A light of KHR_lights_punctual that gives what faces it `exposure` times that irradiance, linear RGB.
+pub fn directional_light(name: &str, irradiance: [f32; 3], exposure: f32) -> Value {
+    let [r, g, b] = irradiance;
+    let greatest = r.max(g).max(b);
+    let color = if greatest > 0.0 { irradiance.map(|c| (c / greatest).clamp(0.0, 1.0)) } else { [1.0; 3] };
+    json!({ "name": name, "type": "directional", "color": color, "intensity": greatest.max(0.0) * exposure })
 }
 
 fn add_terrain(document: &mut Document, parts: &SceneParts<'_>) -> Result<Vec<usize>, ExportError> {
